@@ -124,7 +124,7 @@ static inline double made_gauss(uint32_t *state)
 }
 
 // Codes as 8 bits hold them.
-static inline struct relume_image made_shoot(const struct made_shot *s, int width, int height)
+static inline struct relume_image made_acquisition(const struct made_shot *s, int width, int height)
 {
     struct relume_image image;
     uint32_t state = s->seed + 1;

@@ -94,7 +94,7 @@ struct relume_acquisition {
 // RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
                                            const struct relume_acquire_params *params);
-RELUME_API void relume_acquisition_destroy(struct relume_acquisition *shoot);
+RELUME_API void relume_acquisition_destroy(struct relume_acquisition *acquisition);
 
 struct relume_acquire_refine_params {
     size_t struct_size;  // filled by the macro (base.h)

@@ -17,20 +17,20 @@
 static const double OUTLIER = 3.0;         // times what photographs usually miss
 static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
 
-const char *shoot_base_name(const char *path)
+const char *acquire_base_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
 }
 
-static void forget(struct shoot *s, int i)
+static void forget(struct acquisition *s, int i)
 {
     relume_image_destroy(&s->shot[i].small);
     memmove(&s->shot[i], &s->shot[i + 1], (size_t)(s->shots - i - 1) * sizeof *s->shot);
     s->shots--;
 }
 
-relume_status shoot_drop(struct shoot *s, int i, const char *format, ...)
+relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...)
 {
     char text[1024];
     va_list list;
@@ -44,7 +44,7 @@ relume_status shoot_drop(struct shoot *s, int i, const char *format, ...)
         return RELUME_ENOMEM;
     unlink(image);
     free(image);
-    const relume_status status = shoot_warn(s, "%s: left out: %s", s->shot[i].path, text);
+    const relume_status status = acquire_warn(s, "%s: left out: %s", s->shot[i].path, text);
     forget(s, i);
     if (!status && s->shots < 3)
         return log_fail(s->p.log, RELUME_EUNFIT, "fewer than 3 photographs are left");
@@ -53,23 +53,23 @@ relume_status shoot_drop(struct shoot *s, int i, const char *format, ...)
 
 // ---------------------------------------------------------------- results
 
-void relume_acquisition_destroy(struct relume_acquisition *shoot)
+void relume_acquisition_destroy(struct relume_acquisition *acquisition)
 {
-    for (int i = 0; shoot->photo && i < shoot->lights; i++)
-        free(shoot->photo[i].path);
-    for (int i = 0; i < shoot->warnings; i++)
-        free(shoot->warning[i]);
-    free(shoot->photo);
-    free(shoot->direction);
-    free(shoot->position);
-    free(shoot->intensity);
-    free(shoot->ball);
-    free(shoot->warning);
-    relume_photometric_destroy(&shoot->photometric);
-    *shoot = (struct relume_acquisition){0};
+    for (int i = 0; acquisition->photo && i < acquisition->lights; i++)
+        free(acquisition->photo[i].path);
+    for (int i = 0; i < acquisition->warnings; i++)
+        free(acquisition->warning[i]);
+    free(acquisition->photo);
+    free(acquisition->direction);
+    free(acquisition->position);
+    free(acquisition->intensity);
+    free(acquisition->ball);
+    free(acquisition->warning);
+    relume_photometric_destroy(&acquisition->photometric);
+    *acquisition = (struct relume_acquisition){0};
 }
 
-static relume_status alloc_result(struct shoot *s)
+static relume_status alloc_result(struct acquisition *s)
 {
     struct relume_acquisition *out = s->out;
     const size_t n = (size_t)s->shots;
@@ -85,7 +85,7 @@ static relume_status alloc_result(struct shoot *s)
     return RELUME_OK;
 }
 
-static relume_status fill_result(struct shoot *s)
+static relume_status fill_result(struct acquisition *s)
 {
     struct relume_acquisition *out = s->out;
     out->width = s->width;
@@ -116,7 +116,7 @@ static relume_status fill_result(struct shoot *s)
 
 // ---------------------------------------------------------------- the folder
 
-static struct relume_geometry geometry_of(const struct shoot *s)
+static struct relume_geometry geometry_of(const struct acquisition *s)
 {
     struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, s->width, s->height);
     g.perspective = s->p.fov_deg > 0.0;
@@ -125,7 +125,7 @@ static struct relume_geometry geometry_of(const struct shoot *s)
     return g;
 }
 
-static relume_status write_manifest(const struct shoot *s, const char *path)
+static relume_status write_manifest(const struct acquisition *s, const char *path)
 {
     const char **images = mem_array((size_t)s->shots, sizeof *images);
     if (!images)
@@ -149,7 +149,7 @@ static relume_status write_manifest(const struct shoot *s, const char *path)
     return status;
 }
 
-static relume_status write_lp(const struct shoot *s, const char *path)
+static relume_status write_lp(const struct acquisition *s, const char *path)
 {
     char *text = NULL;
     size_t size = 0;
@@ -167,7 +167,7 @@ static relume_status write_lp(const struct shoot *s, const char *path)
     return status;
 }
 
-static relume_status copy_mask(const struct shoot *s, const char *path)
+static relume_status copy_mask(const struct acquisition *s, const char *path)
 {
     const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
     struct relume_image mask;
@@ -186,8 +186,8 @@ static relume_status copy_mask(const struct shoot *s, const char *path)
 }
 
 // Call `write` with a path in the folder.
-static relume_status in_folder(const struct shoot *s, const char *name,
-                               relume_status (*write)(const struct shoot *, const char *))
+static relume_status in_folder(const struct acquisition *s, const char *name,
+                               relume_status (*write)(const struct acquisition *, const char *))
 {
     char *path = mem_format("%s/%s", outdir_path(s->dir), name);
     const relume_status status = path ? write(s, path) : RELUME_ENOMEM;
@@ -195,7 +195,7 @@ static relume_status in_folder(const struct shoot *s, const char *name,
     return status;
 }
 
-static relume_status describe(const struct shoot *s)
+static relume_status describe(const struct acquisition *s)
 {
     relume_status status = in_folder(s, "mask.exr", copy_mask);
     if (!status)
@@ -205,7 +205,7 @@ static relume_status describe(const struct shoot *s)
 
 // ---------------------------------------------------------------- what the images say
 
-static relume_status refine(struct shoot *s, const relume_capture *capture)
+static relume_status refine(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
     double residual[2], curl[2] = {0.0, 0.0};
@@ -246,7 +246,7 @@ static double mean_miss(const struct relume_photometric *p)
 
 // Photographs that miss far more than most: damaged in a way that no reader sees, taken when
 // something had moved, or under a lamp that is not as it is said to be.
-static relume_status name_outliers(struct shoot *s)
+static relume_status name_outliers(struct acquisition *s)
 {
     const struct relume_photometric *p = &s->out->photometric;
     double *sorted = mem_copy(p->light_residual, (size_t)p->lights, sizeof *sorted);
@@ -258,7 +258,7 @@ static relume_status name_outliers(struct shoot *s)
     for (int i = 0; i < p->lights && !status; i++) {
         s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
         if (s->out->photo[i].outlier)
-            status = shoot_warn_alike(
+            status = acquire_warn_alike(
                 s, ALIKE_MISFIT, p->light_residual[i],
                 "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
                 "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
@@ -268,7 +268,7 @@ static relume_status name_outliers(struct shoot *s)
     return status;
 }
 
-static relume_status fit(struct shoot *s, const relume_capture *capture)
+static relume_status fit(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
     relume_status status =
@@ -279,7 +279,7 @@ static relume_status fit(struct shoot *s, const relume_capture *capture)
     if (!status)
         status = name_outliers(s);
     if (!status && mean_miss(&out->photometric) > CONTRADICTION)
-        status = shoot_warn(
+        status = acquire_warn(
             s,
             "the photographs do not fit the lights: %.0f %% brightness error; wrong order, lamps "
             "of unequal brightness (--refine-lights), or linear photographs (--transfer linear)?",
@@ -287,8 +287,8 @@ static relume_status fit(struct shoot *s, const relume_capture *capture)
     return status;
 }
 
-static relume_status open_and(struct shoot *s,
-                              relume_status (*use)(struct shoot *, const relume_capture *))
+static relume_status open_and(struct acquisition *s,
+                              relume_status (*use)(struct acquisition *, const relume_capture *))
 {
     relume_capture *capture;
     relume_status status =
@@ -299,21 +299,21 @@ static relume_status open_and(struct shoot *s,
     return status;
 }
 
-static relume_status run(struct shoot *s)
+static relume_status run(struct acquisition *s)
 {
-    relume_status status = shoot_read(s);
+    relume_status status = acquire_read(s);
     if (!status)
-        status = shoot_check_pictures(s);
+        status = acquire_check_pictures(s);
     if (!status)
-        shoot_say_alike(s);
+        acquire_say_alike(s);
     if (!status)
-        status = shoot_find_lights(s);
+        status = acquire_find_lights(s);
     if (!status)
-        status = shoot_whiten(s);
+        status = acquire_whiten(s);
     if (!status)
         status = fill_result(s);
     if (!status)
-        status = shoot_check_lights(s);
+        status = acquire_check_lights(s);
     if (!status)
         status = describe(s);
     if (!status && s->p.refine)
@@ -321,14 +321,14 @@ static relume_status run(struct shoot *s)
     if (!status)
         status = open_and(s, fit);
     if (!status)
-        shoot_say_alike(s);
-    return status ? status : shoot_report(s, outdir_path(s->dir));
+        acquire_say_alike(s);
+    return status ? status : acquire_report(s, outdir_path(s->dir));
 }
 
 // The last number in a file's name, -1 where there is none.
 static long number_of(const char *path)
 {
-    const char *name = shoot_base_name(path), *dot = strrchr(name, '.');
+    const char *name = acquire_base_name(path), *dot = strrchr(name, '.');
     const char *at = dot ? dot : name + strlen(name);
     while (at > name && !isdigit((unsigned char)at[-1]))
         at--;
@@ -402,7 +402,7 @@ static relume_status check_params(const struct relume_acquire_params *p)
     return RELUME_OK;
 }
 
-static void release(struct shoot *s)
+static void release(struct acquisition *s)
 {
     for (int i = 0; s->shot && i < s->shots; i++)
         relume_image_destroy(&s->shot[i].small);
@@ -418,7 +418,7 @@ static void release(struct shoot *s)
 relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
                              const struct relume_acquire_params *params)
 {
-    struct shoot s = {.p = *params, .out = out, .shots = params->photograph_count};
+    struct acquisition s = {.p = *params, .out = out, .shots = params->photograph_count};
     *out = (struct relume_acquisition){0};
     relume_status status = check_params(params);
     if (status)

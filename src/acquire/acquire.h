@@ -25,7 +25,7 @@ struct shot {
 enum { SHOT_SMALL = 168 };
 
 // Warnings that many photographs may share.
-enum shoot_alike {
+enum acquire_alike {
     ALIKE_SATURATED,
     ALIKE_BLACK,
     ALIKE_SCENE,
@@ -41,7 +41,7 @@ struct alike {
     double how_bad;                      // the worst one
 };
 
-struct shoot {
+struct acquisition {
     struct relume_acquire_params p;
     struct relume_acquisition *out;
     outdir *dir;
@@ -61,46 +61,47 @@ struct shoot {
 };
 
 // Log a warning and keep it for the report. RELUME_ENOMEM.
-__attribute__((format(printf, 2, 3))) relume_status shoot_warn(struct shoot *s, const char *format,
-                                                               ...);
-// The same for one of a kind, kept for the report; what was kept is said by shoot_say_alike, of
+__attribute__((format(printf, 2, 3))) relume_status acquire_warn(struct acquisition *s,
+                                                                 const char *format, ...);
+// The same for one of a kind, kept for the report; what was kept is said by acquire_say_alike, of
 // more than a few only the worst and their number.
-__attribute__((format(printf, 4, 5))) relume_status shoot_warn_alike(struct shoot *s,
-                                                                     enum shoot_alike kind,
-                                                                     double how_bad,
-                                                                     const char *format, ...);
-void shoot_say_alike(struct shoot *s);
+__attribute__((format(printf, 4, 5))) relume_status acquire_warn_alike(struct acquisition *s,
+                                                                       enum acquire_alike kind,
+                                                                       double how_bad,
+                                                                       const char *format, ...);
+void acquire_say_alike(struct acquisition *s);
 // Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
-__attribute__((format(printf, 3, 4))) relume_status shoot_drop(struct shoot *s, int i,
-                                                               const char *format, ...);
-const char *shoot_base_name(const char *path);
+__attribute__((format(printf, 3, 4))) relume_status acquire_drop(struct acquisition *s, int i,
+                                                                 const char *format, ...);
+const char *acquire_base_name(const char *path);
 
 // Read all photographs into the folder; an input status.
-relume_status shoot_read(struct shoot *s);
-relume_status shoot_check_size(const struct shoot *s, const struct relume_image *image,
-                               const char *path, int width, int height);
+relume_status acquire_read(struct acquisition *s);
+relume_status acquire_check_size(const struct acquisition *s, const struct relume_image *image,
+                                 const char *path, int width, int height);
 // Multiply a photograph by what its flat field says. RELUME_EUNFIT.
-relume_status shoot_flatten(struct shoot *s, const struct shot *shot, struct relume_image *image);
+relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
+                              struct relume_image *image);
 // Remember the grey region of a photograph; make its mean the colour of all lights.
-relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image);
-relume_status shoot_whiten(struct shoot *s);
+relume_status acquire_add_grey(struct acquisition *s, const struct relume_image *image);
+relume_status acquire_whiten(struct acquisition *s);
 // What can be told wrong of the pictures themselves: other scenes, clipping, blackness.
-relume_status shoot_check_pictures(struct shoot *s);
+relume_status acquire_check_pictures(struct acquisition *s);
 // The photograph that shows the balls under a shot's light, linear.
-relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i);
+relume_status acquire_load_balls(struct relume_image *out, const struct acquisition *s, int i);
 // Mirror balls found as the horizon of the table they stand on: find their outlines.
-relume_status shoot_seek_tables(struct shoot *s);
+relume_status acquire_seek_tables(struct acquisition *s);
 // Directions, positions, intensities and their errors, from balls or from a file.
-relume_status shoot_find_lights(struct shoot *s);
+relume_status acquire_find_lights(struct acquisition *s);
 // The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
-bool shoot_has_poses(const char *path);
-relume_status shoot_lights_from_poses(struct shoot *s);
+bool acquire_has_poses(const char *path);
+relume_status acquire_lights_from_poses(struct acquisition *s);
 // Uneven coverage, coplanar lights.
-relume_status shoot_check_lights(struct shoot *s);
+relume_status acquire_check_lights(struct acquisition *s);
 
 // lights.svg and report.html into the folder `dir`.
-relume_status shoot_report(const struct shoot *s, const char *dir);
+relume_status acquire_report(const struct acquisition *s, const char *dir);
 // The lights on the sphere, as SVG, to be freed; NULL when memory is short.
-char *shoot_light_sphere(const struct relume_acquisition *out);
+char *acquire_light_sphere(const struct relume_acquisition *out);
 
 #endif

@@ -25,7 +25,7 @@ static double median(double *v, int n)
 }
 
 // The median likeness of a photograph to some of the others.
-static float likeness(const struct shoot *s, int i)
+static float likeness(const struct acquisition *s, int i)
 {
     double found[PAIRS];
     int n = 0;
@@ -39,7 +39,7 @@ static float likeness(const struct shoot *s, int i)
     return (float)median(found, n);
 }
 
-static relume_status check_scene(struct shoot *s)
+static relume_status check_scene(struct acquisition *s)
 {
     double *all = mem_array((size_t)s->shots, sizeof *all);
     if (!all)
@@ -56,20 +56,20 @@ static relume_status check_scene(struct shoot *s)
             continue;
         }
         if (s->p.skip_bad) {
-            status = shoot_drop(s, i, "shows another scene: similarity %.2f, the others have %.2f",
-                                like, usual);
+            status = acquire_drop(
+                s, i, "shows another scene: similarity %.2f, the others have %.2f", like, usual);
             continue;
         }
-        status = shoot_warn_alike(s, ALIKE_SCENE, -like,
-                                  "%s: seems to show another scene: similarity %.2f, the others "
-                                  "have %.2f",
-                                  s->shot[i].path, like, usual);
+        status = acquire_warn_alike(s, ALIKE_SCENE, -like,
+                                    "%s: seems to show another scene: similarity %.2f, the others "
+                                    "have %.2f",
+                                    s->shot[i].path, like, usual);
         i++;
     }
     return status;
 }
 
-relume_status shoot_check_pictures(struct shoot *s)
+relume_status acquire_check_pictures(struct acquisition *s)
 {
     relume_status status = check_scene(s);
     int full = 0;
@@ -77,11 +77,11 @@ relume_status shoot_check_pictures(struct shoot *s)
         const struct shot *shot = &s->shot[i];
         full += shot->saturated > 0.9f;
         if (shot->saturated > SATURATED)
-            status = shoot_warn_alike(s, ALIKE_SATURATED, (double)shot->saturated,
-                                      "%s: %.1f %% of the pixels are overexposed", shot->path,
-                                      100.0 * (double)shot->saturated);
+            status = acquire_warn_alike(s, ALIKE_SATURATED, (double)shot->saturated,
+                                        "%s: %.1f %% of the pixels are overexposed", shot->path,
+                                        100.0 * (double)shot->saturated);
         else if (shot->black > DARK)
-            status = shoot_warn_alike(s, ALIKE_BLACK, 0.0, "%s: black", shot->path);
+            status = acquire_warn_alike(s, ALIKE_BLACK, 0.0, "%s: black", shot->path);
     }
     if (!status && full == s->shots)
         status = log_fail(s->p.log, RELUME_EUNFIT,
@@ -137,7 +137,7 @@ static size_t put_place(char *out, size_t room, const char *before, vec3 d)
     return n < 0 ? 0 : (size_t)n < room ? (size_t)n : room - 1;
 }
 
-static relume_status check_coverage(struct shoot *s)
+static relume_status check_coverage(struct acquisition *s)
 {
     enum { SAID = 2 };  // more than a line holds are in the report
     struct relume_acquisition *out = s->out;
@@ -153,11 +153,11 @@ static relume_status check_coverage(struct shoot *s)
         at += put_place(places + at, sizeof places - at, i ? "; " : "", out->wanted[i]);
     if (!n)
         return RELUME_OK;
-    return shoot_warn(s, "uneven light: the widest gap is %.0f degrees; add lamps: %s%s",
-                      out->gap_deg, places, n > SAID ? "; and more, see report.html" : "");
+    return acquire_warn(s, "uneven light: the widest gap is %.0f degrees; add lamps: %s%s",
+                        out->gap_deg, places, n > SAID ? "; and more, see report.html" : "");
 }
 
-relume_status shoot_check_lights(struct shoot *s)
+relume_status acquire_check_lights(struct acquisition *s)
 {
     const struct relume_acquisition *out = s->out;
     double m[9] = {0.0}, values[3];
@@ -171,9 +171,9 @@ relume_status shoot_check_lights(struct shoot *s)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
     if (values[0] < FLAT)
-        status = shoot_warn(s,
-                            "the light directions lie nearly in one plane (%.1f degrees off it): "
-                            "normals cannot be computed",
-                            asin(sqrt(fmax(values[0], 0.0))) * 180.0 / M_PI);
+        status = acquire_warn(s,
+                              "the light directions lie nearly in one plane (%.1f degrees off it): "
+                              "normals cannot be computed",
+                              asin(sqrt(fmax(values[0], 0.0))) * 180.0 / M_PI);
     return status ? status : check_coverage(s);
 }

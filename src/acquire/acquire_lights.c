@@ -17,7 +17,7 @@ static const double BELOW = -0.05;    // z of a direction: the lamp stood behind
 
 // ---------------------------------------------------------------- balls
 
-static relume_status load_mask(const struct shoot *s, struct relume_image *out)
+static relume_status load_mask(const struct acquisition *s, struct relume_image *out)
 {
     *out = (struct relume_image){0};
     if (!s->p.ball_mask)
@@ -33,7 +33,7 @@ static relume_status load_mask(const struct shoot *s, struct relume_image *out)
     return status;
 }
 
-static relume_status outline_given(struct shoot *s)
+static relume_status outline_given(struct acquisition *s)
 {
     struct relume_acquisition *out = s->out;
     for (int b = 0; b < out->balls; b++) {
@@ -54,7 +54,7 @@ static const char *ball_photo(const struct shot *shot)
     return shot->ball_path ? shot->ball_path : shot->path;
 }
 
-relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i)
+relume_status acquire_load_balls(struct relume_image *out, const struct acquisition *s, int i)
 {
     const bool own = s->shot[i].ball_path && s->p.ball_transfer.curve != RELUME_CURVE_AUTO;
     return relume_photograph_load(
@@ -80,7 +80,7 @@ static const double NO_LAMP = 90.0;  // degrees that count where a matte ball te
 // How badly candidates tell the lamp, in a few photographs spread over all: mirrors 0, or 1 where
 // most show none (a round stone does in few of them); matte ones the error in degrees of what they
 // tell, which is large where something round is shaded as no white ball is.
-static relume_status try_candidates(double *bad, const struct shoot *s,
+static relume_status try_candidates(double *bad, const struct acquisition *s,
                                     const struct relume_ball *ball, int n)
 {
     const int trials = s->shots < TRIALS ? s->shots : TRIALS;
@@ -89,7 +89,7 @@ static relume_status try_candidates(double *bad, const struct shoot *s,
     double error[MOST_BALLS + CANDIDATES] = {0.0};
     for (int i = 0; i < trials; i++) {
         struct relume_image image;
-        relume_status status = shoot_load_balls(&image, s, i * s->shots / trials);
+        relume_status status = acquire_load_balls(&image, s, i * s->shots / trials);
         for (int b = 0; !status && b < n; b++) {
             struct relume_ball_light light = {0};
             status = (matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball[b], &s->camera,
@@ -135,7 +135,7 @@ static double take_best(struct relume_acquisition *out, const struct telling *t)
     return worst;
 }
 
-static relume_status add_candidates(struct telling *t, const struct shoot *s,
+static relume_status add_candidates(struct telling *t, const struct acquisition *s,
                                     const struct relume_image *picture, int most,
                                     const struct relume_ball_params *params)
 {
@@ -150,12 +150,12 @@ static relume_status add_candidates(struct telling *t, const struct shoot *s,
 
 // Outlines instead of horizons of tables, which are smaller, so that lamps look wider by them;
 // *bad: how badly they tell the lamp then.
-static relume_status seek_tables(struct shoot *s, double *bad)
+static relume_status seek_tables(struct acquisition *s, double *bad)
 {
     double each[MOST_BALLS];
     if (s->p.matte || isinf(*bad))
         return RELUME_OK;
-    relume_status status = shoot_seek_tables(s);
+    relume_status status = acquire_seek_tables(s);
     if (!status && *bad > 0.0) {
         status = try_candidates(each, s, s->out->ball, s->out->balls);
         *bad = 0.0;
@@ -168,7 +168,7 @@ static relume_status seek_tables(struct shoot *s, double *bad)
 // The circles that tell the lamp best. Where a patterned table hides outlines, in how light changes
 // they show: there the pattern drops out. Where too few tell the lamp at all, others are taken, so
 // that what is wrong with them is told.
-static relume_status find_telling(struct shoot *s, const struct relume_ball_params *params)
+static relume_status find_telling(struct acquisition *s, const struct relume_ball_params *params)
 {
     struct relume_acquisition *out = s->out;
     struct telling t = {0};
@@ -188,7 +188,7 @@ static relume_status find_telling(struct shoot *s, const struct relume_ball_para
     return status;
 }
 
-static relume_status no_ball(const struct shoot *s)
+static relume_status no_ball(const struct acquisition *s)
 {
     const int n = s->out->balls;
     char what[48] = "no";
@@ -201,7 +201,7 @@ static relume_status no_ball(const struct shoot *s)
                     s->p.matte ? "" : ", or --matte for a white ball");
 }
 
-static relume_status find_balls(struct shoot *s)
+static relume_status find_balls(struct acquisition *s)
 {
     struct relume_acquisition *out = s->out;
     out->balls = s->p.balls > 0 ? s->p.balls : 1;
@@ -228,7 +228,7 @@ static relume_status find_balls(struct shoot *s)
     return status;
 }
 
-static relume_status warn_cut_off(struct shoot *s)
+static relume_status warn_cut_off(struct acquisition *s)
 {
     relume_status status = RELUME_OK;
     for (int b = 0; !status && b < s->out->balls; b++) {
@@ -237,14 +237,14 @@ static relume_status warn_cut_off(struct shoot *s)
                                    fmax(ball->x + ball->radius - s->camera.width,
                                         ball->y + ball->radius - s->camera.height));
         if (beside > 0.02 * ball->radius)
-            status = shoot_warn(s, "ball at %.0f,%.0f: cut off by the picture's border", ball->x,
-                                ball->y);
+            status = acquire_warn(s, "ball at %.0f,%.0f: cut off by the picture's border", ball->x,
+                                  ball->y);
     }
     return status;
 }
 
 // The middle of a ball and its radius in the world.
-static double place_ball(const struct shoot *s, const struct relume_ball *ball, vec3 *middle)
+static double place_ball(const struct acquisition *s, const struct relume_ball *ball, vec3 *middle)
 {
     const double width = s->camera.width, z = s->p.ball_z;
     if (!(s->camera.focal_px > 0.0)) {
@@ -265,13 +265,13 @@ struct sights {
 };
 
 // What every ball shows of every lamp: light[shots][balls].
-static relume_status look_all(const struct shoot *s, struct relume_ball_light *light)
+static relume_status look_all(const struct acquisition *s, struct relume_ball_light *light)
 {
     const int balls = s->out->balls;
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < s->shots; i++) {
         struct relume_image image;
-        status = shoot_load_balls(&image, s, i);
+        status = acquire_load_balls(&image, s, i);
         for (int b = 0; !status && b < balls; b++)
             status = (s->p.matte ? relume_ball_matte : relume_ball_mirror)(
                 &light[(size_t)i * (size_t)balls + (size_t)b], &s->out->ball[b], &s->camera,
@@ -282,7 +282,7 @@ static relume_status look_all(const struct shoot *s, struct relume_ball_light *l
 }
 
 // What the balls tell of the lamp of photograph `i`; `why` the last of them does not.
-static relume_status gather(struct shoot *s, int i, const struct relume_ball_light *light,
+static relume_status gather(struct acquisition *s, int i, const struct relume_ball_light *light,
                             struct sights *to, const char **why)
 {
     relume_status status = RELUME_OK;
@@ -301,10 +301,10 @@ static relume_status gather(struct shoot *s, int i, const struct relume_ball_lig
         to->origin[to->n] = vec3_add(middle, vec3_scale(l->origin, radius));
         to->direction[to->n++] = l->direction;
         if (l->sight == RELUME_BALL_RIM || l->sight == RELUME_BALL_TWO)
-            status = shoot_warn_alike(s, l->sight == RELUME_BALL_RIM ? ALIKE_RIM : ALIKE_TWO, 0.0,
-                                      "%s: %s of the ball at %.0f,%.0f", ball_photo(&s->shot[i]),
-                                      relume_ball_sight_text(l->sight), s->out->ball[b].x,
-                                      s->out->ball[b].y);
+            status = acquire_warn_alike(s, l->sight == RELUME_BALL_RIM ? ALIKE_RIM : ALIKE_TWO, 0.0,
+                                        "%s: %s of the ball at %.0f,%.0f", ball_photo(&s->shot[i]),
+                                        relume_ball_sight_text(l->sight), s->out->ball[b].x,
+                                        s->out->ball[b].y);
     }
     return status;
 }
@@ -329,7 +329,8 @@ static void average(struct shot *shot, const struct sights *seen)
         shot->intensity[c] = seen->light[0].intensity[c];
 }
 
-static relume_status locate(struct shoot *s, int i, const struct sights *seen, double *disagree)
+static relume_status locate(struct acquisition *s, int i, const struct sights *seen,
+                            double *disagree)
 {
     struct shot *shot = &s->shot[i];
     average(shot, seen);
@@ -348,7 +349,7 @@ static relume_status locate(struct shoot *s, int i, const struct sights *seen, d
 
 // A mirror's outline that is too small turns lights away from the axis of view, some behind the
 // ball: a mirror on a table shows the table's horizon as a circle, 0.71 of its outline.
-static relume_status warn_below(struct shoot *s)
+static relume_status warn_below(struct acquisition *s)
 {
     int below = 0;
     for (int i = 0; i < s->shots; i++)
@@ -356,11 +357,11 @@ static relume_status warn_below(struct shoot *s)
     if (!below || s->p.matte)
         return RELUME_OK;
     const struct relume_ball *b = &s->out->ball[0];
-    return shoot_warn(s,
-                      "ball at %.0f,%.0f with radius %.0f: this outline puts %d of the lights "
-                      "behind it; is it the "
-                      "outline of the ball, or a circle that the ball reflects (--ball x,y,r)?",
-                      b->x, b->y, b->radius, below);
+    return acquire_warn(s,
+                        "ball at %.0f,%.0f with radius %.0f: this outline puts %d of the lights "
+                        "behind it; is it the "
+                        "outline of the ball, or a circle that the ball reflects (--ball x,y,r)?",
+                        b->x, b->y, b->radius, below);
 }
 
 // What a ball that was searched for must show: in nearly every photograph one small highlight,
@@ -370,7 +371,7 @@ static relume_status warn_below(struct shoot *s)
 static const double SHOWN = 0.8, ALONE = 0.5;  // shares of the photographs
 static const double MOVES = 2.0;               // degrees
 
-static bool is_mirror(const struct shoot *s, const struct relume_ball_light *light, int b)
+static bool is_mirror(const struct acquisition *s, const struct relume_ball_light *light, int b)
 {
     int shown = 0, alone = 0;
     double moves = 0.0;
@@ -389,7 +390,8 @@ static bool is_mirror(const struct shoot *s, const struct relume_ball_light *lig
 }
 
 // Where the balls' outlines were given, they are what somebody says they are.
-static relume_status check_mirrors(const struct shoot *s, const struct relume_ball_light *light)
+static relume_status check_mirrors(const struct acquisition *s,
+                                   const struct relume_ball_light *light)
 {
     if (s->p.matte || s->p.ball || s->p.ball_mask)
         return RELUME_OK;
@@ -399,7 +401,7 @@ static relume_status check_mirrors(const struct shoot *s, const struct relume_ba
     return RELUME_OK;
 }
 
-static relume_status locate_all(struct shoot *s, const struct relume_ball_light *light)
+static relume_status locate_all(struct acquisition *s, const struct relume_ball_light *light)
 {
     const int shots = s->shots;
     double disagree = 0.0;
@@ -410,10 +412,10 @@ static relume_status locate_all(struct shoot *s, const struct relume_ball_light 
         const struct relume_ball *ball = &s->out->ball[0];
         status = gather(s, i, light + (size_t)k * (size_t)s->out->balls, &seen, &why);
         if (!status && !seen.n)
-            status = shoot_drop(s, i,
-                                "%s: ball at %.0f,%.0f with radius %.0f: %s; expected the lamp's "
-                                "highlight",
-                                ball_photo(&s->shot[i]), ball->x, ball->y, ball->radius, why);
+            status = acquire_drop(s, i,
+                                  "%s: ball at %.0f,%.0f with radius %.0f: %s; expected the lamp's "
+                                  "highlight",
+                                  ball_photo(&s->shot[i]), ball->x, ball->y, ball->radius, why);
         else if (!status)
             status = locate(s, i++, &seen, &disagree);
     }
@@ -422,14 +424,14 @@ static relume_status locate_all(struct shoot *s, const struct relume_ball_light 
     if (!status)
         status = warn_below(s);
     if (!status && !s->p.near && disagree > DISAGREE)
-        status = shoot_warn(s,
-                            "the balls disagree by up to %.1f degrees; near lights? --near "
-                            "makes positions",
-                            disagree);
+        status = acquire_warn(s,
+                              "the balls disagree by up to %.1f degrees; near lights? --near "
+                              "makes positions",
+                              disagree);
     return status;
 }
 
-static relume_status lights_from_balls(struct shoot *s)
+static relume_status lights_from_balls(struct acquisition *s)
 {
     if (s->p.near && (s->p.ball || s->p.balls ? s->p.balls : 1) < 2)
         return log_fail(s->p.log, RELUME_EINVAL,
@@ -464,15 +466,15 @@ static int find_name(const struct draft *lp, const char *path)
 {
     for (int i = 0; i < lp->m.lights; i++) {
         const char *listed = strrchr(lp->view[0].images[i], '\\');
-        listed = listed ? listed + 1 : shoot_base_name(lp->view[0].images[i]);
-        if (!strcasecmp(listed, shoot_base_name(path)))
+        listed = listed ? listed + 1 : acquire_base_name(lp->view[0].images[i]);
+        if (!strcasecmp(listed, acquire_base_name(path)))
             return i;
     }
     return -1;
 }
 
 // order[shot] = line of the .lp file by name; as they were given when none of the names is known.
-static relume_status match_names(struct shoot *s, int *order, bool *matched)
+static relume_status match_names(struct acquisition *s, int *order, bool *matched)
 {
     struct draft lp;
     relume_status status = lp_read(&lp, s->p.lights, s->p.limits, s->p.log);
@@ -490,12 +492,12 @@ static relume_status match_names(struct shoot *s, int *order, bool *matched)
     if (!status && *matched && missing)
         status = log_fail(s->p.log, RELUME_EUNFIT,
                           "%s: does not list '%s'; expected a line for every photograph",
-                          s->p.lights, shoot_base_name(missing));
+                          s->p.lights, acquire_base_name(missing));
     return status;
 }
 
 // `order` says which light of the list is that of a shot.
-static void take_lights(struct shoot *s, const struct relume_captured_lights *list,
+static void take_lights(struct acquisition *s, const struct relume_captured_lights *list,
                         const int *order)
 {
     for (int i = 0; i < s->shots; i++) {
@@ -508,7 +510,7 @@ static void take_lights(struct shoot *s, const struct relume_captured_lights *li
     s->has_intensities = list->intensity != NULL;
 }
 
-static relume_status lights_from_file(struct shoot *s)
+static relume_status lights_from_file(struct acquisition *s)
 {
     struct relume_captured_lights list = {0};
     bool matched = false;
@@ -535,7 +537,7 @@ static relume_status lights_from_file(struct shoot *s)
 
 // Photographs of other exposures show their lights brighter or darker; what a matte ball tells
 // includes that.
-static relume_status weigh_exposures(struct shoot *s)
+static relume_status weigh_exposures(struct acquisition *s)
 {
     double least = INFINITY, most = 0.0, sum = 0.0;
     for (int i = 0; i < s->shots; i++) {
@@ -552,16 +554,16 @@ static relume_status weigh_exposures(struct shoot *s)
             s->shot[i].intensity[c] = (s->has_intensities ? s->shot[i].intensity[c] : 1.0f) * e;
         }
     s->has_intensities = true;
-    return shoot_warn(s,
-                      "the photographs are exposed differently, by up to a factor of %.2f; "
-                      "brightness is divided by what the camera noted",
-                      most / least);
+    return acquire_warn(s,
+                        "the photographs are exposed differently, by up to a factor of %.2f; "
+                        "brightness is divided by what the camera noted",
+                        most / least);
 }
 
-relume_status shoot_find_lights(struct shoot *s)
+relume_status acquire_find_lights(struct acquisition *s)
 {
-    relume_status status = !s->p.lights                   ? lights_from_balls(s)
-                           : shoot_has_poses(s->p.lights) ? shoot_lights_from_poses(s)
-                                                          : lights_from_file(s);
+    relume_status status = !s->p.lights                     ? lights_from_balls(s)
+                           : acquire_has_poses(s->p.lights) ? acquire_lights_from_poses(s)
+                                                            : lights_from_file(s);
     return status ? status : weigh_exposures(s);
 }

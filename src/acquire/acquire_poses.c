@@ -14,16 +14,16 @@
 #include <string.h>
 #include <sys/stat.h>
 
-bool shoot_has_poses(const char *path)
+bool acquire_has_poses(const char *path)
 {
     struct stat s;
     return !stat(path, &s) && S_ISDIR(s.st_mode);
 }
 
-static bool is_photograph(const struct shoot *s, const char *name)
+static bool is_photograph(const struct acquisition *s, const char *name)
 {
     for (int i = 0; i < s->p.photograph_count; i++)
-        if (!strcmp(shoot_base_name(s->p.photographs[i]), shoot_base_name(name)))
+        if (!strcmp(acquire_base_name(s->p.photographs[i]), acquire_base_name(name)))
             return true;
     return false;
 }
@@ -58,7 +58,7 @@ static relume_status find_distance(double *out, const struct posed_model *model,
 }
 
 // The object's camera, and light i's in lamp[i].
-static relume_status tell_apart(const struct shoot *s, const struct posed_model *model,
+static relume_status tell_apart(const struct acquisition *s, const struct posed_model *model,
                                 const struct posed_camera **object,
                                 const struct posed_camera **lamp)
 {
@@ -75,7 +75,7 @@ static relume_status tell_apart(const struct shoot *s, const struct posed_model 
         return log_fail(
             s->p.log, RELUME_EUNFIT,
             "%s: has a pose for none of the photographs; expected '%s' or another of them",
-            s->p.lights, shoot_base_name(s->p.photographs[0]));
+            s->p.lights, acquire_base_name(s->p.photographs[0]));
     if (lamps == s->p.photograph_count)
         return RELUME_OK;
     return log_fail(s->p.log, RELUME_EUNFIT,
@@ -84,7 +84,7 @@ static relume_status tell_apart(const struct shoot *s, const struct posed_model 
                     s->p.lights, lamps, relume_plural(lamps), s->p.photograph_count);
 }
 
-static void place(struct shoot *s, const struct posed_camera *object,
+static void place(struct acquisition *s, const struct posed_camera *object,
                   const struct posed_camera *const *lamp, double distance)
 {
     const double eye = 2.0 * object->focal[0] / object->width, scale = eye / distance;
@@ -97,7 +97,7 @@ static void place(struct shoot *s, const struct posed_camera *object,
     }
 }
 
-relume_status shoot_lights_from_poses(struct shoot *s)
+relume_status acquire_lights_from_poses(struct acquisition *s)
 {
     struct posed_model model;
     const struct posed_camera *object, **lamp;

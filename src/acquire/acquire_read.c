@@ -45,7 +45,7 @@ static void count_ends(struct shot *shot, const struct relume_image *image, bool
 }
 
 // Means of the logarithm, for finding the balls.
-static relume_status add_to_mean(struct shoot *s, const struct relume_image *image)
+static relume_status add_to_mean(struct acquisition *s, const struct relume_image *image)
 {
     if (!s->mean.data) {
         s->camera = (struct relume_ball_camera){
@@ -75,7 +75,7 @@ static relume_status add_to_mean(struct shoot *s, const struct relume_image *ima
     return RELUME_OK;
 }
 
-static relume_status align(struct shoot *s, int i, struct relume_image *image)
+static relume_status align(struct acquisition *s, int i, struct relume_image *image)
 {
     if (!s->p.align)
         return RELUME_OK;
@@ -91,9 +91,9 @@ static relume_status align(struct shoot *s, int i, struct relume_image *image)
         &h, &s->first, image,
         &(struct relume_align_params){.log = s->p.log, .threads = s->p.threads});
     if (!status && h.correlation < 0.3)
-        return shoot_warn_alike(s, ALIKE_UNALIGNED, -h.correlation,
-                                "%s: does not align with the first photograph; left as it is",
-                                s->shot[i].path);
+        return acquire_warn_alike(s, ALIKE_UNALIGNED, -h.correlation,
+                                  "%s: does not align with the first photograph; left as it is",
+                                  s->shot[i].path);
     if (!status)
         status = relume_warp_homography(&moved, NULL, image, &h,
                                         &(struct relume_align_params){.threads = s->p.threads});
@@ -104,7 +104,7 @@ static relume_status align(struct shoot *s, int i, struct relume_image *image)
     return status;
 }
 
-static relume_status save(const struct shoot *s, const struct shot *shot,
+static relume_status save(const struct acquisition *s, const struct shot *shot,
                           const struct relume_image *image)
 {
     char *path = mem_format("%s/%s", outdir_path(s->dir), shot->name);
@@ -115,8 +115,8 @@ static relume_status save(const struct shoot *s, const struct shot *shot,
     return status;
 }
 
-relume_status shoot_check_size(const struct shoot *s, const struct relume_image *image,
-                               const char *path, int width, int height)
+relume_status acquire_check_size(const struct acquisition *s, const struct relume_image *image,
+                                 const char *path, int width, int height)
 {
     if (!width || (image->width == width && image->height == height))
         return RELUME_OK;
@@ -124,22 +124,22 @@ relume_status shoot_check_size(const struct shoot *s, const struct relume_image 
                     path, image->width, image->height, width, height);
 }
 
-static relume_status take_ball(struct shoot *s, int i)
+static relume_status take_ball(struct acquisition *s, int i)
 {
     struct relume_image image;
-    relume_status status = shoot_load_balls(&image, s, i);
+    relume_status status = acquire_load_balls(&image, s, i);
     if (!status && s->mean.data)
-        status = shoot_check_size(s, &image, s->shot[i].ball_path, s->mean.width, s->mean.height);
+        status = acquire_check_size(s, &image, s->shot[i].ball_path, s->mean.width, s->mean.height);
     if (!status)
         status = add_to_mean(s, &image);
     relume_image_destroy(&image);
     return status;
 }
 
-static relume_status take(struct shoot *s, int i, struct relume_image *image)
+static relume_status take(struct acquisition *s, int i, struct relume_image *image)
 {
     struct shot *shot = &s->shot[i];
-    relume_status status = shoot_check_size(s, image, shot->path, s->width, s->height);
+    relume_status status = acquire_check_size(s, image, shot->path, s->width, s->height);
     if (!status && shot->ball_path)
         status = take_ball(s, i);
     if (status)
@@ -147,9 +147,9 @@ static relume_status take(struct shoot *s, int i, struct relume_image *image)
     s->width = image->width;
     s->height = image->height;
     count_ends(shot, image, shot->notes.floats);
-    status = shoot_flatten(s, shot, image);
+    status = acquire_flatten(s, shot, image);
     if (!status)
-        status = shoot_add_grey(s, image);
+        status = acquire_add_grey(s, image);
     if (!status)
         status = align(s, i, image);
     if (!status)
@@ -159,7 +159,7 @@ static relume_status take(struct shoot *s, int i, struct relume_image *image)
     return status ? status : save(s, shot, image);
 }
 
-relume_status shoot_read(struct shoot *s)
+relume_status acquire_read(struct acquisition *s)
 {
     relume_status status = RELUME_OK;
     const int all = s->shots;
@@ -175,7 +175,7 @@ relume_status shoot_read(struct shoot *s)
             status = take(s, i, &image);
         relume_image_destroy(&image);
         if (relume_status_is_input(status) && s->p.skip_bad)
-            status = shoot_drop(s, i, "cannot be used");
+            status = acquire_drop(s, i, "cannot be used");
         else
             i++;
         if (!status && !log_progress(s->p.log, "reading", (done + 1.0) / all))

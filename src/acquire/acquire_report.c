@@ -11,7 +11,7 @@
 enum { THUMB = 168, PLATE = 420 };
 
 struct report {
-    const struct shoot *s;
+    const struct acquisition *s;
     const char *dir;
     FILE *f;
     relume_status status;
@@ -127,7 +127,7 @@ static void put_balls(struct report *r)
 
 static void put_sphere(struct report *r)
 {
-    char *svg = shoot_light_sphere(r->s->out);
+    char *svg = acquire_light_sphere(r->s->out);
     if (!svg) {
         r->status = RELUME_ENOMEM;
         return;
@@ -182,7 +182,7 @@ static void put_row(FILE *f, const struct relume_acquisition *out, int i, double
     const struct relume_acquired_photo *p = &out->photo[i];
     const vec3 d = out->position ? out->position[i] : out->direction[i];
     fprintf(f, "<tr%s><td>%d ", p->outlier ? " class=\"off\"" : "", i);
-    put_text(f, shoot_base_name(p->path));
+    put_text(f, acquire_base_name(p->path));
     fprintf(f, "</td><td>%.3f</td><td>%.3f</td><td>%.3f</td>", d.x, d.y, d.z);
     fprintf(f, p->sigma_deg > 0.0 ? "<td>%.2f&#176;</td>" : "<td></td>", p->sigma_deg);
     fprintf(f, p->light.spread_deg > 0.0 ? "<td>%.1f&#176;</td>" : "<td></td>",
@@ -214,7 +214,7 @@ static void put_sun(FILE *f, vec3 d)
 }
 
 // All of one gain: which photograph is darker shows.
-static float common_gain(const struct shoot *s)
+static float common_gain(const struct acquisition *s)
 {
     float least = INFINITY;
     for (int i = 0; i < s->shots; i++)
@@ -224,7 +224,7 @@ static float common_gain(const struct shoot *s)
 
 static void put_thumbnails(struct report *r)
 {
-    const struct shoot *s = r->s;
+    const struct acquisition *s = r->s;
     const float gain = common_gain(s);
     fputs("<h2>Photographs and their lights</h2>\n<div class=\"row\">", r->f);
     for (int i = 0; i < s->shots && !r->status; i++) {
@@ -233,15 +233,15 @@ static void put_thumbnails(struct report *r)
         put_picture(r, &s->shot[i].small, THUMB, gain, LOOK_LIGHT);
         put_sun(r->f, s->out->direction[i]);
         fprintf(r->f, "</div><figcaption>%d ", i);
-        put_text(r->f, shoot_base_name(s->shot[i].path));
+        put_text(r->f, acquire_base_name(s->shot[i].path));
         fputs("</figcaption></figure>\n", r->f);
     }
     fputs("</div>\n", r->f);
 }
 
-static relume_status write_sphere(const struct shoot *s, const char *dir)
+static relume_status write_sphere(const struct acquisition *s, const char *dir)
 {
-    char *svg = shoot_light_sphere(s->out), *path = mem_format("%s/lights.svg", dir);
+    char *svg = acquire_light_sphere(s->out), *path = mem_format("%s/lights.svg", dir);
     const relume_status status =
         svg && path ? outfile_save(path, svg, strlen(svg), s->p.log) : RELUME_ENOMEM;
     free(svg);
@@ -249,7 +249,7 @@ static relume_status write_sphere(const struct shoot *s, const char *dir)
     return status;
 }
 
-relume_status shoot_report(const struct shoot *s, const char *dir)
+relume_status acquire_report(const struct acquisition *s, const char *dir)
 {
     char *text = NULL, *path = mem_format("%s/report.html", dir);
     size_t size = 0;

@@ -34,13 +34,13 @@ static void compress(struct relume_image *image)
         image->data[i] /= image->data[i] + middle;
 }
 
-static relume_status load_photos(struct relume_image *out, const struct shoot *s, int photos,
+static relume_status load_photos(struct relume_image *out, const struct acquisition *s, int photos,
                                  int step)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < photos; i++) {
         struct relume_image image;
-        status = shoot_load_balls(&image, s, i * s->shots / photos);
+        status = acquire_load_balls(&image, s, i * s->shots / photos);
         if (!status)
             status = shrink(&out[i], &image, step);
         if (!status)
@@ -60,7 +60,7 @@ static struct relume_ball scaled(struct relume_ball ball, double by)
     return ball;
 }
 
-relume_status shoot_seek_tables(struct shoot *s)
+relume_status acquire_seek_tables(struct acquisition *s)
 {
     struct relume_image photo[PHOTOS] = {{0}};
     const int photos = s->shots < PHOTOS ? s->shots : PHOTOS;

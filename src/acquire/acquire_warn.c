@@ -7,7 +7,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static relume_status keep(struct shoot *s, const char *text)
+static relume_status keep(struct acquisition *s, const char *text)
 {
     struct relume_acquisition *out = s->out;
     if (!mem_grow(&out->warning, (size_t)out->warnings, sizeof *out->warning))
@@ -16,7 +16,7 @@ static relume_status keep(struct shoot *s, const char *text)
     return out->warning[out->warnings++] ? RELUME_OK : RELUME_ENOMEM;
 }
 
-relume_status shoot_warn(struct shoot *s, const char *format, ...)
+relume_status acquire_warn(struct acquisition *s, const char *format, ...)
 {
     char text[1024];
     va_list list;
@@ -27,8 +27,8 @@ relume_status shoot_warn(struct shoot *s, const char *format, ...)
     return keep(s, text);
 }
 
-relume_status shoot_warn_alike(struct shoot *s, enum shoot_alike kind, double how_bad,
-                               const char *format, ...)
+relume_status acquire_warn_alike(struct acquisition *s, enum acquire_alike kind, double how_bad,
+                                 const char *format, ...)
 {
     char text[1024];
     va_list list;
@@ -47,7 +47,7 @@ relume_status shoot_warn_alike(struct shoot *s, enum shoot_alike kind, double ho
     return keep(s, text);
 }
 
-void shoot_say_alike(struct shoot *s)
+void acquire_say_alike(struct acquisition *s)
 {
     for (int kind = 0; kind < ALIKE_KINDS; kind++) {
         struct alike *a = &s->alike[kind];

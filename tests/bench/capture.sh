@@ -17,10 +17,10 @@ timed() { # name, command...
         { time -p sh -c '"$@" >log.txt 2>&1' - "$@"; } 2>&1 | awk '{ printf "%s %6.2f  ", $1, $2 } END { print "" }'
     done
 }
-shoot="$build/tests/tools/shoot"
-"$shoot" photo a.jpg 4000 3000 1 0 0 0 0.5
-"$shoot" photo b.jpg 4000 3000 4 1 12 -7 0.5
-"$shoot" photo c.jpg 4000 3000 0.25 "-$roll" -9 14 0.5
+made_photo="$build/tests/tools/made_photo"
+"$made_photo" photo a.jpg 4000 3000 1 0 0 0 0.5
+"$made_photo" photo b.jpg 4000 3000 4 1 12 -7 0.5
+"$made_photo" photo c.jpg 4000 3000 0.25 "-$roll" -9 14 0.5
 printf '1\n4\n0.25\n' >times.txt
 timed '3 x 12 megapixels' "$build/relume" hdr a.jpg b.jpg c.jpg --times times.txt --align blocks -o out.exr
 if [ -d "$data/chrome" ]; then

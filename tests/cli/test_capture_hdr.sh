@@ -2,17 +2,17 @@
 # relume hdr: brackets of a made camera whose radiance is known, the memorial church, and
 # what is refused.
 . "$(dirname "$0")/lib.sh"
-shoot="$BUILD/tests/tools/shoot"
+made_photo="$BUILD/tests/tools/made_photo"
 number() { sed -n "s/.*\"$1\": \{0,1\}\([-0-9.e+]*\).*/\1/p" "$2"; } # every value of a field
 
 # ---- a steady camera: radiance within 2 %, of which noise makes 0.9 %
-"$shoot" truth truth.exr 160 120
+"$made_photo" truth truth.exr 160 120
 printf '1\n4 # the longest\n1/4\n' >times.txt
-"$shoot" photo a.png 160 120 1 0 0 0 0.5
-"$shoot" photo b.png 160 120 4 0 0 0 0.5
-"$shoot" photo c.png 160 120 0.25 0 0 0 0.5
+"$made_photo" photo a.png 160 120 1 0 0 0 0.5
+"$made_photo" photo b.png 160 120 4 0 0 0 0.5
+"$made_photo" photo c.png 160 120 0.25 0 0 0 0.5
 expect_ok 'three exposures' - "$RELUME" hdr a.png b.png c.png --times times.txt -o out.exr --save-response curve.txt
-below 'radiance within 2 %' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
+below 'radiance within 2 %' "$("$made_photo" logrms out.exr truth.exr 0)" 0.02
 check 'a table is printed' grep -q '^b.png .* 4 ' out.txt
 check 'the curve is monotone' awk 'NR > 2 { if ($2 < r || $3 < g || $4 < b) exit 1; r = $2; g = $3; b = $4 }' curve.txt
 expect_ok 'by the curve that was found' - "$RELUME" hdr a.png b.png c.png --times times.txt -o again.exr --response curve.txt
@@ -43,19 +43,19 @@ for t in 1e300 1e-300 1e10; do
 done
 
 # ---- held by hand, and something moves
-"$shoot" photo b1.png 240 180 4 0 0 0 0.5 130 110 22
-"$shoot" photo c1.png 240 180 0.25 -3 -8 7 0.5 170 70 22
-"$shoot" photo a1.png 240 180 1 4 9 -6 0.5 90 80 22
-"$shoot" truth truth1.exr 240 180
+"$made_photo" photo b1.png 240 180 4 0 0 0 0.5 130 110 22
+"$made_photo" photo c1.png 240 180 0.25 -3 -8 7 0.5 170 70 22
+"$made_photo" photo a1.png 240 180 1 4 9 -6 0.5 90 80 22
+"$made_photo" truth truth1.exr 240 180
 expect_ok 'blocks' - "$RELUME" hdr a1.png b1.png c1.png --times times.txt -o out.exr --align blocks --ghosts --json
 above 'ghosts are found' "$(number ghosts out.txt | sed -n 1p)" 0.02
 check 'but not in the anchor' grep -q 'b1.png.*"ghosts": 0}' out.txt
-"$shoot" photo a2.png 240 180 1 4 9 -6 0.5
-"$shoot" photo b2.png 240 180 4 0 0 0 0.5
-"$shoot" photo c2.png 240 180 0.25 -3 -8 7 0.5
+"$made_photo" photo a2.png 240 180 1 4 9 -6 0.5
+"$made_photo" photo b2.png 240 180 4 0 0 0 0.5
+"$made_photo" photo c2.png 240 180 0.25 -3 -8 7 0.5
 for mode in blocks homography; do
     expect_ok "$mode, nothing moves" - "$RELUME" hdr a2.png b2.png c2.png --times times.txt -o out.exr --align $mode
-    below "radiance after $mode" "$("$shoot" logrms out.exr truth1.exr 30)" 0.06 # and interpolation
+    below "radiance after $mode" "$("$made_photo" logrms out.exr truth1.exr 30)" 0.06 # and interpolation
 done
 
 # ---- a curve as the transfer of a capture
@@ -88,19 +88,19 @@ fails 'times against the pictures' 1 'a.png: darker than b.png though' a.png b.p
 fails 'too few times' 1 'times.txt: 3 times; expected one for each of the 2' a.png b.png --times times.txt
 printf '1\nsoon\n1\n' >words.txt
 fails 'times that are none' 1 'words.txt: line 2; expected' a.png b.png c.png --times words.txt
-"$shoot" photo white.png 160 120 900 0 0 0 0
-"$shoot" photo whiter.png 160 120 1900 0 0 0 0
+"$made_photo" photo white.png 160 120 900 0 0 0 0
+"$made_photo" photo whiter.png 160 120 1900 0 0 0 0
 printf '1\n2\n' >two.txt
 fails 'all saturated' 1 'white.png: .*saturated' white.png whiter.png --times two.txt
 fails 'all saturated, as it is said of more' 1 'white.png: saturated, as are the other 2' white.png whiter.png white.png --times ones.txt
 printf '1\n4\n1/4\n900\n' >five.txt
 expect_ok 'one of them white all over' - "$RELUME" hdr a.png b.png c.png white.png --times five.txt -o out.exr
-below 'and of no harm' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
-"$shoot" photo other.png 160 120 1 0 9000 700 0.5
+below 'and of no harm' "$("$made_photo" logrms out.exr truth.exr 0)" 0.02
+"$made_photo" photo other.png 160 120 1 0 9000 700 0.5
 printf '1\n4\n1/4\n1/2\n' >four.txt
 fails 'another scene' 1 'other.png: shows another scene' a.png b.png c.png other.png --times four.txt
 expect_ok 'it can be left out' 'warning: other.png: shows another scene .*left out' "$RELUME" hdr a.png b.png c.png other.png --times four.txt -o out.exr --skip-bad
-below 'and the others are merged' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
+below 'and the others are merged' "$("$made_photo" logrms out.exr truth.exr 0)" 0.02
 head -c 9000 a.png >torn.png
 fails 'a torn file' 1 'torn.png: ' a.png b.png torn.png c.png --times four.txt
 printf 'a.png 1\nb.png 4\ntorn.png 1/2\nc.png 1/4\n' >torn.txt
@@ -122,7 +122,7 @@ memorial=${RELUME_DATA:-$TOP/../shared/data}/hdr-memorial-brackets
 if [ -e "$memorial/memorial.hdr" ]; then
     expect_ok 'memorial church' - "$RELUME" hdr "$memorial"/memorial00*.png --times "$memorial/shutter_times.txt" -o church.exr --save-response film.txt --json
     # the scans have a border of 40 pixels in blue and black
-    below 'log RMS against the reference' "$("$shoot" logrms church.exr "$memorial/memorial.hdr" 40)" 0.10
+    below 'log RMS against the reference' "$("$made_photo" logrms church.exr "$memorial/memorial.hdr" 40)" 0.10
     check 'its curve is monotone' awk 'NR > 2 { if ($2 < r || $3 < g || $4 < b) exit 1; r = $2; g = $3; b = $4 }' film.txt
     for bias in $(number bias_ev out.txt); do
         case $bias in -*) below "times agree" "${bias#-}" 0.2 ;; *) below "times agree" "$bias" 0.2 ;; esac

@@ -1,7 +1,7 @@
 #!/bin/sh
 # What relume says to people: nothing that a terminal would obey, and what to do next.
 . "$(dirname "$0")/lib.sh"
-shoot="$BUILD/tests/tools/shoot"
+made_photo="$BUILD/tests/tools/made_photo"
 
 # ---- names that would act on the terminal
 red=$(printf 'a\033[31m\302\233b\342\200\256c')
@@ -26,8 +26,8 @@ printf '2\n%s 0 0 1\n%s 0 1 1\n' "$red" "$red" >list.lp
 tame 'a name in a .lp file' "$RELUME" encode list.lp -o x.exr
 printf '{"format": "%s"}' "$red" >capture.json
 tame 'a text in capture.json' "$RELUME" encode capture.json -o x.exr
-"$shoot" photo "$red.png" 80 60 1 0 0 0 0.5
-"$shoot" photo b.png 80 60 4 0 0 0 0.5
+"$made_photo" photo "$red.png" 80 60 1 0 0 0 0.5
+"$made_photo" photo b.png 80 60 4 0 0 0 0.5
 printf '1\n4\n' >times.txt
 tame 'a table of photographs' "$RELUME" hdr "$red.png" b.png --times times.txt -o made.exr
 "$RELUME" hdr "$red.png" b.png --times times.txt -o made.exr --json >out.txt

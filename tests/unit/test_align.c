@@ -81,11 +81,11 @@ static double homography_error(const struct relume_homography *h, const struct m
 static void test_held_by_hand(void **state)
 {
     (void)state;
-    struct relume_image a = made_shoot(&anchor_shot, W, H);
+    struct relume_image a = made_acquisition(&anchor_shot, W, H);
     for (size_t i = 0; i < sizeof hand / sizeof *hand; i++) {
         struct relume_displacements d;
         struct relume_homography h;
-        struct relume_image b = made_shoot(&hand[i], W, H);
+        struct relume_image b = made_acquisition(&hand[i], W, H);
         CHECK_OK(relume_align_blocks(&d, &a, &b, NULL));
         CHECK_NEAR(block_error(&d, &hand[i], &a, &b), 0.0, hand_error);
         CHECK_OK(relume_align_homography(&h, &a, &b, NULL));
@@ -110,10 +110,10 @@ static void test_night(void **state)
         {.time = 0.25, .noise = 1, .seed = 5, .roll_deg = 2.5, .shift = {5, 3}, .night = true},
     };
     const struct made_shot first = {.time = 1, .noise = 1, .seed = 1, .night = true};
-    struct relume_image a = made_shoot(&first, W, H);
+    struct relume_image a = made_acquisition(&first, W, H);
     for (size_t i = 0; i < sizeof shots / sizeof *shots; i++) {
         struct relume_displacements d;
-        struct relume_image b = made_shoot(&shots[i], W, H);
+        struct relume_image b = made_acquisition(&shots[i], W, H);
         CHECK_OK(relume_align_blocks(&d, &a, &b, NULL));
         CHECK_NEAR(block_error(&d, &shots[i], &a, &b), 0.0, hand_error);
         relume_displacements_destroy(&d);
@@ -180,8 +180,9 @@ static void test_likeness(void **state)
     (void)state;
     const struct made_shot bright = {.time = 4, .noise = 1, .seed = 7};
     const struct made_shot elsewhere = {.time = 1, .noise = 1, .shift = {9000, 4000}, .seed = 8};
-    struct relume_image a = made_shoot(&anchor_shot, W, H), b = made_shoot(&bright, W, H);
-    struct relume_image c = made_shoot(&elsewhere, W, H);
+    struct relume_image a = made_acquisition(&anchor_shot, W, H),
+                        b = made_acquisition(&bright, W, H);
+    struct relume_image c = made_acquisition(&elsewhere, W, H);
     CHECK_NEAR(relume_edge_correlation(&a, &a), 1.0, 1e-3);  // tones come in steps of 1/1024
     assert_true(relume_edge_correlation(&a, &b) > 0.5);
     CHECK_NEAR(relume_edge_correlation(&a, &c), 0.0, 0.1);
@@ -204,7 +205,7 @@ static void test_ghosts(void **state)
     const double exposures[3] = {1, 4, 0.25};
     struct relume_image codes[3], masks[3];
     for (int i = 0; i < 3; i++)
-        codes[i] = made_shoot(&shots[i], W, H);
+        codes[i] = made_acquisition(&shots[i], W, H);
     CHECK_OK(relume_ghost_masks(masks, codes, exposures, 3, 0, NULL));
     for (int i = 1; i < 3; i++) {
         double hit = 0, wrong = 0, missed = 0;
@@ -291,7 +292,7 @@ static void test_anchor_and_threads(void **state)
     struct relume_image codes[3];
     struct relume_displacements one, five;
     for (int i = 0; i < 3; i++)
-        codes[i] = made_shoot(&shots[i], W, H);
+        codes[i] = made_acquisition(&shots[i], W, H);
     assert_int_equal(relume_align_anchor(codes, 3), 2);
     CHECK_OK(relume_align_blocks(&one, &codes[2], &codes[1], relume_align_params(.threads = 1)));
     CHECK_OK(relume_align_blocks(&five, &codes[2], &codes[1], relume_align_params(.threads = 5)));

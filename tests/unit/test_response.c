@@ -148,7 +148,7 @@ static void shoot(struct bracket *b, double noise)
         b->exposures[i] = pow(4.0, 1 - i);
         b->shot[i] =
             (struct made_shot){.time = b->exposures[i], .noise = noise, .seed = (uint32_t)i};
-        b->codes[i] = made_shoot(&b->shot[i], W, H);
+        b->codes[i] = made_acquisition(&b->shot[i], W, H);
     }
 }
 
@@ -313,7 +313,7 @@ static void test_lifted_black(void **state)
     for (int i = 0; i < STEPS; i++) {
         exposures[i] = pow(4.0, 1 - i);
         const struct made_shot s = {.time = exposures[i], .noise = 1.0, .seed = (uint32_t)i};
-        codes[i] = made_shoot(&s, 160, 120);
+        codes[i] = made_acquisition(&s, 160, 120);
         for (int k = 0; k < 3 * 160 * 120; k++)
             codes[i].data[k] = roundf(18.0f + codes[i].data[k] * (255.0f - 18.0f)) / 255.0f;
     }

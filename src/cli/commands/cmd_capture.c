@@ -81,7 +81,7 @@ struct job {
     struct relume_photographs photos, balls, flats;
     char above[4096];  // a list of lights there
     struct relume_acquire_params p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
 };
 
 // ---------------------------------------------------------------- photographs
@@ -244,13 +244,13 @@ static relume_status save(const struct capture_options *o, const char *path,
 }
 
 static relume_status save_height(const struct capture_options *o,
-                                 const struct relume_acquisition *shoot)
+                                 const struct relume_acquisition *acquisition)
 {
     struct relume_image height = {0};
     relume_status status = RELUME_OK;
-    if (o->height && shoot->photometric.normal.data)
-        status = relume_height_integrate(&height, &shoot->photometric.normal,
-                                         relume_height_params(.pixel = 2.0 / shoot->width));
+    if (o->height && acquisition->photometric.normal.data)
+        status = relume_height_integrate(&height, &acquisition->photometric.normal,
+                                         relume_height_params(.pixel = 2.0 / acquisition->width));
     if (!status)
         status = save(o, o->height, &height);
     relume_image_destroy(&height);
@@ -352,22 +352,22 @@ static void say_made(const struct capture_options *o, const struct relume_acquis
 
 static relume_status make(const struct capture_options *o, struct job *job)
 {
-    relume_status status = relume_acquire(&job->shoot, o->output, &job->p);
+    relume_status status = relume_acquire(&job->acquisition, o->output, &job->p);
     if (status)
         return status;
-    status = save(o, o->normals, &job->shoot.photometric.normal);
+    status = save(o, o->normals, &job->acquisition.photometric.normal);
     if (!status)
-        status = save(o, o->albedo, &job->shoot.photometric.albedo);
+        status = save(o, o->albedo, &job->acquisition.photometric.albedo);
     if (!status)
-        status = save_height(o, &job->shoot);
+        status = save_height(o, &job->acquisition);
     if (!status && o->encode)
         status = encode_as_usual(&o->args, o->output, o->encode);
     if (!status && o->relight)
         status = relight(o, o->encode);
     if (!status && o->json)
-        print_json(&job->shoot);
+        print_json(&job->acquisition);
     else if (!status)
-        say_made(o, &job->shoot);
+        say_made(o, &job->acquisition);
     return status;
 }
 
@@ -385,7 +385,7 @@ static relume_status run(const struct args *args)
     relume_photographs_free(&job.photos);
     relume_photographs_free(&job.balls);
     relume_photographs_free(&job.flats);
-    relume_acquisition_destroy(&job.shoot);
+    relume_acquisition_destroy(&job.acquisition);
     return status;
 }
 

@@ -46,29 +46,29 @@ static void check_positions(double fov_deg, double tolerance)
                            .radius = {0.26, 0.26, 0.26},
                            .brightness = 4.0};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     double squares = 0.0;
     photograph(&p, s, 3.0, -1);
     struct relume_acquire_params params = params_of(&p);
     params.near = true;
     params.balls = 3;
     params.fov_deg = fov_deg;
-    CHECK_OK(relume_acquire(&shoot, p.out, &params));
-    assert_int_equal(shoot.lights, LAMPS);
+    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    assert_int_equal(acquisition.lights, LAMPS);
     for (int i = 0; i < LAMPS; i++) {
-        const struct relume_vec3 off = made_add(shoot.position[i], lamp_at(i, 3.0), -1.0);
+        const struct relume_vec3 off = made_add(acquisition.position[i], lamp_at(i, 3.0), -1.0);
         squares += made_dot(off, off) / LAMPS;
     }
     CHECK_NEAR(sqrt(squares) / 3.0, 0.0, tolerance);
-    assert_true(shoot.position_error < 0.05);
+    assert_true(acquisition.position_error < 0.05);
     relume_capture *capture;
     CHECK_OK(relume_capture_open(&capture, p.out, NULL));
     const struct relume_manifest *m = relume_capture_manifest(capture);
     assert_non_null(m->positions);
     assert_int_equal(m->geometry.perspective, fov_deg > 0.0);
-    CHECK_NEAR(m->positions[2].z, shoot.position[2].z, 1e-6);
+    CHECK_NEAR(m->positions[2].z, acquisition.position[2].z, 1e-6);
     relume_capture_destroy(&capture);
-    relume_acquisition_destroy(&shoot);
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 
@@ -94,7 +94,7 @@ static void check_stone(bool matte)
                                  .brightness = matte ? 0.5 : 4.0,
                                  .distant = true};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     photograph(&p, s, 1.0, -1);
     for (int i = 0; i < LAMPS; i++) {
         struct relume_image image = {0};
@@ -108,9 +108,9 @@ static void check_stone(bool matte)
     }
     struct relume_acquire_params params = params_of(&p);
     params.matte = matte;
-    CHECK_OK(relume_acquire(&shoot, p.out, &params));
-    assert_true(shoot.ball[0].x > 0.5 * MADE_WIDTH);
-    relume_acquisition_destroy(&shoot);
+    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    assert_true(acquisition.ball[0].x > 0.5 * MADE_WIDTH);
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 
@@ -135,19 +135,19 @@ static void an_outline_too_small(void **state)
         {0.5 * MADE_WIDTH, 0.5 * MADE_HEIGHT, 0.12 * MADE_WIDTH},
     };
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     photograph(&p, s, 1.0, -1);
     for (int round = 0; round < 2; round++) {
         struct relume_acquire_params params = params_of(&p);
         params.ball = &outline[round];
         params.balls = 1;
         params.force = true;
-        CHECK_OK(relume_acquire(&shoot, p.out, &params));
+        CHECK_OK(relume_acquire(&acquisition, p.out, &params));
         int said = 0;
-        for (int i = 0; i < shoot.warnings; i++)
-            said += strstr(shoot.warning[i], "behind it") != NULL;
+        for (int i = 0; i < acquisition.warnings; i++)
+            said += strstr(acquisition.warning[i], "behind it") != NULL;
         assert_int_equal(said, round);
-        relume_acquisition_destroy(&shoot);
+        relume_acquisition_destroy(&acquisition);
     }
     test_folder_remove(p.folder);
 }
@@ -165,19 +165,19 @@ static void check_table(double fov_deg, struct relume_vec3 middle, bool matte, d
                                  .distant = true,
                                  .table = -0.38};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     double squares = 0.0;
     photograph(&p, s, 1.0, -1);
     struct relume_acquire_params params = params_of(&p);
     params.fov_deg = fov_deg;
     params.matte = matte;
-    CHECK_OK(relume_acquire(&shoot, p.out, &params));
+    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
     for (int i = 0; i < LAMPS; i++) {
-        const double cosine = made_dot(shoot.direction[i], lamp_at(i, 1.0));
+        const double cosine = made_dot(acquisition.direction[i], lamp_at(i, 1.0));
         squares += (2.0 - 2.0 * cosine) / LAMPS;
     }
     CHECK_NEAR(sqrt(squares) * 180.0 / M_PI, 0.0, tolerance);
-    relume_acquisition_destroy(&shoot);
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 
@@ -203,24 +203,24 @@ static void a_dark_photograph(void **state)
     const struct made_scene s = {
         .balls = 1, .middle = {{0.2, 0, 0}}, .radius = {0.4}, .brightness = 12.0, .distant = true};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     struct test_log log;
     photograph(&p, s, 1.0, 2);
     struct relume_acquire_params params = params_of(&p);
     test_log_init(&log);
     params.log = &log.log;
-    assert_int_equal(relume_acquire(&shoot, p.out, &params), RELUME_EUNFIT);
+    assert_int_equal(relume_acquire(&acquisition, p.out, &params), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "p2.png"));
-    assert_null(shoot.photo);
+    assert_null(acquisition.photo);
     assert_int_equal(access(p.out, F_OK), -1);
     params.skip_bad = true;
-    CHECK_OK(relume_acquire(&shoot, p.out, &params));
-    assert_int_equal(shoot.lights, LAMPS - 1);
-    assert_true(shoot.warnings > 0);
-    assert_non_null(strstr(shoot.photo[2].path, "p3.png"));
-    relume_acquisition_destroy(&shoot);
+    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    assert_int_equal(acquisition.lights, LAMPS - 1);
+    assert_true(acquisition.warnings > 0);
+    assert_non_null(strstr(acquisition.photo[2].path, "p3.png"));
+    relume_acquisition_destroy(&acquisition);
     // what exists is not replaced unasked
-    assert_int_equal(relume_acquire(&shoot, p.out, &params), RELUME_EINVAL);
+    assert_int_equal(relume_acquire(&acquisition, p.out, &params), RELUME_EINVAL);
     test_folder_remove(p.folder);
 }
 
@@ -252,7 +252,7 @@ static void check_even(enum unevenness u, int flats, bool radial)
 {
     static const double lamp[3] = {0.5, 0.3, 0.2}, board[3] = {0.7, 0.7, 0.7};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     char flat[LAMPS][96], lights[96], text[256] = "";
     const char *flat_list[LAMPS];
     test_folder(p.folder);
@@ -278,7 +278,7 @@ static void check_even(enum unevenness u, int flats, bool radial)
     params.flat_count = flats;
     params.radial = radial;
     params.white[0] = 10, params.white[1] = 8, params.white[2] = 12, params.white[3] = 6;
-    CHECK_OK(relume_acquire(&shoot, p.out, &params));
+    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
     relume_capture *capture;
     CHECK_OK(relume_capture_open(&capture, p.out, NULL));
     for (int i = 0; i < LAMPS; i++) {
@@ -289,7 +289,7 @@ static void check_even(enum unevenness u, int flats, bool radial)
         relume_image_destroy(&image);
     }
     relume_capture_destroy(&capture);
-    relume_acquisition_destroy(&shoot);
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 
@@ -337,7 +337,7 @@ static void a_camera_on_the_lamp(void **state)
     (void)state;
     static const double lamp[3] = {0.5, 0.5, 0.5};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     struct test_log log;
     test_folder(p.folder);
     snprintf(p.out, sizeof p.out, "%s/out", p.folder);
@@ -352,12 +352,12 @@ static void a_camera_on_the_lamp(void **state)
     params.lights = p.folder;
     params.near = true;
     write_model(p.folder, LAMPS - 1);
-    assert_int_equal(relume_acquire(&shoot, p.out, &params), RELUME_EUNFIT);
+    assert_int_equal(relume_acquire(&acquisition, p.out, &params), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "3 photographs from the lamp; expected 4"));
     write_model(p.folder, LAMPS);
-    CHECK_OK(relume_acquire(&shoot, p.out, &params));
+    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
     for (int i = 0; i < LAMPS; i++) {
-        const struct relume_vec3 off = made_add(shoot.position[i], lamp_at(i, 2.0), -1.0);
+        const struct relume_vec3 off = made_add(acquisition.position[i], lamp_at(i, 2.0), -1.0);
         CHECK_NEAR(made_dot(off, off), 0.0, 1e-12);
     }
     relume_capture *capture;
@@ -365,7 +365,7 @@ static void a_camera_on_the_lamp(void **state)
     assert_true(relume_capture_manifest(capture)->geometry.perspective);
     CHECK_NEAR(relume_capture_manifest(capture)->geometry.camera_z, 2.5, 1e-6);
     relume_capture_destroy(&capture);
-    relume_acquisition_destroy(&shoot);
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 

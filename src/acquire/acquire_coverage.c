@@ -1,4 +1,4 @@
-// acquire_sphere.c - the lights on the sphere, seen from the viewer, as SVG
+// acquire_coverage.c - the lights on the sphere, seen from the viewer, as SVG
 #include "acquire/acquire.h"
 
 #include <stdio.h>
@@ -69,7 +69,7 @@ static void put_light(FILE *f, const struct relume_acquisition *out, int i)
         fprintf(f, "<text x=\"%.1f\" y=\"%.1f\">%d</text>\n", xy[0] + 5.0, xy[1] - 4.0, i);
 }
 
-char *shoot_light_sphere(const struct relume_acquisition *out)
+char *acquire_light_sphere(const struct relume_acquisition *out)
 {
     char *text = NULL;
     size_t size = 0;

@@ -35,17 +35,18 @@ static void save(const struct photographs *p, int i, struct relume_image *image)
 // It is refused with that sentence, and nothing is left behind.
 static void expect_refused(struct photographs *p, const char *sentence)
 {
-    struct relume_acquisition shoot;
-    assert_int_equal(relume_acquire(&shoot, p->out, &p->params), RELUME_EUNFIT);
+    struct relume_acquisition acquisition;
+    assert_int_equal(relume_acquire(&acquisition, p->out, &p->params), RELUME_EUNFIT);
     if (!strstr(p->log.text, sentence))
         fail_msg("expected '%s', found '%s'", sentence, p->log.text);
     assert_int_equal(access(p->out, F_OK), -1);
 }
 
-static bool warns(const struct relume_acquisition *shoot, const char *photograph, const char *what)
+static bool warns(const struct relume_acquisition *acquisition, const char *photograph,
+                  const char *what)
 {
-    for (int i = 0; i < shoot->warnings; i++)
-        if (strstr(shoot->warning[i], photograph) && strstr(shoot->warning[i], what))
+    for (int i = 0; i < acquisition->warnings; i++)
+        if (strstr(acquisition->warning[i], photograph) && strstr(acquisition->warning[i], what))
             return true;
     return false;
 }
@@ -83,14 +84,14 @@ static void a_ball_that_is_cut_off(void **state)
     (void)state;
     static const double circle[1][3] = {{0.9 * MADE_WIDTH, 0.5 * MADE_HEIGHT, 0.2 * MADE_WIDTH}};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     begin(&p);
     for (int i = 0; i < LAMPS; i++)
         photograph(&p, i, a_ball(0.8));
     p.params.ball = circle;
-    CHECK_OK(relume_acquire(&shoot, p.out, &p.params));
-    assert_true(warns(&shoot, "ball at 288,120", "cut off by the picture's border"));
-    relume_acquisition_destroy(&shoot);
+    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    assert_true(warns(&acquisition, "ball at 288,120", "cut off by the picture's border"));
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 
@@ -98,7 +99,7 @@ static void highlights_that_do_not_tell(void **state)
 {
     (void)state;
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     begin(&p);
     struct made_scene two = a_ball(0.1), rim = a_ball(0.1);
     two.second = (struct relume_vec3){-0.5, 0.1, 1};
@@ -108,11 +109,12 @@ static void highlights_that_do_not_tell(void **state)
     photograph(&p, 1, two);
     photograph(&p, 2, rim);
     photograph(&p, 3, a_ball(0.1));
-    CHECK_OK(relume_acquire(&shoot, p.out, &p.params));
-    assert_true(warns(&shoot, "p1.png", "two highlights"));
-    assert_true(warns(&shoot, "p2.png", "rim"));
-    assert_false(warns(&shoot, "p0.png", "of the ball") || warns(&shoot, "p3.png", "of the ball"));
-    relume_acquisition_destroy(&shoot);
+    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    assert_true(warns(&acquisition, "p1.png", "two highlights"));
+    assert_true(warns(&acquisition, "p2.png", "rim"));
+    assert_false(warns(&acquisition, "p0.png", "of the ball") ||
+                 warns(&acquisition, "p3.png", "of the ball"));
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 
@@ -134,7 +136,7 @@ static void many_alike(void **state)
     (void)state;
     static const double circle[1][3] = {{0.55 * MADE_WIDTH, 0.5 * MADE_HEIGHT, 0.2 * MADE_WIDTH}};
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     struct counted counted = {.log = {.message = count_alike}};
     begin(&p);
     counted.log.user = &counted;
@@ -146,12 +148,12 @@ static void many_alike(void **state)
         two.lamp = (struct relume_vec3){0.5, 0.1 + 0.1 * i, 1};
         photograph(&p, i, two);
     }
-    CHECK_OK(relume_acquire(&shoot, p.out, &p.params));
+    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
     for (int i = 0; i < LAMPS; i++)
-        assert_true(warns(&shoot, strrchr(p.path[i], '/') + 1, "two highlights"));
+        assert_true(warns(&acquisition, strrchr(p.path[i], '/') + 1, "two highlights"));
     assert_int_equal(counted.lines, 1);
     assert_int_equal(counted.alike, 1);
-    relume_acquisition_destroy(&shoot);
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 
@@ -187,19 +189,19 @@ static void another_scene(void **state)
     (void)state;
     char lights[128];
     struct photographs p;
-    struct relume_acquisition shoot;
+    struct relume_acquisition acquisition;
     begin_boards(&p, lights);
     board(&p, 2, 2, 1.0);
-    CHECK_OK(relume_acquire(&shoot, p.out, &p.params));
-    assert_true(warns(&shoot, "p2.png", "seems to show another scene"));
-    assert_int_equal(shoot.lights, LAMPS);
-    relume_acquisition_destroy(&shoot);
+    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    assert_true(warns(&acquisition, "p2.png", "seems to show another scene"));
+    assert_int_equal(acquisition.lights, LAMPS);
+    relume_acquisition_destroy(&acquisition);
     p.params.skip_bad = p.params.force = true;
-    CHECK_OK(relume_acquire(&shoot, p.out, &p.params));
-    assert_true(warns(&shoot, "p2.png", "left out: shows another scene"));
-    assert_int_equal(shoot.lights, LAMPS - 1);
-    CHECK_NEAR(shoot.direction[2].z, 1.0, 1e-9);  // the others keep their lights
-    relume_acquisition_destroy(&shoot);
+    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    assert_true(warns(&acquisition, "p2.png", "left out: shows another scene"));
+    assert_int_equal(acquisition.lights, LAMPS - 1);
+    CHECK_NEAR(acquisition.direction[2].z, 1.0, 1e-9);  // the others keep their lights
+    relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
 }
 

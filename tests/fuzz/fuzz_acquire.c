@@ -1,4 +1,4 @@
-// fuzz_shoot.c - what comes with photographs, made of noise: lights of domes, camera responses,
+// fuzz_acquire.c - what comes with photographs, made of noise: lights of domes, camera responses,
 // COLMAP's poses, exposure times, and names that tell a camera's place
 #include "fuzz.h"
 
@@ -178,7 +178,7 @@ static struct bytes response_seed(const char *folder)
 int main(int argc, char **argv)
 {
     struct fuzz f = {.words = words};
-    fuzz_begin(&f, "fuzz_shoot", argc, argv);
+    fuzz_begin(&f, "fuzz_acquire", argc, argv);
     fuzz_add(&f,
              text("{\"imageWidth\":200,\"lightConfiguration\":\"spherical\",\"positionsSphere\":"
                   "[{\"x\":0,\"y\":0,\"z\":150},{\"x\":90,\"y\":0,\"z\":120}],\"ledAdjust\":"

@@ -1,4 +1,4 @@
-// acquire_even.c - uneven light, vignetting and the lamp's colour, taken out of the photographs
+// acquire_flat.c - uneven light, vignetting and the lamp's colour, taken out of the photographs
 #include "acquire/acquire.h"
 
 #include "base/log.h"
@@ -8,7 +8,8 @@
 #include <string.h>
 
 // What a photograph is to be multiplied by: that makes a photograph of ones of an even surface.
-static relume_status make_gain(const struct shoot *s, struct relume_image *gain, const char *path)
+static relume_status make_gain(const struct acquisition *s, struct relume_image *gain,
+                               const char *path)
 {
     struct relume_image flat;
     struct relume_falloff falloff;
@@ -18,7 +19,7 @@ static relume_status make_gain(const struct shoot *s, struct relume_image *gain,
                                relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
                                                         .transfer = s->p.transfer));
     if (!status)
-        status = shoot_check_size(s, &flat, path, s->width, s->height);
+        status = acquire_check_size(s, &flat, path, s->width, s->height);
     if (!status)
         status = relume_image_create(gain, flat.width, flat.height, 3);
     for (size_t i = 0; !status && i < 3 * (size_t)flat.width * (size_t)flat.height; i++)
@@ -39,7 +40,8 @@ static relume_status make_gain(const struct shoot *s, struct relume_image *gain,
     return status;
 }
 
-relume_status shoot_flatten(struct shoot *s, const struct shot *shot, struct relume_image *image)
+relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
+                              struct relume_image *image)
 {
     const bool each = s->p.flat_count > 1;
     if (!s->p.flat_count)
@@ -56,14 +58,14 @@ relume_status shoot_flatten(struct shoot *s, const struct shot *shot, struct rel
     return RELUME_OK;
 }
 
-relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image)
+relume_status acquire_add_grey(struct acquisition *s, const struct relume_image *image)
 {
     const int *r = s->p.white;
     float gain[3];
     if (!r[2])
         return RELUME_OK;
     // where a photograph shows the card black or clipped it says nothing; where that is all there
-    // is, shoot_whiten says so
+    // is, acquire_whiten says so
     const relume_status status = relume_white_measure(gain, image, r[0], r[1], r[2], r[3], NULL);
     if (status == RELUME_EINVAL)
         return relume_white_measure(gain, image, r[0], r[1], r[2], r[3], s->p.log);
@@ -77,7 +79,7 @@ relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image)
     return RELUME_OK;
 }
 
-relume_status shoot_whiten(struct shoot *s)
+relume_status acquire_whiten(struct acquisition *s)
 {
     float gain[3];
     if (!s->p.white[2])

@@ -1,9 +1,9 @@
-// shoot.c - pictures of the made camera, and how far a radiance map is from another
+// made_photo.c - pictures of the made camera, and how far a radiance map is from another
 //
-//   shoot photo OUT W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
-//   shoot truth OUT.exr W H                                      the radiance that is there
-//   shoot logrms A B BORDER    RMS of ln A / B after one scale, inside of the border, where both
-//   are
+//   made_photo photo OUT W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
+//   made_photo truth OUT.exr W H                                      the radiance that is there
+//   made_photo logrms A B BORDER    RMS of ln A / B after one scale, inside of the border, where
+//   both are
 //                              above 0 in all channels
 #include "made_camera.h"
 
@@ -31,7 +31,7 @@ static int photo(int argc, char **argv)
         .object = {number(argv, argc, 10), number(argv, argc, 11), number(argv, argc, 12)},
         .seed = (uint32_t)(1000.0 * number(argv, argc, 5)),
     };
-    struct relume_image image = made_shoot(&s, atoi(argv[3]), atoi(argv[4]));
+    struct relume_image image = made_acquisition(&s, atoi(argv[3]), atoi(argv[4]));
     const size_t n = 3 * (size_t)image.width * (size_t)image.height;
     uint8_t *codes = malloc(n);
     for (size_t i = 0; codes && i < n; i++)
@@ -91,6 +91,6 @@ int main(int argc, char **argv)
         return truth(argv);
     if (argc == 5 && !strcmp(argv[1], "logrms"))
         return logrms(argv);
-    fprintf(stderr, "shoot: photo, truth or logrms; see its source\n");
+    fprintf(stderr, "made_photo: photo, truth or logrms; see its source\n");
     return 2;
 }

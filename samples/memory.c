@@ -1,5 +1,5 @@
-// memory.c - pictures in memory become a relume file in memory, which is opened and relit: no file
-// is touched
+// memory.c - pictures in memory become a relume file in memory, which is opened, relit and
+// exported: no file is touched
 //
 //     cc -std=c11 memory.c $(pkg-config --cflags --libs relume) -lm -o memory
 //     ./memory
@@ -22,7 +22,7 @@ int main(void)
 {
     static float pictures[LIGHTS][SIDE][SIDE];
     struct relume_vec3 lights[LIGHTS];
-    struct relume_buffer file = {0}, png = {0};
+    struct relume_buffer file = {0}, png = {0}, rti = {0};
     struct relume_image picture = {0};
     relume_capture *capture = NULL;
     relume_coder *coder = NULL;
@@ -53,7 +53,7 @@ int main(void)
     const struct relume_light lamp = {.direction = {1, 0.5, 1}, .rgb = {1, 1, 1}};
     const struct relume_camera camera = {.framing = RELUME_FRAME_DEFAULT};
     if (!status)
-        status = relume_pack_open(&pack, NULL, relume_pack_params(.reader = &from_file));
+        status = relume_open(&pack, NULL, relume_open_params(.reader = &from_file));
     if (!status)
         status = relume_frame(&picture, pack, &camera, &lamp, 1, NULL);
 
@@ -61,11 +61,17 @@ int main(void)
     const struct relume_writer to_png = relume_buffer_writer(&png);
     if (!status)
         status = relume_image_save(&picture, "ball.png", relume_image_params(.writer = &to_png));
+    // an RTI for other programs
+    const struct relume_writer to_rti = relume_buffer_writer(&rti);
+    if (!status)
+        status = relume_export(pack, NULL, RELUME_EXCHANGE_RTI, NULL,
+                               relume_export_params(.writer = &to_rti));
     if (!status) {
         const struct relume_vec3 l = {2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0};
         const double got = picture.data[3 * (SIDE / 2 * SIDE + SIDE / 2)];
-        printf("%zu bytes encoded, a PNG of %zu bytes; the middle is %.3f, the ball itself %.3f\n",
-               file.size, png.size, got, (double)ball(SIDE / 2, SIDE / 2, l));
+        printf("%zu bytes encoded, a PNG of %zu bytes, an RTI of %zu; the middle is %.3f, the ball "
+               "itself %.3f\n",
+               file.size, png.size, rti.size, got, (double)ball(SIDE / 2, SIDE / 2, l));
     } else {
         fprintf(stderr, "memory: %s\n", relume_status_text(status));
     }
@@ -75,5 +81,6 @@ int main(void)
     relume_capture_destroy(&capture);
     relume_buffer_destroy(&file);
     relume_buffer_destroy(&png);
+    relume_buffer_destroy(&rti);
     return status ? 1 : 0;
 }

@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/.."
 
 # folder: private folders it may include | public headers it may include (* = all)
-rules="base::base io
+rules="base::base io context
 math:base:base
 geometry:base math:base capture
 image:base math:base io image photograph response
@@ -23,7 +23,7 @@ selection:base math image coder compare:base image capture coder codebook heldou
 encode:base coder codebook:base image capture codebook coder light relight pack
 pack:base image coder:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
-exchange:base math image foreign:base image photograph directions codebook coder capture pack relight exchange
+exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig relighter
 analysis:base math:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture

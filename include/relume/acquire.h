@@ -15,6 +15,7 @@ extern "C" {
 #endif
 
 struct relume_acquire_params {
+    size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // warnings, progress
     const struct relume_limits *limits;
     const char *const *photographs;  // [photograph_count]
@@ -56,6 +57,8 @@ struct relume_acquire_params {
     const char *likely_lights;  // a file that may be meant as `lights`: where no ball is found the
                                 // sentence names it; or NULL
 };
+#define relume_acquire_params(...)                                                                 \
+    (&(const struct relume_acquire_params){RELUME_SIZED(relume_acquire_params), __VA_ARGS__})
 
 // One photograph that was used.
 struct relume_acquired_photo {

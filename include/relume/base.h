@@ -61,7 +61,6 @@ static inline bool relume_status_is_input(relume_status status)
     return status >= RELUME_ENOTFOUND && status <= RELUME_EUNFIT;
 }
 
-struct relume_limits;
 // How much a sentence of the log matters.
 enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 
@@ -71,18 +70,12 @@ RELUME_API const char *relume_plural(int64_t n);
 // none is near.
 RELUME_API const char *relume_name_nearest(const char *given, const char *const *names);
 
-// The files that a run reads. A log that holds them (below) keeps outputs off them: each file that
-// is opened for reading is noted, by device and number so that links and other spellings do not
-// matter, and no output replaces one of them. Thread-safety: all functions may be called from any
-// thread.
-typedef struct relume_inputs relume_inputs;
-// An empty list, which the caller destroys. RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_inputs_create(relume_inputs **out);
-RELUME_API void relume_inputs_destroy(relume_inputs **inputs);
-// Note a file or a folder before it is opened; what does not exist is passed over.
-RELUME_API void relume_inputs_add(relume_inputs *inputs, const char *path);
+// Limits, threads and more that calls share (context.h).
+typedef struct relume_context relume_context;
 
-// Where sentences for people go. Every params struct takes one; NULL is silent.
+// Where sentences for people go. Every params struct takes one; NULL is silent. It is borrowed: a
+// call uses it until it returns, and what it opens (a relume_pack, a relume_renderer) as long as
+// that lives.
 // Thread-safety: all calls come from the thread that called the library.
 struct relume_log {
     // One line without a newline: "FILE: what; expected; found". May be NULL.
@@ -90,9 +83,8 @@ struct relume_log {
     // `done` in [0, 1]; false asks the work to stop with RELUME_ECANCEL. May be NULL.
     bool (*progress)(void *user, const char *what, double done);
     void *user;
-    relume_inputs *inputs;  // what is read is noted here and never replaced; may be NULL
-    // For everything that is opened with this log, where its own params name none. May be NULL.
-    const struct relume_limits *limits;
+    relume_context *context;  // NULL: the defaults
+    bool leave_unnoted;       // what is read with this log may be replaced, whatever the context
 };
 
 // "PATH: WHAT; why" and the status for an input that cannot be opened or read, `error` being the

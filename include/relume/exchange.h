@@ -4,6 +4,7 @@
 
 #include <relume/base.h>
 #include <relume/coder.h>
+#include <relume/io.h>
 #include <relume/pack.h>
 
 #ifdef __cplusplus
@@ -15,7 +16,11 @@ struct relume_import_params {
     const struct relume_log *log;
     const struct relume_limits *limits;
     enum relume_compression compression;
-    int threads;  // default: all cores
+    int threads;                         // default: all cores
+    const struct relume_reader *reader;  // read this in place of the file; `path` is a name whose
+                                         // ending says what it is (io.h). Not for folders: these
+                                         // are asked for by name (relume_files, context.h)
+    const struct relume_writer *writer;  // write here in place of the file `out`, which may be NULL
 };
 #define relume_import_params(...)                                                                  \
     (&(const struct relume_import_params){RELUME_SIZED(relume_import_params), __VA_ARGS__})
@@ -46,6 +51,9 @@ struct relume_open_params {
     bool allow_outside;  // of captures, as relume_capture_params
     bool sphere;         // a picture shows all directions, twice as wide as high: a panorama
     int threads;         // default: all cores
+    const struct relume_reader *reader;  // as relume_import_params. A relume file is read as long
+                                         // as the pack lives; a capture.json or .lp names pictures
+                                         // in the folder of `path`
 };
 #define relume_open_params(...)                                                                    \
     (&(const struct relume_open_params){RELUME_SIZED(relume_open_params), __VA_ARGS__})
@@ -100,6 +108,8 @@ struct relume_export_params {
                              // seen; PTM, LPTM: default 0, raw planes; not for RTI
     bool force;              // replace an existing folder that is not empty
     int threads;             // default: all cores
+    const struct relume_writer *writer;  // PTM, LPTM, RTI: write here in place of the file; `path`
+                                         // is only a name then, or NULL
 };
 #define relume_export_params(...)                                                                  \
     (&(const struct relume_export_params){RELUME_SIZED(relume_export_params), __VA_ARGS__})

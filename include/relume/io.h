@@ -1,8 +1,9 @@
 // io.h - memory and callbacks in place of files
 //
-// Functions that read or write a file take a relume_reader or relume_writer in their params
-// (pack.h, image.h). The path is then only a name: messages begin with it, and a picture's format
-// follows from its ending. Files are read and written by the same code.
+// Functions that read or write one file take a relume_reader or relume_writer in their params
+// (pack.h, image.h, exchange.h). The path is then only a name: messages begin with it, and the
+// format follows from its ending. Inputs of many files (captures, web folders) are asked for by
+// name: struct relume_files (context.h). Files are read and written by the same code.
 //
 //     struct relume_buffer file = {0};                      // a relume file, in memory
 //     struct relume_writer writer = relume_buffer_writer(&file);

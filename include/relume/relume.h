@@ -10,6 +10,7 @@
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
+#include <relume/context.h>
 #include <relume/enhance.h>
 #include <relume/evaluate.h>
 #include <relume/exchange.h>

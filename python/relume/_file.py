@@ -11,7 +11,7 @@ from typing import Sequence, Union
 import numpy as np
 
 from ._abi import CONSTANTS, structs
-from ._arrays import Source, copy_from, memory, take_image
+from ._arrays import Buffer, Source, copy_from, memory, take_image
 from ._capture import Capture, name_of
 from ._library import Handle, Log, Progress, UsageError, lib
 
@@ -80,24 +80,22 @@ def _camera(view, eye, look, size):
 class File(Handle):
     """An open file. Calls from several threads are made one after the other."""
 
-    def __init__(self, source: Source, *, threads: int = 0):
+    def __init__(self, source: Source, *, name: str = "memory", threads: int = 0):
         """`source`: the name of a relume file or of anything else that can be shown (.ptm, .rti, a
-        web folder, a capture), or the bytes of a relume file."""
+        web folder, a capture), or the bytes of a file, whose `name` says by its ending what it is
+        if it is no relume file."""
         super().__init__(lib.relume_pack_destroy)
         self._log, self._lock, self._source = Log(), threading.RLock(), source
         self._threads = threads
         self._renderer: Handle | None = None
         self._rig: Handle | None = None
         self._words: list[str] | None = None
+        params = structs["relume_open_params"](log=self._log.address, threads=threads)
         if isinstance(source, bytes):
             self._reader = memory(source)
-            params = structs["relume_pack_params"](log=self._log.address, threads=threads,
-                                                   reader=ctypes.addressof(self._reader))
-            status = lib.relume_pack_open(self.out, None, ctypes.byref(params))
-        else:
-            params = structs["relume_open_params"](log=self._log.address, threads=threads)
-            status = lib.relume_open(self.out, os.fsencode(source), ctypes.byref(params))
-        self._log.check(status)
+            params.reader = ctypes.addressof(self._reader)
+        path = name if isinstance(source, bytes) else source
+        self._log.check(lib.relume_open(self.out, os.fsencode(path), ctypes.byref(params)))
         how = structs["relume_frame_params"](log=self._log.address, threads=threads)
         self._renderer = Handle(lib.relume_renderer_destroy)
         self._log.check(lib.relume_renderer_create(self._renderer.out, self.pointer,
@@ -225,6 +223,19 @@ class File(Handle):
         """The same for the screen: uint8 [y, x, 4], sRGB and alpha, times 2^exposure_ev."""
         return self._draw(lights, _camera(view, eye, look, size), "RGBA8", np.uint8, exposure_ev)
 
+    def export(self, format: str, *, view: int = 0, quality: int = 0) -> bytes:
+        """The bytes of a "ptm", "lptm" or "rti"; of the first two a `quality` makes JPEG planes."""
+        kind = ctypes.c_int()
+        if lib.relume_exchange_parse(ctypes.byref(kind), format.encode()):
+            raise UsageError(f"format '{format}'; expected ptm, lptm or rti")
+        log, buffer = Log(), Buffer()
+        params = structs["relume_export_params"](log=log.address, view=view, quality=quality,
+                                                 threads=self._threads,
+                                                 writer=ctypes.addressof(buffer.writer))
+        with self._lock:
+            log.check(lib.relume_export(self.pointer, None, kind, None, ctypes.byref(params)))
+        return buffer.take()
+
     def evaluate(self, capture: Capture, *, ssim: bool = True, delta_e: bool = True,
                  progress: Progress | None = None) -> Evaluation:
         """Relight with every light of `capture` and compare with its pictures."""
@@ -241,6 +252,6 @@ class File(Handle):
         return found
 
 
-def open(source: Source, *, threads: int = 0) -> File:
-    """Open a relume file, anything that can be shown as one, or the bytes of one."""
-    return File(source, threads=threads)
+def open(source: Source, *, name: str = "memory", threads: int = 0) -> File:
+    """Open a relume file, anything that can be shown as one, or the bytes of one, called `name`."""
+    return File(source, name=name, threads=threads)

@@ -190,7 +190,7 @@ class Errors(Fixture):
         for work, kind, sentence in (
             (lambda: relume.open("/nothing.exr"), FileNotFoundError, "/nothing.exr: no such file"),
             (lambda: relume.open(self.data[:900]), relume.DamagedError, "memory: "),
-            (lambda: relume.open(b""), relume.DamagedError, "memory: "),
+            (lambda: relume.open(b""), relume.FormatError, "memory: "),
             (lambda: relume.encode(self.pictures, self.lights[:3]), relume.UsageError, "3 lights"),
             (lambda: relume.encode(self.pictures, self.lights, basis="ssh"), ValueError, "ssh"),
             (lambda: relume.encode(self.pictures, self.lights, bits="9"), ValueError, "bits '9'"),
@@ -257,6 +257,22 @@ class Pictures(Fixture):
         grey = picture[..., 0]
         np.testing.assert_array_equal(
             relume.load_image(relume.image_bytes(grey, ".exr"), channels=1), grey)
+
+
+class Exchange(Fixture):
+    def test_ptm_in_memory(self):
+        with relume.open(self.data) as file:
+            ptm, want = file.export("ptm"), file.relight((0.3, 0.2, 0.9))
+            self.assertTrue(ptm.startswith(b"PTM_1.2"))
+            with self.assertRaisesRegex(relume.UsageError, "folder"):
+                file.export("relight")
+            with self.assertRaisesRegex(relume.UsageError, "format 'gif'"):
+                file.export("gif")
+        with relume.open(ptm, name="coin.ptm") as file:
+            self.assertEqual(file.info.basis, "ptm")
+            self.assertLess(np.abs(file.relight((0.3, 0.2, 0.9)) - want).mean(), 0.05)
+        with self.assertRaisesRegex(relume.DamagedError, "coin.ptm: truncated"):
+            relume.open(ptm[:-9], name="coin.ptm")
 
 
 @unittest.skipUnless(TOOL, "RELUME names no tool")

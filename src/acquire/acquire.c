@@ -2,6 +2,7 @@
 #include "acquire/acquire.h"
 
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/outdir.h"
 #include "base/outfile.h"
@@ -418,7 +419,9 @@ static void release(struct acquisition *s)
 relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
                              const struct relume_acquire_params *params)
 {
-    struct acquisition s = {.p = *params, .out = out, .shots = params->photograph_count};
+    struct acquisition s = {.p = PARAMS_WORK(relume_acquire_params, params), .out = out};
+    params = &s.p;
+    s.shots = params->photograph_count;
     *out = (struct relume_acquisition){0};
     relume_status status = check_params(params);
     if (status)

@@ -271,7 +271,7 @@ relume_status relume_photometric_fit(struct relume_photometric *out, const relum
     const struct relume_manifest *m = relume_capture_manifest(capture);
     struct fit f = {
         .capture = capture,
-        .params = PARAMS(relume_photometric_params, params),
+        .params = PARAMS_WORK(relume_photometric_params, params),
         .out = out,
         .lights = m->lights,
         .width = relume_capture_width(capture),

@@ -458,7 +458,7 @@ relume_status relume_acquire_refine(struct relume_vec3 *direction, double *inten
                                     double residual[2], const relume_capture *capture,
                                     const struct relume_acquire_refine_params *params)
 {
-    const struct relume_acquire_refine_params p = PARAMS(relume_acquire_refine_params, params);
+    const struct relume_acquire_refine_params p = PARAMS_WORK(relume_acquire_refine_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
     double curl[2] = {0.0, 0.0};
     bool believed = false;

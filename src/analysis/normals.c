@@ -147,7 +147,7 @@ relume_status relume_normals_fit(struct relume_normals *out, const struct relume
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     struct fit f = {
         .codes = codes,
-        .params = PARAMS(relume_normals_params, params),
+        .params = PARAMS_WORK(relume_normals_params, params),
         .lights = info->lights,
         .direction = info->directions,
         .out = out,

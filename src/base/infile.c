@@ -2,7 +2,9 @@
 #include "base/infile.h"
 
 #include "base/channel.h"
+#include "base/context.h"
 #include "base/inputs.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/scratch.h"
 
@@ -142,11 +144,50 @@ static bool open_file(struct infile *s, const char *path, const struct relume_lo
     return true;
 }
 
+// ---------------------------------------------------------------- what is no file
+
+static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
+
+// Files that nothing has a name of are our own.
+static const struct relume_files *files_for(const char *path, const struct relume_log *log)
+{
+    const relume_context *c = context_of(log);
+    return c && c->files.open && strncmp(path, "/proc/self/fd/", 14) ? &c->files : NULL;
+}
+
+static bool ask(const struct relume_files *files, const char *path, struct relume_reader *out)
+{
+    pthread_mutex_lock(&asking);
+    errno = 0;
+    const bool found = files->open(files->user, path, out);
+    const int error = errno;
+    pthread_mutex_unlock(&asking);
+    errno = error;
+    return found;
+}
+
+static void give_back(const struct relume_files *files, struct relume_reader *reader)
+{
+    pthread_mutex_lock(&asking);
+    if (files->close)
+        files->close(files->user, reader);
+    pthread_mutex_unlock(&asking);
+}
+
 bool infile_open(struct infile *out, const char *path, const struct relume_reader *from,
                  const struct relume_log *log)
 {
     *out = (struct infile){.file = -1};
     pthread_mutex_init(&out->lock, NULL);
+    out->files = from ? NULL : files_for(path, log);
+    if (out->files && ask(out->files, path, &out->from)) {
+        from = &out->from;
+    } else if (out->files) {
+        out->files = NULL;
+        out->from = (struct relume_reader){0};
+        if (errno)
+            return false;
+    }
     if (!from)
         return open_file(out, path, log);
     out->from = *from;
@@ -161,6 +202,9 @@ void infile_close(struct infile *s)
     if (s->file >= 0)
         close_one(s);
     pthread_mutex_unlock(&lock);
+    if (s->files)
+        give_back(s->files, &s->from);
+    s->files = NULL;
     pthread_mutex_destroy(&s->lock);
     free(s->path);
     s->path = NULL;
@@ -291,6 +335,94 @@ FILE *infile_stream(struct infile **in, const char *path, const struct relume_re
     if (f && in)
         *in = &s->in;
     return f;
+}
+
+// ---------------------------------------------------------------- by name
+
+bool input_exists(const char *path, const struct relume_log *log)
+{
+    const struct relume_files *files = files_for(path, log);
+    struct relume_reader reader;
+    if (files && ask(files, path, &reader)) {
+        give_back(files, &reader);
+        return true;
+    }
+    return (!files || !errno) && !access(path, F_OK);
+}
+
+FILE *input_open(const char *path, const struct relume_log *log)
+{
+    if (files_for(path, log))
+        return infile_stream(NULL, path, NULL, log);
+    input_note(log, path);
+    return fopen(path, "rbe");
+}
+
+static bool open_one(void *user, const char *path, struct relume_reader *out)
+{
+    const struct one_input *one = user;
+    if (strcmp(path, one->path))
+        return one->others && one->others->open(one->others->user, path, out);
+    *out = *one->from;
+    return true;
+}
+
+static void close_one_input(void *user, struct relume_reader *reader)
+{
+    const struct one_input *one = user;
+    if (one->others && one->others->close && reader->user != one->from->user)
+        one->others->close(one->others->user, reader);
+}
+
+const struct relume_log *one_input(struct one_input *one, const char *path,
+                                   const struct relume_reader *from, const struct relume_log *log)
+{
+    if (!from)
+        return log;
+    *one = (struct one_input){log ? *log : (struct relume_log){0}, context_like(log),
+                              files_for(path, log), path, from};
+    one->context.files = (struct relume_files){open_one, close_one_input, one};
+    one->log.context = &one->context;
+    return &one->log;
+}
+
+relume_status input_load(char **out, size_t *size, const char *path, uint64_t most,
+                         const char *expected, const struct relume_log *log)
+{
+    struct infile in;
+    relume_status status = RELUME_OK;
+    *out = NULL;
+    *size = 0;
+    if (!infile_open(&in, path, NULL, log))
+        status = relume_input_fail(log, path, "cannot be opened", errno);
+    else if (!in.regular || in.size > most)
+        status = log_fail(log, in.regular ? RELUME_ELIMIT : RELUME_EFORMAT, "%s: %s; expected %s",
+                          path, in.regular ? "too long" : "not a file", expected);
+    else if (!(*out = mem_array((size_t)in.size + 1, 1)))
+        status = RELUME_ENOMEM;
+    errno = EIO;  // where a file has become shorter
+    if (!status && infile_read(&in, *out, (size_t)in.size, 0) != (ssize_t)in.size)
+        status = relume_input_fail(log, path, "cannot be read", errno);
+    if (!status)
+        (*out)[ *size = (size_t)in.size] = '\0';
+    else
+        free(*out), *out = NULL;
+    infile_close(&in);
+    return status;
+}
+
+int input_descriptor(const char *path, const struct relume_log *log)
+{
+    struct infile in;
+    if (!files_for(path, log)) {
+        input_note(log, path);
+        return open(path, O_RDONLY | O_CLOEXEC);
+    }
+    const int file = infile_open(&in, path, NULL, log) ? infile_descriptor(&in) : -1;
+    const int error = errno;
+    infile_close(&in);
+    errno = error;
+    return file;
 }
 
 // ---------------------------------------------------------------- memory

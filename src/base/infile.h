@@ -2,7 +2,7 @@
 #ifndef BASE_INFILE_H
 #define BASE_INFILE_H
 
-#include <relume/io.h>
+#include "base/context.h"
 
 #include <pthread.h>
 #include <stdio.h>
@@ -11,8 +11,9 @@
 // Files share descriptors: where there are more files than a process may have open, that which
 // nobody has read for longest is closed, and opened again by its name when it is read.
 struct infile {
-    struct relume_reader from;  // `read` is NULL: a file
-    bool regular;               // no folder, device or pipe
+    struct relume_reader from;         // `read` is NULL: a file
+    const struct relume_files *files;  // that `from` is of, or NULL
+    bool regular;                      // no folder, device or pipe
     uint64_t size;
     pthread_mutex_t lock;  // one call of `from.read` at a time
     // a file; under the lock of all
@@ -27,8 +28,9 @@ struct infile {
 // What sentences call an input or output: its path, or what stands for one.
 const char *infile_name(const char *path);
 
-// The file `path`, noted in the log's inputs (pipes are not waited for), or `from`, where that is
-// not NULL. False with errno set; closing is fine in every case.
+// The input `path` of the log's context (context.h), or `from`, where that is not NULL. A file is
+// noted (inputs.h), and pipes are not waited for. False with errno set; closing is fine in every
+// case.
 bool infile_open(struct infile *out, const char *path, const struct relume_reader *from,
                  const struct relume_log *log);
 // How many of `size` bytes there are from `offset` on, now in `bytes`; -1 with errno set.
@@ -38,7 +40,30 @@ ssize_t infile_read(struct infile *s, void *bytes, size_t size, uint64_t offset)
 int infile_descriptor(struct infile *s);
 void infile_close(struct infile *s);
 
-// The same opened as a stream, from its beginning; NULL with errno set. `*in` (or NULL) is what the
+// `path` alone: whether there is such an input; a stream of it, and a descriptor to be closed, NULL
+// and -1 with errno.
+bool input_exists(const char *path, const struct relume_log *log);
+FILE *input_open(const char *path, const struct relume_log *log);
+int input_descriptor(const char *path, const struct relume_log *log);
+
+// A log in whose context `path` is what `from` reads, and all else as in `log`; `log` itself where
+// `from` is NULL. `one` must live as long.
+struct one_input {
+    struct relume_log log;
+    struct relume_context context;
+    const struct relume_files *others;
+    const char *path;
+    const struct relume_reader *from;
+};
+const struct relume_log *one_input(struct one_input *one, const char *path,
+                                   const struct relume_reader *from, const struct relume_log *log);
+
+// All bytes of the input `path`, a regular file of at most `most`, and a zero behind them; else a
+// sentence says that `expected` was expected.
+relume_status input_load(char **out, size_t *size, const char *path, uint64_t most,
+                         const char *expected, const struct relume_log *log);
+
+// An input opened as a stream, from its beginning; NULL with errno set. `*in` (or NULL) is what the
 // stream reads: it belongs to the stream, which has no descriptor of its own.
 FILE *infile_stream(struct infile **in, const char *path, const struct relume_reader *from,
                     const struct relume_log *log);

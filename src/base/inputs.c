@@ -1,13 +1,13 @@
-// inputs.c - files that are read: opened here, noted, and kept from being replaced
+// inputs.c - files that are read are noted, and kept from being replaced
 #include "base/inputs.h"
 
 #include "base/beside.h"
+#include "base/context.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/tree.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <pthread.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -18,26 +18,23 @@ struct identity {
     ino_t number;
 };
 
-struct relume_inputs {
+struct inputs {
     pthread_mutex_t mutex;
     struct identity *item;
     size_t count, room;
     bool incomplete;  // memory was short: everything there counts as read
 };
 
-relume_status relume_inputs_create(relume_inputs **out)
+struct inputs *inputs_create(void)
 {
-    *out = mem_zeroed(1, sizeof **out);
-    if (!*out)
-        return RELUME_ENOMEM;
-    pthread_mutex_init(&(*out)->mutex, NULL);
-    return RELUME_OK;
+    struct inputs *i = mem_zeroed(1, sizeof *i);
+    if (i)
+        pthread_mutex_init(&i->mutex, NULL);
+    return i;
 }
 
-void relume_inputs_destroy(relume_inputs **inputs)
+void inputs_destroy(struct inputs *i)
 {
-    relume_inputs *i = *inputs;
-    *inputs = NULL;
     if (!i)
         return;
     pthread_mutex_destroy(&i->mutex);
@@ -54,7 +51,7 @@ static struct identity *find(struct identity *item, size_t room, struct identity
     return &item[at];
 }
 
-static bool grow(relume_inputs *i)
+static bool grow(struct inputs *i)
 {
     const size_t room = i->room ? 2 * i->room : 64;
     struct identity *item = mem_zeroed(room, sizeof *item);
@@ -69,7 +66,7 @@ static bool grow(relume_inputs *i)
     return true;
 }
 
-static void add(relume_inputs *i, struct identity id)
+static void add(struct inputs *i, struct identity id)
 {
     if (2 * (i->count + 1) > i->room && !grow(i)) {
         i->incomplete = true;
@@ -81,32 +78,26 @@ static void add(relume_inputs *i, struct identity id)
 }
 
 // Devices and pipes cannot be replaced, and a terminal may well be read and written.
-void relume_inputs_add(relume_inputs *inputs, const char *path)
+void inputs_add(struct inputs *inputs, const char *path)
 {
     struct stat s;
-    if (!inputs || stat(path, &s) || !(S_ISREG(s.st_mode) || S_ISDIR(s.st_mode)))
+    if (stat(path, &s) || !(S_ISREG(s.st_mode) || S_ISDIR(s.st_mode)))
         return;
     pthread_mutex_lock(&inputs->mutex);
     add(inputs, (struct identity){s.st_dev, s.st_ino});
     pthread_mutex_unlock(&inputs->mutex);
 }
 
+static struct inputs *inputs_of(const struct relume_log *log)
+{
+    return context_of(log) ? log->context->inputs : NULL;
+}
+
 void input_note(const struct relume_log *log, const char *path)
 {
-    if (inputs_of(log) && !beside_holds(path))  // what is being made here is not an input
-        relume_inputs_add(log->inputs, path);
-}
-
-int input_descriptor(const char *path, const struct relume_log *log)
-{
-    input_note(log, path);
-    return open(path, O_RDONLY | O_CLOEXEC);
-}
-
-FILE *input_open(const char *path, const struct relume_log *log)
-{
-    input_note(log, path);
-    return fopen(path, "rbe");
+    // what is being made here is not an input
+    if (inputs_of(log) && !log->leave_unnoted && !beside_holds(path))
+        inputs_add(inputs_of(log), path);
 }
 
 relume_status relume_input_fail(const struct relume_log *log, const char *path, const char *what,
@@ -121,7 +112,7 @@ relume_status relume_input_fail(const struct relume_log *log, const char *path, 
                     what, strerror(error));
 }
 
-static bool holds(relume_inputs *i, const struct stat *s)
+static bool holds(struct inputs *i, const struct stat *s)
 {
     pthread_mutex_lock(&i->mutex);
     const struct identity id = {s->st_dev, s->st_ino};
@@ -130,7 +121,7 @@ static bool holds(relume_inputs *i, const struct stat *s)
     return found;
 }
 
-static char *path_if_read(relume_inputs *inputs, char *path)
+static char *path_if_read(struct inputs *inputs, char *path)
 {
     struct stat s;
     if (path && !lstat(path, &s) && holds(inputs, &s))
@@ -141,7 +132,7 @@ static char *path_if_read(relume_inputs *inputs, char *path)
 
 // The first thing in or below `path` that is read, as a new string; NULL when there is none. Links
 // are not followed: removing them takes nothing away.
-static char *find_read(relume_inputs *inputs, const char *path)
+static char *find_read(struct inputs *inputs, const char *path)
 {
     struct stat s;
     struct tree_list all = {0};
@@ -157,7 +148,7 @@ static char *find_read(relume_inputs *inputs, const char *path)
 
 relume_status input_refuse(const char *path, const char *output, const struct relume_log *log)
 {
-    char *found = inputs_of(log) ? find_read(log->inputs, path) : NULL;
+    char *found = inputs_of(log) ? find_read(inputs_of(log), path) : NULL;
     if (!found)
         return RELUME_OK;
     const char *inner = strcmp(found, path) ? found + strlen(path) + 1 : NULL;

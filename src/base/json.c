@@ -1,7 +1,7 @@
 // json.c - the one file that knows jansson
 #include "base/json.h"
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 

@@ -37,8 +37,8 @@ bool jvalue_numbers(const jvalue *array, double *out, size_t count);
 // Line and column, from 1, of the member `key` of item `index` of the root's member `array` in a
 // file that has been loaded; of the item where `key` is NULL or absent. Without `array` the root
 // itself is the item. False when it is not found.
-bool jvalue_place(int line_column[2], const char *path, const char *array, size_t index,
-                  const char *key);
+bool jvalue_place(int line_column[2], const char *path, const struct relume_log *log,
+                  const char *array, size_t index, const char *key);
 
 // `text` as a JSON string with its quotes, to be freed; NULL when it cannot be one.
 char *jvalue_quote(const char *text);

@@ -1,9 +1,10 @@
 // json_place.c - where a value of a JSON file stands in its text, which jansson does not keep
 #include "base/json.h"
 
-#include "base/memory.h"
+#include "base/context.h"
+#include "base/infile.h"
 
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // The text has been parsed before: it is JSON, or it has changed since and ends early.
@@ -71,30 +72,13 @@ static const char *find_item(const char *at, size_t index)
     return *at && *at != ']' ? at : NULL;
 }
 
-static char *read_text(const char *path)
+bool jvalue_place(int line_column[2], const char *path, const struct relume_log *log,
+                  const char *array, size_t index, const char *key)
 {
-    enum { STEP = 1 << 16 };
-    FILE *from = fopen(path, "rb");
-    char *text = NULL;
-    size_t size = 0, got = from ? 1 : 0;
-    while (got) {
-        char *longer = mem_resize(text, size + STEP + 1, 1);
-        if (!longer)
-            break;
-        text = longer;
-        got = fread(text + size, 1, STEP, from);
-        size += got;
-        text[size] = '\0';
-    }
-    if (from)
-        fclose(from);
-    return text;
-}
-
-bool jvalue_place(int line_column[2], const char *path, const char *array, size_t index,
-                  const char *key)
-{
-    char *text = read_text(path);
+    char *text;
+    size_t size;
+    const struct relume_log quiet = {.context = context_of(log)};
+    (void)!input_load(&text, &size, path, UINT64_MAX, "", &quiet);
     const char *at = text ? skip_space(text) : NULL;
     if (array) {
         at = at ? find_member(at, array, true) : NULL;

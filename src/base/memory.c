@@ -1,6 +1,8 @@
 // memory.c - allocation with checked sizes, and the limits of sizes read from files
 #include "base/memory.h"
 
+#include "base/context.h"
+
 #include <errno.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -104,7 +106,7 @@ relume_status relume_size_parse(uint64_t *out, const char *text)
 
 const struct relume_limits *limits_of(const struct relume_limits *own, const struct relume_log *log)
 {
-    return own ? own : log ? log->limits : NULL;
+    return own ? own : context_of(log) ? log->context->limits : NULL;
 }
 
 // What this process may have: the machine's memory, less where somebody has said so (ulimit -v).

@@ -9,6 +9,13 @@
 #define PARAMS(type, params)                                                                       \
     (*(const struct type *)params_copy(&(struct type){.struct_size = 0}, sizeof(struct type),      \
                                        params))
+// The same of params with `log` and `threads`: where they name no number it is that of the log's
+// context.
+#define PARAMS_WORK(type, params)                                                                  \
+    (*(const struct type *)params_work(&(struct type){.struct_size = 0}, sizeof(struct type),      \
+                                       params, offsetof(struct type, log),                         \
+                                       offsetof(struct type, threads)))
+void *params_work(void *own, size_t size, const void *params, size_t log, size_t threads);
 void *params_copy(void *own, size_t size, const void *params);
 
 #endif

@@ -1,5 +1,6 @@
 // folder.c - a BTF on disk: btf.json and values.npy
 #include "base/outdir.h"
+#include "base/params.h"
 #include "base/outfile.h"
 #include "base/json.h"
 #include "base/log.h"
@@ -156,6 +157,8 @@ static bool is_cropped(const struct relume_btf_params *p)
 relume_status relume_btf_open(relume_btf **out, const char *path,
                               const struct relume_btf_params *params)
 {
+    const struct relume_btf_params own = PARAMS_WORK(relume_btf_params, params);
+    params = &own;
     *out = NULL;
     if (is_file(path))
         return btf_open_ubo(out, path, params);
@@ -163,8 +166,7 @@ relume_status relume_btf_open(relume_btf **out, const char *path,
         return log_fail(params->log, RELUME_EINVAL, "%s: expected a .btf file to take a part of",
                         path);
     struct folder f = {path, mem_format("%s/btf.json", path),
-                       limits_or_default(params ? limits_of(params->limits, params->log) : NULL),
-                       params ? params->log : NULL};
+                       limits_or_default(limits_of(own.limits, own.log)), own.log};
     if (!f.json)
         return RELUME_ENOMEM;
     struct stat info;

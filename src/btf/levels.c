@@ -1,6 +1,7 @@
 // levels.c - levels of detail of a BTF: values are averaged, never the parameters of a model, which
 // do not enter them linearly
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
 #include "btf/btf.h"
@@ -62,10 +63,11 @@ relume_status relume_btf_halve(relume_btf **out, const relume_btf *btf,
     info.width = btf_half_side(info.width);
     info.height = btf_half_side(info.height);
     info.relief = info.normals = (struct relume_image){0};
-    const relume_status status = relume_btf_create(out, &info, params);
+    const struct relume_btf_params own = PARAMS_WORK(relume_btf_params, params);
+    const relume_status status = relume_btf_create(out, &info, &own);
     if (status)
         return status;
     struct halving h = {btf, *out};
-    thread_for(params ? params->threads : 0, (size_t)info.views, halve_view, &h);
+    thread_for(own.threads, (size_t)info.views, halve_view, &h);
     return RELUME_OK;
 }

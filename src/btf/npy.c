@@ -1,7 +1,7 @@
 // npy.c - arrays in NumPy's file format (NEP 1, version 1.0), mapped into memory
 #include "btf/npy.h"
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"

@@ -4,7 +4,8 @@
 // what is assumed. Little endian throughout, nothing is aligned.
 #include "btf/ubo.h"
 
-#include "base/inputs.h"
+#include "base/context.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -432,14 +433,14 @@ static bool go_on(void *user, const char *what, double done)
 relume_status btf_open_ubo(relume_btf **out, const char *path,
                            const struct relume_btf_params *params)
 {
-    struct ubo u = {
-        .path = path,
-        .params = params,
-        .limits = limits_or_default(params ? limits_of(params->limits, params->log) : NULL),
-        .log = {
-            .message = say, .progress = go_on, .inputs = inputs_of(params ? params->log : NULL)}};
+    const struct relume_log *log = params ? params->log : NULL;
+    struct relume_context context = context_like(log);
+    struct ubo u = {.path = path,
+                    .params = params,
+                    .limits = limits_or_default(limits_of(params ? params->limits : NULL, log)),
+                    .log = {.message = say, .progress = go_on, .context = &context}};
     u.log.user = &u;
-    u.log.limits = &u.limits;
+    context.limits = &u.limits;
     *out = NULL;
     relume_status status = map_file(&u);
     if (!status)

@@ -153,7 +153,7 @@ static relume_status compare_pictures(const struct judge *j,
 relume_status relume_btf_judge(struct relume_btf_error *out, const relume_btf_fitted *fitted,
                                const relume_btf *btf, const struct relume_btf_judge_params *params)
 {
-    const struct relume_btf_judge_params p = PARAMS(relume_btf_judge_params, params);
+    const struct relume_btf_judge_params p = PARAMS_WORK(relume_btf_judge_params, params);
     struct judge j = {.model = fitted, .btf = btf};
     if (fitted->width != btf->info.width || fitted->height != btf->info.height)
         return log_fail(p.log, RELUME_EINVAL, "%s: %d x %d texels; expected %d x %d as the model",

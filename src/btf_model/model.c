@@ -216,7 +216,7 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
                              const struct relume_btf_model *model,
                              const struct relume_btf_fit_params *params)
 {
-    const struct relume_btf_fit_params p = PARAMS(relume_btf_fit_params, params);
+    const struct relume_btf_fit_params p = PARAMS_WORK(relume_btf_fit_params, params);
     *out = NULL;
     relume_status status = check_values(btf, p.log);
     if (!status)

@@ -249,7 +249,7 @@ relume_status prefilter_from_cells(relume_prefiltered **out,
 relume_status relume_prefiltered_create(relume_prefiltered **out, const struct relume_light *light,
                                         const struct relume_prefiltered_params *params)
 {
-    const struct relume_prefiltered_params p = PARAMS(relume_prefiltered_params, params);
+    const struct relume_prefiltered_params p = PARAMS_WORK(relume_prefiltered_params, params);
     *out = NULL;
     relume_status status = check(light, &p);
     if (status)

@@ -64,11 +64,21 @@ static struct picture_array array_of(const relume_capture *c, int view, int ligh
                                   a->channels};
 }
 
+// What is read later is found where the capture was.
+static struct relume_log log_of(const relume_capture *c, const struct relume_log *log)
+{
+    struct relume_log own = log ? *log : (struct relume_log){0};
+    if (!own.context)
+        own.context = c->context;
+    return own;
+}
+
 relume_status capture_picture(picture_reader **out, const relume_capture *c, int view, int light,
                               const struct relume_limits *limits, const struct relume_log *log)
 {
+    const struct relume_log own = log_of(c, log);
     if (!c->pictures.data)
-        return picture_open(out, c->draft.m.view[view].images[light], NULL, limits, log);
+        return picture_open(out, c->draft.m.view[view].images[light], NULL, limits, &own);
     const struct picture_array array = array_of(c, view, light);
     return array_picture_open(out, &array);
 }
@@ -127,8 +137,9 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
     if (planes)
         return copy_plane(out, capture, view, planes);
     const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
+    const struct relume_log own = log_of(capture, log);
     const relume_status status = relume_image_load(
-        out, path, relume_image_params(.log = log, .channels = 1, .transfer = as_stored));
+        out, path, relume_image_params(.log = &own, .channels = 1, .transfer = as_stored));
     if (status || (out->width == capture->width && out->height == capture->height))
         return status;
     const int width = out->width, height = out->height;

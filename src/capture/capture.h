@@ -17,6 +17,7 @@ struct relume_capture {
     double assume_depth;  // of near lights' views without depth; 0: none
     struct kept *kept;
     struct relume_limits limits;
+    relume_context *context;          // of the log that it was opened with, or NULL
     struct relume_transfer stated;    // for all images; AUTO: each file's own
     struct relume_transfer transfer;  // of the first image, never AUTO
 };

@@ -1,5 +1,5 @@
 // lights_read.c - lights from whatever file holds some
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"

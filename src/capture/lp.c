@@ -1,5 +1,5 @@
 // lp.c - the light position files of RTI: a count, then "name x y z" a line
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"
@@ -233,13 +233,13 @@ static int by_name(const struct dirent **a, const struct dirent **b)
 // The file that a listed name means: the path itself, else its base name in the folder in any case.
 // A path that leaves the folder is `refused` where only that exists.
 static char *find_file(struct draft *d, const char *folder, const char *listed,
-                       struct dirent *const *files, int file_count, bool allow_outside,
-                       bool *refused)
+                       struct dirent *const *files, int file_count,
+                       const struct relume_capture_params *p, bool *refused)
 {
     char *path = listed[0] == '/' ? arena_text(&d->arena, listed)
                                   : arena_format(&d->arena, "%s/%s", folder, listed);
-    const bool exists = path && !access(path, F_OK);
-    *refused = exists && !allow_outside && leaves_folder(listed);
+    const bool exists = path && input_exists(path, p->log);
+    *refused = exists && !p->allow_outside && leaves_folder(listed);
     if (!path || (exists && !*refused))
         return path;
     const char *base = base_name(listed);
@@ -263,7 +263,7 @@ static relume_status resolve(struct draft *d, const char *path, const char *fold
     for (int i = 0; i < d->m.lights; i++) {
         const char *listed = images[i];
         bool refused;
-        images[i] = find_file(d, folder, listed, files, file_count, p->allow_outside, &refused);
+        images[i] = find_file(d, folder, listed, files, file_count, p, &refused);
         if (!images[i])
             return RELUME_ENOMEM;
         if (refused)
@@ -271,7 +271,7 @@ static relume_status resolve(struct draft *d, const char *path, const char *fold
                             "%s: names '%.200s', outside its folder; expected the image beside the "
                             ".lp file; if you trust it, --allow-outside",
                             path, listed);
-        if (access(images[i], F_OK) && missing++ == 0)
+        if (!input_exists(images[i], log) && missing++ == 0)
             first = listed;
     }
     if (missing == d->m.lights && file_count == d->m.lights) {

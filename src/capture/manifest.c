@@ -1,7 +1,7 @@
 // manifest.c - capture.json, read
 #include "capture/manifest.h"
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
@@ -364,7 +364,7 @@ static relume_status read_transfer(const struct parser *p, const jvalue *value)
     const relume_status status = text ? get_path(p, value, "transfer", &path) : RELUME_EFORMAT;
     if (status == RELUME_ENOMEM)
         return status;
-    if (status || access(path, F_OK))
+    if (status || !input_exists(path, p->log))
         return wrong(p, "transfer", "linear, srgb, gamma:NUMBER or a response-curve file");
     struct relume_response *response = arena_array(&d->arena, 1, sizeof *response);
     if (!response)

@@ -1,5 +1,7 @@
 // open.c - a capture is opened: every promise of the manifest checked against the files
 #include "base/log.h"
+#include "base/context.h"
+#include "base/infile.h"
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/tree.h"
@@ -16,7 +18,7 @@ static relume_status find_description(char **out, const char *folder, const stru
     char *path = *out = mem_format("%s/capture.json", folder);
     if (!path)
         return RELUME_ENOMEM;
-    if (!access(path, F_OK))
+    if (input_exists(path, log))
         return RELUME_OK;
     free(path);
     *out = tree_only(folder, ".lp");
@@ -76,7 +78,7 @@ static relume_status skip_missing(relume_capture *c, const struct relume_log *lo
     for (int i = 0; i < before; i++) {
         keep[i] = true;
         for (int v = 0; v < d->m.views && keep[i]; v++) {
-            keep[i] = !access(d->view[v].images[i], F_OK);
+            keep[i] = input_exists(d->view[v].images[i], log);
             if (!keep[i])
                 log_line(log, RELUME_WARNING, "%s: image '%s' does not exist; light %d is skipped",
                          c->path, d->view[v].images[i], i);
@@ -97,7 +99,7 @@ static relume_status count_missing(const relume_capture *c, const struct relume_
     int missing = 0;
     for (int v = 0; v < m->views; v++)
         for (int i = 0; i < m->lights; i++)
-            if (access(m->view[v].images[i], F_OK) && missing++ == 0)
+            if (!input_exists(m->view[v].images[i], log) && missing++ == 0)
                 first = m->view[v].images[i];
     if (!missing)
         return RELUME_OK;
@@ -199,6 +201,7 @@ relume_status capture_finish(relume_capture **out, relume_capture *c,
     c->repair = p->repair;
     c->assume_depth = p->assume_depth;
     c->limits = limits_or_default(p->limits);
+    c->context = context_of(p->log);
     const relume_status status = finish(c, p);
     if (status)
         relume_capture_destroy(&c);

@@ -95,7 +95,7 @@ static relume_status open_near(relume_table *t, struct relume_transfer display, 
 relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
                                 const struct relume_table_params *params)
 {
-    const struct relume_table_params p = PARAMS(relume_table_params, params);
+    const struct relume_table_params p = PARAMS_WORK(relume_table_params, params);
     const int lights = capture->draft.m.lights;
     struct relume_transfer to = p.display;
     if (to.curve == RELUME_CURVE_AUTO)

@@ -138,13 +138,13 @@ static bool is_output(const struct given *g)
 // these name in turn are noted as they are opened.
 static relume_status note_inputs(struct parsed *p)
 {
-    relume_status status = relume_inputs_create(&p->log.inputs);
-    for (int i = 0; !status && i < p->line.input_count; i++)
-        relume_inputs_add(p->log.inputs, p->line.input[i]);
-    for (int i = 0; !status && i < p->line.given_count; i++) {
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < p->line.input_count; i++)
+        relume_context_note(p->log.context, p->line.input[i]);
+    for (int i = 0; i < p->line.given_count; i++) {
         const enum option_kind kind = p->line.given[i].option->kind;
         if (kind == OPTION_TEXT || kind == OPTION_TEXTS)
-            relume_inputs_add(p->log.inputs, p->line.given[i].text);
+            relume_context_note(p->log.context, p->line.given[i].text);
     }
     for (int i = 0; !status && i < p->line.given_count; i++)
         if (is_output(&p->line.given[i]))
@@ -163,14 +163,16 @@ static relume_status fill_options(struct parsed *p, int argc, char **argv)
     p->args->limits = p->limits;
     p->args->log = p->line.log = &p->log;
     p->log.user = p->args;
-    p->log.limits = &p->args->limits;
     p->line.name = c->name;
     p->line.tables[0] = c->options ? c->options : common;
     p->line.tables[1] = c->options ? common : NULL;
     p->line.values = p->args;
     p->args->line = &p->line;
     p->args->input = p->line.input;
-    const relume_status status = command_line_parse(&p->line, argc, argv);
+    relume_status status = relume_context_create(
+        &p->log.context, relume_context_params(.limits = &p->args->limits, .keep_inputs = true));
+    if (!status)
+        status = command_line_parse(&p->line, argc, argv);
     p->args->inputs = p->line.input_count;
     return status;
 }
@@ -370,7 +372,7 @@ int main(int argc, char **argv)
     clear_bar();
     if (!flush_stdout() && !status)
         status = RELUME_EIO;
-    relume_inputs_destroy(&p->log.inputs);
+    relume_context_destroy(&p->log.context);
     free(p->args);
     free(p);
     return exit_code(status);

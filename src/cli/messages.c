@@ -51,7 +51,7 @@ const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_lo
                                     const char *prefix)
 {
     *p = (struct prefix_log){
-        {on_prefixed, on_prefixed_progress, p, to->inputs, to->limits}, to, prefix};
+        {on_prefixed, on_prefixed_progress, p, to->context, false}, to, prefix};
     return &p->log;
 }
 

@@ -281,7 +281,7 @@ static size_t sample_size(const struct relume_books_params *p, int codes, size_t
 relume_status relume_books_train(relume_books **out, const relume_coefficients *const *views, int n,
                                  const struct relume_books_params *params)
 {
-    const struct relume_books_params p = PARAMS(relume_books_params, params);
+    const struct relume_books_params p = PARAMS_WORK(relume_books_params, params);
     const struct relume_coder_info *coder = relume_coder_info(views[0]->info.coder);
     const int codes = p.codes ? p.codes : DEFAULT_CODES;
     const size_t pixels = (size_t)views[0]->info.width * (size_t)views[0]->info.height * (size_t)n;

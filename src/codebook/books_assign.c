@@ -243,7 +243,7 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
                                   const relume_books *books, const relume_coefficients *view,
                                   const struct relume_books_params *params)
 {
-    const struct relume_books_params p = PARAMS(relume_books_params, params);
+    const struct relume_books_params p = PARAMS_WORK(relume_books_params, params);
     const int workers = thread_count(p.threads);
     struct assignment a = {
         .books = books,

@@ -339,7 +339,7 @@ static relume_status make_book(relume_codebook **out, struct training *t)
 relume_status relume_codebook_train(relume_codebook **out, const float *vectors, size_t n, int dim,
                                     const struct relume_codebook_params *params)
 {
-    const struct relume_codebook_params p = PARAMS(relume_codebook_params, params);
+    const struct relume_codebook_params p = PARAMS_WORK(relume_codebook_params, params);
     const int codes = p.codes ? p.codes : DEFAULT_CODES;
     *out = NULL;
     relume_status status = check(vectors, n, dim, &p, codes);
@@ -387,7 +387,8 @@ relume_status relume_codebook_assign(const relume_codebook *book, const float *v
                                      uint16_t *index, double *squared_error,
                                      const struct relume_codebook_assign_params *params)
 {
-    const struct relume_codebook_assign_params p = PARAMS(relume_codebook_assign_params, params);
+    const struct relume_codebook_assign_params p =
+        PARAMS_WORK(relume_codebook_assign_params, params);
     size_t where;
     if (!all_finite(vectors, n * (size_t)book->info.dim, &where))
         return log_fail(p.log, RELUME_EINVAL,

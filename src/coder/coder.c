@@ -202,7 +202,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
                                   const struct relume_vec3 *lights, int n,
                                   const struct relume_coder_params *params)
 {
-    const struct relume_coder_params p = PARAMS(relume_coder_params, params);
+    const struct relume_coder_params p = PARAMS_WORK(relume_coder_params, params);
     *out = NULL;
     if (n < 1 || p.ridge < 0.0 || p.ridge > 1.0 || (p.no_ridge && p.ridge > 0.0))
         return RELUME_EINVAL;

@@ -341,7 +341,7 @@ static relume_status keep_row(relume_coefficients *c, const struct relume_codes 
 relume_status relume_coefficients_keep(relume_coefficients **out, const struct relume_codes *codes,
                                        const struct relume_encode_params *params)
 {
-    struct relume_encode_params p = PARAMS(relume_encode_params, params);
+    struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
     p.storage = codes->storage;
     void *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof(float));
     relume_status status = coefficients_create(out, codes->coder, codes->width, codes->height, &p);

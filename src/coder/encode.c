@@ -477,7 +477,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
                             const relume_capture *capture, int view,
                             const struct relume_encode_params *params)
 {
-    const struct relume_encode_params p = PARAMS(relume_encode_params, params);
+    const struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
     *out = NULL;
     if (!coder->map || m->lights != coder->info.lights || view < 0 || view >= m->views)

@@ -184,7 +184,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
                                  const char *path, struct relume_encode_report *report,
                                  const struct relume_pack_encode_params *params)
 {
-    const struct relume_pack_encode_params p = PARAMS(relume_pack_encode_params, params);
+    const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
     const struct relume_encode_params encode = {
         .log = p.log,
         .domain = relume_encode_domain(capture, p.domain),

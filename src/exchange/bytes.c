@@ -1,36 +1,17 @@
 // bytes.c - a file in memory, read from the front: text lines, then binary
 #include "exchange/bytes.h"
 
-#include "base/inputs.h"
-#include "base/log.h"
-#include "base/memory.h"
+#include "base/infile.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 relume_status bytes_load(struct bytes *out, const char *path, const struct relume_log *log)
 {
-    struct stat st;
     *out = (struct bytes){0};
-    FILE *f = input_open(path, log);
-    if (!f)
-        return relume_input_fail(log, path, "cannot be opened", errno);
-    relume_status status = RELUME_OK;
-    if (fstat(fileno(f), &st) || !S_ISREG(st.st_mode))
-        status = log_fail(log, RELUME_EFORMAT, "%s: not a file", path);
-    else if (!(out->data = mem_array((size_t)st.st_size, 1)))
-        status = RELUME_ENOMEM;
-    else if (fread(out->data, 1, (size_t)st.st_size, f) != (size_t)st.st_size)
-        status = relume_input_fail(log, path, "cannot be read", errno);
-    else
-        out->size = (size_t)st.st_size;
-    fclose(f);
-    if (status)
-        bytes_free(out);
-    return status;
+    return input_load((char **)&out->data, &out->size, path, UINT64_MAX, "a file", log);
 }
 
 void bytes_free(struct bytes *b)

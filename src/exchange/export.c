@@ -1,6 +1,7 @@
 // export.c - a view of a relume file in another format
 #include "exchange/export.h"
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/params.h"
 
@@ -44,7 +45,7 @@ double export_light_spacing(const struct source *s)
     return sum / s->lights;
 }
 
-static relume_status check(const relume_pack *pack, const char *path,
+static relume_status check(const relume_pack *pack, const char *path, enum relume_exchange format,
                            const struct relume_export_params *p)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
@@ -61,6 +62,8 @@ static relume_status check(const relume_pack *pack, const char *path,
     if (p->view < 0 || p->view >= info->views)
         return log_fail(p->log, RELUME_EINVAL, "view %d; expected 0 to %d", p->view,
                         info->views - 1);
+    if (p->writer && (format == RELUME_EXCHANGE_RELIGHT || format == RELUME_EXCHANGE_DEEPZOOM))
+        return log_fail(p->log, RELUME_EINVAL, "this format is a folder; expected no writer");
     if ((p->bytes_per_pixel > 0.0) + (p->psnr_db > 0.0) + (p->quality > 0) > 1)
         return log_fail(p->log, RELUME_EINVAL,
                         "expected at most one of bytes per pixel, PSNR and quality");
@@ -71,11 +74,12 @@ relume_status relume_export(relume_pack *pack, const char *path, enum relume_exc
                             struct relume_export_report *report,
                             const struct relume_export_params *params)
 {
-    const struct relume_export_params p = PARAMS(relume_export_params, params);
+    const struct relume_export_params p = PARAMS_WORK(relume_export_params, params);
     const struct relume_codes *codes;
     struct relume_export_report found = {0};
     struct source source = {0};
-    relume_status status = check(pack, path, &p);
+    path = infile_name(path);
+    relume_status status = check(pack, path, format, &p);
     if (!status)
         status = relume_pack_codes(&codes, pack, p.view);
     if (!status)

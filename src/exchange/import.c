@@ -5,6 +5,7 @@
 #include "exchange/rti.h"
 #include "exchange/web.h"
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -32,9 +33,10 @@ static relume_status read_any(struct foreign *f, const char *path,
 {
     const struct relume_limits *limits = limits_of(p->limits, p->log);
     struct stat st;
-    if (stat(path, &st))
+    if (!input_exists(path, p->log))
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file or folder", path);
-    if (S_ISDIR(st.st_mode) && relume_kind_of(path) != RELUME_KIND_FOREIGN)
+    const bool folder = !stat(path, &st) && S_ISDIR(st.st_mode);
+    if (folder && relume_kind_of(path) != RELUME_KIND_FOREIGN)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: a folder without info.json, so no web folder; expected one as relight "
                         "and OpenLIME read it, or a .ptm, .rti or .hsh file%s",
@@ -42,7 +44,7 @@ static relume_status read_any(struct foreign *f, const char *path,
                         relume_kind_of(path) == RELUME_KIND_CAPTURE
                             ? "; this is a capture, for 'relume encode'"
                             : "");
-    if (S_ISDIR(st.st_mode) || ends_with(path, ".json"))
+    if (folder || ends_with(path, ".json"))
         return web_read(f, path, limits, p->log);
     if (ends_with(path, ".ptm") || ends_with(path, ".lptm"))
         return ptm_read(f, path, limits, p->log);
@@ -294,17 +296,22 @@ static relume_status write_pack(const struct material *m, const char *out,
         .preview = relume_pack_preview,
         .preview_user = &contents,
     };
-    return relume_pack_write(
-        &contents, out,
-        relume_pack_params(.log = p->log, .compression = p->compression, .threads = p->threads));
+    return relume_pack_write(&contents, out,
+                             relume_pack_params(.log = p->log, .compression = p->compression,
+                                                .threads = p->threads, .writer = p->writer));
 }
 
 relume_status relume_import(const char *path, const char *out,
                             const struct relume_import_params *params)
 {
-    const struct relume_import_params p = PARAMS(relume_import_params, params);
+    struct relume_import_params p = PARAMS_WORK(relume_import_params, params);
+    struct one_input one;
     struct foreign f = {0};
     struct material m = {.f = &f};
+    if (!out && !p.writer)
+        return RELUME_EINVAL;
+    path = infile_name(path);
+    p.log = one_input(&one, path, p.reader, p.log);
     relume_status status = read_any(&f, path, &p);
     for (int i = 0; !status && i < f.planes; i++)
         make_positive(&f, i);

@@ -153,8 +153,8 @@ static relume_status write_raw(const struct foreign *f, const struct export *e, 
     report->bytes_per_pixel = f->planes;
     if (status)
         return status;
-    return f->functions.kind == FUNCTIONS_HSH ? rti_write(f, path, e->log)
-                                              : ptm_write(f, path, e->log);
+    return f->functions.kind == FUNCTIONS_HSH ? rti_write(f, path, e->params->writer, e->log)
+                                              : ptm_write(f, path, e->params->writer, e->log);
 }
 
 relume_status export_legacy(const struct export *e, const char *path, enum relume_exchange format,

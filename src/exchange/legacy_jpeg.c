@@ -120,7 +120,7 @@ relume_status legacy_write_jpeg(const struct foreign *f, const struct export *e,
     relume_status status = quality ? try_quality(&best, f, e, quality) : search(&best, f, e, path);
     if (status)
         return status;
-    status = outfile_save(path, best.file.bytes, best.file.size, e->log);
+    status = outfile_save_to(path, e->params->writer, best.file.bytes, best.file.size, e->log);
     report->bytes_per_pixel = best.bytes_per_pixel;
     report->psnr_db = best.psnr_db;
     report->exact = false;

@@ -2,11 +2,13 @@
 // name
 #include <relume/exchange.h>
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/scratch.h"
 #include "base/tree.h"
+#include "exchange/kind.h"
 #include "exchange/still.h"
 #include "image/picture.h"
 
@@ -27,20 +29,20 @@ static bool ends_with(const char *path, const char *end)
 
 // ---------------------------------------------------------------- what it is
 
-static bool holds(const char *folder, const char *name)
+static bool holds(const char *folder, const char *name, const struct relume_log *log)
 {
     char *path = mem_format("%s/%s", folder, name);
-    const bool found = path && !access(path, F_OK);
+    const bool found = path && input_exists(path, log);
     free(path);
     return found;
 }
 
-static enum relume_kind kind_of_folder(const char *path)
+static enum relume_kind kind_of_folder(const char *path, const struct relume_log *log)
 {
-    if (holds(path, "info.json"))
+    if (holds(path, "info.json", log))
         return RELUME_KIND_FOREIGN;
-    char *lp = holds(path, "capture.json") ? NULL : tree_only(path, ".lp");
-    const bool capture = lp || holds(path, "capture.json");
+    char *lp = holds(path, "capture.json", log) ? NULL : tree_only(path, ".lp");
+    const bool capture = lp || holds(path, "capture.json", log);
     free(lp);
     return capture ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
 }
@@ -48,9 +50,9 @@ static enum relume_kind kind_of_folder(const char *path)
 enum { HEAD = 4096 };
 static const char exr_magic[] = "\x76\x2f\x31\x01";
 
-static size_t read_head(char head[HEAD], const char *path)
+static size_t read_head(char head[HEAD], const char *path, const struct relume_log *log)
 {
-    FILE *f = fopen(path, "rb");
+    FILE *f = input_open(path, log);
     const size_t n = f ? fread(head, 1, HEAD, f) : 0;
     if (f)
         fclose(f);
@@ -73,28 +75,33 @@ static enum relume_kind kind_of_json(const char *head, size_t n, const char *pat
                : RELUME_KIND_UNKNOWN;
 }
 
-enum relume_kind relume_kind_of(const char *path)
+enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log)
 {
     static const char *const foreign[] = {".ptm", ".lptm", ".rti", ".hsh", NULL};
     static const char *const photographs[] = {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", NULL};
     char head[HEAD];
     struct stat s;
-    if (stat(path, &s))
+    if (!input_exists(path, log))
         return RELUME_KIND_UNKNOWN;
-    if (S_ISDIR(s.st_mode))
-        return kind_of_folder(path);
+    if (!stat(path, &s) && S_ISDIR(s.st_mode))
+        return kind_of_folder(path, log);
     if (is_among(path, foreign))
         return RELUME_KIND_FOREIGN;
     if (ends_with(path, ".lp"))
         return RELUME_KIND_CAPTURE;
-    const size_t n = read_head(head, path);
+    const size_t n = read_head(head, path, log);
     if (ends_with(path, ".json"))
         return kind_of_json(head, n, path);
     if (n > 4 && !memcmp(head, exr_magic, 4))
-        return picture_is_relume(path) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
+        return picture_is_relume(path, log) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     if (relume_image_can_save(path) || is_among(path, photographs))
         return ends_with(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     return RELUME_KIND_UNKNOWN;
+}
+
+enum relume_kind relume_kind_of(const char *path)
+{
+    return exchange_kind_of(path, NULL);
 }
 
 const char *relume_kind_name(enum relume_kind kind)
@@ -145,9 +152,9 @@ static relume_status picture(const char *path, const char *out, const struct rel
 static relume_status unknown(const char *path, const struct relume_open_params *p)
 {
     struct stat s;
-    if (stat(path, &s))
+    if (!input_exists(path, p->log))
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
-    if (!S_ISDIR(s.st_mode))
+    if (stat(path, &s) || !S_ISDIR(s.st_mode))
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
@@ -176,7 +183,8 @@ static relume_status convert(enum relume_kind kind, const char *path, const char
 
 // The relume file never has a name, so nothing of it is left, whatever happens.
 static relume_status open_converted(relume_pack **out, enum relume_kind kind, const char *path,
-                                    const struct relume_open_params *p)
+                                    const struct relume_open_params *p,
+                                    const struct relume_log *log)
 {
     const int fd = scratch_open(NULL);
     if (fd < 0)
@@ -186,8 +194,7 @@ static relume_status open_converted(relume_pack **out, enum relume_kind kind, co
     relume_status status = name ? convert(kind, path, name, p) : RELUME_ENOMEM;
     if (!status)
         status = relume_pack_open(
-            out, name,
-            relume_pack_params(.log = p->log, .limits = p->limits, .threads = p->threads));
+            out, name, relume_pack_params(.log = log, .limits = p->limits, .threads = p->threads));
     free(name);
     close(fd);
     return status;
@@ -196,14 +203,18 @@ static relume_status open_converted(relume_pack **out, enum relume_kind kind, co
 relume_status relume_open(relume_pack **out, const char *path,
                           const struct relume_open_params *params)
 {
-    const struct relume_open_params p = PARAMS(relume_open_params, params);
-    const enum relume_kind kind = relume_kind_of(path);
+    struct relume_open_params p = PARAMS_WORK(relume_open_params, params);
+    const struct relume_log *log = p.log;
+    struct one_input one;
     *out = NULL;
+    path = infile_name(path);
+    p.log = one_input(&one, path, p.reader, log);
+    const enum relume_kind kind = exchange_kind_of(path, p.log);
     if (kind == RELUME_KIND_UNKNOWN)
         return unknown(path, &p);
     return kind == RELUME_KIND_RELUME
-               ? relume_pack_open(
-                     out, path,
-                     relume_pack_params(.log = p.log, .limits = p.limits, .threads = p.threads))
-               : open_converted(out, kind, path, &p);
+               ? relume_pack_open(out, path,
+                                  relume_pack_params(.log = log, .limits = p.limits,
+                                                     .threads = p.threads, .reader = p.reader))
+               : open_converted(out, kind, path, &p, log);
 }

@@ -4,13 +4,16 @@
 
 #include "foreign/foreign.h"
 
+#include <relume/io.h>
+
 // PTM_FORMAT_RGB, LRGB, JPEG_RGB and JPEG_LRGB. An input status with a sentence.
 relume_status ptm_read(struct foreign *out, const char *path, const struct relume_limits *limits,
                        const struct relume_log *log);
 
 // Raw PTM_FORMAT_RGB (channels) or PTM_FORMAT_LRGB (luminance) of six terms whose codes have
 // ptm_quantiser's scales and offsets. RELUME_EIO.
-relume_status ptm_write(const struct foreign *f, const char *path, const struct relume_log *log);
+relume_status ptm_write(const struct foreign *f, const char *path,
+                        const struct relume_writer *writer, const struct relume_log *log);
 
 // The same as PTM_FORMAT_JPEG_RGB or PTM_FORMAT_JPEG_LRGB.
 struct ptm_jpeg {

@@ -74,7 +74,8 @@ static void gather_all(const struct foreign *f, uint8_t *to)
         gather(f, y, to, 3, colours);
 }
 
-relume_status ptm_write(const struct foreign *f, const char *path, const struct relume_log *log)
+relume_status ptm_write(const struct foreign *f, const char *path,
+                        const struct relume_writer *writer, const struct relume_log *log)
 {
     char *text = NULL;
     size_t text_size = 0;
@@ -89,7 +90,7 @@ relume_status ptm_write(const struct foreign *f, const char *path, const struct 
     if (bytes) {
         memcpy(bytes, text, text_size);
         gather_all(f, bytes + text_size);
-        status = outfile_save(path, bytes, text_size + body, log);
+        status = outfile_save_to(path, writer, bytes, text_size + body, log);
     }
     free(text);
     free(bytes);

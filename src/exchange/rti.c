@@ -130,7 +130,8 @@ static void put_float(FILE *f, float v)
         fputc((int)(bits >> 8 * i & 0xff), f);
 }
 
-relume_status rti_write(const struct foreign *f, const char *path, const struct relume_log *log)
+relume_status rti_write(const struct foreign *f, const char *path,
+                        const struct relume_writer *writer, const struct relume_log *log)
 {
     const size_t pixels = foreign_pixels(f), terms = (size_t)f->terms;
     char *text = NULL;
@@ -153,7 +154,7 @@ relume_status rti_write(const struct foreign *f, const char *path, const struct 
             for (size_t c = 0; c < 3; c++)
                 for (size_t k = 0; k < terms; k++)
                     *to++ = f->codes[(3 * k + c) * pixels + i];
-        status = outfile_save(path, bytes, text_size + pixels * 3 * terms, log);
+        status = outfile_save_to(path, writer, bytes, text_size + pixels * 3 * terms, log);
     }
     free(text);
     free(bytes);

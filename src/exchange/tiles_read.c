@@ -1,6 +1,7 @@
 // tiles_read.c - a DeepZoom pyramid becomes one picture again
 #include "exchange/tiles.h"
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "exchange/bytes.h"
@@ -108,7 +109,7 @@ static char *tile_path(const struct pyramid *p, int level, int column, int row)
 static int is_there(const struct pyramid *p, int level, int column, int row)
 {
     char *path = tile_path(p, level, column, row);
-    const int found = !path ? -1 : !access(path, R_OK);
+    const int found = !path ? -1 : input_exists(path, p->log);
     free(path);
     return found;
 }

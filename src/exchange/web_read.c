@@ -2,6 +2,7 @@
 #include "exchange/web.h"
 
 #include "base/json.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "exchange/bytes.h"
@@ -211,11 +212,10 @@ static relume_status read_basis_file(struct folder *w, size_t size)
 {
     char *path = mem_format("%s/materials.bin", w->at);
     struct bytes b = {0};
-    struct stat st;
     if (!path)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
-    if (stat(path, &st))
+    if (!input_exists(path, w->log))
         status = wrong(w, "no basis", "a member 'basis' or a file materials.bin");
     if (!status)
         status = bytes_load(&b, path, w->log);
@@ -342,7 +342,7 @@ static int plane_of(const struct folder *w, int p)
 static bool is_tiled(const struct folder *w, int image)
 {
     char *path = mem_format("%s/plane_%d.dzi", w->at, image);
-    const bool tiled = path && !access(path, R_OK);
+    const bool tiled = path && input_exists(path, w->log);
     free(path);
     return tiled;
 }

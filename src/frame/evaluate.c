@@ -2,7 +2,7 @@
 #include <relume/evaluate.h>
 #include <relume/renderer.h>
 
-#include "base/inputs.h"
+#include "base/context.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -314,8 +314,8 @@ static void collect(const struct evaluator *e, struct relume_evaluation *out)
 static relume_status make_renderer(struct evaluator *e)
 {
     e->about = (struct about){.to = e->params.log, .name = e->params.file};
-    e->about.log = (struct relume_log){say_about, pass_progress, &e->about,
-                                       inputs_of(e->params.log), limits_of(NULL, e->params.log)};
+    e->about.log =
+        (struct relume_log){say_about, pass_progress, &e->about, context_of(e->params.log), false};
     const relume_status status = relume_image_create(&e->relit, e->info->width, e->info->height, 3);
     return status ? status
                   : relume_renderer_create(
@@ -350,7 +350,7 @@ relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
                               const struct relume_evaluate_params *params)
 {
     struct evaluator e = {
-        .params = PARAMS(relume_evaluate_params, params),
+        .params = PARAMS_WORK(relume_evaluate_params, params),
         .pack = pack,
         .capture = capture,
         .manifest = relume_capture_manifest(capture),

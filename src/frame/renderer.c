@@ -142,7 +142,7 @@ relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
         return RELUME_ENOMEM;
     r->pack = pack;
     r->info = relume_pack_info(pack);
-    r->params = PARAMS(relume_frame_params, params);
+    r->params = PARAMS_WORK(relume_frame_params, params);
     r->lighting = 1;
     relume_status status = create_arrays(r) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)  // last: who is there has the arrays
@@ -184,7 +184,7 @@ relume_pack *relume_renderer_pack(const relume_renderer *r)
 void relume_renderer_set(relume_renderer *r, const struct relume_frame_params *params)
 {
     const struct relume_frame_params old = r->params;
-    r->params = PARAMS(relume_frame_params, params);
+    r->params = PARAMS_WORK(relume_frame_params, params);
     r->params.log = old.log;
     r->params.threads = old.threads;
     r->params.cpu_off = old.cpu_off;

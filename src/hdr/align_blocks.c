@@ -394,7 +394,7 @@ relume_status relume_align_blocks(struct relume_displacements *out,
                                   const struct relume_image *image,
                                   const struct relume_align_params *params)
 {
-    const struct relume_align_params p = PARAMS(relume_align_params, params);
+    const struct relume_align_params p = PARAMS_WORK(relume_align_params, params);
     const int block = p.block > 0 ? p.block : 16;
     *out = (struct relume_displacements){0};
     if (anchor->channels != 3 || image->channels != 3 || anchor->width != image->width ||

@@ -309,7 +309,7 @@ relume_status relume_align_homography(struct relume_homography *out,
                                       const struct relume_image *image,
                                       const struct relume_align_params *params)
 {
-    const struct relume_align_params p = PARAMS(relume_align_params, params);
+    const struct relume_align_params p = PARAMS_WORK(relume_align_params, params);
     const double roll_deg = p.max_roll_deg > 0.0 ? p.max_roll_deg : default_roll_deg;
     double h[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     *out = (struct relume_homography){.m = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -172,7 +172,7 @@ relume_status relume_ghost_masks(struct relume_image *masks, const struct relume
                                  const double *exposures, int n, int anchor,
                                  const struct relume_ghost_params *params)
 {
-    const struct relume_ghost_params p = PARAMS(relume_ghost_params, params);
+    const struct relume_ghost_params p = PARAMS_WORK(relume_ghost_params, params);
     struct ghosts g = {
         .codes = codes,
         .threshold = p.threshold > 0.0 ? p.threshold : default_threshold,

@@ -198,7 +198,7 @@ relume_status relume_merge(struct relume_image *out, struct relume_exposure_repo
                            const struct relume_response *response,
                            const struct relume_merge_params *params)
 {
-    const struct relume_merge_params p = PARAMS(relume_merge_params, params);
+    const struct relume_merge_params p = PARAMS_WORK(relume_merge_params, params);
     *out = (struct relume_image){0};
     relume_status status = check(codes, exposures, n, &p);
     if (status)

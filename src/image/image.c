@@ -216,7 +216,7 @@ const char *image_stream_error(const struct image_stream *stream)
 relume_status relume_image_load(struct relume_image *out, const char *path,
                                 const struct relume_image_params *params)
 {
-    const struct relume_image_params p = PARAMS(relume_image_params, params);
+    const struct relume_image_params p = PARAMS_WORK(relume_image_params, params);
     const int channels = p.channels == 1 ? 1 : 3;
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     *out = (struct relume_image){0};
@@ -344,7 +344,7 @@ bool relume_image_can_save(const char *path)
 relume_status relume_image_save(const struct relume_image *image, const char *path,
                                 const struct relume_image_params *params)
 {
-    const struct relume_image_params p = PARAMS(relume_image_params, params);
+    const struct relume_image_params p = PARAMS_WORK(relume_image_params, params);
     const bool alpha = image->channels == 4;
     if (!path || (image->channels != 1 && image->channels != 3 && !alpha))
         return RELUME_EINVAL;

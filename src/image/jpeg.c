@@ -296,35 +296,15 @@ relume_status jpeg_decode(struct jpeg_codes *out, const void *bytes, size_t size
     return status;
 }
 
-static relume_status load(uint8_t **out, size_t *size, const char *path,
-                          const struct relume_log *log)
-{
-    struct stat st;
-    FILE *f = input_open(path, log);
-    *out = NULL;
-    if (!f)
-        return relume_input_fail(log, path, "cannot be opened", errno);
-    relume_status status = RELUME_OK;
-    if (fstat(fileno(f), &st) || !S_ISREG(st.st_mode))
-        status = log_fail(log, RELUME_EFORMAT, "%s: not a file; expected a JPEG file", path);
-    *size = status ? 0 : (size_t)st.st_size;
-    if (!status && !(*out = mem_array(*size, 1)))
-        status = RELUME_ENOMEM;
-    if (!status && fread(*out, 1, *size, f) != *size)
-        status = log_fail(log, RELUME_ENOTFOUND, "%s: cannot be read", path);
-    fclose(f);
-    return status;
-}
-
 relume_status jpeg_read(struct jpeg_codes *out, const char *path,
                         const struct relume_limits *limits, const struct relume_log *log)
 {
-    uint8_t *bytes;
-    size_t size = 0;
+    char *bytes;
+    size_t size;
     *out = (struct jpeg_codes){0};
-    relume_status status = load(&bytes, &size, path, log);
+    relume_status status = input_load(&bytes, &size, path, UINT64_MAX, "a JPEG file", log);
     if (!status)
-        status = jpeg_decode(out, bytes, size, path, limits, log);
+        status = jpeg_decode(out, (const uint8_t *)bytes, size, path, limits, log);
     free(bytes);
     return status;
 }

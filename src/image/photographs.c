@@ -54,10 +54,11 @@ static bool has_picture_name(const char *path)
 static const char *why_none(const char *path, const struct relume_log *log)
 {
     const struct picture_kind *kind = picture_kind_at(path);
-    const bool readable = kind && (kind->listed || (kind->reader && *kind->reader && log &&
-                                                    log->limits && log->limits->any_format));
+    const bool readable =
+        kind && (kind->listed || (kind->reader && *kind->reader && log &&
+                                  limits_or_default(limits_of(NULL, log)).any_format));
     if (readable)
-        return picture_is_relume(path) ? relume_file : NULL;
+        return picture_is_relume(path, NULL) ? relume_file : NULL;
     return has_picture_name(path) ? NULL : kind && kind->what ? kind->what : "";
 }
 

@@ -77,12 +77,12 @@ const struct picture_kind *picture_kind_at(const char *path)
 }
 
 // The first part's attributes follow each other from the start.
-bool picture_is_relume(const char *path)
+bool picture_is_relume(const char *path, const struct relume_log *log)
 {
     static const char magic[] = "\x76\x2f\x31\x01", attributes[] = "relume.";
     char head[4096];
     struct infile in;
-    if (!infile_open(&in, path, NULL, NULL))
+    if (!infile_open(&in, path, NULL, log))
         return false;
     const int64_t n = infile_read(&in, head, sizeof head, 0);
     infile_close(&in);

@@ -50,7 +50,7 @@ relume_status picture_need_colour(const picture_reader *reader, const char *path
 // the only one unless it is depth or coverage. Without names (NULL): the first ones.
 void picture_find_colour(struct picture_info *info, const char *const *names);
 // Whether first bytes say that `path` is a relume file; a picture's too, its preview.
-bool picture_is_relume(const char *path);
+bool picture_is_relume(const char *path, const struct relume_log *log);
 // What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
 const char *picture_error(const picture_reader *reader);
 void picture_close(picture_reader **reader);

@@ -1,7 +1,7 @@
 // response.c - response curves: evaluated, made of known curves, read and written
 #include <relume/response.h>
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"

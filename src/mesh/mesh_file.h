@@ -27,8 +27,5 @@ relume_status mesh_read_ply(struct mesh_file *out, const char *text, size_t size
 char *mesh_mtl_picture(const char *path, const struct relume_log *log);
 // `name` in the folder of `path`; NULL when memory is short.
 char *mesh_beside(const char *path, const char *name);
-// A whole file with a 0 behind it.
-relume_status mesh_load_text(char **out, size_t *size, const char *path,
-                             const struct relume_log *log);
 
 #endif

@@ -1,6 +1,6 @@
 // mesh_obj.c - Wavefront OBJ: v, vt, vn, f, mtllib, usemtl and g; every other keyword is passed
 // over
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "mesh/mesh_file.h"

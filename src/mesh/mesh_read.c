@@ -1,6 +1,7 @@
 // mesh_read.c - models from files: Wavefront OBJ and PLY, others by Assimp
 #include "mesh/mesh_read.h"
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "mesh/mesh_other.h"
@@ -55,7 +56,8 @@ static relume_status read_own(struct mesh_file *out, const char *path, bool obj,
 {
     char *text;
     size_t size;
-    relume_status status = mesh_load_text(&text, &size, path, log);
+    relume_status status =
+        input_load(&text, &size, path, (uint64_t)1 << 31, "a model of at most 2 GiB", log);
     if (status)
         return status;
     status = (obj ? mesh_read_obj : mesh_read_ply)(out, text, size, path, log);

@@ -3,6 +3,7 @@
 #include "multiview/panorama.h"
 
 #include "base/log.h"
+#include "base/params.h"
 #include "base/outdir.h"
 
 #include <math.h>
@@ -180,13 +181,9 @@ relume_status relume_panorama_ingest(const char *dir, const char *const *photos,
                                      const struct relume_panorama_params *panorama,
                                      const struct relume_ingest_params *params)
 {
-    const struct relume_panorama_params no_panorama = {.depth = NULL};
-    const struct relume_ingest_params no_params = {.log = NULL};
-    struct panorama_job job = {
-        .p = panorama ? panorama : &no_panorama,
-        .common = params ? params : &no_params,
-        .dir = dir,
-    };
+    const struct relume_panorama_params own = PARAMS(relume_panorama_params, panorama);
+    const struct relume_ingest_params common = PARAMS_WORK(relume_ingest_params, params);
+    struct panorama_job job = {.p = &own, .common = &common, .dir = dir};
     if ((unsigned)source >= sizeof sources / sizeof *sources)
         return RELUME_EINVAL;
     if (job.p->depth && source > RELUME_PANORAMA_CYLINDER)

@@ -6,6 +6,7 @@
 #include "multiview/views.h"
 
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/outdir.h"
 #include "base/thread.h"
@@ -398,13 +399,9 @@ relume_status relume_posed_ingest(const char *dir, const char *model, const char
                                   const struct relume_posed_params *posed,
                                   const struct relume_ingest_params *params)
 {
-    const struct relume_posed_params no_posed = {.width = 0};
-    const struct relume_ingest_params no_params = {.log = NULL};
-    struct posed s = {
-        .p = posed ? posed : &no_posed,
-        .common = params ? params : &no_params,
-        .photos = photos,
-    };
+    const struct relume_posed_params own = PARAMS(relume_posed_params, posed);
+    const struct relume_ingest_params common = PARAMS_WORK(relume_ingest_params, params);
+    struct posed s = {.p = &own, .common = &common, .photos = photos};
     s.columns = s.p->grid[0] ? s.p->grid[0] : 5;
     s.rows = s.p->grid[1] ? s.p->grid[1] : s.columns;
     relume_status status = check(&s);

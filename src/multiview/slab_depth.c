@@ -2,6 +2,7 @@
 #include "multiview/slab_depth.h"
 
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/outdir.h"
 #include "base/scratch.h"
@@ -241,9 +242,9 @@ relume_status relume_slab_depth(struct relume_slab_depth_report *report,
                                 const relume_capture *capture, const char *dir,
                                 const struct relume_slab_depth_params *params)
 {
-    struct slab_depth d = {.capture = capture, .m = relume_capture_manifest(capture)};
-    if (params)
-        d.p = *params;
+    struct slab_depth d = {.capture = capture,
+                           .m = relume_capture_manifest(capture),
+                           .p = PARAMS_WORK(relume_slab_depth_params, params)};
     relume_status status = check(&d);
     if (status)
         return status;

@@ -2,6 +2,7 @@
 #include "multiview/views_order.h"
 
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/outdir.h"
 #include "math/sort.h"
@@ -403,9 +404,9 @@ relume_status relume_slab_ingest(const char *dir, const char *const *photos, int
                                  const struct relume_slab_ingest_params *slab,
                                  const struct relume_ingest_params *params)
 {
-    const struct relume_slab_ingest_params no_slab = {.names = NULL};
-    const struct relume_ingest_params no_params = {.log = NULL};
-    struct slab s = {.p = slab ? slab : &no_slab, .common = params ? params : &no_params};
+    const struct relume_slab_ingest_params own = PARAMS(relume_slab_ingest_params, slab);
+    const struct relume_ingest_params common = PARAMS_WORK(relume_ingest_params, params);
+    struct slab s = {.p = &own, .common = &common};
     const relume_status status = ingest(&s, dir, photos, n);
     photo_set_free(&s.set);
     return status;

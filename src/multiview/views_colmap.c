@@ -1,7 +1,7 @@
 // views_colmap.c - the text files of COLMAP (Schoenberger, Frahm 2016), format of its documentation
 #include "multiview/views_colmap.h"
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"

@@ -1,5 +1,6 @@
 // objects.c - the description of objects in JSON, their materials, their life
 #include "base/json.h"
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "mesh/mesh_read.h"
@@ -379,16 +380,16 @@ static relume_status read_all(struct reader *r, const jvalue *root)
 relume_status relume_objects_open(relume_objects **out, const char *path,
                                   const struct relume_objects_params *params)
 {
-    const struct relume_log *log = params ? params->log : NULL;
+    const struct relume_objects_params own = PARAMS_WORK(relume_objects_params, params);
     relume_objects *o = mem_zeroed(1, sizeof *o);
-    struct reader r = {o, path, params, log, 0};
+    struct reader r = {o, path, &own, own.log, 0};
     jvalue *root = NULL;
     *out = NULL;
-    relume_status status = o ? jvalue_load(&root, path, log) : RELUME_ENOMEM;
+    relume_status status = o ? jvalue_load(&root, path, own.log) : RELUME_ENOMEM;
     if (!status)
         status = read_all(&r, root);
     if (!status)
-        status = objects_finish(o, params);
+        status = objects_finish(o, &own);
     jvalue_free(&root);
     if (status)
         relume_objects_destroy(&o);
@@ -400,6 +401,7 @@ relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
                                      const char *const *materials, int count, double repeat,
                                      const struct relume_objects_params *params)
 {
+    const struct relume_objects_params own = PARAMS_WORK(relume_objects_params, params);
     relume_objects *o = mem_zeroed(1, sizeof *o);
     const double times = repeat != 0.0 ? repeat : 1.0;
     struct covering c = {.repeat = {times, times}};
@@ -407,11 +409,11 @@ relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
     relume_status status = o ? RELUME_OK : RELUME_ENOMEM;
     *out = NULL;
     for (int i = 0, number; i < count && !status; i++)
-        status = objects_material(o, materials[i], &number, params);
+        status = objects_material(o, materials[i], &number, &own);
     if (!status)
-        status = objects_add(o, mesh, &s, params);
+        status = objects_add(o, mesh, &s, &own);
     if (!status)
-        status = objects_finish(o, params);
+        status = objects_finish(o, &own);
     if (status)
         relume_objects_destroy(&o);
     *out = o;

@@ -1,5 +1,6 @@
 // render.c - the objects ray traced: the reference
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
 #include "object/object.h"
@@ -311,10 +312,11 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
                                     const struct relume_light *lights, int n,
                                     const struct relume_render_params *params)
 {
+    const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
     struct view view = {objects, window, out->width, out->height, {0}};
-    relume_status status = lighting_create(&view.lighting, objects, lights, n, params);
+    relume_status status = lighting_create(&view.lighting, objects, lights, n, &own);
     if (!status)
-        status = objects_trace(out, view_value, &view, params);
+        status = objects_trace(out, view_value, &view, &own);
     lighting_destroy(&view.lighting);
     return status;
 }

@@ -34,7 +34,7 @@ const float *reader_floats(const relume_pack *p, int part, const char *name, int
 relume_status relume_pack_open(relume_pack **out, const char *path,
                                const struct relume_pack_params *params)
 {
-    const struct relume_pack_params params_ = PARAMS(relume_pack_params, params);
+    const struct relume_pack_params params_ = PARAMS_WORK(relume_pack_params, params);
     *out = NULL;
     if (!path && !params_.reader)
         return RELUME_EINVAL;
@@ -47,10 +47,10 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
     p->path = mem_text(infile_name(path));
     relume_status status = p->path ? RELUME_OK : RELUME_ENOMEM;
     struct stat s;
-    if (!status && !params_.reader && stat(path, &s))
+    if (!status && !params_.reader && !input_exists(path, p->log))
         status =
             log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
-    else if (!status && !params_.reader && !S_ISREG(s.st_mode))
+    else if (!status && !params_.reader && !stat(path, &s) && !S_ISREG(s.st_mode))
         status = log_fail(p->log, RELUME_EFORMAT, "%s: not a file; expected a relume file", path);
     if (!status)
         status = exr_open(&p->file, path, params_.reader, &p->limits, p->log);

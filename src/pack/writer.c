@@ -110,7 +110,7 @@ static void add_parts(struct writer *w)
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,
                                 const struct relume_pack_params *params)
 {
-    const struct relume_pack_params p = PARAMS(relume_pack_params, params);
+    const struct relume_pack_params p = PARAMS_WORK(relume_pack_params, params);
     struct writer w = {
         .contents = contents,
         .coder = relume_coder_info(contents->coder),

@@ -48,7 +48,7 @@ const char *const *relume_glare_border_names(void)
 relume_status glare_defaults(struct relume_glare_params *out,
                              const struct relume_glare_params *params)
 {
-    struct relume_glare_params p = PARAMS(relume_glare_params, params);
+    struct relume_glare_params p = PARAMS_WORK(relume_glare_params, params);
     p.fov_deg = p.fov_deg != 0.0 ? p.fov_deg : default_fov_deg;
     p.magnify = p.magnify != 0.0 ? p.magnify : 1.0;
     p.sources = p.sources ? p.sources : DEFAULT_SOURCES;

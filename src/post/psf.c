@@ -50,7 +50,7 @@ struct relume_psf {
 
 relume_status psf_defaults(struct relume_psf_params *out, const struct relume_psf_params *params)
 {
-    struct relume_psf_params p = PARAMS(relume_psf_params, params);
+    struct relume_psf_params p = PARAMS_WORK(relume_psf_params, params);
     p.size = p.size ? p.size : DEFAULT_SIZE;
     p.wavelengths = p.wavelengths ? p.wavelengths : DEFAULT_WAVELENGTHS;
     *out = p;

@@ -1,6 +1,7 @@
 // subject.c - one person's measures: defaults, ranges and their file
 #include <relume/eye.h>
 
+#include "base/infile.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "post/eye.h"
@@ -148,7 +149,7 @@ static int line_of(const struct reading *r, const char *group, const char *name)
     char wanted[80], outer[80];
     snprintf(wanted, sizeof wanted, "\"%.70s\"", name);
     snprintf(outer, sizeof outer, "\"%.70s\"", group ? group : "");
-    FILE *const file = fopen(r->path, "re");
+    FILE *const file = input_open(r->path, r->log);
     while (file && !found && getline(&text, &size, file) >= 0) {
         const char *at = text;
         line++;

@@ -5,7 +5,7 @@
 // it; what is left out by symmetry is folded back when a value is asked for.
 #include <relume/light.h>
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -296,21 +296,13 @@ relume_status relume_ies_parse(relume_ies **out, const char *text, size_t size, 
 
 relume_status relume_ies_load(relume_ies **out, const char *path, const struct relume_log *log)
 {
+    char *text;
+    size_t size;
     *out = NULL;
-    FILE *file = input_open(path, log);
-    if (!file)
-        return relume_input_fail(log, path, "cannot be opened", errno);
-    char *text = mem_array(MOST_BYTES + 1, 1);
-    const size_t size = text ? fread(text, 1, MOST_BYTES + 1, file) : 0;
-    relume_status status = text ? RELUME_OK : RELUME_ENOMEM;
-    if (ferror(file))
-        status = relume_input_fail(log, path, "cannot be read", errno);
-    else if (size > MOST_BYTES)
-        status = log_fail(log, RELUME_EFORMAT, "%s: too long; expected a photometric file", path);
-    else if (!status)
+    relume_status status = input_load(&text, &size, path, MOST_BYTES, "a photometric file", log);
+    if (!status)
         status = relume_ies_parse(out, text, size, path, log);
     free(text);
-    fclose(file);
     return status;
 }
 

@@ -305,7 +305,7 @@ relume_status relume_refit_create(relume_refit **out, const struct relume_codes 
     struct work w = {
         .from = codes,
         .info = relume_coder_info(codes->coder),
-        .params = PARAMS(relume_refit_params, params),
+        .params = PARAMS_WORK(relume_refit_params, params),
     };
     const bool book = codes->books == 1;
     struct relume_codes vectors = *codes;

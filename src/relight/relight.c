@@ -635,7 +635,7 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
                              const struct relume_light *lights, int n,
                              const struct relume_relight_params *params)
 {
-    const struct relume_relight_params p = PARAMS(relume_relight_params, params);
+    const struct relume_relight_params p = PARAMS_WORK(relume_relight_params, params);
     struct job job;
     relume_status status = start_job(&job, codes, lights, n, &p);
     if (!status)
@@ -662,7 +662,7 @@ relume_status relume_relight_rgba8(uint8_t *out, const struct relume_codes *code
                                    const struct relume_light *lights, int n,
                                    const struct relume_relight_params *params)
 {
-    const struct relume_relight_params p = PARAMS(relume_relight_params, params);
+    const struct relume_relight_params p = PARAMS_WORK(relume_relight_params, params);
     struct job job;
     relume_status status = start_job(&job, codes, lights, n, &p);
     job.out_rgba8 = (uint32_t *)(void *)out;
@@ -683,7 +683,7 @@ relume_status relume_relight_book(float *rgb, const struct relume_codes *codes, 
                                   const struct relume_light *lights, int n,
                                   const struct relume_relight_params *params)
 {
-    struct relume_relight_params p = PARAMS(relume_relight_params, params);
+    struct relume_relight_params p = PARAMS_WORK(relume_relight_params, params);
     struct job job;
     if (n < 0 || book < 0 || book >= codes->books || check_each(lights, n, p.log))
         return RELUME_EINVAL;

@@ -1,7 +1,7 @@
 // rig_file.c - rigs as JSON
 #include <relume/rig.h>
 
-#include "base/inputs.h"
+#include "base/context.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -29,7 +29,7 @@ static void say_about(void *user, enum relume_level level, const char *text)
 {
     const struct about *a = user;
     int at[2];
-    if (jvalue_place(at, a->path, "lights", (size_t)a->light - 1, a->member))
+    if (jvalue_place(at, a->path, a->to, "lights", (size_t)a->light - 1, a->member))
         log_line(a->to, level, "%s: line %d, column %d; light %d; %s", a->path, at[0], at[1],
                  a->light, text);
     else
@@ -97,7 +97,7 @@ static relume_status wrong_head(const char *path, const char *member, const char
                                 const struct relume_log *log)
 {
     int at[2] = {1, 1};
-    (void)jvalue_place(at, path, NULL, 0, member);
+    (void)jvalue_place(at, path, log, NULL, 0, member);
     return log_fail(log, RELUME_EFORMAT, "%s: line %d, column %d; %s; expected %s", path, at[0],
                     at[1], member, expected);
 }
@@ -127,11 +127,8 @@ static relume_status take_lights(relume_rig *rig, const jvalue *root, const char
     relume_status status = copy ? RELUME_OK : RELUME_ENOMEM;
     const char *folder = copy ? dirname(copy) : NULL;
     for (size_t i = 0; !status && i < jvalue_count(lights); i++) {
-        struct about about = {{say_about, NULL, &about, inputs_of(log), limits_of(NULL, log)},
-                              log,
-                              path,
-                              (int)i + 1,
-                              NULL};
+        struct about about = {
+            {say_about, NULL, &about, context_of(log), false}, log, path, (int)i + 1, NULL};
         status = take_light(rig, jvalue_item(lights, i), folder, &about);
     }
     free(copy);

@@ -4,6 +4,7 @@
 // One period of the relief is measured; around it lies as much of the next periods as light and
 // eyes at the lowest directions can reach across.
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "math/random.h"
 #include "scene/relief.h"
@@ -296,8 +297,7 @@ static relume_status complete(struct goniometer *g, const struct relume_btf_synt
 {
     const struct relume_btf_set *bonn = relume_btf_set_find("bonn");
     relume_btf_set_directions(bonn, g->standard);
-    if (params)
-        g->p = *params;
+    g->p = PARAMS_WORK(relume_btf_synth_params, params);
     g->p.size = g->p.size ? g->p.size : 64;
     g->p.extent = g->p.extent ? g->p.extent : 1;
     g->p.samples = g->p.samples ? g->p.samples : 4;

@@ -1,6 +1,7 @@
 // synth.c - relume_scene_capture: every view under every light into a capture folder
 #include "base/arena.h"
 #include "base/log.h"
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/outdir.h"
@@ -425,9 +426,7 @@ relume_status relume_ring_parse(enum relume_ring *out, const char *name)
 relume_status relume_scene_capture(const relume_scene *scene, const char *dir,
                                    const struct relume_synth_params *params)
 {
-    struct synth s = {.scene = scene};
-    if (params)
-        s.p = *params;
+    struct synth s = {.scene = scene, .p = PARAMS_WORK(relume_synth_params, params)};
     s.projection = s.p.projection_set ? s.p.projection : scene->kind->projection;
     s.p.size = or_default(s.p.size, 256);
     s.p.samples = or_default(s.p.samples, 16);

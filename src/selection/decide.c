@@ -556,7 +556,7 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
         .capture = capture,
         .manifest = relume_capture_manifest(capture),
         .params = coder ? *coder : (struct relume_coder_params){.choose = true},
-        .encode = PARAMS(relume_encode_params, encode),
+        .encode = PARAMS_WORK(relume_encode_params, encode),
         .quality = quality_db > 0.0 ? quality_db : RELUME_USUAL_DB,
         .display = mem_array(1, sizeof *job.display),
     };

@@ -643,7 +643,7 @@ relume_status relume_heldout_open(relume_heldout **out, const relume_capture *ca
     relume_heldout *h = mem_zeroed(1, sizeof *h);
     if (!h)
         return RELUME_ENOMEM;
-    h->params = PARAMS(relume_heldout_params, params);
+    h->params = PARAMS_WORK(relume_heldout_params, params);
     h->capture = capture;
     relume_status status = describe(h);
     if (!status)

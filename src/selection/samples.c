@@ -95,7 +95,7 @@ static void close_gaps(struct sampler *s)
 relume_status relume_samples_read(struct relume_samples *out, const relume_capture *capture,
                                   size_t pixels, const struct relume_encode_params *params)
 {
-    const struct relume_encode_params p = PARAMS(relume_encode_params, params);
+    const struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const size_t all = (size_t)m->views * (size_t)relume_capture_width(capture) *
                        (size_t)relume_capture_height(capture);
@@ -144,7 +144,7 @@ relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *
                                  const struct relume_encode_params *encode)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
-    struct relume_coder_params p = PARAMS(relume_coder_params, coder);
+    struct relume_coder_params p = PARAMS_WORK(relume_coder_params, coder);
     struct relume_samples samples = {0};
     p.hemispherical = relume_capture_hemispherical(capture);
     p.pole_y = relume_capture_pole_y(capture);

@@ -208,7 +208,7 @@ relume_status relume_btf_draw(struct relume_image *image, const relume_btf_surfa
                               const struct relume_light *lights, int count,
                               const struct relume_btf_draw_params *params)
 {
-    const struct relume_btf_draw_params p = PARAMS(relume_btf_draw_params, params);
+    const struct relume_btf_draw_params p = PARAMS_WORK(relume_btf_draw_params, params);
     const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
     if (!image->data || image->channels != 3)
         return log_fail(p.log, RELUME_EINVAL, "picture: expected three channels");

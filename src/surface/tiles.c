@@ -149,7 +149,7 @@ static relume_status check(struct relume_btf_tiles_params *p, const relume_btf_f
 relume_status relume_btf_map_tiles(relume_btf_map **out, const relume_btf_fitted *sample,
                                    const struct relume_btf_tiles_params *params)
 {
-    struct relume_btf_tiles_params p = PARAMS(relume_btf_tiles_params, params);
+    struct relume_btf_tiles_params p = PARAMS_WORK(relume_btf_tiles_params, params);
     struct features f = {.texel = NULL};
     *out = NULL;
     relume_status status = check(&p, sample);

@@ -61,8 +61,8 @@ if why=$($CC -std=c11 -Wall -Wextra -Werror $sanitizer "$TOP/samples/memory.c" \
     $(pkg-config --cflags --libs relume) -lm -o memory 2>&1); then
     said=$(cd / && env LD_LIBRARY_PATH="$prefix/lib" "$work/memory") || said="status $?: $said"
     # four harmonics, fitted to lights above the table alone, are 0.1 % of white off there
-    if echo "$said" | awk '/^[0-9]+ bytes encoded, a PNG of [0-9]+ bytes; the middle is / {
-        got = $12 + 0; want = $NF + 0; good = want > 0.5 && got - want < 0.01 && want - got < 0.01 }
+    if echo "$said" | awk '/^[0-9]+ bytes encoded, a PNG of [0-9]+ bytes, an RTI of [0-9]+; the middle is / {
+        got = $16 + 0; want = $NF + 0; good = want > 0.5 && got - want < 0.01 && want - got < 0.01 }
         END { exit !good }'; then
         ok "memory.c relights without a file"
     else

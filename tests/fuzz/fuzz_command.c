@@ -124,7 +124,7 @@ static relume_status run(int count, char **line, bool patiently)
                                      : unknown_command(&parsed.log, "command", commands, line[0]);
     setitimer(ITIMER_PROF, &never, NULL);
     stdout = out;
-    relume_inputs_destroy(&parsed.log.inputs);
+    relume_context_destroy(&parsed.log.context);
     free(parsed.args);
     parsed.args = NULL;
     return status;

@@ -4,6 +4,7 @@
 #include "fuzz_look.h"
 
 #include "base/channel.h"
+#include "base/context.h"
 #include "image/picture_serve.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_serve.h"
@@ -85,7 +86,8 @@ static bool try_picture(const struct fuzz *f)
 
 static bool try_model(const struct fuzz *f)
 {
-    const struct relume_log log = {.limits = &small};
+    struct relume_context context = {.limits = &small};
+    const struct relume_log log = {.context = &context};
     char path[128], material[128];
     const char *materials[1] = {material};
     relume_objects *o;

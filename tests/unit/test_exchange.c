@@ -168,7 +168,7 @@ static void raw_files_come_back_byte_for_byte(void **state)
         CHECK_OK(ptm_read(&f, save(&t, "a.ptm"), NULL, NULL));
         char path[128];
         snprintf(path, sizeof path, "%s/b.ptm", folder);
-        CHECK_OK(ptm_write(&f, path, NULL));
+        CHECK_OK(ptm_write(&f, path, NULL, NULL));
         foreign_free(&f);
         FILE *back = fopen(path, "rb");
         char *bytes = malloc(size + 1);
@@ -375,7 +375,7 @@ static void rti_is_read(void **state)
             char path[128];
             struct foreign back;
             snprintf(path, sizeof path, "%s/b.rti", folder);
-            CHECK_OK(rti_write(&f, path, NULL));
+            CHECK_OK(rti_write(&f, path, NULL, NULL));
             CHECK_OK(rti_read(&back, path, false, NULL, NULL));
             assert_memory_equal(back.codes, f.codes, 12 * PIXELS);
             assert_memory_equal(back.offset, f.offset, 12 * sizeof *f.offset);

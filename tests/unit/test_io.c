@@ -2,6 +2,7 @@
 // happens when a callback fails
 #include "test.h"
 
+#include "base/params.h"
 #include "capture_fixture.h"
 
 #include <errno.h>
@@ -329,6 +330,221 @@ static void test_formats_by_name(void **state)
     relume_image_destroy(&image);
 }
 
+// ---------------------------------------------------------------- names that are no files
+
+// The folder of a capture, read into memory.
+struct store {
+    struct entry {
+        char path[64];
+        unsigned char *bytes;
+        size_t size;
+    } entry[32];
+    int count, open;  // open: given out and not yet given back
+};
+
+static bool store_open(void *user, const char *path, struct relume_reader *out)
+{
+    struct store *s = user;
+    for (int i = 0; i < s->count; i++)
+        if (!strcmp(s->entry[i].path, path)) {
+            *out = relume_memory_reader(s->entry[i].bytes, s->entry[i].size);
+            s->open++;
+            return true;
+        }
+    errno = ENOENT;
+    return false;
+}
+
+static void store_close(void *user, struct relume_reader *reader)
+{
+    struct store *s = user;
+    assert_non_null(reader->read);
+    s->open--;
+}
+
+static void store_add(struct store *s, const char *name)
+{
+    struct entry *e = &s->entry[s->count++];
+    snprintf(e->path, sizeof e->path, "nowhere/%s", name);
+    e->bytes = test_read(path_of(name), &e->size);
+    assert_non_null(e->bytes);
+}
+
+static relume_context *store_context(struct store *s)
+{
+    relume_context *context;
+    CHECK_OK(relume_context_create(
+        &context, relume_context_params(.files = {store_open, store_close, s}, .threads = 2)));
+    return context;
+}
+
+static void store_free(struct store *s, relume_context *context)
+{
+    assert_int_equal(s->open, 0);
+    relume_context_destroy(&context);
+    for (int i = 0; i < s->count; i++)
+        free(s->entry[i].bytes);
+    free(s);
+}
+
+// A capture whose files lie in memory gives the bytes that the folder gives; one that is missing
+// there is missed.
+static void test_a_capture_of_names(void **state)
+{
+    (void)state;
+    struct store *s = calloc(1, sizeof *s);
+    struct relume_buffer out = {0};
+    const struct relume_writer writer = relume_buffer_writer(&out);
+    struct test_log log;
+    relume_capture *capture;
+    relume_coder *coder;
+    test_log_init(&log);
+    log.log.context = store_context(s);
+    store_add(s, "capture.json");
+    store_add(s, "depth.exr");
+    store_add(s, "mask.exr");
+    const struct relume_capture_params *how = relume_capture_params(.log = &log.log);
+    for (int i = 0; i < 12; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "v%d-%d.exr", i / 6, i % 6);
+        assert_int_equal(relume_capture_open(&capture, "nowhere/capture.json", how),
+                         RELUME_ENOTFOUND);
+        store_add(s, name);
+    }
+    CHECK_OK(relume_capture_open(&capture, "nowhere/capture.json", how));
+    CHECK_OK(relume_coder_learn(&coder, &relume_basis_sh, capture,
+                                relume_coder_params(.coefficients = 4), NULL));
+    CHECK_OK(relume_pack_encode(capture, coder, NULL, NULL,
+                                relume_pack_encode_params(.writer = &writer)));
+    assert_int_equal(out.size, file_size);
+    assert_memory_equal(out.data, file, file_size);
+    relume_coder_destroy(&coder);
+    relume_capture_destroy(&capture);
+    relume_buffer_destroy(&out);
+    assert_int_equal(relume_capture_open(&capture, path_of("capture.json"), how), RELUME_ENOTFOUND);
+    store_free(s, log.log.context);
+}
+
+static void compare_frames(relume_pack *a, relume_pack *b)
+{
+    const struct relume_light light = {.direction = {0, 1, 1}, .rgb = {1, 1, 1}};
+    struct relume_image x, y;
+    CHECK_OK(relume_frame(&x, a, &(struct relume_camera){0}, &light, 1, NULL));
+    CHECK_OK(relume_frame(&y, b, &(struct relume_camera){0}, &light, 1, NULL));
+    assert_int_equal(x.width, y.width);
+    assert_memory_equal(x.data, y.data, sizeof *x.data * 3 * (size_t)(x.width * x.height));
+    relume_image_destroy(&x);
+    relume_image_destroy(&y);
+    relume_pack_destroy(&a);
+    relume_pack_destroy(&b);
+}
+
+// What relume_open makes of bytes is what it makes of the file that holds them.
+static void check_open(const char *name, const struct relume_buffer *bytes)
+{
+    const struct relume_reader reader = relume_memory_reader(bytes->data, bytes->size);
+    relume_pack *a, *b;
+    test_write(path_of(name), bytes->data, bytes->size);
+    CHECK_OK(relume_open(&a, path_of(name), NULL));
+    CHECK_OK(relume_open(&b, name, relume_open_params(.reader = &reader)));
+    compare_frames(a, b);
+}
+
+static void test_other_formats_in_memory(void **state)
+{
+    (void)state;
+    const struct relume_reader from = relume_memory_reader(file, file_size);
+    const struct relume_image image = {9, 2, 3, (float[54]){1, 2, 3, 4, 5}};
+    struct relume_buffer bytes = {0}, again = {0};
+    const struct relume_writer writer = relume_buffer_writer(&bytes),
+                               other = relume_buffer_writer(&again);
+    relume_pack *pack;
+    CHECK_OK(relume_open(&pack, NULL, relume_open_params(.reader = &from)));
+    CHECK_OK(relume_export(pack, NULL, RELUME_EXCHANGE_RTI, NULL,
+                           relume_export_params(.writer = &writer)));
+    check_open("a.rti", &bytes);
+    CHECK_OK(relume_export(pack, NULL, RELUME_EXCHANGE_LPTM, NULL,
+                           relume_export_params(.writer = &writer, .quality = 90)));
+    check_open("a.ptm", &bytes);
+    assert_int_equal(relume_export(pack, NULL, RELUME_EXCHANGE_RELIGHT, NULL,
+                                   relume_export_params(.writer = &writer)),
+                     RELUME_EINVAL);
+    CHECK_OK(relume_image_save(&image, "a.exr", relume_image_params(.writer = &writer)));
+    check_open("a.exr", &bytes);
+    CHECK_OK(relume_export(pack, NULL, RELUME_EXCHANGE_PTM, NULL,
+                           relume_export_params(.writer = &writer)));
+    const struct relume_reader ptm = relume_memory_reader(bytes.data, bytes.size);
+    CHECK_OK(relume_import("a.ptm", NULL, relume_import_params(.reader = &ptm, .writer = &other)));
+    test_write(path_of("a.ptm"), bytes.data, bytes.size);
+    char ptm_path[128];
+    snprintf(ptm_path, sizeof ptm_path, "%s", path_of("a.ptm"));
+    CHECK_OK(relume_import(ptm_path, path_of("b.exr"), NULL));
+    size_t size;
+    unsigned char *want = test_read(path_of("b.exr"), &size);
+    assert_int_equal(again.size, size);
+    assert_memory_equal(again.data, want, size);
+    assert_int_equal(relume_import("a.ptm", NULL, NULL), RELUME_EINVAL);
+    free(want);
+    relume_buffer_destroy(&bytes);
+    relume_buffer_destroy(&again);
+    relume_pack_destroy(&pack);
+}
+
+static void test_a_web_folder_of_names(void **state)
+{
+    (void)state;
+    struct store *s = calloc(1, sizeof *s);
+    const struct relume_log log = {.context = store_context(s)};
+    relume_pack *pack, *a, *b;
+    CHECK_OK(relume_pack_open(&pack, pack_path, NULL));
+    CHECK_OK(relume_export(pack, path_of("web"), RELUME_EXCHANGE_RELIGHT, NULL,
+                           relume_export_params(.type = RELUME_WEB_PTM)));
+    relume_pack_destroy(&pack);
+    store_add(s, "web/info.json");
+    for (int i = 0; i < 6; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "web/plane_%d.jpg", i);
+        store_add(s, name);
+    }
+    CHECK_OK(relume_open(&a, path_of("web"), NULL));
+    CHECK_OK(relume_open(&b, "nowhere/web/info.json", relume_open_params(.log = &log)));
+    compare_frames(a, b);
+    assert_int_equal(relume_open(&b, path_of("web/info.json"), relume_open_params(.log = &log)),
+                     RELUME_ENOTFOUND);
+    store_free(s, log.context);
+}
+
+// ---------------------------------------------------------------- what calls share
+
+static void test_a_context_has_the_defaults(void **state)
+{
+    (void)state;
+    struct relume_log log = {0};
+    relume_context *none = NULL;
+    struct relume_limits limits = {.max_side = 8};
+    CHECK_OK(relume_context_create(&log.context,
+                                   relume_context_params(.limits = &limits, .threads = 3)));
+    const struct relume_reader reader = relume_memory_reader(file, file_size);
+    const struct relume_pack_params *p = relume_pack_params(.log = &log);
+    const struct relume_limits enough = {.max_side = 40};
+    relume_pack *pack;
+    assert_int_equal(PARAMS_WORK(relume_pack_params, p).threads, 3);
+    assert_int_equal(
+        PARAMS_WORK(relume_pack_params, relume_pack_params(.log = &log, .threads = 2)).threads, 2);
+    assert_int_equal(PARAMS_WORK(relume_pack_params, NULL).threads, 0);
+    p = relume_pack_params(.log = &log, .reader = &reader);
+    assert_int_equal(relume_pack_open(&pack, NULL, p), RELUME_ELIMIT);
+    CHECK_OK(relume_pack_open(
+        &pack, NULL, relume_pack_params(.log = &log, .reader = &reader, .limits = &enough)));
+    relume_pack_destroy(&pack);
+    limits = enough;
+    CHECK_OK(relume_pack_open(&pack, NULL, p));
+    relume_pack_destroy(&pack);
+    relume_context_destroy(&log.context);
+    assert_null(log.context);
+    relume_context_destroy(&none);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -341,6 +557,10 @@ int main(void)
         cmocka_unit_test(test_images_in_memory),
         cmocka_unit_test(test_cut_images),
         cmocka_unit_test(test_formats_by_name),
+        cmocka_unit_test(test_a_capture_of_names),
+        cmocka_unit_test(test_other_formats_in_memory),
+        cmocka_unit_test(test_a_web_folder_of_names),
+        cmocka_unit_test(test_a_context_has_the_defaults),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

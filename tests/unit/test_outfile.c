@@ -1,7 +1,7 @@
 // test_outfile.c - tests of src/base/outfile.h: files that appear whole or not at all
 #include "test.h"
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/outfile.h"
 #include "base/scratch.h"
 
@@ -155,12 +155,12 @@ static void test_replaces(void **state)
 static void test_inputs(void **state)
 {
     (void)state;
-    relume_inputs *inputs;
+    relume_context *context;
     char hard[128];
     struct test_log log;
     test_log_init(&log);
-    CHECK_OK(relume_inputs_create(&inputs));
-    log.log.inputs = inputs;
+    CHECK_OK(relume_context_create(&context, relume_context_params(.keep_inputs = true)));
+    log.log.context = context;
     test_write(path, "photo", 5);
     snprintf(hard, sizeof hard, "%s/hard", folder);
     assert_int_equal(link(path, hard), 0);
@@ -185,7 +185,7 @@ static void test_inputs(void **state)
         char many[128];
         snprintf(many, sizeof many, "%s/%d", folder, i);
         test_write(many, "", 0);
-        relume_inputs_add(inputs, many);
+        relume_context_note(context, many);
         assert_int_equal(relume_file_check(many, &log.log), RELUME_EINVAL);
         assert_int_equal(relume_file_check(path, &log.log), RELUME_EINVAL);
     }
@@ -197,7 +197,15 @@ static void test_inputs(void **state)
     unlink(path);
     unlink(hard);
     assert_int_equal(entries(folder), 0);
-    relume_inputs_destroy(&inputs);
+    relume_context_destroy(&context);  // numbers of files that were removed come back
+    CHECK_OK(relume_context_create(&context, relume_context_params(.keep_inputs = true)));
+    log.log.context = context;
+    log.log.leave_unnoted = true;
+    test_write(path, "photo", 5);
+    fclose(input_open(path, &log.log));
+    CHECK_OK(relume_file_check(path, &log.log));
+    unlink(path);
+    relume_context_destroy(&context);
 }
 
 static void test_scratch(void **state)

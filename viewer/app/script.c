@@ -289,7 +289,7 @@ static relume_status blame_script(struct script *s, relume_status status)
 static relume_status set_light(struct script *s, bool replace)
 {
     const struct relume_log log = {
-        .message = say_place, .user = s, .inputs = s->host.log ? s->host.log->inputs : NULL};
+        .message = say_place, .user = s, .context = s->host.log ? s->host.log->context : NULL};
     char copy[LINE];
     const char *spec = take_rest(s, copy);
     if (!spec)

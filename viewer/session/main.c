@@ -10,6 +10,7 @@
 #include "window/context_offscreen.h"
 
 #include <math.h>
+#include <relume/context.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -351,15 +352,13 @@ int main(int argc, char **argv)
 {
     static struct session session;
     struct options options;
-    struct relume_log log = {.message = on_message,
-                             .progress = on_progress,
-                             .user = &session,
-                             .limits = &options.limits};
+    struct relume_log log = {.message = on_message, .progress = on_progress, .user = &session};
     session.log = &log;
     stopping_listen("relume-view", NULL);
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
     signal(SIGPIPE, SIG_IGN);
-    relume_status status = relume_inputs_create(&log.inputs);
+    relume_status status = relume_context_create(
+        &log.context, relume_context_params(.limits = &options.limits, .keep_inputs = true));
     if (status)
         return exit_code(status);
     status = options_parse(&options, argc, argv, &log);
@@ -378,6 +377,6 @@ int main(int argc, char **argv)
         status = (offscreen ? run_offscreen : run_window)(&session, &options);
     session_close(&session);
     options_release(&options);
-    relume_inputs_destroy(&log.inputs);
+    relume_context_destroy(&log.context);
     return exit_code(status);
 }

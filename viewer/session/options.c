@@ -31,7 +31,7 @@ static relume_status take_rig(void *rig, const struct option *o, const char *tex
     if (*r)
         return say(log, RELUME_EINVAL, "%s: expected it once and before --light", o->name);
     struct relume_log saves = *log;
-    saves.inputs = NULL;  // lights may be saved where they came from
+    saves.leave_unnoted = true;  // lights may be saved where they came from
     return relume_rig_load(r, text, &saves);
 }
 

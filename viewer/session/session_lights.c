@@ -109,7 +109,7 @@ relume_status session_load_rig(struct session *s, const char *path)
     struct app_state *now = &s->app.now;
     const int first = relume_rig_count(s->rig);
     struct relume_log saves = *s->log;
-    saves.inputs = NULL;  // lights may be saved where they came from
+    saves.leave_unnoted = true;  // lights may be saved where they came from
     relume_rig *loaded;
     relume_status status = relume_rig_load(&loaded, path, &saves);
     for (int i = 0; !status && i < relume_rig_count(loaded); i++) {

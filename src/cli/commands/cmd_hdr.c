@@ -172,7 +172,7 @@ static relume_status run_bracket(struct bracket *b, const char *output, const ch
 static relume_status read_notes(struct relume_exif *notes, struct relume_photographs *list,
                                 const struct hdr_options *o)
 {
-    const struct relume_log silent = {.inputs = o->args.log->inputs, .limits = o->args.log->limits};
+    const struct relume_log silent = {.context = o->args.log->context};
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < list->count; i++) {
         status = relume_exif_read(&notes[i], list->path[i], o->skip_bad ? &silent : o->args.log);

@@ -210,8 +210,8 @@ static bool hold_progress(void *user, const char *what, double done)
 static struct listener *listen_to(struct listener *l, const struct relume_log *to, double first,
                                   double extent)
 {
-    *l = (struct listener){.log = {hear, pass_progress, l, to->inputs},
-                           .inner = {hear, hold_progress, l, to->inputs},
+    *l = (struct listener){.log = {hear, pass_progress, l, to->context, false},
+                           .inner = {hear, hold_progress, l, to->context, false},
                            .to = to,
                            .first = first,
                            .extent = extent,

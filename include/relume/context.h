@@ -1,0 +1,64 @@
+// context.h - what calls share: limits, threads, files that are none, and which files are read
+//
+//     relume_context *context;
+//     const struct relume_limits limits = {.max_memory = 1 << 30};
+//     relume_context_create(&context, relume_context_params(.threads = 4, .limits = &limits));
+//     const struct relume_log log = {.message = say, .context = context};
+//     relume_open(&pack, "coin.ptm", relume_open_params(.log = &log));
+//
+// It goes with the log, which every params struct takes. A log without one, and no log, have the
+// defaults.
+#ifndef RELUME_CONTEXT_H
+#define RELUME_CONTEXT_H
+
+#include <relume/base.h>
+#include <relume/io.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Inputs that have names but are no files: the entries of an archive, of a database, memory. What
+// names a file by a path is asked for here first: relume files, pictures, .ptm, .rti, web folders
+// (info.json and its planes), captures (capture.json, .lp and their pictures), lights, IES files.
+// Folders of photographs, BTFs and 3D models, which are listed, are those of the file system.
+struct relume_files {
+    // The input called `path`, as the caller or the file that names it wrote it: "a/capture.json"
+    // names "a/view00/light0.exr". False with errno set when there is none (ENOENT) or it cannot be
+    // read; false with errno 0: look for the path in the file system.
+    bool (*open)(void *user, const char *path, struct relume_reader *out);
+    // What `open` has given is read no more. May be NULL.
+    void (*close)(void *user, struct relume_reader *reader);
+    // Of both. Thread-safety: both are called from threads of the library, one call at a time for
+    // one context; readers as relume_reader says.
+    void *user;
+};
+
+struct relume_context_params {
+    size_t struct_size;           // filled by the macro (base.h)
+    // Of everything opened with it, where params name none. Borrowed as long as the context lives,
+    // and read whenever something is opened. NULL: the defaults.
+    const struct relume_limits *limits;
+    int threads;                  // where params name none; default: all cores
+    bool keep_inputs;             // files that are read are noted, and no output replaces one
+    struct relume_files files;    // where `open` is not NULL
+};
+#define relume_context_params(...)                                                                 \
+    (&(const struct relume_context_params){RELUME_SIZED(relume_context_params), __VA_ARGS__})
+
+// All else is copied; what `files.user` means must live as long as the context. It must outlive every object that was opened
+// with it: a relume_pack, a relume_capture. RELUME_ENOMEM. Thread-safety: it does not change, but
+// for the list of inputs, which has a lock: any number of threads.
+RELUME_RESULT relume_status relume_context_create(relume_context **out,
+                                                  const struct relume_context_params *params);
+// `*context` becomes NULL, and may have been NULL.
+RELUME_API void relume_context_destroy(relume_context **context);
+
+// With `keep_inputs`: note a file or a folder before it is opened; by device and number, so that
+// links and other spellings do not matter. What does not exist is passed over.
+RELUME_API void relume_context_note(relume_context *context, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

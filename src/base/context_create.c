@@ -1,0 +1,33 @@
+// context_create.c - what calls share
+#include "base/context.h"
+
+#include "base/inputs.h"
+#include "base/memory.h"
+#include "base/params.h"
+
+relume_status relume_context_create(relume_context **out,
+                                    const struct relume_context_params *params)
+{
+    const struct relume_context_params p = PARAMS(relume_context_params, params);
+    relume_context *c = *out = mem_zeroed(1, sizeof *c);
+    if (!c)
+        return RELUME_ENOMEM;
+    *c = (struct relume_context){.limits = p.limits, .threads = p.threads, .files = p.files};
+    if (p.keep_inputs && !(c->inputs = inputs_create()))
+        relume_context_destroy(out);
+    return *out ? RELUME_OK : RELUME_ENOMEM;
+}
+
+void relume_context_destroy(relume_context **context)
+{
+    if (*context)
+        inputs_destroy((*context)->inputs);
+    free(*context);
+    *context = NULL;
+}
+
+void relume_context_note(relume_context *context, const char *path)
+{
+    if (context && context->inputs)
+        inputs_add(context->inputs, path);
+}

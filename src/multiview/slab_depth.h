@@ -2,7 +2,7 @@
 #ifndef MULTIVIEW_SLAB_DEPTH_H
 #define MULTIVIEW_SLAB_DEPTH_H
 
-#include "multiview/sweep.h"
+#include "multiview/plane_sweep.h"
 
 #include <relume/slab_depth.h>
 
@@ -12,7 +12,7 @@ struct slab_depth {
     const relume_capture *capture;
     const struct relume_manifest *m;
     struct relume_slab_depth_params p;
-    struct sweep sweep;
+    struct plane_sweep sweep;
     uint8_t **picture;  // [views]
     double (*at)[2];    // [views]
     int factor;         // pixels to a texel

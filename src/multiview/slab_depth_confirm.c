@@ -11,7 +11,7 @@ static const float trusted = 0.5f;  // share of witnesses
 
 struct confirming {
     const struct slab_depth *d;
-    struct sweep_target target;
+    struct plane_sweep_target target;
     float *out, *confidence;
 };
 
@@ -74,6 +74,6 @@ static void confirm_row(void *context, size_t item, int worker)
 
 void slab_depth_confirm(float *out, float *confidence, const struct slab_depth *d, int view)
 {
-    struct confirming c = {d, sweep_target(&d->sweep, view, WITNESSES), out, confidence};
+    struct confirming c = {d, plane_sweep_target(&d->sweep, view, WITNESSES), out, confidence};
     thread_for(d->p.threads, (size_t)d->sweep.height, confirm_row, &c);
 }

@@ -12,8 +12,8 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "multiview/sweep.h"
-#include "multiview/sweep_picture.h"
+#include "multiview/plane_sweep.h"
+#include "multiview/plane_sweep_picture.h"
 
 #include <math.h>
 #include <relume/photograph.h>
@@ -23,7 +23,7 @@ enum { MOST_WIDTH = 320, AROUND = 9, WINDOW = 2, NEAR = 5 };
 static const double most_shift = 1.0 / 8.0;  // of the width, between the middle and the outermost
 
 struct orders {
-    struct sweep sweep;
+    struct plane_sweep sweep;
     uint8_t *picture[AROUND];
     double at[AROUND][2];
     int planes;
@@ -58,13 +58,13 @@ static relume_status load(struct orders *o, const char *path, const struct relum
         relume_photograph_params(.log = p->log, .limits = p->limits, .transfer = p->transfer));
     if (status)
         return status;
-    const int factor = sweep_factor(image.width, MOST_WIDTH);
+    const int factor = plane_sweep_factor(image.width, MOST_WIDTH);
     o->sweep.width = image.width / factor;
     o->sweep.height = image.height / factor;
     const size_t bytes = 3 * (size_t)o->sweep.width * (size_t)o->sweep.height;
     uint8_t *picture = mem_array(bytes + 1, 1);
     if (picture)
-        sweep_picture(picture, &image, factor);
+        plane_sweep_picture(picture, &image, factor);
     o->picture[o->sweep.views++] = picture;
     relume_image_destroy(&image);
     return picture ? RELUME_OK : RELUME_ENOMEM;
@@ -126,15 +126,15 @@ static void smooth(float *out, const uint8_t *in, int width, int height)
 }
 
 // Sums over a window of all costs of one plane: cost[planes][n], and the mean over all cameras.
-static void sweep_plane(float *least, float *mean, uint8_t *raw, const struct orders *o,
-                        const struct sweep_target *target, int plane,
-                        const struct sweep_scratch *scratch)
+static void plane_sweep_plane(float *least, float *mean, uint8_t *raw, const struct orders *o,
+                              const struct plane_sweep_target *target, int plane,
+                              const struct plane_sweep_scratch *scratch)
 {
     const int width = o->sweep.width, height = o->sweep.height;
     uint8_t *all = raw + (size_t)width * (size_t)height;
     for (int y = 0; y < height; y++)
-        sweep_row(raw + y * width, all + y * width, &o->sweep, target, disparity_of(o, plane), y,
-                  scratch);
+        plane_sweep_row(raw + y * width, all + y * width, &o->sweep, target, disparity_of(o, plane),
+                        y, scratch);
     smooth(least, raw, width, height);
     smooth(mean, all, width, height);
 }
@@ -157,22 +157,23 @@ static void choose_planes(struct findings *f, const float *least, const float *m
     }
 }
 
-static relume_status sweep_middle(struct findings *f, const struct orders *o)
+static relume_status plane_sweep_middle(struct findings *f, const struct orders *o)
 {
     const size_t n = (size_t)o->sweep.width * (size_t)o->sweep.height;
-    const struct sweep_target target = sweep_target(&o->sweep, 0, AROUND - 1);
+    const struct plane_sweep_target target = plane_sweep_target(&o->sweep, 0, AROUND - 1);
     const size_t planes = (size_t)o->planes;
     uint8_t *raw = mem_array(n, 2);
     float *costs = mem_array(n * planes, 2 * sizeof *costs);
-    struct sweep_scratch scratch;
-    relume_status status = sweep_scratch_create(&scratch, o->sweep.width);
+    struct plane_sweep_scratch scratch;
+    relume_status status = plane_sweep_scratch_create(&scratch, o->sweep.width);
     if (!status && (!raw || !costs))
         status = RELUME_ENOMEM;
     for (size_t q = 0; !status && q < planes; q++)
-        sweep_plane(costs + q * n, costs + (planes + q) * n, raw, o, &target, (int)q, &scratch);
+        plane_sweep_plane(costs + q * n, costs + (planes + q) * n, raw, o, &target, (int)q,
+                          &scratch);
     if (!status)
         choose_planes(f, costs, costs + planes * n, n, o->planes);
-    sweep_scratch_free(&scratch);
+    plane_sweep_scratch_free(&scratch);
     free(raw);
     free(costs);
     return status;
@@ -213,11 +214,11 @@ static double occlusion(const struct findings *f, const struct orders *o)
 static relume_status decide(struct grid_order *out, struct orders *o, struct findings f[2],
                             bool both_ways)
 {
-    relume_status status = sweep_middle(&f[0], o);
+    relume_status status = plane_sweep_middle(&f[0], o);
     for (int i = 0; i < o->sweep.views; i++)
         o->at[i][1] = -o->at[i][1];
     if (!status && both_ways)
-        status = sweep_middle(&f[1], o);
+        status = plane_sweep_middle(&f[1], o);
     if (status)
         return status;
     out->mixed = both_ways && f[1].cost < f[0].cost;
@@ -282,7 +283,7 @@ static relume_status find_moves(struct moves *m, const struct photo_set *set,
     if (!status) {
         f.hidden = f.plane + n;
         scale(&o);
-        status = sweep_middle(&f, &o);
+        status = plane_sweep_middle(&f, &o);
     }
     m->plane = f.plane;
     m->middle = (o.planes - 1) / 2;

@@ -1,9 +1,9 @@
-// sweep_picture.c - a photograph as planes of bytes, made smaller
-#include "multiview/sweep_picture.h"
+// plane_sweep_picture.c - a photograph as planes of bytes, made smaller
+#include "multiview/plane_sweep_picture.h"
 
 #include <math.h>
 
-int sweep_factor(int width, int most)
+int plane_sweep_factor(int width, int most)
 {
     return (width + most - 1) / most;
 }
@@ -22,7 +22,7 @@ static uint8_t block_value(const struct relume_image *image, int x, int y, int c
     return (uint8_t)lrintf(255.0f * sqrtf(fminf(fmaxf(mean, 0.0f), 1.0f)));
 }
 
-void sweep_picture(uint8_t *out, const struct relume_image *image, int factor)
+void plane_sweep_picture(uint8_t *out, const struct relume_image *image, int factor)
 {
     const int width = image->width / factor, height = image->height / factor;
     for (int c = 0; c < image->channels; c++)

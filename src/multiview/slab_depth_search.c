@@ -1,4 +1,4 @@
-// slab_depth_sweep.c - pictures of a slab loaded, planes chosen, views swept
+// slab_depth_search.c - pictures of a slab loaded, planes chosen, views swept
 #include "multiview/slab_depth.h"
 
 #include "base/log.h"
@@ -6,7 +6,7 @@
 #include "base/scratch.h"
 #include "base/thread.h"
 #include "multiview/semiglobal.h"
-#include "multiview/sweep_picture.h"
+#include "multiview/plane_sweep_picture.h"
 
 #include <errno.h>
 #include <math.h>
@@ -30,7 +30,7 @@ static void choose_size(struct slab_depth *d)
 {
     const int width = relume_capture_width(d->capture);
     const size_t memory = d->p.memory ? d->p.memory : default_memory;
-    d->factor = sweep_factor(width, d->p.max_width ? d->p.max_width : MOST_WIDTH);
+    d->factor = plane_sweep_factor(width, d->p.max_width ? d->p.max_width : MOST_WIDTH);
     while (view_bytes(d, d->factor) * (size_t)d->m->views > memory && width / d->factor > 32)
         d->factor++;
     d->sweep.width = width / d->factor;
@@ -74,7 +74,7 @@ static relume_status load_view(struct slab_depth *d, int view)
             relume_capture_image(&image, d->capture, view, d->light[k], d->p.log);
         if (status)
             return status;
-        sweep_picture(d->picture[view] + (size_t)k * n, &image, d->factor);
+        plane_sweep_picture(d->picture[view] + (size_t)k * n, &image, d->factor);
         relume_image_destroy(&image);
     }
     return log_progress(d->p.log, "reading", (view + 1.0) / d->m->views) ? RELUME_OK
@@ -158,26 +158,27 @@ static relume_status find_range(double range[2], const struct slab_depth *d)
 {
     enum { ROWS = 32 };
     const int view = middle_view(d), width = d->sweep.width;
-    const struct sweep_target target = sweep_target(&d->sweep, view, SWEEP_NEIGHBOURS);
-    const double texel = 1.0 / sweep_reach(&d->sweep, &target);
+    const struct plane_sweep_target target =
+        plane_sweep_target(&d->sweep, view, PLANE_SWEEP_NEIGHBOURS);
+    const double texel = 1.0 / plane_sweep_reach(&d->sweep, &target);
     int planes = relume_whole(ceil((nearest - farthest) / texel)) + 1;
     planes = planes > MOST_PLANES ? MOST_PLANES : planes < LEAST_PLANES ? LEAST_PLANES : planes;
     const double step = (nearest - farthest) / (planes - 1);
     size_t votes[MOST_PLANES] = {0};
     uint8_t *cost = mem_array((size_t)planes * (size_t)width, 1);
-    struct sweep_scratch scratch;
-    relume_status status = sweep_scratch_create(&scratch, width);
+    struct plane_sweep_scratch scratch;
+    relume_status status = plane_sweep_scratch_create(&scratch, width);
     if (!cost)
         status = RELUME_ENOMEM;
     for (int i = 0; i < ROWS && !status; i++) {
         const int row = (int)((i + 0.5) / ROWS * d->sweep.height);
         for (int q = 0; q < planes; q++)
-            sweep_row(cost + q * width, NULL, &d->sweep, &target, farthest + q * step, row,
-                      &scratch);
+            plane_sweep_row(cost + q * width, NULL, &d->sweep, &target, farthest + q * step, row,
+                            &scratch);
         vote(votes, cost, width, planes);
     }
     voted_range(range, votes, planes, step);
-    sweep_scratch_free(&scratch);
+    plane_sweep_scratch_free(&scratch);
     free(cost);
     return status;
 }
@@ -194,10 +195,11 @@ relume_status slab_depth_planes(struct slab_depth *d)
             return status;
     }
     range[0] = fmax(range[0], -0.98);
-    const struct sweep_target target = sweep_target(&d->sweep, middle_view(d), SWEEP_NEIGHBOURS);
-    const double wanted = d->p.planes
-                              ? d->p.planes
-                              : ceil((range[1] - range[0]) * sweep_reach(&d->sweep, &target)) + 1.0;
+    const struct plane_sweep_target target =
+        plane_sweep_target(&d->sweep, middle_view(d), PLANE_SWEEP_NEIGHBOURS);
+    const double wanted =
+        d->p.planes ? d->p.planes
+                    : ceil((range[1] - range[0]) * plane_sweep_reach(&d->sweep, &target)) + 1.0;
     d->planes = (int)fmin(fmax(wanted, LEAST_PLANES), MOST_PLANES);
     d->first = range[0];
     d->step = (range[1] - range[0]) / (d->planes - 1);
@@ -208,14 +210,14 @@ relume_status slab_depth_planes(struct slab_depth *d)
 
 struct volume {
     struct slab_depth *d;
-    struct sweep_target target;
+    struct plane_sweep_target target;
     uint8_t *cost, *guide;
     uint16_t *sum;
-    struct sweep_scratch *scratch;  // [threads]
-    uint8_t *row;                   // [threads][planes][width]
+    struct plane_sweep_scratch *scratch;  // [threads]
+    uint8_t *row;                         // [threads][planes][width]
 };
 
-static void sweep_one_row(void *context, size_t item, int worker)
+static void plane_sweep_one_row(void *context, size_t item, int worker)
 {
     const struct volume *v = context;
     const struct slab_depth *d = v->d;
@@ -223,8 +225,8 @@ static void sweep_one_row(void *context, size_t item, int worker)
     uint8_t *row = v->row + (size_t)worker * planes * width;
     uint8_t *cost = v->cost + item * width * planes;
     for (size_t q = 0; q < planes; q++)
-        sweep_row(row + q * width, NULL, &d->sweep, &v->target, d->first + (double)q * d->step,
-                  (int)item, &v->scratch[worker]);
+        plane_sweep_row(row + q * width, NULL, &d->sweep, &v->target,
+                        d->first + (double)q * d->step, (int)item, &v->scratch[worker]);
     for (size_t x = 0; x < width; x++)
         for (size_t q = 0; q < planes; q++)
             cost[x * planes + q] = row[q * width + x];
@@ -254,7 +256,7 @@ static relume_status volume_create(struct volume *v, struct slab_depth *d, int v
     const size_t planes = (size_t)d->planes;
     *v = (struct volume){
         .d = d,
-        .target = sweep_target(&d->sweep, view, SWEEP_NEIGHBOURS),
+        .target = plane_sweep_target(&d->sweep, view, PLANE_SWEEP_NEIGHBOURS),
         .cost = mem_array(n, planes),
         .guide = mem_array(n, 1),
         .sum = mem_zeroed(n, planes * sizeof *v->sum),
@@ -265,14 +267,14 @@ static relume_status volume_create(struct volume *v, struct slab_depth *d, int v
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
     for (int i = 0; i < threads && !status; i++)
-        status = sweep_scratch_create(&v->scratch[i], d->sweep.width);
+        status = plane_sweep_scratch_create(&v->scratch[i], d->sweep.width);
     return status;
 }
 
 static void volume_destroy(struct volume *v, int threads)
 {
     for (int i = 0; v->scratch && i < threads; i++)
-        sweep_scratch_free(&v->scratch[i]);
+        plane_sweep_scratch_free(&v->scratch[i]);
     free(v->cost);
     free(v->guide);
     free(v->sum);
@@ -288,7 +290,7 @@ relume_status slab_depth_view(struct slab_depth *d, int view)
     relume_status status = volume_create(&v, d, view, threads);
     if (!status) {
         make_guide(v.guide, d, view);
-        thread_for(threads, rows, sweep_one_row, &v);
+        thread_for(threads, rows, plane_sweep_one_row, &v);
         status = semiglobal_sum(&(struct semiglobal){.width = d->sweep.width,
                                                      .height = d->sweep.height,
                                                      .planes = d->planes,

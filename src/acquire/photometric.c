@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
-#include "capture/near.h"
+#include "capture/near_view.h"
 #include "math/lambert.h"
 #include "math/luminance.h"
 #include "math/sort.h"
@@ -20,7 +20,7 @@ struct fit {
     struct relume_photometric *out;
     int view, lights, width, height;
     bool is_near;
-    struct near near;
+    struct near_view near;
     const vec3 *distant;  // [lights]
     float (*white)[3];    // [lights]
     struct relume_image mask;
@@ -52,11 +52,11 @@ static void aim(const struct fit *f, const struct pixel *p)
     const int width = f->width;
     if (!f->is_near)
         return;
-    const vec3 point =
-        near_pixel(&f->near, (int)(p->of_view % (size_t)width), (int)(p->of_view / (size_t)width));
+    const vec3 point = near_view_pixel(&f->near, (int)(p->of_view % (size_t)width),
+                                       (int)(p->of_view / (size_t)width));
     for (int i = 0; i < f->lights; i++) {
         double gain;
-        p->direction[i] = near_direction(&gain, &f->near, i, point);
+        p->direction[i] = near_view_direction(&gain, &f->near, i, point);
         p->gain[i] = (float)gain;
     }
 }
@@ -252,7 +252,7 @@ static void release(struct fit *f)
     free(f->towards);
     free(f->bright);
     free(f->miss);
-    near_close(&f->near);
+    near_view_close(&f->near);
     relume_image_destroy(&f->mask);
 }
 
@@ -288,10 +288,10 @@ relume_status relume_photometric_fit(struct relume_photometric *out, const relum
                         m->lights);
     f.view = view;
     f.params.threads = thread_count(f.params.threads);
-    f.is_near = near_applies(capture, view);
+    f.is_near = near_view_applies(capture, view);
     relume_status status = relume_capture_mask(&f.mask, capture, view, f.params.log);
     if (!status && f.is_near)
-        status = near_open(&f.near, capture, view, f.params.log);
+        status = near_view_open(&f.near, capture, view, f.params.log);
     if (!status)
         status = alloc(&f);
     if (!status)

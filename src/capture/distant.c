@@ -20,7 +20,7 @@ static const double LAMBERT = 3000.0;
 static const double NUGGET = 1e-3;
 
 struct distant {
-    const struct near *near;
+    const struct near_view *near;
     const vec3 *direction;
     int lights, most;
     int cell, columns;  // pixels between nodes, columns of nodes
@@ -70,14 +70,14 @@ static void choose_nearest(struct distant *d, int light)
     }
 }
 
-static int cell_for(const struct near *near)
+static int cell_for(const struct near_view *near)
 {
     const int cell = (near->width > near->height ? near->width : near->height) / CELLS;
     return cell < LEAST_CELL ? LEAST_CELL : cell > MOST_CELL ? MOST_CELL : cell;
 }
 
-relume_status distant_create(struct distant **out, const struct near *near, const vec3 *direction,
-                             int threads)
+relume_status distant_create(struct distant **out, const struct near_view *near,
+                             const vec3 *direction, int threads)
 {
     struct distant *d = *out = mem_zeroed(1, sizeof *d);
     if (!d)
@@ -138,13 +138,13 @@ static void solve_node(void *context, size_t item, int worker)
     struct distant *d = context;
     const int n = d->most, row = d->node_row[d->filling];
     const vec3 point =
-        near_around(d->near, (double)item * d->cell, (double)row * d->cell, d->cell / 2);
+        near_view_around(d->near, (double)item * d->cell, (double)row * d->cell, d->cell / 2);
     vec3 *seen = mem_array((size_t)d->lights, sizeof *seen);
     float *to = d->node[d->filling] + item * (size_t)(d->lights * n);
     double *work = d->work + (size_t)worker * (size_t)(n * n + n);
     double gain;
     for (int i = 0; seen && i < d->lights; i++)
-        seen[i] = near_direction(&gain, d->near, i, point);
+        seen[i] = near_view_direction(&gain, d->near, i, point);
     for (int j = 0; j < d->lights; j++)
         if (seen)
             solve_light(d, seen, j, work, to + j * n);

@@ -2,17 +2,17 @@
 #ifndef CAPTURE_DISTANT_H
 #define CAPTURE_DISTANT_H
 
-#include "capture/near.h"
+#include "capture/near_view.h"
 
 // Thread-safety: one thread at a time.
 struct distant;
 
 // `near` is borrowed; `direction[lights]` are the distant lights' directions. RELUME_ENOMEM.
-relume_status distant_create(struct distant **out, const struct near *near, const vec3 *direction,
-                             int threads);
+relume_status distant_create(struct distant **out, const struct near_view *near,
+                             const vec3 *direction, int threads);
 void distant_destroy(struct distant **distant);
 
-// `band` as relume_table_read fills it, from row `row` of the view, levelled (near.h); in place.
+// `band` as relume_table_read fills it, from row `row` of the view, levelled (near_view.h); in place.
 // RELUME_ENOMEM.
 relume_status distant_resample(struct distant *distant, int row, int rows, float *band);
 

@@ -1,18 +1,18 @@
 // load.c - one image of a capture in memory, as distant lights would show it
 #include "base/log.h"
-#include "capture/near.h"
+#include "capture/near_view.h"
 
 // Fall-off of near lights is divided out.
 static relume_status level(struct relume_image *image, const relume_capture *capture, int view,
                            int light, const struct relume_log *log)
 {
-    struct near near;
-    if (!near_applies(capture, view))
+    struct near_view near;
+    if (!near_view_applies(capture, view))
         return RELUME_OK;
-    const relume_status status = near_open(&near, capture, view, log);
+    const relume_status status = near_view_open(&near, capture, view, log);
     if (!status)
-        near_level(&near, light, image);
-    near_close(&near);
+        near_view_level(&near, light, image);
+    near_view_close(&near);
     return status;
 }
 

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/tree.h"
-#include "capture/near.h"
+#include "capture/near_view.h"
 #include "image/picture_kind.h"
 
 #include <string.h>
@@ -191,7 +191,7 @@ static relume_status finish(relume_capture *c, const struct relume_capture_param
         memcpy(g->window_max, d.window_max, sizeof g->window_max);
     }
     c->draft.m.transfer = c->transfer;
-    near_warn(c, p->log);
+    near_view_warn(c, p->log);
     return RELUME_OK;
 }
 

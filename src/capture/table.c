@@ -24,7 +24,7 @@ struct relume_table {
     size_t *broken, *repaired;  // [lights]: pixels that were not finite, in one band and so far
     bool *whole;                // [lights], for repair_band
     bool near;                  // lights are near: values become those under distant ones
-    struct near lamps;
+    struct near_view lamps;
     struct distant *distant;
     struct encoder *display;  // or NULL: linear
     bool bytes;               // all images are 8 bits and mean what they say
@@ -70,7 +70,7 @@ void relume_table_destroy(relume_table **table)
     free(t->repaired);
     free(t->whole);
     distant_destroy(&t->distant);
-    near_close(&t->lamps);
+    near_view_close(&t->lamps);
     free(t->display);
     free(t->fetched);
     free(t->band);
@@ -80,7 +80,7 @@ void relume_table_destroy(relume_table **table)
 static relume_status open_near(relume_table *t, struct relume_transfer display, bool as_seen)
 {
     const struct relume_manifest *m = &t->capture->draft.m;
-    relume_status status = near_open(&t->lamps, t->capture, t->view, t->log);
+    relume_status status = near_view_open(&t->lamps, t->capture, t->view, t->log);
     if (!status && !as_seen)
         status = distant_create(&t->distant, &t->lamps, m->directions, t->threads);
     if (!status && display.curve != RELUME_CURVE_LINEAR) {
@@ -121,7 +121,7 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
         t->stream && t->status && t->broken && t->repaired && t->whole && t->fetched
             ? RELUME_OK
             : RELUME_ENOMEM;
-    t->near = near_applies(capture, view);
+    t->near = near_view_applies(capture, view);
     t->bytes = !t->near;
     if (!status && t->near) {
         status = open_near(t, to, p.as_seen);
@@ -172,7 +172,7 @@ static void level_light(void *context, size_t item, int worker)
     for (int y = t->row - t->rows; y < t->row; y++)
         for (int x = 0; x < t->lamps.width; x++, p += 3) {
             double gain;
-            near_direction(&gain, &t->lamps, (int)item, near_pixel(&t->lamps, x, y));
+            near_view_direction(&gain, &t->lamps, (int)item, near_view_pixel(&t->lamps, x, y));
             float value[3];
             for (int c = 0; c < 3; c++)
                 value[c] = p[c] * (float)gain;
@@ -286,11 +286,11 @@ bool relume_table_is_near(const relume_table *table)
 void relume_table_directions(const relume_table *table, double x, double y, int reach,
                              struct relume_vec3 *direction)
 {
-    const struct near *near = &table->lamps;
-    const vec3 point = near_around(near, x, y, reach);
+    const struct near_view *near = &table->lamps;
+    const vec3 point = near_view_around(near, x, y, reach);
     double gain;
     for (int i = 0; i < near->lights; i++)
-        direction[i] = near_direction(&gain, near, i, point);
+        direction[i] = near_view_direction(&gain, near, i, point);
 }
 
 static void fetch_light(void *context, size_t item, int worker)

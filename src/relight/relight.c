@@ -16,7 +16,7 @@
 #include "image/rgba8.h"
 #include "relight/grid.h"
 #include "relight/kernels.h"
-#include "relight/near.h"
+#include "relight/near_lights.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -40,7 +40,7 @@ struct room {
     float part[CHUNK];         // a group of planes, or a colour
     float distant[3 * CHUNK];  // environments of the display domain
     float rgb[3 * CHUNK];      // what becomes 8 bits
-    float near[];              // near_room
+    float near[];              // near_lights_room
 };
 
 struct job {
@@ -58,7 +58,7 @@ struct job {
     struct curve curve;
     const relume_weight_grid *grid;  // borrowed, or made
     relume_weight_grid *made;
-    struct near near;
+    struct near_lights near;
     char *room;  // [workers] of room_size
     size_t room_size;
     // Display domain: environments are relit from linear codes of their own.
@@ -360,7 +360,7 @@ static void relight_pixels(const struct job *job, size_t first, size_t n, float 
     if (job->guard)
         keep_above_zero(out, n);
     if (job->near.count)
-        near_add(&job->near, first, n, out, room->near);
+        near_lights_add(&job->near, first, n, out, room->near);
     if (job->distant)
         relight_distant(job->distant, first, n, out, room);
 }
@@ -484,11 +484,11 @@ static relume_status find_grid(struct job *job, const struct relume_relight_para
 static relume_status begin_near(struct job *job, const struct relume_light *lights, int n,
                                 const struct relume_relight_params *p)
 {
-    job->near = (struct near){.codes = job->codes,
-                              .grid = job->grid,
-                              .surface = p->surface,
-                              .display = job->display ? &job->curve : NULL};
-    return near_create(&job->near, lights, n);
+    job->near = (struct near_lights){.codes = job->codes,
+                                     .grid = job->grid,
+                                     .surface = p->surface,
+                                     .display = job->display ? &job->curve : NULL};
+    return near_lights_create(&job->near, lights, n);
 }
 
 // Everything but environments of the display domain.
@@ -541,7 +541,7 @@ static void end_job(struct job *job)
 {
     end_distant(job);
     end_passes(job);
-    near_destroy(&job->near);
+    near_lights_destroy(&job->near);
     relume_weight_grid_destroy(&job->made);
     relume_refit_destroy(&job->refit);
     free(job->coder);
@@ -600,7 +600,7 @@ static relume_status run_job(struct job *job, int threads, void (*chunk)(void *,
 {
     const size_t pixels = (size_t)job->codes->width * (size_t)job->codes->height;
     const size_t chunks = (pixels + CHUNK - 1) / CHUNK, most = (size_t)thread_count(threads);
-    job->room_size = sizeof(struct room) + near_room(&job->near) * sizeof(float);
+    job->room_size = sizeof(struct room) + near_lights_room(&job->near) * sizeof(float);
     job->room = mem_array(most < chunks ? most : chunks, job->room_size);
     if (!job->room)
         return RELUME_ENOMEM;

@@ -1,10 +1,10 @@
-// near.c - point, spot, slide, area and goniometric lights: every pixel sees them from a direction
-// of its own (Wong 1998, 7.5.5)
+// near_lights.c - point, spot, slide, area and goniometric lights: every pixel sees them from a
+// direction of its own (Wong 1998, 7.5.5)
 //
 // Pixels go in blocks, planes outside and pixels inside: each pixel's weights stand in a lane. In
 // the linear domain the weights of many lights meet in a pixel before its coefficients are looked
 // at, as those of distant lights do; in the display domain each light is decoded and made linear.
-#include "relight/near.h"
+#include "relight/near_lights.h"
 
 #include "base/memory.h"
 #include "math/vec.h"
@@ -15,14 +15,14 @@
 // Lanes are fewer where there are many coefficients, so that weights stay in the cache.
 enum { LANES = 64, LEAST_LANES = 4, MOST_FLOATS = 3 * RELUME_MOST_COEFFICIENTS * LEAST_LANES };
 
-// ---------------------------------------------------------------- emitters
+// ---------------------------------------------------------------- sources
 
-static int facet_side(const struct near *near, const struct relume_light *area)
+static int facet_side(const struct near_lights *near, const struct relume_light *area)
 {
     return relume_light_patch_side(area, relume_area_distance(area, near->surface));
 }
 
-static void cut(struct emitter *to, const struct relume_light *area, int side)
+static void cut(struct near_source *to, const struct relume_light *area, int side)
 {
     struct relume_light_patch facets[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
     relume_light_patches(facets, area, side);
@@ -30,7 +30,7 @@ static void cut(struct emitter *to, const struct relume_light *area, int side)
         to[i].facet = facets[i];
 }
 
-relume_status near_create(struct near *near, const struct relume_light *lights, int n)
+relume_status near_lights_create(struct near_lights *near, const struct relume_light *lights, int n)
 {
     int *side = mem_zeroed((size_t)n, sizeof *side);
     size_t count = 0;
@@ -41,9 +41,9 @@ relume_status near_create(struct near *near, const struct relume_light *lights, 
             side[i] = relume_light_is_near(lights[i].kind);
         count += (size_t)side[i] * (size_t)side[i];
     }
-    near->emitter = side && count <= INT32_MAX ? mem_zeroed(count, sizeof *near->emitter) : NULL;
-    for (int i = 0; near->emitter && i < n; i++) {
-        struct emitter *to = &near->emitter[near->count];
+    near->source = side && count <= INT32_MAX ? mem_zeroed(count, sizeof *near->source) : NULL;
+    for (int i = 0; near->source && i < n; i++) {
+        struct near_source *to = &near->source[near->count];
         if (lights[i].kind == RELUME_LIGHT_AREA)
             cut(to, &lights[i], side[i]);
         else if (side[i])
@@ -51,24 +51,24 @@ relume_status near_create(struct near *near, const struct relume_light *lights, 
         near->count += side[i] * side[i];
     }
     free(side);
-    return near->emitter ? RELUME_OK : RELUME_ENOMEM;
+    return near->source ? RELUME_OK : RELUME_ENOMEM;
 }
 
-void near_destroy(struct near *near)
+void near_lights_destroy(struct near_lights *near)
 {
-    free(near->emitter);
-    *near = (struct near){0};
+    free(near->source);
+    *near = (struct near_lights){0};
 }
 
-static bool is_captured(const struct near *near, vec3 towards)
+static bool is_captured(const struct near_lights *near, vec3 towards)
 {
     const struct relume_coder_info *info = relume_coder_info(near->codes->coder);
     return !info->hemispherical || pole_from_world(towards, info->pole_y).z >= 0.0;
 }
 
 // Areas are integrals: from below the horizon of a hemispherical capture they add nothing.
-static bool reaches(vec3 *towards, float rgb[3], const struct near *near, const struct emitter *e,
-                    vec3 point)
+static bool reaches(vec3 *towards, float rgb[3], const struct near_lights *near,
+                    const struct near_source *e, vec3 point)
 {
     if (e->light)
         return relume_light_at(towards, rgb, e->light, point);
@@ -76,8 +76,8 @@ static bool reaches(vec3 *towards, float rgb[3], const struct near *near, const 
 }
 
 // Where the light is taken from, as with directional lights, and its share of what reaches a point.
-static bool arrives(vec3 *from, float rgb[3], const struct near *near, const struct emitter *e,
-                    vec3 point)
+static bool arrives(vec3 *from, float rgb[3], const struct near_lights *near,
+                    const struct near_source *e, vec3 point)
 {
     vec3 towards;
     if (!reaches(&towards, rgb, near, e, point))
@@ -113,7 +113,7 @@ static void clear_lane(float *to, int lanes, int n)
         to[i * lanes] = 0.0f;
 }
 
-static bool point_of(vec3 *point, const struct near *near, size_t pixel)
+static bool point_of(vec3 *point, const struct near_lights *near, size_t pixel)
 {
     const float *p = near->surface->data + 3 * pixel;
     *point = vec3_of((double)p[0], (double)p[1], (double)p[2]);
@@ -145,7 +145,7 @@ static bool all_zero(const float *w, int n)
 
 // What the weights, `sets` of them, make of the coefficients: value[3][n]. Interpolation leaves
 // most of them out.
-static void decode(float value[3][LANES], const struct near *near, struct block *b, int sets)
+static void decode(float value[3][LANES], const struct near_lights *near, struct block *b, int sets)
 {
     const struct relume_codes *codes = near->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
@@ -176,8 +176,8 @@ static void decode(float value[3][LANES], const struct near *near, struct block 
 
 // ---------------------------------------------------------------- lights
 
-// The basis at the direction towards one emitter, in every lane; what it sends stays apart.
-static void weigh_one(const struct near *near, struct block *b, const struct emitter *e)
+// The basis at the direction towards one source, in every lane; what it sends stays apart.
+static void weigh_one(const struct near_lights *near, struct block *b, const struct near_source *e)
 {
     const struct relume_weight_grid_info *grid = relume_weight_grid_info(near->grid);
     const int used = grid->sets * grid->coefficients;
@@ -202,12 +202,12 @@ static void weigh_one(const struct near *near, struct block *b, const struct emi
     }
 }
 
-static void add_each(const struct near *near, struct block *b, float *out)
+static void add_each(const struct near_lights *near, struct block *b, float *out)
 {
     const int sets = relume_weight_grid_info(near->grid)->sets;
     float value[3][LANES];
     for (int e = 0; e < near->count; e++) {
-        weigh_one(near, b, &near->emitter[e]);
+        weigh_one(near, b, &near->source[e]);
         if (!b->lit)
             continue;
         decode(value, near, b, sets);
@@ -219,8 +219,8 @@ static void add_each(const struct near *near, struct block *b, float *out)
     }
 }
 
-// All emitters in one weight vector of every lane. False where none arrives.
-static bool weigh_all(float *weights, float constant[3], const struct near *near, vec3 point)
+// All sources in one weight vector of every lane. False where none arrives.
+static bool weigh_all(float *weights, float constant[3], const struct near_lights *near, vec3 point)
 {
     const size_t used = 3 * (size_t)relume_coder_info(near->codes->coder)->coefficients;
     bool lit = false;
@@ -229,14 +229,14 @@ static bool weigh_all(float *weights, float constant[3], const struct near *near
     memset(weights, 0, used * sizeof *weights);
     constant[0] = constant[1] = constant[2] = 0.0f;
     for (int e = 0; e < near->count; e++)
-        if (arrives(&towards, rgb, near, &near->emitter[e], point)) {
+        if (arrives(&towards, rgb, near, &near->source[e], point)) {
             relume_weight_grid_add(weights, constant, near->grid, towards, rgb);
             lit = true;
         }
     return lit;
 }
 
-static void add_folded(const struct near *near, struct block *b, float *out)
+static void add_folded(const struct near_lights *near, struct block *b, float *out)
 {
     const int used = 3 * relume_coder_info(near->codes->coder)->coefficients;
     float value[3][LANES], *weights = b->one, constant[3];
@@ -262,23 +262,24 @@ static void add_folded(const struct near *near, struct block *b, float *out)
             out[3 * i + c] += value[c][i];
 }
 
-static size_t weights_of(const struct near *near)
+static size_t weights_of(const struct near_lights *near)
 {
     return 3 * (size_t)relume_coder_info(near->codes->coder)->coefficients;
 }
 
-static size_t lanes_for(const struct near *near)
+static size_t lanes_for(const struct near_lights *near)
 {
     const size_t lanes = MOST_FLOATS / weights_of(near);
     return lanes < LANES ? lanes : LANES;
 }
 
-size_t near_room(const struct near *near)
+size_t near_lights_room(const struct near_lights *near)
 {
     return near->count ? (lanes_for(near) + 1) * weights_of(near) + 3 : 0;
 }
 
-void near_add(const struct near *near, size_t first, size_t n, float *out, float *room)
+void near_lights_add(const struct near_lights *near, size_t first, size_t n, float *out,
+                     float *room)
 {
     struct block b = {.lanes = (int)lanes_for(near), .weight = room};
     const bool fold = !near->display && near->count > 1;

@@ -1,5 +1,5 @@
-// near.c - directions and fall-off of near lights, pixel by pixel
-#include "capture/near.h"
+// near_view.c - directions and fall-off of near lights, pixel by pixel
+#include "capture/near_view.h"
 
 #include "base/log.h"
 
@@ -13,7 +13,7 @@ static bool has_depth(const relume_capture *capture, int view)
     return capture->draft.m.view[view].depth || capture->assume_depth > 0.0;
 }
 
-bool near_applies(const relume_capture *capture, int view)
+bool near_view_applies(const relume_capture *capture, int view)
 {
     const struct relume_manifest *m = &capture->draft.m;
     const enum relume_projection p = m->geometry.projection;
@@ -22,7 +22,7 @@ bool near_applies(const relume_capture *capture, int view)
     return p == RELUME_PLANAR || p == RELUME_SLAB || (is_panorama(p) && has_depth(capture, view));
 }
 
-void near_warn(const relume_capture *capture, const struct relume_log *log)
+void near_view_warn(const relume_capture *capture, const struct relume_log *log)
 {
     const struct relume_manifest *m = &capture->draft.m;
     const enum relume_projection p = m->geometry.projection;
@@ -41,11 +41,11 @@ void near_warn(const relume_capture *capture, const struct relume_log *log)
                                   : "the panorama has no depth (--assume-depth)");
 }
 
-relume_status near_open(struct near *out, const relume_capture *capture, int view,
-                        const struct relume_log *log)
+relume_status near_view_open(struct near_view *out, const relume_capture *capture, int view,
+                             const struct relume_log *log)
 {
     const struct relume_manifest *m = &capture->draft.m;
-    *out = (struct near){
+    *out = (struct near_view){
         .lights = m->lights,
         .width = capture->width,
         .height = capture->height,
@@ -58,12 +58,12 @@ relume_status near_open(struct near *out, const relume_capture *capture, int vie
     return relume_capture_depth(&out->depth, capture, view, log);
 }
 
-void near_close(struct near *near)
+void near_view_close(struct near_view *near)
 {
     relume_image_destroy(&near->depth);
 }
 
-static vec3 local_point(const struct near *near, double x, double y, double depth)
+static vec3 local_point(const struct near_view *near, double x, double y, double depth)
 {
     const struct relume_geometry *g = &near->geometry;
     const bool slab = g->projection == RELUME_SLAB;
@@ -81,7 +81,7 @@ static vec3 local_point(const struct near *near, double x, double y, double dept
 }
 
 // docs/conventions.md, panoramas.
-static vec3 panorama_point(const struct near *near, double x, double y, double depth)
+static vec3 panorama_point(const struct near_view *near, double x, double y, double depth)
 {
     const struct relume_geometry *g = &near->geometry;
     const double phi = (2.0 * x / near->width - 1.0) * M_PI, down = y / near->height;
@@ -95,7 +95,7 @@ static vec3 panorama_point(const struct near *near, double x, double y, double d
     return vec3_add(g->center, vec3_scale(ray, depth));
 }
 
-vec3 near_point(const struct near *near, double x, double y, double depth)
+vec3 near_view_point(const struct near_view *near, double x, double y, double depth)
 {
     if (is_panorama(near->geometry.projection))
         return panorama_point(near, x, y, depth);
@@ -104,16 +104,16 @@ vec3 near_point(const struct near *near, double x, double y, double depth)
                                                     : local;
 }
 
-vec3 near_pixel(const struct near *near, int x, int y)
+vec3 near_view_pixel(const struct near_view *near, int x, int y)
 {
     const size_t at = (size_t)y * (size_t)near->width + (size_t)x;
     const double depth = near->depth.data ? (double)near->depth.data[at] : near->assumed;
-    return near_point(near, x + 0.5, y + 0.5, depth);
+    return near_view_point(near, x + 0.5, y + 0.5, depth);
 }
 
 // The mean of the finite depths in a rectangle of pixels, below 0 when there is none; where no
 // depth is known, what is assumed.
-static double mean_depth(const struct near *near, int x0, int y0, int x1, int y1)
+static double mean_depth(const struct near_view *near, int x0, int y0, int x1, int y1)
 {
     double sum = 0.0;
     size_t n = 0;
@@ -128,13 +128,14 @@ static double mean_depth(const struct near *near, int x0, int y0, int x1, int y1
     return n ? sum / (double)n : near->depth.data ? -1.0 : near->assumed;
 }
 
-vec3 near_around(const struct near *near, double x, double y, int reach)
+vec3 near_view_around(const struct near_view *near, double x, double y, int reach)
 {
     const int cx = relume_whole(fmin(x, near->width)), cy = relume_whole(fmin(y, near->height));
-    return near_point(near, x, y, mean_depth(near, cx - reach, cy - reach, cx + reach, cy + reach));
+    return near_view_point(near, x, y,
+                           mean_depth(near, cx - reach, cy - reach, cx + reach, cy + reach));
 }
 
-vec3 near_direction(double *gain, const struct near *near, int light, vec3 point)
+vec3 near_view_direction(double *gain, const struct near_view *near, int light, vec3 point)
 {
     const vec3 to = vec3_sub(near->position[light], point);
     const double far = vec3_dot(near->position[light], near->position[light]);
@@ -143,13 +144,13 @@ vec3 near_direction(double *gain, const struct near *near, int light, vec3 point
     return vec3_scale(to, 1.0 / sqrt(squared));
 }
 
-void near_level(const struct near *near, int light, struct relume_image *image)
+void near_view_level(const struct near_view *near, int light, struct relume_image *image)
 {
     float *p = image->data;
     for (int y = 0; near->falls && y < near->height; y++)
         for (int x = 0; x < near->width; x++, p += 3) {
             double gain;
-            near_direction(&gain, near, light, near_pixel(near, x, y));
+            near_view_direction(&gain, near, light, near_view_pixel(near, x, y));
             for (int c = 0; c < 3; c++)
                 p[c] *= (float)gain;
         }

@@ -12,7 +12,7 @@
 #include "coder/census.h"
 #include "coder/codes.h"
 #include "coder/coefficients.h"
-#include "coder/seen.h"
+#include "coder/near_fit.h"
 #include "image/encoder.h"
 #include "image/half.h"
 
@@ -27,13 +27,13 @@ struct encoding {
     int lights, width, height, planes;
     int row, rows;  // of the band in progress
     relume_table *table;
-    struct seen *seen;    // or NULL: lights are distant, or the coder wants distant ones
-    float *samples;       // [lights][rows][x][3], with `seen`
-    float *own;           // the same as pixels really saw them
-    float *values;        // [planes][rows][x]
-    struct range *chunk;  // [chunks of a band][planes]
-    float *work;          // [workers][coder_work]
-    void *packed[2];      // [rows][planes][x]: one is filled while the other is written
+    struct near_fit *near;  // or NULL: lights are distant, or the coder wants distant ones
+    float *samples;         // [lights][rows][x][3], with `near`
+    float *own;             // the same as pixels really saw them
+    float *values;          // [planes][rows][x]
+    struct range *chunk;    // [chunks of a band][planes]
+    float *work;            // [workers][coder_work]
+    void *packed[2];        // [rows][planes][x]: one is filled while the other is written
     int filling;
     struct thread_task writing;
     const void *write_from;
@@ -84,7 +84,7 @@ static struct range band_range(const struct encoding *e, size_t plane)
 static void gather(const struct encoding *e, size_t first, size_t n, float *separated)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width, lights = (size_t)e->lights;
-    if (e->seen)
+    if (e->near)
         coder_separate(separated, e->samples + 3 * first, 3 * pixels, e->lights, n);
     else
         for (size_t i = 0; i < lights; i++)
@@ -100,7 +100,7 @@ static void apply_chunk(void *context, size_t item, int worker)
     float *work = e->work + (size_t)worker * coder_work(e->coder);
     gather(e, first, n, work);
     census_add(&e->census, worker, work, n, e->mask.data ? e->mask.data + at : NULL);
-    if (!e->seen)
+    if (!e->near)
         coder_apply_separated(e->coder, n, e->values + first, pixels, work);
     apply_mask(e, first, n);
     for (size_t p = 0; p < (size_t)e->planes; p++)
@@ -179,7 +179,7 @@ static relume_status measure_fit(struct encoding *e, int row)
 }
 
 // The same of near lights: a pixel in 8.
-static relume_status measure_seen(struct encoding *e, int row)
+static relume_status measure_near(struct encoding *e, int row)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     float *again = mem_array(3 * (size_t)e->lights, sizeof *again);
@@ -189,7 +189,7 @@ static relume_status measure_seen(struct encoding *e, int row)
         const size_t at = (size_t)row * width + x;
         if (!is_inside(&e->mask, (size_t)e->row * width + at))
             continue;
-        seen_predict(e->seen, (int)x, e->row + row, e->values + at, pixels, again);
+        near_fit_predict(e->near, (int)x, e->row + row, e->values + at, pixels, again);
         for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
             const double sample = (double)e->own[(i / 3 * pixels + at) * 3 + i % 3];
             const double d = sample - (double)again[i];
@@ -253,7 +253,7 @@ static relume_status write_band(struct encoding *e, size_t pixels,
 static relume_status read_band(struct encoding *e)
 {
     e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
-    return e->seen ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
+    return e->near ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
                    : relume_table_fetch(e->table, e->rows);
 }
 
@@ -261,14 +261,14 @@ static relume_status encode_band(struct encoding *e, const struct relume_encode_
 {
     relume_status status = read_band(e);
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
-    if (!status && e->seen)
-        status = seen_apply(e->seen, e->row, e->rows, e->own, e->samples, e->values);
+    if (!status && e->near)
+        status = near_fit_apply(e->near, e->row, e->rows, e->own, e->samples, e->values);
     if (status)
         return status;
     thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
     for (int y = 0; !status && y < e->rows; y++)
         if (is_measured(e->out, e->row + y))
-            status = e->seen ? measure_seen(e, y) : measure_fit(e, y);
+            status = e->near ? measure_near(e, y) : measure_fit(e, y);
     if (status)
         return status;
     thread_for(e->threads, (size_t)e->planes, pack_plane, e);
@@ -293,7 +293,7 @@ static relume_status see_near(struct encoding *e)
     e->own = mem_array(lights, row * sizeof *e->own);
     if (!e->samples || !e->own)
         return RELUME_ENOMEM;
-    return seen_create(&e->seen, e->coder, e->table, e->width, e->height, e->threads);
+    return near_fit_create(&e->near, e->coder, e->table, e->width, e->height, e->threads);
 }
 
 static relume_status open_table(struct encoding *e, const relume_capture *capture, int view,
@@ -302,7 +302,8 @@ static relume_status open_table(struct encoding *e, const relume_capture *captur
     const relume_status status = relume_table_open(
         &e->table, capture, view,
         relume_table_params(.log = p->log, .display = e->display, .threads = p->threads));
-    return !status && relume_table_is_near(e->table) && seen_suits(e->coder) ? see_near(e) : status;
+    return !status && relume_table_is_near(e->table) && near_fit_suits(e->coder) ? see_near(e)
+                                                                                 : status;
 }
 
 static bool say_done(const struct encoding *e, const relume_capture *capture, int view,
@@ -323,7 +324,7 @@ static relume_status encode_bands(struct encoding *e, const relume_capture *capt
     }
     for (int i = 0; !status && i < e->lights; i++)
         say_repaired(e, i, relume_table_repaired(e->table, i), p->log);
-    seen_destroy(&e->seen);
+    near_fit_destroy(&e->near);
     relume_table_destroy(&e->table);
     if (!status)
         return finish_writing(e, p);
@@ -522,7 +523,7 @@ static relume_status judge_band(struct encoding *e, const struct encode_values *
     for (int y = 0; !status && y < e->rows; y++)
         if (is_measured(e->out, e->row + y)) {
             values->row(values->user, e->row + y, e->values + (size_t)y * (size_t)e->width, pixels);
-            status = e->seen ? measure_seen(e, y) : measure_fit(e, y);
+            status = e->near ? measure_near(e, y) : measure_fit(e, y);
         }
     return status;
 }
@@ -544,7 +545,7 @@ relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume
             status = RELUME_ECANCEL;
     }
     *psnr_db = shown_psnr(&e);
-    seen_destroy(&e.seen);
+    near_fit_destroy(&e.near);
     relume_table_destroy(&e.table);
     free_encoder(&e);
     return status;

@@ -1,7 +1,7 @@
 // Near lights: coefficients fitted at each pixel's own directions
 #include "lambert_fixture.h"
 
-#include "coder/seen.h"
+#include "coder/near_fit.h"
 
 #include <relume/coder.h>
 
@@ -60,27 +60,27 @@ static void fit(float *planes, const relume_capture *capture, const relume_coder
                 int height, int threads)
 {
     relume_table *table;
-    struct seen *seen;
+    struct near_fit *seen;
     const size_t size = 3 * BUMP_LIGHTS * (size_t)height * BUMP_SIDE;
     const int n = relume_coder_info(coder)->planes;
     float *guess = calloc(size, sizeof *guess), *samples = calloc(size, sizeof *samples);
     float *band = calloc((size_t)(n * height * BUMP_SIDE), sizeof *band);
     CHECK_OK(relume_table_open(&table, capture, 0, relume_table_params(.threads = threads)));
     assert_true(relume_table_is_near(table));
-    CHECK_OK(seen_create(&seen, coder, table, BUMP_SIDE, BUMP_SIDE, threads));
+    CHECK_OK(near_fit_create(&seen, coder, table, BUMP_SIDE, BUMP_SIDE, threads));
     for (int y = 0; y < BUMP_SIDE; y += height) {
         const int rows = BUMP_SIDE - y < height ? BUMP_SIDE - y : height;
         const size_t pixels = (size_t)rows * BUMP_SIDE;
         CHECK_OK(relume_table_read_seen(table, rows, guess, samples));
         if (own)
-            CHECK_OK(seen_apply(seen, y, rows, samples, guess, band));
+            CHECK_OK(near_fit_apply(seen, y, rows, samples, guess, band));
         else
             CHECK_OK(relume_coder_apply(coder, guess, 3 * pixels, pixels, band, pixels));
         for (int p = 0; p < n; p++)
             memcpy(planes + p * PIXELS + y * BUMP_SIDE, band + (size_t)p * pixels,
                    pixels * sizeof *band);
     }
-    seen_destroy(&seen);
+    near_fit_destroy(&seen);
     relume_table_destroy(&table);
     free(guess);
     free(samples);
@@ -153,7 +153,7 @@ static void matte_planes_stay_exact(void **state)
         relume_coder *coder =
             make_coder(capture, cases[b].basis, cases[b].coefficients, cases[b].luminance);
         double own = 0.0, carried = 0.0;
-        assert_true(seen_suits(coder));
+        assert_true(near_fit_suits(coder));
         for (int of_own = 0; of_own < 2; of_own++) {
             fit(planes, capture, coder, of_own, BUMP_SIDE, 2);
             for (int i = 0; i < BUMP_LIGHTS; i++)

@@ -1,4 +1,4 @@
-// seen.h - near lights: every pixel is fitted at the directions from which it was lit
+// near_fit.h - near lights: every pixel is fitted at the directions from which it was lit
 //
 // The coefficients c of a pixel whose samples t stand at directions of its own (rows Y_p of the
 // stored functions) minimise
@@ -6,28 +6,28 @@
 // u being the samples carried over to the distant directions (rows Y): they decide where the
 // pixel's own directions leave the sky open, as they do beside a near lamp. The map from t and u to
 // c changes slowly over the picture: it is found at nodes and interpolated between them.
-#ifndef CODER_SEEN_H
-#define CODER_SEEN_H
+#ifndef CODER_NEAR_FIT_H
+#define CODER_NEAR_FIT_H
 
 #include "coder/design.h"
 
 // Thread-safety: one thread at a time.
-struct seen;
+struct near_fit;
 
 // Whether a coder is fitted this way: smooth functions, by plain least squares.
-bool seen_suits(const relume_coder *coder);
+bool near_fit_suits(const relume_coder *coder);
 // `table` is of a view with near lights, `width` x `height`, and is asked for directions until
 // `seen` is destroyed. RELUME_ENOMEM.
-relume_status seen_create(struct seen **out, const relume_coder *coder, const relume_table *table,
-                          int width, int height, int threads);
-void seen_destroy(struct seen **seen);
+relume_status near_fit_create(struct near_fit **out, const relume_coder *coder,
+                              const relume_table *table, int width, int height, int threads);
+void near_fit_destroy(struct near_fit **fit);
 
 // Coefficients of rows `row` to `row + rows` of the view: planes[plane][rows][x] of the samples
-// that relume_table_read_seen gives: `own` as seen, `guess` carried over. RELUME_ENOMEM.
-relume_status seen_apply(struct seen *seen, int row, int rows, const float *own, const float *guess,
-                         float *planes);
+// that relume_table_read_seen gives: `own` as fit, `guess` carried over. RELUME_ENOMEM.
+relume_status near_fit_apply(struct near_fit *fit, int row, int rows, const float *own,
+                             const float *guess, float *planes);
 // What the coefficients of one pixel say of its own samples: out[light][rgb].
-void seen_predict(struct seen *seen, int x, int y, const float *planes, size_t plane_stride,
-                  float *out);
+void near_fit_predict(struct near_fit *fit, int x, int y, const float *planes, size_t plane_stride,
+                      float *out);
 
 #endif

@@ -1,5 +1,5 @@
-// seen.c - near lights: every pixel is fitted at the directions from which it was lit
-#include "coder/seen.h"
+// near_fit.c - near lights: every pixel is fitted at the directions from which it was lit
+#include "coder/near_fit.h"
 
 #include "base/memory.h"
 #include "base/thread.h"
@@ -12,7 +12,7 @@ enum { CELLS = 32, LEAST_CELL = 4, MOST_CELL = 32 };
 // beyond 1 the gain is lost.
 static const double GUESS = 0.1;
 
-struct seen {
+struct near_fit {
     const relume_coder *coder;
     const relume_table *table;
     struct design design;
@@ -31,15 +31,15 @@ struct seen {
     float *planes;
 };
 
-bool seen_suits(const relume_coder *coder)
+bool near_fit_suits(const relume_coder *coder)
 {
     return !coder->robust && coder->info.basis->fits;
 }
 
-void seen_destroy(struct seen **seen)
+void near_fit_destroy(struct near_fit **fit)
 {
-    struct seen *s = *seen;
-    *seen = NULL;
+    struct near_fit *s = *fit;
+    *fit = NULL;
     if (!s)
         return;
     for (int i = 0; s->node && i < s->rows; i++)
@@ -58,21 +58,21 @@ static int cell_for(int width, int height)
     return cell < LEAST_CELL ? LEAST_CELL : cell > MOST_CELL ? MOST_CELL : cell;
 }
 
-relume_status seen_create(struct seen **out, const relume_coder *coder, const relume_table *table,
-                          int width, int height, int threads)
+relume_status near_fit_create(struct near_fit **out, const relume_coder *coder,
+                              const relume_table *table, int width, int height, int threads)
 {
-    struct seen *s = *out = mem_zeroed(1, sizeof *s);
+    struct near_fit *s = *out = mem_zeroed(1, sizeof *s);
     if (!s)
         return RELUME_ENOMEM;
-    *s = (struct seen){.coder = coder,
-                       .table = table,
-                       .width = width,
-                       .height = height,
-                       .threads = thread_count(threads),
-                       .cell = cell_for(width, height)};
+    *s = (struct near_fit){.coder = coder,
+                           .table = table,
+                           .width = width,
+                           .height = height,
+                           .threads = thread_count(threads),
+                           .cell = cell_for(width, height)};
     relume_status status = design_create(&s->design, coder);
     if (status) {
-        seen_destroy(out);
+        near_fit_destroy(out);
         return status;
     }
     const size_t k = (size_t)s->design.k, n = (size_t)s->design.rows;
@@ -89,7 +89,7 @@ relume_status seen_create(struct seen **out, const relume_coder *coder, const re
     s->cell_size = (6 * lights + 3 * lights + 2 * k) * (size_t)s->cell;
     s->cells = mem_array(workers * s->cell_size, sizeof *s->cells);
     if (!s->node || !s->mixed || !s->work || !s->cells) {
-        seen_destroy(out);
+        near_fit_destroy(out);
         return RELUME_ENOMEM;
     }
     return RELUME_OK;
@@ -138,7 +138,7 @@ static void store(const struct design *d, const double *right, const double *con
 
 static void solve_node(void *context, size_t item, int worker)
 {
-    struct seen *s = context;
+    struct near_fit *s = context;
     const struct design *d = &s->design;
     const size_t k = (size_t)d->k, n = (size_t)d->rows;
     double *m = s->work + (size_t)worker * s->work_size, *right = m + k * k;
@@ -157,7 +157,7 @@ static void solve_node(void *context, size_t item, int worker)
 }
 
 // Rows of nodes around the band; others are given back.
-static bool need_nodes(struct seen *s)
+static bool need_nodes(struct near_fit *s)
 {
     const int first = s->row / s->cell, last = (s->row + s->band_rows - 1) / s->cell + 1;
     for (int i = 0; i < s->rows; i++) {
@@ -187,14 +187,14 @@ struct piece {
     float *side[2];     // [k][n]
 };
 
-static const float *sample_at(const struct seen *s, const float *band, int light, int y, int x)
+static const float *sample_at(const struct near_fit *s, const float *band, int light, int y, int x)
 {
     return band +
            3 * (((size_t)light * (size_t)s->band_rows + (size_t)y) * (size_t)s->width + (size_t)x);
 }
 
 // A luminance coder's own samples, over the sum of the colour that the guesses have.
-static void order_luminance(const struct seen *s, const struct piece *p)
+static void order_luminance(const struct near_fit *s, const struct piece *p)
 {
     const size_t lights = (size_t)s->design.lights, n = (size_t)p->n;
     const size_t stride = 3 * (size_t)s->band_rows * (size_t)s->width;
@@ -214,7 +214,7 @@ static void order_luminance(const struct seen *s, const struct piece *p)
     }
 }
 
-static void order_colours(const struct seen *s, const struct piece *p)
+static void order_colours(const struct near_fit *s, const struct piece *p)
 {
     const struct design *d = &s->design;
     const int lights = d->lights, channels = d->rows / lights;
@@ -230,7 +230,7 @@ static void order_colours(const struct seen *s, const struct piece *p)
         }
 }
 
-static void fit_piece(const struct seen *s, const struct piece *p)
+static void fit_piece(const struct near_fit *s, const struct piece *p)
 {
     const struct design *d = &s->design;
     const struct relume_coder_info *info = &s->coder->info;
@@ -259,7 +259,7 @@ static void fit_piece(const struct seen *s, const struct piece *p)
 
 static void fit_row(void *context, size_t item, int worker)
 {
-    const struct seen *s = context;
+    const struct near_fit *s = context;
     const int y = s->row + (int)item, above = y / s->cell;
     const float part = ((float)(y - above * s->cell) + 0.5f) / (float)s->cell;
     const float *top = s->node[above], *bottom = s->node[above + 1];
@@ -285,30 +285,30 @@ static void fit_row(void *context, size_t item, int worker)
     }
 }
 
-relume_status seen_apply(struct seen *seen, int row, int rows, const float *own, const float *guess,
-                         float *planes)
+relume_status near_fit_apply(struct near_fit *fit, int row, int rows, const float *own,
+                             const float *guess, float *planes)
 {
-    seen->row = row;
-    seen->band_rows = rows;
-    seen->own = own;
-    seen->guess = guess;
-    seen->planes = planes;
-    if (!need_nodes(seen))
+    fit->row = row;
+    fit->band_rows = rows;
+    fit->own = own;
+    fit->guess = guess;
+    fit->planes = planes;
+    if (!need_nodes(fit))
         return RELUME_ENOMEM;
-    thread_for(seen->threads, (size_t)rows, fit_row, seen);
+    thread_for(fit->threads, (size_t)rows, fit_row, fit);
     return RELUME_OK;
 }
 
-void seen_predict(struct seen *seen, int x, int y, const float *planes, size_t plane_stride,
-                  float *out)
+void near_fit_predict(struct near_fit *fit, int x, int y, const float *planes, size_t plane_stride,
+                      float *out)
 {
-    const struct design *d = &seen->design;
-    const struct relume_coder_info *info = &seen->coder->info;
-    struct relume_vec3 *direction = (struct relume_vec3 *)(void *)seen->work;
+    const struct design *d = &fit->design;
+    const struct relume_coder_info *info = &fit->coder->info;
+    struct relume_vec3 *direction = (struct relume_vec3 *)(void *)fit->work;
     float *weights = (float *)(void *)(direction + d->lights), constant[3];
-    relume_table_directions(seen->table, x + 0.5, y + 0.5, 1, direction);
+    relume_table_directions(fit->table, x + 0.5, y + 0.5, 1, direction);
     for (int i = 0; i < d->lights; i++) {
-        relume_coder_weights(seen->coder, direction[i], weights, constant);
+        relume_coder_weights(fit->coder, direction[i], weights, constant);
         for (int c = 0; c < 3; c++) {
             float sum = constant[c];
             for (int k = 0; k < d->k; k++)

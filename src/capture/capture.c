@@ -13,7 +13,7 @@ void relume_capture_destroy(relume_capture **capture)
 {
     if (!*capture)
         return;
-    kept_destroy(&(*capture)->kept);
+    image_cache_destroy(&(*capture)->cache);
     draft_free(&(*capture)->draft);
     free((*capture)->path);
     free(*capture);

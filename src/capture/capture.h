@@ -2,7 +2,7 @@
 #ifndef CAPTURE_CAPTURE_H
 #define CAPTURE_CAPTURE_H
 
-#include "capture/kept.h"
+#include "capture/image_cache.h"
 #include "capture/manifest.h"
 #include "image/image.h"
 
@@ -15,7 +15,7 @@ struct relume_capture {
     bool floats;  // an image holds floating-point numbers
     bool repair;
     double assume_depth;  // of near lights' views without depth; 0: none
-    struct kept *kept;
+    struct image_cache *cache;
     struct relume_limits limits;
     relume_context *context;          // of the log that it was opened with, or NULL
     struct relume_transfer stated;    // for all images; AUTO: each file's own

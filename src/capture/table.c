@@ -41,18 +41,19 @@ static size_t file_bytes(const struct image_stream *stream)
 // Rows come from memory where an earlier table has left them, else stay there if there is room.
 static void use_kept(relume_table *t, struct image_stream *stream, int light)
 {
-    struct kept *kept = t->capture->kept;
+    struct image_cache *cache = t->capture->cache;
     if (!picture_info_of(stream->reader)->bytes)
         return;
-    stream->kept = kept_find(kept, t->view * t->capture->draft.m.lights + light);
-    stream->keep = stream->kept ? NULL : kept_reserve(kept, file_bytes(stream));
+    stream->kept = image_cache_find(cache, t->view * t->capture->draft.m.lights + light);
+    stream->keep = stream->kept ? NULL : image_cache_reserve(cache, file_bytes(stream));
 }
 
 static void close_stream(relume_table *t, struct image_stream *stream, int light)
 {
     if (stream->keep)
-        kept_settle(t->capture->kept, t->view * t->capture->draft.m.lights + light, stream->keep,
-                    file_bytes(stream), t->row == t->capture->height && !t->status[light]);
+        image_cache_settle(t->capture->cache, t->view * t->capture->draft.m.lights + light,
+                           stream->keep, file_bytes(stream),
+                           t->row == t->capture->height && !t->status[light]);
     image_stream_close(stream);
 }
 

@@ -17,7 +17,7 @@ struct near_fit;
 // Whether a coder is fitted this way: smooth functions, by plain least squares.
 bool near_fit_suits(const relume_coder *coder);
 // `table` is of a view with near lights, `width` x `height`, and is asked for directions until
-// `seen` is destroyed. RELUME_ENOMEM.
+// `fit` is destroyed. RELUME_ENOMEM.
 relume_status near_fit_create(struct near_fit **out, const relume_coder *coder,
                               const relume_table *table, int width, int height, int threads);
 void near_fit_destroy(struct near_fit **fit);

@@ -42,8 +42,8 @@ static relume_status fill_buffer(struct btf_material *m, const struct gl *gl, GL
 {
     if (texels > (size_t)gl->max_buffer)
         return say(log, RELUME_ESYSTEM,
-                   "model %s: an array of %zu texels; OpenGL reads at most %d here", m->twin->model,
-                   texels, gl->max_buffer);
+                   "model %s: an array of %zu texels; OpenGL reads at most %d here",
+                   m->shader->model, texels, gl->max_buffer);
     gl->GenBuffers(1, buffer);
     gl->BindBuffer(GL_TEXTURE_BUFFER, *buffer);
     gl->BufferData(GL_TEXTURE_BUFFER, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
@@ -93,7 +93,7 @@ static relume_status upload_array(struct btf_material *m, const struct gl *gl, i
                                    [RELUME_BTF_HALF] = 2,
                                    [RELUME_BTF_FLOAT] = 4,
                                    [RELUME_BTF_U32] = 4};
-    const int numbers = m->twin->numbers[i];
+    const int numbers = m->shader->numbers[i];
     size_t count = 1;
     for (int d = 0; d < a->dims; d++)
         count *= a->shape[d];
@@ -314,9 +314,9 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
                          const struct relume_object_material *material,
                          const struct relume_log *log)
 {
-    *out = (struct btf_material){.twin = btf_shader_find(material->model)};
+    *out = (struct btf_material){.shader = btf_shader_find(material->model)};
     struct btf_material *m = out;
-    if (!m->twin)
+    if (!m->shader)
         return say(log, RELUME_ESYSTEM, "%s: model %s cannot be drawn here", material->name,
                    material->model);
     const struct relume_btf_surface_info info = relume_btf_surface_info(material->surface);
@@ -371,7 +371,7 @@ relume_status btf_need_table(struct btf_material *m, const struct gl *gl,
     enum { PARTS = 2 * RELUME_PREFILTERED_EXPONENTS * RELUME_PREFILTERED_STEPS };
     if (m->table)
         return RELUME_OK;
-    if (!m->twin->lobes)
+    if (!m->shader->lobes)
         return upload_cones(m, gl, relume_btf_surface_info(from->surface).model, prefilter, log);
     return fill_buffer(m, gl, &m->table, &m->table_buffer, GL_R32F, PARTS, PARTS * sizeof(float),
                        relume_prefiltered_info(prefilter).part, log);
@@ -385,7 +385,7 @@ void btf_release(struct btf_material *m, const struct gl *gl)
     }
     gl->DeleteTextures(1, &m->table);
     gl->DeleteBuffers(1, &m->table_buffer);
-    *m = (struct btf_material){.twin = NULL};
+    *m = (struct btf_material){.shader = NULL};
 }
 
 void btf_use(const struct btf_material *m, const struct gl *gl, int level)

@@ -13,7 +13,7 @@ enum { BTF_ARRAYS = 5, BTF_DOMES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_DOMES + 1, 
 // How a model is drawn.
 struct btf_shader {
     const char *model;  // NULL ends the list
-    const char *shader;
+    const char *source;  // a file of viewer/shaders/btf
     int numbers[BTF_ARRAYS];  // of a texel of each array: 1, 3 or 4; 0: there is none
     bool lobes;  // which an environment is looked up for, rather than summed over the lights
 };
@@ -41,7 +41,7 @@ struct btf_level {
     int width, height, area, counts[4], map[4];  // as btf.glsl
 };
 struct btf_material {
-    const struct btf_shader *twin;
+    const struct btf_shader *shader;
     struct btf_level level[BTF_LEVELS];
     int levels;
     GLuint table, table_buffer;  // what an environment needs (btf_need_table), or 0

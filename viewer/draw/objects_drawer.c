@@ -259,10 +259,10 @@ static relume_status need_targets(struct objects_drawer *t, int width, int heigh
 
 // The program of a model, compiled when it is first shown.
 static relume_status need_program(const struct program **out, struct objects_drawer *t,
-                                  const struct btf_shader *twin, bool sky)
+                                  const struct btf_shader *shader, bool sky)
 {
     for (int i = 0; i < t->programs; i++)
-        if (t->program[i].twin == twin && t->program[i].sky == sky) {
+        if (t->program[i].shader == shader && t->program[i].sky == sky) {
             *out = &t->program[i].program;
             return RELUME_OK;
         }
@@ -271,15 +271,15 @@ static relume_status need_program(const struct program **out, struct objects_dra
     if (!more)
         return RELUME_ENOMEM;
     t->program = more;
-    more[t->programs] = (struct objects_drawer_program){.twin = twin, .sky = sky};
+    more[t->programs] = (struct objects_drawer_program){.shader = shader, .sky = sky};
     *out = &more[t->programs].program;
-    return program_create_variant(&more[t->programs++].program, t->gl, twin->shader,
+    return program_create_variant(&more[t->programs++].program, t->gl, shader->source,
                                   sky ? "#define SKY\n" : NULL, btf_uniforms, BTF_COUNT, t->log);
 }
 
 static relume_status need_material(struct objects_drawer *t, int i)
 {
-    if (t->material[i].twin)
+    if (t->material[i].shader)
         return RELUME_OK;
     return btf_upload(&t->material[i], t->gl, &relume_objects_info(t->objects)->material[i],
                       t->log);
@@ -428,7 +428,7 @@ static relume_status use_material(const struct program **out, struct objects_dra
 {
     relume_status status = need_material(t, material);
     if (!status)
-        status = need_program(out, t, t->material[material].twin, sky);
+        status = need_program(out, t, t->material[material].shader, sky);
     if (status)
         return status;
     t->gl->UseProgram((*out)->id);
@@ -480,7 +480,7 @@ relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int m
     texture_use(gl, BTF_UNIT_TABLE, GL_TEXTURE_BUFFER, m->table);
     gl->Uniform1f(at[SKY_TURN], (float)(-light->rotate_deg * (M_PI / 180.0)));
     gl->Uniform3f(at[SKY_RGB], light->rgb[0], light->rgb[1], light->rgb[2]);
-    draw_levels(t, program, &t->shown, m, !m->twin->lobes);
+    draw_levels(t, program, &t->shown, m, !m->shader->lobes);
     return RELUME_OK;
 }
 

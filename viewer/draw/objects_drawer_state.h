@@ -10,7 +10,7 @@
 
 struct objects_drawer_program {
     struct program program;
-    const struct btf_shader *twin;
+    const struct btf_shader *shader;
     bool sky;  // for environments
 };
 
@@ -22,7 +22,7 @@ struct objects_drawer {
     struct program surface, depth, over, cast, share, sky;
     struct objects_drawer_program *program;  // [programs]: of the models in use
     int programs;
-    struct btf_material *material;  // [materials]; without a twin until it is shown
+    struct btf_material *material;  // [materials]; without a shader until it is shown
     struct light_uniforms uniforms;
     struct sky_maps maps;
     struct shadow_map shadow;

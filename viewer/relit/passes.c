@@ -237,7 +237,7 @@ static relume_status add_displayed(struct relighter *r, struct relit_view *v, st
 }
 
 // The distant lights at once: sums in linear light, or one codebook that is linear when relit;
-// that of the display domain leaves environments to its linear twin.
+// that of the display domain leaves environments to its linear copy.
 static relume_status add_books(struct relighter *r, struct relit_view *v)
 {
     const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;

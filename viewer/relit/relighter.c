@@ -231,7 +231,7 @@ static relume_status relight_by_passes(struct relighter *r, struct relit_view *v
     relume_status status = passes_distant(r, v);
     if (!status && v->codes.domain == RELUME_DOMAIN_DISPLAY &&
         relighter_has_kind(r, relighter_is_environment))
-        status = twin_relight(r, v);
+        status = linear_copy_relight(r, v);
     if (!status && relighter_has_kind(r, relume_light_is_near))
         status = add_near(r, v);
     r->gl->Disable(GL_BLEND);
@@ -273,7 +273,7 @@ void relighter_destroy(struct relighter *r)
     for (int i = 0; r->view && i < r->views; i++)
         release(r, &r->view[i]);
     relume_relighter_destroy(&r->library);
-    twin_destroy(r);
+    linear_copy_destroy(r);
     passes_destroy(r);
     nearby_destroy(&r->near);
     free(r->view);

@@ -42,8 +42,8 @@ relume_status passes_scratch(struct relighter *r, const struct relit_view *view)
 void passes_develop(const struct relighter *r, const struct relit_view *view,
                     const struct target *coded, struct relume_transfer display, const float rgb[3]);
 
-// The environments on codes of the display domain, by their linear twin.
-relume_status twin_relight(struct relighter *r, struct relit_view *view);
-void twin_destroy(struct relighter *r);
+// The environments on codes of the display domain, by their linear copy.
+relume_status linear_copy_relight(struct relighter *r, struct relit_view *view);
+void linear_copy_destroy(struct relighter *r);
 
 #endif

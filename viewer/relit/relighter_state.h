@@ -27,7 +27,7 @@ struct relit_view {
     struct relume_image surface;      // then; empty: not known yet
 };
 
-// The codes of the linear twin come from those of the file.
+// The codes of the linear copy come from those of the file.
 struct linear_source {
     struct code_source source;
     relume_refit *first;  // the first view's: all others have its coder
@@ -48,7 +48,7 @@ struct relighter {
     relume_relighter *library;  // NULL: not needed yet
     int threads;                // of it; 0: all cores
     relume_weight_grid *grid;   // of the coder, for environments; NULL: not made yet
-    struct relighter *linear;   // the linear twin, under the environments; NULL: not made yet
+    struct relighter *linear;   // the linear copy, under the environments; NULL: not made yet
     struct linear_source linear_source;
     GLuint vertices;
     GLuint weights;       // texture [layers][3]

@@ -1,5 +1,5 @@
-// twin.c - environments on codes of the display domain: a relighter of linear codes, made once from
-// them
+// linear_copy.c - environments on codes of the display domain: a relighter of linear codes, made
+// once from them
 #include "relit/relighter.h"
 #include "relit/relighter_parts.h"
 
@@ -47,12 +47,12 @@ static relume_status need_linear(struct relighter *r)
     return status;
 }
 
-// The linear twin under the environments alone.
-relume_status twin_relight(struct relighter *r, struct relit_view *v)
+// The linear copy under the environments alone.
+relume_status linear_copy_relight(struct relighter *r, struct relit_view *v)
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1.0f, 1.0f, 1.0f};
-    const struct target *twin;
+    const struct target *copy;
     struct relume_light *environments = malloc((size_t)r->lights * sizeof *environments);
     int n = 0;
     relume_status status = environments ? need_linear(r) : RELUME_ENOMEM;
@@ -62,17 +62,17 @@ relume_status twin_relight(struct relighter *r, struct relit_view *v)
     if (!status)
         status = relighter_begin(r->linear, environments, n);
     if (!status)
-        status = relighter_view(&twin, r->linear, (int)(v - r->view));
+        status = relighter_view(&copy, r->linear, (int)(v - r->view));
     free(environments);
     if (status)
         return status;
     passes_begin(r);
     target_resume(&v->relit, r->gl);
-    passes_develop(r, v, twin, linear, one);
+    passes_develop(r, v, copy, linear, one);
     return RELUME_OK;
 }
 
-void twin_destroy(struct relighter *r)
+void linear_copy_destroy(struct relighter *r)
 {
     if (r->linear)
         relighter_destroy(r->linear);

@@ -518,6 +518,12 @@ const char *exr_channel_name(const exr_file *file, int part, int channel)
     return channel_list(file, part)->entries[channel].name.str;
 }
 
+int exr_channel_step(const exr_file *file, int part, int channel)
+{
+    const exr_attr_chlist_entry_t *e = &channel_list(file, part)->entries[channel];
+    return e->x_sampling == e->y_sampling ? e->x_sampling : 0;
+}
+
 bool exr_is_plain(const exr_file *file, int part)
 {
     static const char *const known[] = {"channels",
@@ -559,6 +565,20 @@ const char *exr_get_text(const exr_file *file, int part, const char *name)
     int32_t length;
     const char *text;
     return exr_attr_get_string(file->exr, part, name, &length, &text) ? NULL : text;
+}
+
+bool exr_get_chromaticities(const exr_file *file, int part, float xy[8])
+{
+    exr_attr_chromaticities_t c;
+    if (exr_attr_get_chromaticities(file->exr, part, "chromaticities", &c))
+        return false;
+    const float found[8] = {c.red_x,  c.red_y,  c.green_x, c.green_y,
+                            c.blue_x, c.blue_y, c.white_x, c.white_y};
+    memcpy(xy, found, sizeof found);
+    bool good = true;
+    for (int i = 0; i < 8; i++)
+        good &= xy[i] > -2 && xy[i] < 2 && (i % 2 == 0 || xy[i] > 1e-3f);
+    return good;
 }
 
 const float *exr_get_floats(const exr_file *file, int part, const char *name, int *count)
@@ -760,17 +780,48 @@ relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part)
     return RELUME_OK;
 }
 
-relume_status exr_blocks_row(exr_blocks *b, int row, const void **samples)
+static relume_status find_block(exr_blocks *b, int row)
 {
     relume_status status = RELUME_OK;
     if (row < b->block.row || row >= b->block.row + b->block.rows)
         status = decode(&b->block, &b->layout, &b->pipeline, (size_t)(row / b->layout.block_rows));
-    if (status) {
+    if (status)
         b->block.rows = 0;
+    return status;
+}
+
+relume_status exr_blocks_row(exr_blocks *b, int row, const void **samples)
+{
+    const relume_status status = find_block(b, row);
+    if (status)
         return status;
-    }
     const size_t bytes = (size_t)b->layout.channels * b->layout.row_bytes;
     *samples = (const uint8_t *)b->block.samples + (size_t)(row - b->block.row) * bytes;
+    return RELUME_OK;
+}
+
+// Samples of a channel in row `y` of the data window.
+static size_t samples_in(const exr_attr_chlist_entry_t *e, const struct exr_part_info *info, int y)
+{
+    const int first = info->x, last = first + info->width - 1, step = e->x_sampling;
+    const int before = first - 1 - ((first - 1) % step + step) % step;
+    return y % e->y_sampling ? 0 : (size_t)((last - before) / step);
+}
+
+relume_status exr_blocks_channel(exr_blocks *b, int row, int channel, float *out)
+{
+    const struct exr_part_info info = exr_part_info(b->layout.file, b->layout.part);
+    const exr_attr_chlist_entry_t *entry = channel_list(b->layout.file, b->layout.part)->entries;
+    const relume_status status = find_block(b, row);
+    if (status)
+        return status;
+    const uint8_t *from = b->block.samples;
+    for (int y = b->block.row; y <= row; y++)
+        for (int c = 0; c < (y < row ? info.channels : channel); c++)
+            from += samples_in(&entry[c], &info, info.y + y) *
+                    exr_sample_bytes((enum exr_sample)entry[c].pixel_type);
+    exr_to_floats(out, (enum exr_sample)entry[channel].pixel_type, from,
+                  samples_in(&entry[channel], &info, info.y + row));
     return RELUME_OK;
 }
 

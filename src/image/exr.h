@@ -70,12 +70,16 @@ struct exr_part_info {
 };
 struct exr_part_info exr_part_info(const exr_file *file, int part);
 const char *exr_channel_name(const exr_file *file, int part, int channel);
+// A channel has a sample at every so manieth pixel and row, counted from 0; 0: these differ.
+int exr_channel_step(const exr_file *file, int part, int channel);
 // Whether a part has no attributes but those that all have.
 bool exr_is_plain(const exr_file *file, int part);
 
 // Attributes of a part; false or NULL when absent or of another type.
 bool exr_get_int(const exr_file *file, int part, const char *name, int *value);
 const char *exr_get_text(const exr_file *file, int part, const char *name);
+// x and y of red, green, blue and white; false when they are absent or make no colours.
+bool exr_get_chromaticities(const exr_file *file, int part, float xy[8]);
 const float *exr_get_floats(const exr_file *file, int part, const char *name, int *count);
 
 // Hand every block of rows of a part to `sink` (from several threads, any order).
@@ -97,6 +101,9 @@ relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part);
 // samples[channel][x] of a row, until the next call. An input status where the file is truncated or
 // damaged, RELUME_ENOMEM.
 relume_status exr_blocks_row(exr_blocks *blocks, int row, const void **samples);
+// The samples of one channel in a row, in parts whose channels differ in type or step: one for each
+// of its pixels, none in rows that it leaves out. The same.
+relume_status exr_blocks_channel(exr_blocks *blocks, int row, int channel, float *out);
 void exr_blocks_close(exr_blocks **blocks);
 
 #endif

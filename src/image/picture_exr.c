@@ -1,9 +1,10 @@
 // picture_exr.c - EXR pictures of the plain kind: one part of scanlines, grey or red, green and
-// blue, perhaps with alpha, and nothing noted in the header
+// blue, perhaps with alpha, and nothing noted in the header; and those of luminance and colour
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/exr.h"
 #include "image/half.h"
+#include "image/luma_chroma.h"
 #include "image/picture.h"
 #include "image/picture_format.h"
 
@@ -14,6 +15,7 @@ struct exr_picture {
     picture_reader reader;  // first
     exr_file *file;
     exr_blocks *blocks;
+    luma_chroma *coarse;  // or NULL
     bool half, failed;
 };
 
@@ -36,6 +38,17 @@ static relume_status read_floats(picture_reader *reader, int row, int rows, floa
     return RELUME_OK;
 }
 
+static relume_status read_coarse(picture_reader *reader, int row, int rows, float *out)
+{
+    struct exr_picture *p = (struct exr_picture *)reader;
+    relume_status status = RELUME_OK;
+    (void)row;  // from the top on
+    for (; !status && rows > 0; rows--, out += 3 * (size_t)reader->info.width)
+        status = luma_chroma_next(p->coarse, out);
+    p->failed |= relume_status_is_input(status);
+    return status;
+}
+
 static const char *error(const picture_reader *reader)
 {
     return ((const struct exr_picture *)reader)->failed ? "truncated or damaged" : "";
@@ -45,12 +58,15 @@ static void close(picture_reader *reader)
 {
     struct exr_picture *p = (struct exr_picture *)reader;
     exr_blocks_close(&p->blocks);
+    luma_chroma_close(&p->coarse);
     exr_close(&p->file);
     free(p);
 }
 
 static const struct picture_format format = {
     .read_floats = read_floats, .error = error, .close = close};
+static const struct picture_format coarse_format = {
+    .read_floats = read_coarse, .error = error, .close = close};
 
 // What is neither grey nor R, G, B with or without A is left to OpenImageIO.
 static bool find_colour(struct picture_info *info, const exr_file *file)
@@ -104,20 +120,27 @@ relume_status exr_picture_open(picture_reader **out, const char *path,
         return relume_input_fail(log, path, "cannot be opened", EMFILE);
     if (status)
         return status == RELUME_ENOMEM ? status : RELUME_OK;
-    status = refuse_subsampled(file, path, log);
-    if (status || !is_plain(&info, file)) {
+    struct exr_picture *p = mem_zeroed(1, sizeof *p);
+    status = p ? luma_chroma_open(&p->coarse, file) : RELUME_ENOMEM;
+    const bool plain = p && is_plain(&info, file) && !p->coarse;
+    if (!status && plain)
+        status = exr_blocks_open(&p->blocks, file, 0);
+    if (relume_status_is_input(status))
+        status = RELUME_OK;
+    else if (!status && !plain && !p->coarse)
+        status = refuse_subsampled(file, path, log);
+    if (status || !(p->blocks || p->coarse)) {
+        free(p);
         exr_close(&file);
         return status;
     }
-    struct exr_picture *p = mem_zeroed(1, sizeof *p);
-    if (p)
-        status = exr_blocks_open(&p->blocks, file, 0);
-    if (!p || status) {
-        free(p);
-        exr_close(&file);
-        return RELUME_ENOMEM;
+    p->reader = (picture_reader){.format = p->coarse ? &coarse_format : &format, .info = info};
+    if (p->coarse) {
+        p->reader.info.channels = 3;
+        for (int c = 0; c < 3; c++)
+            p->reader.info.rgb[c] = c;
+        p->reader.info.other[0] = '\0';
     }
-    p->reader = (picture_reader){.format = &format, .info = info};
     p->file = file;
     p->half = exr_part_info(file, 0).sample == EXR_SAMPLE_HALF;
     *out = &p->reader;

@@ -132,8 +132,7 @@ expect_ok 'an .lptm' - "$RELUME" export k.exr -o k.lptm
 expect_ok 'comes back' - "$RELUME" relight k.lptm -o back.png
 data=$TOP/../shared/data/exr-openexr-images
 if [ -d "$data" ]; then
-    expect_fail 'luminance with coarser colour' 1 'StarField.exr: its channels .* differ in resolution.*; convert it to RGB first, with ImageMagick: convert' \
-        x.png "$RELUME" tonemap "$data/StarField.exr" -o x.png
+    expect_ok 'luminance with coarser colour' - "$RELUME" tonemap "$data/StarField.exr" -o x.png
 else
     skip 'luminance with coarser colour' 'no ../shared/data'
 fi

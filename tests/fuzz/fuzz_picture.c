@@ -1,15 +1,16 @@
 // fuzz_picture.c - JPEG, plain EXR and PNG pictures made of noise, by our own readers; check sums
 // of every second PNG are made right, so that what they guard is reached
 #include "fuzz.h"
+#include "made_exr.h"
 #include "png_crc.h"
 
 #include "image/picture.h"
 #include "image/picture_format.h"
 
 static const struct relume_limits limits = {.max_side = 256, .max_pixels = 1 << 14};
-static const char *const words[] = {"IHDR", "IDAT",    "IEND",     "sRGB",       "gAMA",
-                                    "tEXt", "oFFs",    "channels", "dataWindow", "lineOrder",
-                                    "type", "version", NULL};
+static const char *const words[] = {
+    "IHDR",       "IDAT",      "IEND", "sRGB",    "gAMA", "tEXt", "oFFs",           "channels",
+    "dataWindow", "lineOrder", "type", "version", "RY",   "BY",   "chromaticities", NULL};
 
 static uint32_t big_endian(const uint8_t *b)
 {
@@ -69,6 +70,21 @@ static void add(struct fuzz *f, int channels, bool half, const char *name)
     fuzz_add(f, fuzz_load(path));
 }
 
+static float spot(char channel, int x, int y)
+{
+    return channel == 'Y' ? (float)(x * y % 7) : x == y ? 1.5f : -0.5f;
+}
+
+static void add_coarse(struct fuzz *f, bool alpha)
+{
+    static const float xy[8] = {0.7f, 0.3f, 0.2f, 0.8f, 0.1f, 0.05f, 0.31f, 0.33f};
+    const struct made_exr m = {2, -2, 12, 36, alpha, alpha ? xy : NULL, spot};
+    char path[96];
+    snprintf(path, sizeof path, "%s/coarse.exr", f->folder);
+    made_exr_write(path, &m);
+    fuzz_add(f, fuzz_load(path));
+}
+
 int main(int argc, char **argv)
 {
     struct fuzz f = {.words = words};
@@ -79,5 +95,7 @@ int main(int argc, char **argv)
     add(&f, 3, false, "colour.jpg");
     add(&f, 1, false, "grey.exr");
     add(&f, 3, true, "colour.exr");
+    add_coarse(&f, false);
+    add_coarse(&f, true);
     return fuzz_run(&f, argc, argv, one);
 }

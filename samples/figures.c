@@ -13,6 +13,7 @@
 //                                   holds from there on, `crop=` and `frame=` alone end it; with a
 //                                   gain, what is brighter than white burns out to white
 //   figures column OUT PICTURE...   pictures of one width, one below the other
+#define RELUME_VEC3_SHORT
 #include <relume/relume.h>
 
 #include <math.h>
@@ -20,8 +21,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct relume_vec3 vec3;
 
 enum { GRID = 50, TEST_LIGHTS = 16, MOST_PANELS = 16, GAP = 4 };
 
@@ -241,24 +240,9 @@ static double grey(const struct pixel *p, vec3 d)
 
 // ---------------------------------------------------------------- blob
 
-static vec3 add(vec3 a, vec3 b, double t)
-{
-    return (vec3){a.x + t * b.x, a.y + t * b.y, a.z + t * b.z};
-}
-
-static double dot(vec3 a, vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static vec3 cross(vec3 a, vec3 b)
-{
-    return (vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 static vec3 unit(vec3 a)
 {
-    const double length = sqrt(dot(a, a));
+    const double length = sqrt(vec3_dot(a, a));
     return length > 0.0 ? (vec3){a.x / length, a.y / length, a.z / length} : a;
 }
 
@@ -280,39 +264,39 @@ static struct stage open_stage(int side, double reach)
         s.depth[i] = -HUGE_VAL;
     s.back = direction(0.5 * M_PI - elevation_rad, azimuth_rad);
     s.right = (vec3){-sin(azimuth_rad), cos(azimuth_rad), 0.0};
-    s.up = cross(s.back, s.right);
-    s.light = unit(add(add(s.back, s.up, 0.7), s.right, -0.7));
+    s.up = vec3_cross(s.back, s.right);
+    s.light = unit(vec3_along(vec3_along(s.back, s.up, 0.7), s.right, -0.7));
     return s;
 }
 
 static void splat(struct stage *s, vec3 p, const float rgb[3])
 {
     const int side = s->image.width;
-    const int x = (int)floor(0.5 * side + s->scale * dot(p, s->right));
-    const int y = (int)floor(0.5 * side - s->scale * dot(p, s->up));
+    const int x = (int)floor(0.5 * side + s->scale * vec3_dot(p, s->right));
+    const int y = (int)floor(0.5 * side - s->scale * vec3_dot(p, s->up));
     if (x < 0 || y < 0 || x >= side || y >= side)
         return;
     double *depth = s->depth + (size_t)y * (size_t)side + (size_t)x;
-    if (dot(p, s->back) <= *depth)
+    if (vec3_dot(p, s->back) <= *depth)
         return;
-    *depth = dot(p, s->back);
+    *depth = vec3_dot(p, s->back);
     memcpy(at(&s->image, x, y), rgb, 3 * sizeof *rgb);
 }
 
 // The quadrilateral between corner[v][u], so densely that no hole is left.
 static void splat_quad(struct stage *s, const vec3 corner[2][2])
 {
-    const vec3 along_u = add(corner[0][1], corner[0][0], -1.0),
-               along_v = add(corner[1][0], corner[0][0], -1.0),
-               across = add(corner[1][1], corner[0][0], -1.0);
+    const vec3 along_u = vec3_sub(corner[0][1], corner[0][0]),
+               along_v = vec3_sub(corner[1][0], corner[0][0]),
+               across = vec3_sub(corner[1][1], corner[0][0]);
     // Of the diagonals: one side may be a point.
-    vec3 normal = unit(cross(across, add(corner[1][0], corner[0][1], -1.0)));
-    if (dot(normal, s->back) < 0.0)
-        normal = add((vec3){0.0, 0.0, 0.0}, normal, -1.0);
-    const float shade = (float)(0.06 + 0.8 * fmax(dot(normal, s->light), 0.0));
+    vec3 normal = unit(vec3_cross(across, vec3_sub(corner[1][0], corner[0][1])));
+    if (vec3_dot(normal, s->back) < 0.0)
+        normal = vec3_sub((vec3){0.0, 0.0, 0.0}, normal);
+    const float shade = (float)(0.06 + 0.8 * fmax(vec3_dot(normal, s->light), 0.0));
     const float rgb[3] = {shade, shade, shade};
-    const double longest =
-        sqrt(fmax(dot(across, across), fmax(dot(along_u, along_u), dot(along_v, along_v))));
+    const double longest = sqrt(fmax(vec3_dot(across, across),
+                                     fmax(vec3_dot(along_u, along_u), vec3_dot(along_v, along_v))));
     const int steps = 2 + (int)(2.0 * s->scale * longest);
     for (int j = 0; j < steps; j++)
         for (int i = 0; i < steps; i++) {
@@ -337,7 +321,7 @@ static void splat_surface(struct stage *s, const struct pixel *p)
     for (int i = 0; i <= rows; i++)
         for (int j = 0; j <= COLUMNS; j++) {
             const vec3 d = direction(M_PI * i / ROWS, 2.0 * M_PI * j / COLUMNS);
-            point[i * (COLUMNS + 1) + j] = add((vec3){0.0, 0.0, 0.0}, d, grey(p, d));
+            point[i * (COLUMNS + 1) + j] = vec3_scale(d, grey(p, d));
         }
     for (int i = 0; i < rows; i++)
         for (int j = 0; j < COLUMNS; j++) {
@@ -354,8 +338,8 @@ static void splat_horizon(struct stage *s, double reach)
     for (int i = 0; i < 8192; i++)
         for (int j = -2; j <= 2; j++)
             splat(s,
-                  add((vec3){0.0, 0.0, 0.0}, direction(0.5 * M_PI, 2.0 * M_PI * i / 8192),
-                      0.97 * reach + 0.5 * j / s->scale),
+                  vec3_scale(direction(0.5 * M_PI, 2.0 * M_PI * i / 8192),
+                             0.97 * reach + 0.5 * j / s->scale),
                   blue);
 }
 

@@ -3,6 +3,7 @@
 // the lamps were. Uses the public headers only.
 //
 //     mirrorball CAPTURE FOLDER      for example: relume synth bust -o bust; mirrorball bust photos
+#define RELUME_VEC3_SHORT
 #include <relume/relume.h>
 
 #include <errno.h>
@@ -11,24 +12,17 @@
 #include <string.h>
 #include <sys/stat.h>
 
-typedef struct relume_vec3 vec3;
-
-// The ball, in parts of the picture's width and height: middle and radius. It mirrors a room that is
-// brighter above than below, and a lamp that is some degrees wide, as a softbox far away.
+// The ball, in parts of the picture's width and height: middle and radius. It mirrors a room that
+// is brighter above than below, and a lamp that is some degrees wide, as a softbox far away.
 static const double ball_x = 0.14, ball_y = 0.86, ball_radius = 0.1;
 static const double lamp_sharpness = 150.0, lamp_value = 30.0;
-
-static double dot(vec3 a, vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 // What the ball shows where its unit normal is `n`: the camera is far away, along +z.
 static float reflected(vec3 n, vec3 lamp)
 {
     const vec3 mirrored = {2.0 * n.z * n.x, 2.0 * n.z * n.y, 2.0 * n.z * n.z - 1.0};
     const double room = 0.12 + 0.06 * mirrored.y;
-    return (float)(room + lamp_value * exp(lamp_sharpness * (dot(mirrored, lamp) - 1.0)));
+    return (float)(room + lamp_value * exp(lamp_sharpness * (vec3_dot(mirrored, lamp) - 1.0)));
 }
 
 static void paint_ball(struct relume_image *photograph, vec3 lamp)

@@ -7,6 +7,7 @@
 //
 // Shades: `full` is Lambert + lobe + shadow; `lambert` is albedo max(0, n.l); `wrap` is
 // albedo (1 + n.l) / 2, which four spherical harmonics hold exactly.
+#define RELUME_VEC3_SHORT
 #include <relume/relume.h>
 
 #include <errno.h>
@@ -15,8 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-typedef struct relume_vec3 vec3;
 
 enum shade { FULL, LAMBERT, WRAP };
 
@@ -30,26 +29,11 @@ struct options {
 static const vec3 center = {0.0, 0.0, 0.5};
 static const double radius = 0.45, camera_z = 4.0, uv_z = 3.0;
 
-static vec3 along(vec3 p, vec3 d, double t)
-{
-    return (vec3){p.x + t * d.x, p.y + t * d.y, p.z + t * d.z};
-}
-
-static double dot(vec3 a, vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static vec3 unit(vec3 a)
-{
-    return along((vec3){0.0, 0.0, 0.0}, a, 1.0 / sqrt(dot(a, a)));
-}
-
 // Distance to the sphere along unit `d`, or a negative number.
 static double hit_sphere(vec3 p, vec3 d)
 {
-    const vec3 m = along(p, center, -1.0);
-    const double b = dot(m, d), c = dot(m, m) - radius * radius, q = b * b - c;
+    const vec3 m = vec3_sub(p, center);
+    const double b = vec3_dot(m, d), c = vec3_dot(m, m) - radius * radius, q = b * b - c;
     return q < 0.0 ? -1.0 : -b - sqrt(q);
 }
 
@@ -63,25 +47,25 @@ static struct hit trace(vec3 eye, vec3 d)
 {
     const double t = hit_sphere(eye, d);
     if (t > 0.0) {
-        const vec3 at = along(eye, d, t);
-        return (struct hit){at, unit(along(at, center, -1.0)), t, true};
+        const vec3 at = vec3_along(eye, d, t);
+        return (struct hit){at, vec3_unit(vec3_sub(at, center)), t, true};
     }
     const double floor_t = -eye.z / d.z;
-    return (struct hit){along(eye, d, floor_t), {0.0, 0.0, 1.0}, floor_t, false};
+    return (struct hit){vec3_along(eye, d, floor_t), {0.0, 0.0, 1.0}, floor_t, false};
 }
 
 static void shade(const struct options *o, const struct hit *h, vec3 view, vec3 light, float rgb[3])
 {
     static const double sphere_albedo[3] = {0.8, 0.5, 0.3};
     const bool dark = ((int)floor(h->at.x * 4.0) + (int)floor(h->at.y * 4.0)) & 1;
-    const double n_l = dot(h->normal, light);
+    const double n_l = vec3_dot(h->normal, light);
     double diffuse = o->shade == WRAP ? 0.5 * (1.0 + n_l) : fmax(n_l, 0.0), lobe = 0.0;
     if (o->shade == FULL && !h->sphere && hit_sphere(h->at, light) > 0.0)
         diffuse = 0.0;
     if (o->shade == FULL && h->sphere && n_l > 0.0) {
         const vec3 mirrored =
-            along(along((vec3){0.0, 0.0, 0.0}, light, -1.0), h->normal, 2.0 * n_l);
-        lobe = 0.5 * pow(fmax(-dot(mirrored, view), 0.0), 20.0);
+            vec3_along(vec3_sub((vec3){0.0, 0.0, 0.0}, light), h->normal, 2.0 * n_l);
+        lobe = 0.5 * pow(fmax(-vec3_dot(mirrored, view), 0.0), 20.0);
     }
     for (int c = 0; c < 3; c++) {
         const double albedo = !h->sphere ? dark ? 0.35 : 0.6 : sphere_albedo[o->grey ? 1 : c];
@@ -95,7 +79,7 @@ static void ray(const struct options *o, const double uv[2], int x, int y, vec3 
     const double s = -1.0 + 2.0 * (x + 0.5) / o->size, t = 1.0 - 2.0 * (y + 0.5) / o->size;
     if (o->views) {
         *eye = (vec3){uv[0], uv[1], uv_z};
-        *d = unit((vec3){s - uv[0], t - uv[1], -uv_z});
+        *d = vec3_unit((vec3){s - uv[0], t - uv[1], -uv_z});
     } else {
         *eye = (vec3){s, t, camera_z};
         *d = (vec3){0.0, 0.0, -1.0};

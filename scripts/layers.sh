@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 
 # folder: private folders it may include | public headers it may include (* = all)
 rules="base::base io context
-math:base:base
+math:base:base vec
 geometry:base math:base capture
 image:base math:base io image photograph response
 compare:base math image:base image
@@ -39,7 +39,7 @@ helper:base image mesh:base
 program::base image
 cli:program:*
 cli/commands:commands program:*
-viewer/common::base
+viewer/common::base vec
 viewer/app:common program:*
 viewer/gl:common program:base image
 viewer/relit:common program app gl:*

@@ -17,17 +17,6 @@ struct bump {
     struct relume_vec3 normal_of_plane;
 };
 
-static inline double bump_dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static inline struct relume_vec3 bump_unit(struct relume_vec3 a)
-{
-    const double s = 1.0 / sqrt(bump_dot(a, a));
-    return (struct relume_vec3){a.x * s, a.y * s, a.z * s};
-}
-
 static inline struct relume_vec3 bump_light(int i)
 {
     const double z = 0.45 + 0.5 * (i + 0.5) / BUMP_LIGHTS, r = sqrt(1.0 - z * z);
@@ -51,11 +40,11 @@ static inline double bump_height(struct relume_vec3 p)
 static inline struct relume_vec3 bump_normal(const struct bump *s, struct relume_vec3 p)
 {
     if (s->flat)
-        return bump_unit(s->normal_of_plane);
+        return vec3_unit(s->normal_of_plane);
     const double a = cos(M_PI / 2 * p.x), b = cos(M_PI / 2 * p.y);
     const double dx = -0.25 * M_PI * a * sin(M_PI / 2 * p.x) * b * b;
     const double dy = -0.25 * M_PI * b * sin(M_PI / 2 * p.y) * a * a;
-    return bump_unit((struct relume_vec3){-dx, -dy, 1.0});
+    return vec3_unit((struct relume_vec3){-dx, -dy, 1.0});
 }
 
 static inline double bump_value(const struct bump *s, int light, int x, int y)
@@ -65,16 +54,16 @@ static inline double bump_value(const struct bump *s, int light, int x, int y)
     double fall = s->brightness ? s->brightness[light] : 1.0;
     if (s->near) {
         l = (struct relume_vec3){3.0 * d.x - p.x, 3.0 * d.y - p.y, 3.0 * d.z - p.z};
-        fall *= s->no_falloff ? 1.0 : 9.0 / bump_dot(l, l);
-        l = bump_unit(l);
+        fall *= s->no_falloff ? 1.0 : 9.0 / vec3_dot(l, l);
+        l = vec3_unit(l);
     }
     const int odd = (7 * x + 13 * y) % BUMP_LIGHTS;
     if (s->shadows && (light == odd || light == (odd + 5) % BUMP_LIGHTS))
         return 0.0;
     const double gloss = s->gloss > 0.0 && light == (odd + 3) % BUMP_LIGHTS ? s->gloss : 0.0;
-    const struct relume_vec3 h = bump_unit((struct relume_vec3){l.x, l.y, l.z + 1.0});
-    const double shine = s->shine * pow(fmax(bump_dot(n, h), 0.0), 15.0);
-    return fall * (0.7 * fmax(bump_dot(n, l), 0.0) + gloss + shine);
+    const struct relume_vec3 h = vec3_unit((struct relume_vec3){l.x, l.y, l.z + 1.0});
+    const double shine = s->shine * pow(fmax(vec3_dot(n, h), 0.0), 15.0);
+    return fall * (0.7 * fmax(vec3_dot(n, l), 0.0) + gloss + shine);
 }
 
 // FOLDER/capture.json and its images.

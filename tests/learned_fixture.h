@@ -14,15 +14,10 @@ struct learned {
     float *planes;   // [planes][LEARNED_PIXELS]
 };
 
-static inline double learned_dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 // White Lambertian in green; red has a highlight on top, blue is half as bright.
 static inline void learned_value(float rgb[3], struct relume_vec3 normal, struct relume_vec3 light)
 {
-    const double c = fmax(learned_dot(normal, light), 0.0);
+    const double c = fmax(vec3_dot(normal, light), 0.0);
     rgb[0] = (float)(c + 0.3 * pow(c, 20.0));
     rgb[1] = (float)c;
     rgb[2] = (float)(0.5 * c);

@@ -3,6 +3,7 @@
 #define MADE_BALL_H
 
 #include <math.h>
+#define RELUME_VEC3_SHORT
 #include <relume/relume.h>
 #include <stdlib.h>
 
@@ -21,19 +22,6 @@ struct made_scene {
     double table;               // z of a table that the balls stand on; 0: cloth without end
 };
 
-static inline struct relume_vec3 made_add(struct relume_vec3 a, struct relume_vec3 b, double s)
-{
-    return (struct relume_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
-}
-static inline double made_dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-static inline struct relume_vec3 made_unit(struct relume_vec3 a)
-{
-    return made_add((struct relume_vec3){0, 0, 0}, a, 1.0 / sqrt(made_dot(a, a)));
-}
-
 static inline void made_ray(const struct made_scene *s, double x, double y,
                             struct relume_vec3 *from, struct relume_vec3 *ray)
 {
@@ -45,34 +33,34 @@ static inline void made_ray(const struct made_scene *s, double x, double y,
         return;
     }
     *from = (struct relume_vec3){0, 0, 1.0 / tan(s->fov_deg * M_PI / 360.0)};
-    *ray = made_unit(made_add(on, *from, -1.0));
+    *ray = vec3_unit(vec3_sub(on, *from));
 }
 
 // Whether the ray meets ball `b`, where and with which normal.
 static inline bool made_hit(const struct made_scene *s, int b, struct relume_vec3 from,
                             struct relume_vec3 ray, struct relume_vec3 *at, struct relume_vec3 *n)
 {
-    const struct relume_vec3 to = made_add(s->middle[b], from, -1.0);
-    const double along = made_dot(to, ray), r = s->radius[b];
-    const double inside = along * along - made_dot(to, to) + r * r;
+    const struct relume_vec3 to = vec3_sub(s->middle[b], from);
+    const double along = vec3_dot(to, ray), r = s->radius[b];
+    const double inside = along * along - vec3_dot(to, to) + r * r;
     if (inside <= 0.0)
         return false;
-    *at = made_add(from, ray, along - sqrt(inside));
-    *n = made_unit(made_add(*at, s->middle[b], -1.0));
+    *at = vec3_along(from, ray, along - sqrt(inside));
+    *n = vec3_unit(vec3_sub(*at, s->middle[b]));
     return true;
 }
 
 static inline struct relume_vec3 made_towards(const struct made_scene *s, struct relume_vec3 lamp,
                                               struct relume_vec3 at)
 {
-    return made_unit(s->distant ? lamp : made_add(lamp, at, -1.0));
+    return vec3_unit(s->distant ? lamp : vec3_sub(lamp, at));
 }
 
 // A lamp that looks 3 degrees wide in the mirror.
 static inline double made_glint(const struct made_scene *s, struct relume_vec3 lamp,
                                 struct relume_vec3 at, struct relume_vec3 mirrored)
 {
-    return made_dot(made_towards(s, lamp, at), mirrored) > cos(1.5 * M_PI / 180.0) ? s->brightness
+    return vec3_dot(made_towards(s, lamp, at), mirrored) > cos(1.5 * M_PI / 180.0) ? s->brightness
                                                                                    : 0.0;
 }
 
@@ -81,7 +69,7 @@ static inline double made_glint(const struct made_scene *s, struct relume_vec3 l
 static inline double made_table(const struct made_scene *s, struct relume_vec3 from,
                                 struct relume_vec3 ray)
 {
-    const struct relume_vec3 at = made_add(from, ray, (s->table - from.z) / ray.z);
+    const struct relume_vec3 at = vec3_along(from, ray, (s->table - from.z) / ray.z);
     const struct relume_vec3 lamp = made_towards(s, s->lamp, at);
     const double far = hypot(at.x, at.y);
     double light = fmax(lamp.z, 0.0);
@@ -98,12 +86,12 @@ static inline double made_shade(const struct made_scene *s, struct relume_vec3 r
                                 struct relume_vec3 at, struct relume_vec3 n)
 {
     if (s->matte)
-        return s->brightness * fmax(made_dot(n, made_towards(s, s->lamp, at)), 0.0);
-    const struct relume_vec3 mirrored = made_add(ray, n, -2.0 * made_dot(ray, n));
+        return s->brightness * fmax(vec3_dot(n, made_towards(s, s->lamp, at)), 0.0);
+    const struct relume_vec3 mirrored = vec3_along(ray, n, -2.0 * vec3_dot(ray, n));
     if (s->table < 0.0 && mirrored.z < 0.0)
         return 0.7 * made_table(s, at, mirrored);
     double v = 0.01 + 0.01 * mirrored.y + made_glint(s, s->lamp, at, mirrored);
-    if (made_dot(s->second, s->second) > 0.0)
+    if (vec3_dot(s->second, s->second) > 0.0)
         v += made_glint(s, s->second, at, mirrored);
     return v;
 }

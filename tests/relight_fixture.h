@@ -111,8 +111,7 @@ static inline double closed_form(const struct setup *s, int pixel, int c, struct
 
 static inline struct relume_vec3 unit(double x, double y, double z)
 {
-    const double r = sqrt(x * x + y * y + z * z);
-    return (struct relume_vec3){x / r, y / r, z / r};
+    return vec3_unit(vec3_of(x, y, z));
 }
 
 // Single precision sums of a few values near 1: 1e-6.

@@ -11,6 +11,8 @@
 
 #include <math.h>
 #include <relume/relume.h>
+#define RELUME_VEC3_SHORT
+#include <relume/vec.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -40,6 +40,7 @@
 #include <relume/slab_set.h>
 #include <relume/surface.h>
 #include <relume/tone.h>
+#include <relume/vec.h>
 #include <relume/view.h>
 #include <relume/ingest.h>
 

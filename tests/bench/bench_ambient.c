@@ -7,6 +7,7 @@
 // of the one orientation (relume_btf_oriented_light), of a wall that faces +z; `plane, any` and
 // `ball` are relume_btf_environment on that wall and over orientations all around, the latter
 // relative to all of them.
+#define RELUME_VEC3_SHORT
 #include <relume/relume.h>
 
 #include <math.h>
@@ -26,19 +27,7 @@ static void must(relume_status status, const char *what)
 
 static struct relume_vec3 unit(double x, double y, double z)
 {
-    const double length = sqrt(x * x + y * y + z * z);
-    return (struct relume_vec3){x / length, y / length, z / length};
-}
-
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-                                a.x * b.y - a.y * b.x};
+    return vec3_unit(vec3_of(x, y, z));
 }
 
 // Number 0 faces +z with x right; the others spiral over the sphere.
@@ -48,9 +37,9 @@ static struct relume_btf_frame frame_of(int i)
         return (struct relume_btf_frame){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double y = 1.0 - 2.0 * (i - 0.5) / (NORMALS - 1), turn = 2.399963 * i;
     const struct relume_vec3 n = unit(sqrt(1 - y * y) * cos(turn), y, sqrt(1 - y * y) * sin(turn));
-    const struct relume_vec3 side = cross((struct relume_vec3){0, 1, 0}, n);
+    const struct relume_vec3 side = vec3_cross((struct relume_vec3){0, 1, 0}, n);
     const struct relume_vec3 right = unit(side.x, side.y, side.z);
-    return (struct relume_btf_frame){right, cross(n, right), n};
+    return (struct relume_btf_frame){right, vec3_cross(n, right), n};
 }
 
 struct trial {
@@ -78,8 +67,8 @@ static void brute(const struct trial *t, double rgb[TEXELS][3])
     memset(rgb, 0, TEXELS * sizeof *rgb);
     for (int i = 0; i < n; i++) {
         const struct relume_vec3 d = cell[i].direction;
-        const struct relume_vec3 l = {dot(d, t->frame.right), dot(d, t->frame.up),
-                                      dot(d, t->frame.normal)};
+        const struct relume_vec3 l = {vec3_dot(d, t->frame.right), vec3_dot(d, t->frame.up),
+                                      vec3_dot(d, t->frame.normal)};
         for (int k = 0; k < TEXELS && l.z > 0.0; k++) {
             float value[3];
             int x, y;

@@ -1,6 +1,7 @@
 // The viewer's state machine, options and scripts; no OpenGL
 #include "app/app.h"
 #include "app/events.h"
+#include "common/vec.h"
 #include "app/frame_request.h"
 #include "app/gizmo.h"
 #include "app/keys.h"
@@ -1258,11 +1259,6 @@ static void near_lights_turn_about_the_middle(void **state)
     assert_float_equal(app.now.light[0].rotate_deg, 90, 1e-12);
 }
 
-static double dot3(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 static void kinds_become_one_another(void **state)
 {
     (void)state;
@@ -1278,15 +1274,15 @@ static void kinds_become_one_another(void **state)
         const struct relume_light *l = &app.now.light[0];
         assert_int_equal(relume_light_check(l, "light", &keep), RELUME_OK);
         assert_true(l->kind == kinds[i] && l->rgb[1] == 7);
-        assert_float_equal(dot3(lamps_direction(l, middle), from), 1, 1e-12);
+        assert_float_equal(vec3_dot(lamps_direction(l, middle), from), 1, 1e-12);
         if (kinds[i] == RELUME_LIGHT_DIRECTIONAL)
             continue;
         assert_float_equal(l->position.x, 4, 1e-12);
-        assert_float_equal(dot3(l->direction, from), -1, 1e-12);
+        assert_float_equal(vec3_dot(l->direction, from), -1, 1e-12);
         const struct relume_vec3 shines = {l->u.y * l->v.z - l->u.z * l->v.y,
                                            l->u.z * l->v.x - l->u.x * l->v.z,
                                            l->u.x * l->v.y - l->u.y * l->v.x};
-        assert_true(dot3(shines, from) < 0);
+        assert_true(vec3_dot(shines, from) < 0);
     }
 }
 

@@ -1,5 +1,6 @@
 // Several slabs in the viewer: frames against the library's, and the eye on its way around
 #include "app/events.h"
+#include "common/vec.h"
 #include "fixture.h"
 #include "request.h"
 
@@ -251,11 +252,6 @@ static void only_needed_views_are_relit(void **state)
 
 // ---------------------------------------------------------------- the way around
 
-static double length_of(struct relume_vec3 v)
-{
-    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
 static void send(struct app *app, enum app_event_kind kind, double x, double y)
 {
     app_handle(app, &(struct app_event){.kind = kind, .x = x, .y = y});
@@ -268,7 +264,7 @@ static void a_drag_turns_the_object(void **state)
     struct around t = {0};
     open_app(&t);
     struct app *app = &t.app;
-    const double away = length_of(app->now.camera.eye);
+    const double away = vec3_length(app->now.camera.eye);
     app->now.camera.eye = (struct relume_vec3){0, 0, away};
     send(app, APP_PRESS, 10, 15);
     send(app, APP_MOVE, 10 + H / 2.0, 15);
@@ -281,7 +277,7 @@ static void a_drag_turns_the_object(void **state)
     assert_true(fabs(app->now.camera.eye.y - away * sin(atan(rows[1] / 3))) < 1e-4);
     send(app, APP_MOVE, 10 + 0.75 * H, 15 + 10.0 * H);
     assert_true(fabs(app->now.camera.eye.y - away * sin(atan(rows[1] / 3 * sqrt(0.5)))) < 1e-4);
-    assert_true(fabs(length_of(app->now.camera.eye) - away) < 1e-9);
+    assert_true(fabs(vec3_length(app->now.camera.eye) - away) < 1e-9);
     struct relume_window window;
     assert_true(app_window(app, &window));
     close_app(&t);
@@ -321,12 +317,12 @@ static void the_wheel_dollies(void **state)
     (void)state;
     struct around t = {0};
     open_app(&t);
-    const double captured = length_of(relume_slab_set_eye(t.slabs, 0));
+    const double captured = vec3_length(relume_slab_set_eye(t.slabs, 0));
     app_handle(&t.app, &(struct app_event){.kind = APP_WHEEL, .wheel = 1, .x = 3, .y = 3});
-    assert_true(fabs(length_of(t.app.now.camera.eye) - captured / 1.1) < 1e-9);
+    assert_true(fabs(vec3_length(t.app.now.camera.eye) - captured / 1.1) < 1e-9);
     for (int i = 0; i < 100; i++)
         app_handle(&t.app, &(struct app_event){.kind = APP_WHEEL, .wheel = -1});
-    assert_true(fabs(length_of(t.app.now.camera.eye) - 4 * captured) < 1e-9);
+    assert_true(fabs(vec3_length(t.app.now.camera.eye) - 4 * captured) < 1e-9);
     close_app(&t);
 }
 
@@ -346,7 +342,7 @@ static void handles_lie_on_their_lights(void **state)
     const struct relume_vec3 eye = app->now.camera.eye, ray = orbit_ray(app, g.x, g.y);
     const struct relume_vec3 d = {0.3 - eye.x, -0.4 - eye.y, 0.2 - eye.z};
     const double cosine =
-        (d.x * ray.x + d.y * ray.y + d.z * ray.z) / (length_of(d) * length_of(ray));
+        (d.x * ray.x + d.y * ray.y + d.z * ray.z) / (vec3_length(d) * vec3_length(ray));
     assert_true(fabs(cosine - 1) < 1e-12);
     gizmo_drag(app, 0, 12, 9);
     assert_true(gizmo_of(&g, app, 0));
@@ -407,7 +403,7 @@ static void keys_work_the_lens(void **state)
     struct around t = {0};
     open_app(&t);
     struct app *app = &t.app;
-    const double away = length_of(app->now.camera.eye);
+    const double away = vec3_length(app->now.camera.eye);
     press(app, 'a');
     assert_true(app->now.aperture > 0 && app->now.focus_z == 0);
     press(app, ',');

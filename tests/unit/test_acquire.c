@@ -56,8 +56,8 @@ static void check_positions(double fov_deg, double tolerance)
     CHECK_OK(relume_acquire(&acquisition, p.out, &params));
     assert_int_equal(acquisition.lights, LAMPS);
     for (int i = 0; i < LAMPS; i++) {
-        const struct relume_vec3 off = made_add(acquisition.position[i], lamp_at(i, 3.0), -1.0);
-        squares += made_dot(off, off) / LAMPS;
+        const struct relume_vec3 off = vec3_sub(acquisition.position[i], lamp_at(i, 3.0));
+        squares += vec3_dot(off, off) / LAMPS;
     }
     CHECK_NEAR(sqrt(squares) / 3.0, 0.0, tolerance);
     assert_true(acquisition.position_error < 0.05);
@@ -173,7 +173,7 @@ static void check_table(double fov_deg, struct relume_vec3 middle, bool matte, d
     params.matte = matte;
     CHECK_OK(relume_acquire(&acquisition, p.out, &params));
     for (int i = 0; i < LAMPS; i++) {
-        const double cosine = made_dot(acquisition.direction[i], lamp_at(i, 1.0));
+        const double cosine = vec3_dot(acquisition.direction[i], lamp_at(i, 1.0));
         squares += (2.0 - 2.0 * cosine) / LAMPS;
     }
     CHECK_NEAR(sqrt(squares) * 180.0 / M_PI, 0.0, tolerance);
@@ -357,8 +357,8 @@ static void a_camera_on_the_lamp(void **state)
     write_model(p.folder, LAMPS);
     CHECK_OK(relume_acquire(&acquisition, p.out, &params));
     for (int i = 0; i < LAMPS; i++) {
-        const struct relume_vec3 off = made_add(acquisition.position[i], lamp_at(i, 2.0), -1.0);
-        CHECK_NEAR(made_dot(off, off), 0.0, 1e-12);
+        const struct relume_vec3 off = vec3_sub(acquisition.position[i], lamp_at(i, 2.0));
+        CHECK_NEAR(vec3_dot(off, off), 0.0, 1e-12);
     }
     relume_capture *capture;
     CHECK_OK(relume_capture_open(&capture, p.out, NULL));

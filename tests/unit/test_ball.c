@@ -6,7 +6,7 @@ enum { LAMPS = 6 };
 
 static double angle_deg(struct relume_vec3 a, struct relume_vec3 b)
 {
-    return acos(fmin(fmax(made_dot(made_unit(a), made_unit(b)), -1.0), 1.0)) * 180.0 / M_PI;
+    return acos(fmin(fmax(vec3_dot(vec3_unit(a), vec3_unit(b)), -1.0), 1.0)) * 180.0 / M_PI;
 }
 
 static struct relume_vec3 lamp_direction(int i)
@@ -29,7 +29,7 @@ static void shoot(struct relume_image photo[LAMPS], struct relume_image *mean,
     CHECK_OK(relume_image_create(mean, MADE_WIDTH, MADE_HEIGHT, 1));
     CHECK_OK(relume_image_create(peak, MADE_WIDTH, MADE_HEIGHT, 1));
     for (int i = 0; i < LAMPS; i++) {
-        s.lamp = made_add((struct relume_vec3){0, 0, 0}, lamp_direction(i), distance);
+        s.lamp = vec3_scale(lamp_direction(i), distance);
         CHECK_OK(made_photograph(&photo[i], &s, 0.004));
         for (int k = 0; k < MADE_WIDTH * MADE_HEIGHT; k++) {
             mean->data[k] += logf(photo[i].data[3 * k] + 2e-4f) / LAMPS;
@@ -151,12 +151,12 @@ static void positions(void **state)
             CHECK_OK(relume_ball_mirror(&l, &ball[b], &camera, &photo[i]));
             const struct relume_vec3 middle = {2.0 * ball[b].x / MADE_WIDTH - 1.0,
                                                (MADE_HEIGHT - 2.0 * ball[b].y) / MADE_WIDTH, 0.0};
-            origin[b] = made_add(middle, l.origin, 2.0 * ball[b].radius / MADE_WIDTH);
+            origin[b] = vec3_along(middle, l.origin, 2.0 * ball[b].radius / MADE_WIDTH);
             direction[b] = l.direction;
         }
         CHECK_OK(relume_light_triangulate(&found, &sigma, origin, direction, 3));
-        const struct relume_vec3 off = made_add(found, lamp_direction(i), -distance);
-        squares += made_dot(off, off) / LAMPS;
+        const struct relume_vec3 off = vec3_along(found, lamp_direction(i), -distance);
+        squares += vec3_dot(off, off) / LAMPS;
     }
     CHECK_NEAR(sqrt(squares) / distance, 0.0, 0.02);  // the target: 2 % of the distance
     drop(photo, &mean, &peak);

@@ -17,7 +17,7 @@ static double table_error(const struct bump *s, double least)
         for (size_t k = 0; k < pixels; k++) {
             const struct relume_vec3 n =
                 bump_normal(s, bump_point((int)k % BUMP_SIDE, (int)k / BUMP_SIDE));
-            const double want = 0.7 * bump_dot(n, bump_light(i));
+            const double want = 0.7 * vec3_dot(n, bump_light(i));
             if (want > 0.7 * least)
                 worst = fmax(worst, fabs((double)v[3 * ((size_t)i * pixels + k)] - want));
         }
@@ -101,7 +101,7 @@ static struct relume_vec3 pano_ray(enum relume_projection p, int x, int y)
     const double e = (90 - (y + 0.5) / PANO_HIGH * 180) * M_PI / 180;
     return p == RELUME_SPHERICAL
                ? (struct relume_vec3){cos(e) * sin(phi), sin(e), -cos(e) * cos(phi)}
-               : bump_unit(
+               : vec3_unit(
                      (struct relume_vec3){sin(phi), 1 - 2 * (y + 0.5) / PANO_HIGH, -cos(phi)});
 }
 
@@ -110,8 +110,8 @@ static double pano_value(struct relume_vec3 ray, bool falls)
     const struct relume_vec3 to = {pano_lamp.x - pano_eye.x - 2 * ray.x,
                                    pano_lamp.y - pano_eye.y - 2 * ray.y,
                                    pano_lamp.z - pano_eye.z - 2 * ray.z};
-    const double cosine = -bump_dot(bump_unit(to), ray);
-    return 0.7 * cosine * (falls ? bump_dot(pano_lamp, pano_lamp) / bump_dot(to, to) : 1.0);
+    const double cosine = -vec3_dot(vec3_unit(to), ray);
+    return 0.7 * cosine * (falls ? vec3_dot(pano_lamp, pano_lamp) / vec3_dot(to, to) : 1.0);
 }
 
 static void write_panorama(enum relume_projection p, bool depth, const char *folder)
@@ -119,7 +119,7 @@ static void write_panorama(enum relume_projection p, bool depth, const char *fol
     struct relume_image image, far;
     char path[128];
     const char *images[] = {"l.exr"};
-    const struct relume_vec3 direction = bump_unit(pano_lamp);
+    const struct relume_vec3 direction = vec3_unit(pano_lamp);
     CHECK_OK(relume_image_create(&image, PANO_WIDE, PANO_HIGH, 3));
     CHECK_OK(relume_image_create(&far, PANO_WIDE, PANO_HIGH, 1));
     for (int i = 0; i < PANO_WIDE * PANO_HIGH; i++) {

@@ -37,7 +37,7 @@ static void test_solid_angles(void **state)
         assert_true(n <= 256 * 128);
         for (int k = 0; k < n; k++) {
             const struct relume_vec3 d = cell[k].direction;
-            CHECK_NEAR(learned_dot(d, d), 1, 1e-9);
+            CHECK_NEAR(vec3_dot(d, d), 1, 1e-9);
             sum += (double)cell[k].rgb[1];
             x += (double)cell[k].rgb[1] * d.x;
             y += (double)cell[k].rgb[1] * d.y;
@@ -274,11 +274,11 @@ static void test_sampling(void **state)
                 relume_environment_turn(cell[i].direction, light.rotate_deg);
             const double v = (double)cell[i].rgb[c] * (double)light.rgb[c];
             total += v;
-            want += v * fmax(learned_dot(n, d), 0);
+            want += v * fmax(vec3_dot(n, d), 0);
         }
         for (int i = 0; i < N; i++) {
             drawn += (double)out[i].rgb[c];
-            lit += (double)out[i].rgb[c] * fmax(learned_dot(n, out[i].direction), 0);
+            lit += (double)out[i].rgb[c] * fmax(vec3_dot(n, out[i].direction), 0);
         }
         CHECK_NEAR(drawn / total, 1, 1e-5);  // floats
         CHECK_NEAR(lit / want, 1, 0.02);     // N^-1/2 would be 0.016 unstratified

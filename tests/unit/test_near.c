@@ -302,7 +302,7 @@ static void reference(double rgb[3], const struct setup *s, int pixel,
         const struct relume_vec3 n = {l->u.y * l->v.z - l->u.z * l->v.y,
                                       l->u.z * l->v.x - l->u.x * l->v.z,
                                       l->u.x * l->v.y - l->u.y * l->v.x};
-        const double square = learned_dot(d, d), cosine = -learned_dot(d, n) / sqrt(square);
+        const double square = vec3_dot(d, d), cosine = -vec3_dot(d, n) / sqrt(square);
         double one[3];
         lamp.direction = d;
         for (int c = 0; c < 3; c++)

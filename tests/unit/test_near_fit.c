@@ -18,7 +18,7 @@ static double reflectance(int x, int y, int channel, struct relume_vec3 d)
 static struct relume_vec3 towards(int light, int x, int y)
 {
     const struct relume_vec3 p = bump_point(x, y), d = bump_light(light);
-    return bump_unit((struct relume_vec3){3 * d.x - p.x, 3 * d.y - p.y, 3 * d.z - p.z});
+    return vec3_unit((struct relume_vec3){3 * d.x - p.x, 3 * d.y - p.y, 3 * d.z - p.z});
 }
 
 static relume_capture *open_quadratic(char folder[64])
@@ -148,7 +148,7 @@ static void matte_planes_stay_exact(void **state)
     const struct bump s = {.near = true, .flat = true, .normal_of_plane = {0.05, -0.03, 1}};
     char folder[64];
     relume_capture *capture = bump_open(&s, folder);
-    const struct relume_vec3 n = bump_unit(s.normal_of_plane);
+    const struct relume_vec3 n = vec3_unit(s.normal_of_plane);
     for (size_t b = 0; b < sizeof cases / sizeof *cases; b++) {
         relume_coder *coder =
             make_coder(capture, cases[b].basis, cases[b].coefficients, cases[b].luminance);
@@ -159,7 +159,7 @@ static void matte_planes_stay_exact(void **state)
             for (int i = 0; i < BUMP_LIGHTS; i++)
                 for (int k = 0; k < PIXELS; k++) {
                     const double d = value(coder, planes, k, 0, bump_light(i)) -
-                                     0.7 * bump_dot(n, bump_light(i));
+                                     0.7 * vec3_dot(n, bump_light(i));
                     *(of_own ? &own : &carried) += d * d / (PIXELS * BUMP_LIGHTS);
                 }
         }

@@ -67,11 +67,6 @@ static void free_file(struct table_file *f)
     free(f->offset);
 }
 
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 // The front of a sphere, out to 60 degrees.
 static struct relume_vec3 sphere_normal(int pixel)
 {
@@ -92,10 +87,11 @@ static float *make_samples(const struct relume_vec3 *light, bool spoiled)
             const struct relume_vec3 n = sphere_normal((int)i);
             const struct relume_vec3 h = {light[k].x, light[k].y, light[k].z + 1};
             const bool shadow = spoiled && test_random(&random) % 5 == 0;
-            const double lobe = spoiled ? pow(fmax(dot(n, h) / sqrt(dot(h, h)), 0), 200) : 0;
+            const double lobe =
+                spoiled ? pow(fmax(vec3_dot(n, h) / sqrt(vec3_dot(h, h)), 0), 200) : 0;
             for (int c = 0; c < 3; c++)
                 samples[3 * ((size_t)k * pixels + i) + (size_t)c] =
-                    shadow ? 0.01f : (float)(albedo[c] * fmax(dot(n, light[k]), 0) + lobe);
+                    shadow ? 0.01f : (float)(albedo[c] * fmax(vec3_dot(n, light[k]), 0) + lobe);
         }
     return samples;
 }
@@ -106,8 +102,8 @@ static double worst_degrees(const struct relume_normals *normals, double *median
     for (int i = 0; i < SIDE * SIDE; i++) {
         const float *g = normals->normal.data + 3 * i;
         const struct relume_vec3 got = {(double)g[0], (double)g[1], (double)g[2]};
-        CHECK_NEAR(dot(got, got), 1.0, 1e-5);
-        angle[i] = acos(fmin(dot(got, sphere_normal(i)), 1.0)) * 180 / M_PI;
+        CHECK_NEAR(vec3_dot(got, got), 1.0, 1e-5);
+        angle[i] = acos(fmin(vec3_dot(got, sphere_normal(i)), 1.0)) * 180 / M_PI;
         most = fmax(most, angle[i]);
     }
     for (int i = 0; i < SIDE * SIDE; i++)  // a short sort

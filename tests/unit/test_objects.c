@@ -101,8 +101,7 @@ static void frames_follow_the_texture(void **state)
 
 static struct relume_vec3 unit(double x, double y, double z)
 {
-    const double length = sqrt(x * x + y * y + z * z);
-    return (struct relume_vec3){x / length, y / length, z / length};
+    return vec3_unit(vec3_of(x, y, z));
 }
 
 // Every pixel of a flat sample is what the sample shows in that place from there; on the mirrored

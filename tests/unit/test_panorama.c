@@ -56,8 +56,7 @@ static double distance(vec3 a, vec3 b)
 
 static vec3 unit(double x, double y, double z)
 {
-    const double length = sqrt(x * x + y * y + z * z);
-    return (vec3){x / length, y / length, z / length};
+    return vec3_unit(vec3_of(x, y, z));
 }
 
 static void assert_vec3(vec3 got, double x, double y, double z)

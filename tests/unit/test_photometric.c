@@ -11,7 +11,7 @@ static double error_of(const struct relume_image *normal, const struct bump *s)
         const float *n = normal->data + 3 * k;
         const struct relume_vec3 found = {(double)n[0], (double)n[1], (double)n[2]};
         const struct relume_vec3 want = bump_normal(s, bump_point(k % BUMP_SIDE, k / BUMP_SIDE));
-        sum += acos(fmin(bump_dot(found, want), 1.0)) * 180.0 / M_PI;
+        sum += acos(fmin(vec3_dot(found, want), 1.0)) * 180.0 / M_PI;
     }
     return sum / (BUMP_SIDE * BUMP_SIDE);
 }
@@ -157,9 +157,9 @@ static void refined_lights(void **state)
     char name[BUMP_LIGHTS][32];
     for (int i = 0; i < BUMP_LIGHTS; i++) {
         const struct relume_vec3 d = bump_light(i);
-        wrong[i] = refined[i] = bump_unit((struct relume_vec3){
+        wrong[i] = refined[i] = vec3_unit((struct relume_vec3){
             d.x + 0.05 * sin(5.0 * i), d.y + 0.05 * cos(11.0 * i), d.z + 0.05 * sin(17.0 * i)});
-        before += acos(bump_dot(wrong[i], d)) * 180.0 / M_PI / BUMP_LIGHTS;
+        before += acos(vec3_dot(wrong[i], d)) * 180.0 / M_PI / BUMP_LIGHTS;
         snprintf(name[i], sizeof name[i], "l%d.exr", i);
         names[i] = name[i];
     }
@@ -172,7 +172,7 @@ static void refined_lights(void **state)
     CHECK_OK(relume_capture_open(&capture, path, NULL));
     CHECK_OK(relume_acquire_refine(refined, found, residual, capture, NULL));
     for (int i = 0; i < BUMP_LIGHTS; i++)
-        after += acos(fmin(bump_dot(refined[i], bump_light(i)), 1.0)) * 180.0 / M_PI / BUMP_LIGHTS;
+        after += acos(fmin(vec3_dot(refined[i], bump_light(i)), 1.0)) * 180.0 / M_PI / BUMP_LIGHTS;
     // What stays is the error that all lights share, a linear map fitted to 14 of them: the root of
     // 9 of 28 degrees of freedom, 0.57 of what there was.
     assert_true(after < 0.7 * before);
@@ -204,7 +204,7 @@ static void refined_brightness(void **state)
         CHECK_OK(relume_acquire_refine(direction, found, residual, capture,
                                        &(struct relume_acquire_refine_params){.brightness = true}));
         for (int i = 0; i < BUMP_LIGHTS; i++) {
-            CHECK_NEAR(bump_dot(direction[i], m->directions[i]), 1.0, 1e-12);
+            CHECK_NEAR(vec3_dot(direction[i], m->directions[i]), 1.0, 1e-12);
             CHECK_NEAR(found[i], brightness[i] / mean, tolerance[k]);
         }
         assert_true(residual[1] < 0.5 * residual[0]);
@@ -223,8 +223,8 @@ static struct relume_vec3 mistaken(enum common_error e, int i)
     if (e == TILTED)
         return (struct relume_vec3){d.x, c * d.y - s * d.z, s * d.y + c * d.z};
     if (e == STRETCHED)
-        return bump_unit((struct relume_vec3){1.08 * d.x, 0.93 * d.y, d.z});
-    return bump_unit((struct relume_vec3){d.x + 0.05 * sin(5.0 * i), d.y + 0.05 * cos(11.0 * i),
+        return vec3_unit((struct relume_vec3){1.08 * d.x, 0.93 * d.y, d.z});
+    return vec3_unit((struct relume_vec3){d.x + 0.05 * sin(5.0 * i), d.y + 0.05 * cos(11.0 * i),
                                           d.z + 0.05 * sin(17.0 * i)});
 }
 
@@ -254,8 +254,8 @@ static double refined_error(const struct bump *s, enum common_error e, bool inte
         refined, found, residual, capture,
         &(struct relume_acquire_refine_params){.integrable = integrable, .curl = curl}));
     for (int i = 0; i < BUMP_LIGHTS; i++) {
-        before += acos(fmin(bump_dot(given[i], bump_light(i)), 1.0));
-        after += acos(fmin(bump_dot(refined[i], bump_light(i)), 1.0));
+        before += acos(fmin(vec3_dot(given[i], bump_light(i)), 1.0));
+        after += acos(fmin(vec3_dot(refined[i], bump_light(i)), 1.0));
     }
     bump_close(&capture, folder);
     return after / before;

@@ -4,8 +4,6 @@
 #include "capture/manifest.h"
 #include "capture_fixture.h"
 
-typedef struct relume_vec3 vec3;
-
 static char folder[64], path[96], json[96];
 
 static int setup(void **state)

@@ -44,11 +44,6 @@ static const struct relume_viewport sights[] = {
 };
 enum { SIGHTS = sizeof sights / sizeof *sights };
 
-static struct relume_vec3 along(struct relume_vec3 a, double t, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.x + t * b.x, a.y + t * b.y, a.z + t * b.z};
-}
-
 // A point on the ray of a place appears there.
 static void check_places(void **state)
 {
@@ -60,7 +55,7 @@ static void check_places(void **state)
             double xy[2];
             relume_viewport_ray(&from, &ray, &sights[i], x, y);
             CHECK_NEAR(ray.x * ray.x + ray.y * ray.y + ray.z * ray.z, 1.0, 1e-12);
-            assert_true(relume_viewport_project(xy, &sights[i], along(from, 0.5 + k, ray)));
+            assert_true(relume_viewport_project(xy, &sights[i], vec3_along(from, ray, 0.5 + k)));
             CHECK_NEAR(xy[0], x, 1e-8);
             CHECK_NEAR(xy[1], y, 1e-8);
         }
@@ -72,10 +67,10 @@ static void check_behind(void **state)
     (void)state;
     struct relume_vec3 from, ray;
     relume_viewport_ray(&from, &ray, &sights[0], 20, 10);
-    assert_false(relume_viewport_project(xy, &sights[0], along(from, -1, ray)));
+    assert_false(relume_viewport_project(xy, &sights[0], vec3_sub(from, ray)));
     assert_false(relume_viewport_project(xy, &sights[0], from));
     relume_viewport_ray(&from, &ray, &sights[3], 20, 10);
-    assert_false(relume_viewport_project(xy, &sights[3], along(from, -1, ray)));
+    assert_false(relume_viewport_project(xy, &sights[3], vec3_sub(from, ray)));
 }
 
 // The area that a pixel's corners span on the unit sphere, to second order in its size.
@@ -87,7 +82,7 @@ static double spanned(const struct relume_viewport *s, double x, double y)
     relume_viewport_ray(&o, &b, s, x + h, y);
     relume_viewport_ray(&o, &c, s, x, y - h);
     relume_viewport_ray(&o, &d, s, x, y + h);
-    const struct relume_vec3 u = along(b, -1, a), v = along(d, -1, c);
+    const struct relume_vec3 u = vec3_sub(b, a), v = vec3_sub(d, c);
     const double n[3] = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / (4 * h * h);
 }

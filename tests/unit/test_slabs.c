@@ -10,23 +10,6 @@ static const double radius = 0.7;
 static const double uv_z = 3.0;
 static const double window = 1.3;
 
-typedef struct relume_vec3 vec3;
-
-static vec3 minus(vec3 a, vec3 b)
-{
-    return (vec3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-static vec3 along(vec3 from, vec3 way, double s)
-{
-    return (vec3){from.x + s * way.x, from.y + s * way.y, from.z + s * way.z};
-}
-
-static double dot(vec3 a, vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 // Where neighbours of the ring meet, on the uv plane.
 static double seam(void)
 {
@@ -53,13 +36,14 @@ static struct relume_geometry slab_of_ring(int i)
 // What the ray sees and how far away; black and infinity beside the ball.
 static double look(float rgb[3], vec3 eye, vec3 way)
 {
-    const double a = dot(way, way), b = dot(eye, way), c = dot(eye, eye) - radius * radius;
+    const double a = vec3_dot(way, way), b = vec3_dot(eye, way),
+                 c = vec3_dot(eye, eye) - radius * radius;
     const double root = b * b - a * c;
     rgb[0] = rgb[1] = rgb[2] = 0;
     if (root <= 0)
         return (double)INFINITY;
     const double s = (-b - sqrt(root)) / a;
-    const vec3 p = along(eye, way, s);
+    const vec3 p = vec3_along(eye, way, s);
     rgb[0] = (float)(0.5 + 0.3 * sin(5 * p.x));
     rgb[1] = (float)(0.5 + 0.3 * sin(5 * p.y + 1));
     rgb[2] = (float)(0.5 + 0.3 * sin(5 * p.z + 2));
@@ -68,7 +52,7 @@ static double look(float rgb[3], vec3 eye, vec3 way)
 
 static vec3 ray_of(const struct relume_window *w, double x, double y)
 {
-    return along(along(minus(w->corner, w->eye), w->right, x), w->down, y);
+    return vec3_along(vec3_along(vec3_sub(w->corner, w->eye), w->right, x), w->down, y);
 }
 
 static void render(struct relume_image *rgb, struct relume_image *depth,
@@ -162,8 +146,8 @@ static double difference(const struct relume_image *a, const struct relume_image
 static double depth_in_ball(const struct relume_window *w, int pixel)
 {
     const vec3 way = ray_of(w, (pixel % W + 0.5) / W, (pixel / W + 0.5) / W);
-    const double b = dot(w->eye, way);
-    return sqrt(dot(w->eye, w->eye) - b * b / dot(way, way)) / radius;
+    const double b = vec3_dot(w->eye, way);
+    return sqrt(vec3_dot(w->eye, w->eye) - b * b / vec3_dot(way, way)) / radius;
 }
 
 // Over the ball but its rim: silhouettes are a texel wide, and there are as many from every eye.
@@ -479,20 +463,20 @@ static double uniform(uint64_t *state)
 static struct relume_window random_pinhole(const struct relume_window *w, double aperture,
                                            double focus, uint64_t *random)
 {
-    const double away = sqrt(dot(w->eye, w->eye));  // windows here go through the origin
+    const double away = sqrt(vec3_dot(w->eye, w->eye));  // windows here go through the origin
     double x, y;
     do {
         x = 2 * uniform(random) - 1;
         y = 2 * uniform(random) - 1;
     } while (x * x + y * y > 1);
     const vec3 none = {0, 0, 0};
-    const double r = 0.5 * aperture, wide = sqrt(dot(w->right, w->right)),
-                 high = sqrt(dot(w->down, w->down)), near = 1 - focus / away;
+    const double r = 0.5 * aperture, wide = sqrt(vec3_dot(w->right, w->right)),
+                 high = sqrt(vec3_dot(w->down, w->down)), near = 1 - focus / away;
     return (struct relume_window){
-        .eye = along(along(w->eye, w->right, r * x / wide), w->down, r * y / high),
-        .corner = along(w->eye, minus(w->corner, w->eye), near),
-        .right = along(none, w->right, near),
-        .down = along(none, w->down, near),
+        .eye = vec3_along(vec3_along(w->eye, w->right, r * x / wide), w->down, r * y / high),
+        .corner = vec3_along(w->eye, vec3_sub(w->corner, w->eye), near),
+        .right = vec3_along(none, w->right, near),
+        .down = vec3_along(none, w->down, near),
     };
 }
 
@@ -630,14 +614,14 @@ static void pinholes_fill_the_lens(void **state)
         vec3 middle = {0, 0, 0};
         for (int i = 0; i < n; i++) {
             const struct relume_window from = relume_lens_window(&w, aperture, 0, i, n);
-            const vec3 off = minus(from.eye, w.eye);
-            assert_true(dot(off, off) < 0.25 * aperture * aperture);
-            CHECK_NEAR(dot(off, ray_of(&w, 0.5, 0.5)), 0, 1e-12);
-            square += dot(off, off) / n;
-            middle = along(middle, off, 1.0 / n);
+            const vec3 off = vec3_sub(from.eye, w.eye);
+            assert_true(vec3_dot(off, off) < 0.25 * aperture * aperture);
+            CHECK_NEAR(vec3_dot(off, ray_of(&w, 0.5, 0.5)), 0, 1e-12);
+            square += vec3_dot(off, off) / n;
+            middle = vec3_along(middle, off, 1.0 / n);
         }
         CHECK_NEAR(square, 0.125 * aperture * aperture, 1e-12);
-        assert_true(sqrt(dot(middle, middle)) < 0.06 * aperture);
+        assert_true(sqrt(vec3_dot(middle, middle)) < 0.06 * aperture);
         assert_true(n >= before);
         before = n;
     }
@@ -674,12 +658,12 @@ static void an_eye_before_a_slab_has_its_window(void **state)
     const struct relume_geometry *g = relume_slab_set_geometry(c.slabs, 1);
     const vec3 eye = relume_slab_set_eye(c.slabs, 1);
     const struct relume_window got = window_from(eye), want = relume_slab_window(g, eye);
-    const vec3 off[] = {minus(got.corner, want.corner), minus(got.right, want.right),
-                        minus(got.down, want.down)};
+    const vec3 off[] = {vec3_sub(got.corner, want.corner), vec3_sub(got.right, want.right),
+                        vec3_sub(got.down, want.down)};
     for (int i = 0; i < 3; i++)
-        assert_true(dot(off[i], off[i]) < 1e-24);
+        assert_true(vec3_dot(off[i], off[i]) < 1e-24);
     const vec3 middle = relume_slab_set_middle(c.slabs);
-    assert_true(dot(middle, middle) < 1e-24);
+    assert_true(vec3_dot(middle, middle) < 1e-24);
 }
 
 static void eyes_look_where_they_are_told(void **state)
@@ -718,11 +702,11 @@ static void the_nearest_view_is_found(void **state)
         const vec3 point = relume_pose_world(&g->pose, (vec3){0.5 * window, 0.25 * window, 0});
         int view;
         double at[2];
-        assert_true(relume_slab_set_nearest(&view, at, c.slabs, eye, minus(point, eye)));
+        assert_true(relume_slab_set_nearest(&view, at, c.slabs, eye, vec3_sub(point, eye)));
         assert_int_equal(view, i);
         CHECK_NEAR(at[0], 0.75, 1e-9);
         CHECK_NEAR(at[1], 0.375, 1e-9);
-        assert_false(relume_slab_set_nearest(&view, at, c.slabs, eye, minus(eye, point)));
+        assert_false(relume_slab_set_nearest(&view, at, c.slabs, eye, vec3_sub(eye, point)));
     }
 }
 

@@ -24,7 +24,7 @@ struct relume_vec3 app_seen_light(const struct app *app, int light)
 {
     const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
-    return (struct relume_vec3){vec_dot(d, a.right), vec_dot(d, a.up), vec_dot(d, a.back)};
+    return (struct relume_vec3){vec3_dot(d, a.right), vec3_dot(d, a.up), vec3_dot(d, a.back)};
 }
 
 void app_aim_light(struct app *app, int light, struct relume_vec3 seen)

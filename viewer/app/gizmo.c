@@ -48,11 +48,6 @@ static struct gizmo on_disc(const struct app *app, struct relume_vec3 d)
     };
 }
 
-static struct relume_vec3 add(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return vec_sub(a, vec_scale(b, -1.0));
-}
-
 bool gizmo_border(struct gizmo *out, const struct app *app, int step)
 {
     const struct relume_captured_region *z = app->file.zone;
@@ -61,11 +56,11 @@ bool gizmo_border(struct gizmo *out, const struct app *app, int step)
     const double phi = 2 * M_PI * step / RELUME_CAPTURED_REGION_STEPS;
     const double border = z->border[step % RELUME_CAPTURED_REGION_STEPS], r = sin(border);
     const struct relume_vec3 across =
-        add(vec_scale(z->right, r * cos(phi)), vec_scale(z->up, r * sin(phi)));
-    const struct relume_vec3 d = add(vec_scale(z->axis, cos(border)), across);
+        vec3_add(vec3_scale(z->right, r * cos(phi)), vec3_scale(z->up, r * sin(phi)));
+    const struct relume_vec3 d = vec3_add(vec3_scale(z->axis, cos(border)), across);
     const struct app_axes a = app_frame_axes(app);
-    *out = on_disc(app,
-                   (struct relume_vec3){vec_dot(d, a.right), vec_dot(d, a.up), vec_dot(d, a.back)});
+    *out = on_disc(
+        app, (struct relume_vec3){vec3_dot(d, a.right), vec3_dot(d, a.up), vec3_dot(d, a.back)});
     return true;
 }
 
@@ -130,13 +125,13 @@ static void drag_before_window(struct relume_vec3 *p, const struct app *app, dou
 static bool place_in_look(double xy[2], const struct app *app, struct relume_vec3 p)
 {
     const struct app_axes a = app_frame_axes(app);
-    const struct relume_vec3 d = vec_sub(p, app_middle(app));
-    const double ahead = -vec_dot(d, a.back);
+    const struct relume_vec3 d = vec3_sub(p, app_middle(app));
+    const double ahead = -vec3_dot(d, a.back);
     const double scale = 0.5 * app->width * app->now.camera.look.zoom / ahead;
     if (!(ahead > 1e-9))
         return false;
-    xy[0] = 0.5 * app->width + scale * vec_dot(d, a.right);
-    xy[1] = 0.5 * app->height - scale * vec_dot(d, a.up);
+    xy[0] = 0.5 * app->width + scale * vec3_dot(d, a.right);
+    xy[1] = 0.5 * app->height - scale * vec3_dot(d, a.up);
     return true;
 }
 
@@ -144,7 +139,7 @@ static void drag_in_look(struct relume_vec3 *p, const struct app *app, double x,
 {
     const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 middle = app_middle(app);
-    const double ahead = -vec_dot(vec_sub(*p, middle), a.back);
+    const double ahead = -vec3_dot(vec3_sub(*p, middle), a.back);
     const double scale = ahead / (0.5 * app->width * app->now.camera.look.zoom);
     const double right = scale * (x - 0.5 * app->width);
     const double up = scale * (0.5 * app->height - y);
@@ -159,7 +154,7 @@ static bool place_unfolded(double xy[2], const struct app *app, struct relume_ve
 {
     const struct app_rectangle r = app_picture(app);
     if (!relume_panorama_pixel(xy, &app->file.geometry, app->file.width, app->file.height,
-                               vec_sub(p, app_middle(app))))
+                               vec3_sub(p, app_middle(app))))
         return false;
     xy[0] = r.left + xy[0] / app->file.width * (r.right - r.left);
     xy[1] = r.top + xy[1] / app->file.height * (r.bottom - r.top);
@@ -170,8 +165,8 @@ static void drag_unfolded(struct relume_vec3 *p, const struct app *app, double x
 {
     const struct app_rectangle r = app_picture(app);
     const struct relume_vec3 middle = app_middle(app);
-    const struct relume_vec3 was = vec_sub(*p, middle);
-    const double far = sqrt(vec_dot(was, was));
+    const struct relume_vec3 was = vec3_sub(*p, middle);
+    const double far = sqrt(vec3_dot(was, was));
     const struct relume_vec3 ray =
         relume_panorama_ray(&app->file.geometry, app->file.width, app->file.height,
                             (x - r.left) / (r.right - r.left) * app->file.width,

@@ -134,8 +134,8 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
     if (light->kind == RELUME_LIGHT_ENVIRONMENT)
         d = (struct relume_vec3){sin(turn), 0, -cos(turn)};
     else if (relume_light_is_near(light->kind))
-        d = vec_sub(light->position, middle);
-    const double n = vec_length(d);
+        d = vec3_sub(light->position, middle);
+    const double n = vec3_length(d);
     return n > 0 ? (struct relume_vec3){d.x / n, d.y / n, d.z / n} : (struct relume_vec3){0, 0, 1};
 }
 
@@ -143,12 +143,12 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
 static struct relume_vec3 turned(struct relume_vec3 v, struct relume_vec3 from,
                                  struct relume_vec3 to)
 {
-    const struct relume_vec3 axis = vec_cross(from, to);
-    const double c = vec_dot(from, to);
+    const struct relume_vec3 axis = vec3_cross(from, to);
+    const double c = vec3_dot(from, to);
     if (c < -1 + 1e-9)
         return (struct relume_vec3){-v.x, -v.y, -v.z};
-    const double k = vec_dot(axis, v) / (1 + c);
-    const struct relume_vec3 side = vec_cross(axis, v);
+    const double k = vec3_dot(axis, v) / (1 + c);
+    const struct relume_vec3 side = vec3_cross(axis, v);
     return (struct relume_vec3){c * v.x + side.x + k * axis.x, c * v.y + side.y + k * axis.y,
                                 c * v.z + side.z + k * axis.z};
 }
@@ -157,7 +157,7 @@ static void aim_near(struct relume_light *l, struct relume_vec3 direction,
                      struct relume_vec3 middle)
 {
     const struct relume_vec3 was = lamps_direction(l, middle);
-    const double far = vec_length(vec_sub(l->position, middle));
+    const double far = vec3_length(vec3_sub(l->position, middle));
     l->position = (struct relume_vec3){
         middle.x + far * direction.x,
         middle.y + far * direction.y,
@@ -187,16 +187,16 @@ void lamps_change_kind(struct app_state *state, int light, enum relume_light_kin
     const struct relume_vec3 d = lamps_direction(l, middle);
     const struct relume_vec3 pole =
         fabs(d.y) < 0.9 ? (struct relume_vec3){0, 1, 0} : (struct relume_vec3){0, 0, 1};
-    const struct relume_vec3 side = vec_cross(d, pole);
-    const struct relume_vec3 right = vec_scale(side, 1 / vec_length(side));
+    const struct relume_vec3 side = vec3_cross(d, pole);
+    const struct relume_vec3 right = vec3_scale(side, 1 / vec3_length(side));
     struct relume_light made = {.kind = kind, .direction = d, .half_angle_deg = 25};
     if (relume_light_is_near(kind)) {
         made.position =
             (struct relume_vec3){middle.x + far * d.x, middle.y + far * d.y, middle.z + far * d.z};
-        made.direction = vec_scale(d, -1);
+        made.direction = vec3_scale(d, -1);
         made.nofall = true;  // as bright as it was
-        made.u = vec_scale(right, 0.25 * far);
-        made.v = vec_cross(made.u, d);  // u x v is -d
+        made.u = vec3_scale(right, 0.25 * far);
+        made.v = vec3_cross(made.u, d);  // u x v is -d
     }
     memcpy(made.rgb, l->rgb, sizeof made.rgb);
     made.nofall &= kind != RELUME_LIGHT_AREA;

@@ -7,32 +7,6 @@
 
 static const double highest_deg = 89;  // above and below the object
 
-static struct relume_vec3 minus(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-static struct relume_vec3 scaled(struct relume_vec3 a, double s)
-{
-    return (struct relume_vec3){a.x * s, a.y * s, a.z * s};
-}
-
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-                                a.x * b.y - a.y * b.x};
-}
-
-static double length(struct relume_vec3 a)
-{
-    return sqrt(dot(a, a));
-}
-
 bool orbit_is(const struct app *app)
 {
     return app->file.around && app->now.camera.framing == RELUME_FRAME_EYE;
@@ -53,14 +27,14 @@ static void put_eye(struct app *app, struct relume_vec3 d)
 
 static struct relume_vec3 eye_from_middle(const struct app *app)
 {
-    return minus(app->now.camera.eye, target_of(app));
+    return vec3_sub(app->now.camera.eye, target_of(app));
 }
 
 static struct relume_vec3 from_middle(double azimuth, double elevation, double away)
 {
-    return scaled((struct relume_vec3){sin(azimuth) * cos(elevation), sin(elevation),
-                                       cos(azimuth) * cos(elevation)},
-                  away);
+    return vec3_scale((struct relume_vec3){sin(azimuth) * cos(elevation), sin(elevation),
+                                           cos(azimuth) * cos(elevation)},
+                      away);
 }
 
 static double elevation_of(struct relume_vec3 d)
@@ -75,14 +49,15 @@ static bool is_covered(const struct app *app, struct relume_vec3 d)
     const struct relume_vec3 eye = {m.x + d.x, m.y + d.y, m.z + d.z};
     double place[2];
     int view;
-    return relume_slab_set_nearest(&view, place, app->file.around, eye, scaled(d, -1));
+    return relume_slab_set_nearest(&view, place, app->file.around, eye, vec3_scale(d, -1));
 }
 
 // As high or low as cameras go on the way from the first slab's height to the wanted one; false
 // when they do not stand at this azimuth.
 static bool find_covered(double *elevation, const struct app *app, double azimuth, double away)
 {
-    double inside = elevation_of(minus(relume_slab_set_eye(app->file.around, 0), target_of(app)));
+    double inside =
+        elevation_of(vec3_sub(relume_slab_set_eye(app->file.around, 0), target_of(app)));
     double outside = *elevation;
     if (!is_covered(app, from_middle(azimuth, inside, away)))
         return false;
@@ -101,7 +76,7 @@ void orbit_turn(struct app *app, double right_deg, double up_deg)
 {
     const struct relume_vec3 d = eye_from_middle(app);
     const double most = highest_deg * M_PI / 180;
-    const double away = length(d);
+    const double away = vec3_length(d);
     const double azimuth = atan2(d.x, d.z) + right_deg * M_PI / 180;
     double elevation = clamp(elevation_of(d) + up_deg * M_PI / 180, -most, most);
     const bool leaves =
@@ -125,10 +100,10 @@ void orbit_drag(double turn_deg[2], const struct app *app, double dx, double dy)
 void orbit_dolly(struct app *app, double factor)
 {
     const relume_slab_set *slabs = app->file.around;
-    const double captured = length(minus(relume_slab_set_eye(slabs, 0), target_of(app)));
+    const double captured = vec3_length(vec3_sub(relume_slab_set_eye(slabs, 0), target_of(app)));
     const struct relume_vec3 d = eye_from_middle(app);
-    const double now = length(d);
-    put_eye(app, scaled(d, captured * clamp(now / captured * factor, 0.25, 4.0) / now));
+    const double now = vec3_length(d);
+    put_eye(app, vec3_scale(d, captured * clamp(now / captured * factor, 0.25, 4.0) / now));
 }
 
 // ---------------------------------------------------------------- frame
@@ -139,14 +114,14 @@ bool orbit_place(double xy[2], const struct app *app, struct relume_vec3 point)
     struct relume_window w;
     if (!app_window(app, &w))
         return false;
-    const struct relume_vec3 corner = minus(w.corner, w.eye);
-    const struct relume_vec3 normal = cross(w.right, w.down);
-    const double ahead = dot(minus(point, w.eye), normal) / dot(corner, normal);
+    const struct relume_vec3 corner = vec3_sub(w.corner, w.eye);
+    const struct relume_vec3 normal = vec3_cross(w.right, w.down);
+    const double ahead = vec3_dot(vec3_sub(point, w.eye), normal) / vec3_dot(corner, normal);
     if (!(ahead > 1e-6))
         return false;
-    const struct relume_vec3 hit = minus(scaled(minus(point, w.eye), 1 / ahead), corner);
-    xy[0] = r.left + dot(hit, w.right) / dot(w.right, w.right) * (r.right - r.left);
-    xy[1] = r.top + dot(hit, w.down) / dot(w.down, w.down) * (r.bottom - r.top);
+    const struct relume_vec3 hit = vec3_sub(vec3_scale(vec3_sub(point, w.eye), 1 / ahead), corner);
+    xy[0] = r.left + vec3_dot(hit, w.right) / vec3_dot(w.right, w.right) * (r.right - r.left);
+    xy[1] = r.top + vec3_dot(hit, w.down) / vec3_dot(w.down, w.down) * (r.bottom - r.top);
     return true;
 }
 
@@ -157,10 +132,12 @@ void orbit_move(struct relume_vec3 *point, const struct app *app, double x, doub
     struct relume_window w;
     if (!orbit_place(from, app, *point) || !app_window(app, &w))
         return;
-    const struct relume_vec3 normal = cross(w.right, w.down);
-    const double ahead = dot(minus(*point, w.eye), normal) / dot(minus(w.corner, w.eye), normal);
-    const struct relume_vec3 across = scaled(w.right, ahead * (x - from[0]) / (r.right - r.left));
-    const struct relume_vec3 down = scaled(w.down, ahead * (y - from[1]) / (r.bottom - r.top));
+    const struct relume_vec3 normal = vec3_cross(w.right, w.down);
+    const double ahead =
+        vec3_dot(vec3_sub(*point, w.eye), normal) / vec3_dot(vec3_sub(w.corner, w.eye), normal);
+    const struct relume_vec3 across =
+        vec3_scale(w.right, ahead * (x - from[0]) / (r.right - r.left));
+    const struct relume_vec3 down = vec3_scale(w.down, ahead * (y - from[1]) / (r.bottom - r.top));
     *point = (struct relume_vec3){point->x + across.x + down.x, point->y + across.y + down.y,
                                   point->z + across.z + down.z};
 }
@@ -171,9 +148,9 @@ struct relume_vec3 orbit_ray(const struct app *app, double x, double y)
     struct relume_window w;
     if (!app_window(app, &w))
         return (struct relume_vec3){0};
-    const struct relume_vec3 corner = minus(w.corner, w.eye);
-    const struct relume_vec3 across = scaled(w.right, (x - r.left) / (r.right - r.left));
-    const struct relume_vec3 down = scaled(w.down, (y - r.top) / (r.bottom - r.top));
+    const struct relume_vec3 corner = vec3_sub(w.corner, w.eye);
+    const struct relume_vec3 across = vec3_scale(w.right, (x - r.left) / (r.right - r.left));
+    const struct relume_vec3 down = vec3_scale(w.down, (y - r.top) / (r.bottom - r.top));
     return (struct relume_vec3){corner.x + across.x + down.x, corner.y + across.y + down.y,
                                 corner.z + across.z + down.z};
 }
@@ -183,7 +160,7 @@ struct app_axes orbit_axes(const struct app *app)
     struct relume_window w;
     if (!app_window(app, &w))
         return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const struct relume_vec3 right = scaled(w.right, 1 / length(w.right));
-    const struct relume_vec3 up = scaled(w.down, -1 / length(w.down));
-    return (struct app_axes){right, up, cross(right, up)};
+    const struct relume_vec3 right = vec3_scale(w.right, 1 / vec3_length(w.right));
+    const struct relume_vec3 up = vec3_scale(w.down, -1 / vec3_length(w.down));
+    return (struct app_axes){right, up, vec3_cross(right, up)};
 }

@@ -154,7 +154,7 @@ static struct relume_vec3 unfolded(double x, double y)
     const double z = 1.0 - fabs(x) - fabs(y);
     const double fx = z < 0.0 ? (1.0 - fabs(y)) * (x < 0.0 ? -1.0 : 1.0) : x;
     const double fy = z < 0.0 ? (1.0 - fabs(x)) * (y < 0.0 ? -1.0 : 1.0) : y;
-    return vec_unit((struct relume_vec3){fx, fy, z});
+    return vec3_unit((struct relume_vec3){fx, fy, z});
 }
 
 static struct relume_vec3 corner_of(const struct dome_list *d, int triangle, int corner)
@@ -165,7 +165,7 @@ static struct relume_vec3 corner_of(const struct dome_list *d, int triangle, int
 
 static struct relume_vec3 across(const struct dome_list *d, int triangle, int corner)
 {
-    return vec_cross(corner_of(d, triangle, corner + 1), corner_of(d, triangle, corner + 2));
+    return vec3_cross(corner_of(d, triangle, corner + 1), corner_of(d, triangle, corner + 2));
 }
 
 static int triangle_at(const struct dome_list *d, struct relume_vec3 direction)
@@ -175,7 +175,7 @@ static int triangle_at(const struct dome_list *d, struct relume_vec3 direction)
     for (int i = 0; i < d->triangles && most < 0.0; i++) {
         double w[3], sum = 0.0;
         for (int c = 0; c < 3; c++)
-            sum += w[c] = vec_dot(direction, across(d, i, c));
+            sum += w[c] = vec3_dot(direction, across(d, i, c));
         const double least = fmin(w[0], fmin(w[1], w[2])) / sum;
         if (sum > 1e-12 && least > most) {
             most = least;

@@ -2,6 +2,7 @@
 //
 // A cell of a turned slab is no rectangle of the frame as it is in draw_slab.c: what is drawn is a
 // rectangle around it, and each pixel asks whether its ray passes the cell.
+#include "common/vec.h"
 #include "draw/draw.h"
 
 #include <math.h>
@@ -50,22 +51,6 @@ relume_status draw_slabs_depth_create(struct program *program, const struct gl *
     return program_create(program, gl, "slabs_depth.frag", depth_uniforms, DEPTH_COUNT, log);
 }
 
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-                                a.x * b.y - a.y * b.x};
-}
-
-static struct relume_vec3 minus(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
 // One slab, the window in its own frame.
 struct turned {
     const struct program *program;
@@ -92,7 +77,7 @@ static struct turned turn(const struct program *program, const struct gl *gl,
         .geometry = g,
         .slab = relume_slab_set_slab(seen->slabs, slab),
         .eye = relume_pose_local(&g->pose, w->eye),
-        .corner = relume_pose_turn_back(&g->pose, minus(w->corner, w->eye)),
+        .corner = relume_pose_turn_back(&g->pose, vec3_sub(w->corner, w->eye)),
         .right = relume_pose_turn_back(&g->pose, w->right),
         .down = relume_pose_turn_back(&g->pose, w->down),
     };
@@ -115,19 +100,20 @@ struct part {
 static void bound(struct part *part, const struct turned *t, const double low[2],
                   const double high[2], double z)
 {
-    const struct relume_vec3 normal = cross(t->right, t->down);
-    const double size[2] = {dot(t->right, t->right), dot(t->down, t->down)};
+    const struct relume_vec3 normal = vec3_cross(t->right, t->down);
+    const double size[2] = {vec3_dot(t->right, t->right), vec3_dot(t->down, t->down)};
     struct part found = {{2, 2}, {-1, -1}};
     int ahead = 0, behind = 0;
     for (int i = 0; i < 4; i++) {
         const struct relume_vec3 point = {i % 2 ? high[0] : low[0], i / 2 ? high[1] : low[1], z};
-        const struct relume_vec3 way = minus(point, t->eye);
-        const double reach = dot(way, normal) / dot(t->corner, normal);
+        const struct relume_vec3 way = vec3_sub(point, t->eye);
+        const double reach = vec3_dot(way, normal) / vec3_dot(t->corner, normal);
         ahead += reach > 1e-6;
         behind += reach < -1e-6;
         const struct relume_vec3 hit = {way.x / reach, way.y / reach, way.z / reach};
-        const struct relume_vec3 from = minus(hit, t->corner);
-        const double at[2] = {dot(from, t->right) / size[0], dot(from, t->down) / size[1]};
+        const struct relume_vec3 from = vec3_sub(hit, t->corner);
+        const double at[2] = {vec3_dot(from, t->right) / size[0],
+                              vec3_dot(from, t->down) / size[1]};
         for (int axis = 0; axis < 2; axis++) {
             found.min[axis] = fmin(found.min[axis], at[axis]);
             found.max[axis] = fmax(found.max[axis], at[axis]);

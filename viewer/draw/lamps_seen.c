@@ -82,7 +82,7 @@ static bool find_view(int *view, double at[2], const struct frame_request *q,
 {
     const struct app_file *f = q->file;
     if (q->has_window)
-        return relume_slab_set_nearest(view, at, f->around, eye, vec_sub(p, eye));
+        return relume_slab_set_nearest(view, at, f->around, eye, vec3_sub(p, eye));
     *view = nearest_view(q, s);
     const struct relume_viewport picture = sight_of_picture(f, camera_of(q, s, *view));
     if (!relume_viewport_project(at, &picture, p))
@@ -152,12 +152,12 @@ bool lamps_surface(struct relume_vec3 *out, const struct frame_request *q, struc
     if (!sight_of(&l.sight, q, scene))
         return false;
     relume_viewport_ray(&from, &ray, &l.sight, x, y);
-    double t = vec_dot(vec_sub(q->middle, from), ray);
+    double t = vec3_dot(vec3_sub(q->middle, from), ray);
     for (int i = 0; i < ROUNDS; i++) {
         const struct relume_vec3 p = {from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};
         if (!surface_near(out, &l, p))
             return false;
-        t = vec_dot(vec_sub(*out, from), ray);
+        t = vec3_dot(vec3_sub(*out, from), ray);
         if (!(t > 0))
             return false;
     }

@@ -136,9 +136,9 @@ relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *g
                                  .uniforms = {.gl = gl, .log = log},
                                  .maps = {.gl = gl, .log = log},
                                  .grid = gl->software ? 1 : FINER};
-    const struct relume_vec3 extent = vec_sub(info->max, info->min);
-    t->radius = 0.5 * vec_length(extent);
-    t->middle = vec_sub(info->max, vec_scale(extent, 0.5));
+    const struct relume_vec3 extent = vec3_sub(info->max, info->min);
+    t->radius = 0.5 * vec3_length(extent);
+    t->middle = vec3_sub(info->max, vec3_scale(extent, 0.5));
     t->material = calloc((size_t)info->materials, sizeof *t->material);
     relume_status status = t->material ? create_programs(t) : RELUME_ENOMEM;
     if (!status)

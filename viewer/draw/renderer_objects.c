@@ -50,14 +50,14 @@ static struct relume_window look_window(const struct frame_request *q)
     struct relume_vec3 corner[3];
     for (int i = 0; i < 3; i++) {
         corner[i] = relume_pan_tilt_ray(look, w, h, i == 1 ? w : 0, i == 2 ? h : 0);
-        corner[i] = vec_scale(corner[i], 1.0 / vec_dot(corner[i], ahead));
+        corner[i] = vec3_scale(corner[i], 1.0 / vec3_dot(corner[i], ahead));
     }
     const struct relume_vec3 eye = q->file->geometry.center;
     return (struct relume_window){
         .eye = eye,
         .corner = {eye.x + corner[0].x, eye.y + corner[0].y, eye.z + corner[0].z},
-        .right = vec_sub(corner[1], corner[0]),
-        .down = vec_sub(corner[2], corner[0]),
+        .right = vec3_sub(corner[1], corner[0]),
+        .down = vec3_sub(corner[2], corner[0]),
     };
 }
 

@@ -54,7 +54,7 @@ static void set_row(float clip[16], int row, struct relume_vec3 axis, struct rel
     clip[row] = (float)(axis.x * scale);
     clip[4 + row] = (float)(axis.y * scale);
     clip[8 + row] = (float)(axis.z * scale);
-    clip[12 + row] = (float)(offset - scale * vec_dot(axis, eye));
+    clip[12 + row] = (float)(offset - scale * vec3_dot(axis, eye));
 }
 
 static void set_distant(float clip[16], const struct view *v, double radius)
@@ -106,18 +106,18 @@ static void aim(struct shadow_map *map, const struct relume_object_light *lamp,
     memcpy(map->lamp, place, sizeof map->lamp);
     map->layers = 1;
     if (!near) {
-        const struct view v = look(middle, vec_scale(at, -1.0));
+        const struct view v = look(middle, vec3_scale(at, -1.0));
         set_distant(map->clip[0], &v, radius);
         map->texel = (float)(2.0 * radius / map->side);
         return;
     }
-    const struct relume_vec3 way = vec_sub(middle, at);
-    const double apart = vec_length(way);
+    const struct relume_vec3 way = vec3_sub(middle, at);
+    const double apart = vec3_length(way);
     if (apart < 1.2 * radius) {
         aim_cube(map, at, apart + radius);
         return;
     }
-    const struct view v = look(at, vec_scale(way, 1.0 / apart));
+    const struct view v = look(at, vec3_scale(way, 1.0 / apart));
     const double tangent = radius / sqrt(apart * apart - radius * radius);
     set_near(map->clip[0], &v, tangent, apart - radius, apart + radius);
     map->texel = (float)(2.0 * tangent / map->side);

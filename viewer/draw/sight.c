@@ -29,17 +29,17 @@ static struct relume_vec3 sum(struct relume_vec3 a, double s, struct relume_vec3
 bool sight_of_window(struct sight *out, const struct relume_window *w, struct app_rectangle picture,
                      int width, int height, struct relume_vec3 min, struct relume_vec3 max)
 {
-    const struct relume_vec3 ahead = vec_sub(w->corner, w->eye);
-    const struct relume_vec3 normal = vec_cross(w->right, w->down);
-    const double volume = vec_dot(normal, ahead);
+    const struct relume_vec3 ahead = vec3_sub(w->corner, w->eye);
+    const struct relume_vec3 normal = vec3_cross(w->right, w->down);
+    const double volume = vec3_dot(normal, ahead);
     if (volume == 0.0)
         return false;
-    const struct relume_vec3 a = vec_scale(vec_cross(w->down, ahead), 1.0 / volume);
-    const struct relume_vec3 b = vec_scale(vec_cross(ahead, w->right), 1.0 / volume);
-    const struct relume_vec3 c = vec_scale(normal, 1.0 / volume);
+    const struct relume_vec3 a = vec3_scale(vec3_cross(w->down, ahead), 1.0 / volume);
+    const struct relume_vec3 b = vec3_scale(vec3_cross(ahead, w->right), 1.0 / volume);
+    const struct relume_vec3 c = vec3_scale(normal, 1.0 / volume);
     double from = INFINITY, to = -INFINITY;
     for (int i = 0; i < 8; i++) {
-        const double depth = vec_dot(c, vec_sub(corner_of(i, min, max), w->eye));
+        const double depth = vec3_dot(c, vec3_sub(corner_of(i, min, max), w->eye));
         from = fmin(from, depth);
         to = fmax(to, depth);
     }
@@ -50,11 +50,11 @@ bool sight_of_window(struct sight *out, const struct relume_window *w, struct ap
     const double wide = picture.right - picture.left, high = picture.bottom - picture.top;
     const struct relume_vec3 x = sum(a, 2.0 * wide / width, c, 2.0 * picture.left / width - 1.0);
     const struct relume_vec3 y = sum(b, 2.0 * high / height, c, 2.0 * picture.top / height - 1.0);
-    const struct relume_vec3 z = vec_scale(c, (to + from) / (to - from));
-    set_row(out->clip, 0, x, -vec_dot(x, w->eye));
-    set_row(out->clip, 1, y, -vec_dot(y, w->eye));
-    set_row(out->clip, 2, z, -vec_dot(z, w->eye) - 2.0 * to * from / (to - from));
-    set_row(out->clip, 3, c, -vec_dot(c, w->eye));
+    const struct relume_vec3 z = vec3_scale(c, (to + from) / (to - from));
+    set_row(out->clip, 0, x, -vec3_dot(x, w->eye));
+    set_row(out->clip, 1, y, -vec3_dot(y, w->eye));
+    set_row(out->clip, 2, z, -vec3_dot(z, w->eye) - 2.0 * to * from / (to - from));
+    set_row(out->clip, 3, c, -vec3_dot(c, w->eye));
     const float eye[4] = {(float)w->eye.x, (float)w->eye.y, (float)w->eye.z, 1.0f};
     memcpy(out->eye, eye, sizeof eye);
     return true;

@@ -8,6 +8,7 @@ extern "C" {
 
 #include <algorithm>
 #include <cmath>
+#include <relume/vec.h>
 
 static bool float_slider(const char *label, float *value, float usual, float least, float most,
                          const char *format, const char *what)
@@ -82,15 +83,10 @@ bool panel_enhancement(app *app, const panel_facts *facts)
 
 // ---------------------------------------------------------------- the eye
 
-static double length_of(relume_vec3 a)
-{
-    return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
-}
-
 static double distance_of(const app *app)
 {
     const relume_vec3 eye = app->now.camera.eye, m = app_middle(app);
-    return orbit_is(app) ? length_of({eye.x - m.x, eye.y - m.y, eye.z - m.z})
+    return orbit_is(app) ? relume_vec3_length(relume_vec3_sub(eye, m))
                          : eye.z - app->file.geometry.st_z;
 }
 

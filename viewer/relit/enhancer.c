@@ -280,7 +280,7 @@ static relume_status set_lights(const struct enhancer *e, const struct relume_li
     if (!texel)
         return RELUME_ENOMEM;
     for (int i = 0; i < n; i++) {
-        const struct relume_vec3 d = vec_unit(lights[i].direction);
+        const struct relume_vec3 d = vec3_unit(lights[i].direction);
         if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
             continue;
         float *direction = texel[2 * (count / LAMPS_WIDE) * LAMPS_WIDE + count % LAMPS_WIDE];

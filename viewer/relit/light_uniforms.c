@@ -124,7 +124,7 @@ relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int 
         l->kind != RELUME_LIGHT_ENVIRONMENT) {
         struct relume_vec3 right, up;
         relume_light_frame(&right, &up, l->direction);
-        set_vec3(gl, at[SHINE_AXIS], vec_unit(l->direction));
+        set_vec3(gl, at[SHINE_AXIS], vec3_unit(l->direction));
         set_vec3(gl, at[SHINE_RIGHT], right);
         set_vec3(gl, at[SHINE_UP], up);
     }

@@ -218,7 +218,7 @@ static relume_status add_displayed(struct relighter *r, struct relit_view *v, st
             continue;
         struct relume_vec3 from;
         const float share =
-            (float)relume_coder_clamp(&from, v->codes.coder, vec_unit(r->light[i].direction));
+            (float)relume_coder_clamp(&from, v->codes.coder, vec3_unit(r->light[i].direction));
         float rgb[3];
         for (int c = 0; c < 3; c++)
             rgb[c] = share * r->light[i].rgb[c];

@@ -68,7 +68,7 @@ void weights_add(struct weights *w, const struct relume_codes *codes, double uni
 {
     float constant[3], value[3];
     struct relume_vec3 from;
-    const float share = (float)relume_coder_clamp(&from, codes->coder, vec_unit(direction));
+    const float share = (float)relume_coder_clamp(&from, codes->coder, vec3_unit(direction));
     relume_coder_weights(codes->coder, from, w->basis, constant);
     for (int c = 0; c < 3; c++)
         value[c] = share * rgb[c];

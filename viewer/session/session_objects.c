@@ -70,9 +70,9 @@ static relume_status make_stage(relume_slab_set **out, struct relume_geometry *g
                                 struct relume_vec3 *eye, const struct relume_objects_info *info)
 {
     const double uv[1][2] = {{0.0, 0.0}};
-    const struct relume_vec3 extent = vec_sub(info->max, info->min);
-    const double radius = 0.5 * vec_length(extent);
-    const struct relume_vec3 middle = vec_sub(info->max, vec_scale(extent, 0.5));
+    const struct relume_vec3 extent = vec3_sub(info->max, info->min);
+    const double radius = 0.5 * vec3_length(extent);
+    const struct relume_vec3 middle = vec3_sub(info->max, vec3_scale(extent, 0.5));
     *g = (struct relume_geometry){
         .projection = RELUME_SLAB,
         .uv_z = 4.0 * radius,
@@ -105,7 +105,7 @@ static void fit_view(struct relume_camera *camera, const struct session *s)
     if (camera->aim.field_of_view_deg != 0.0 ||
         !relume_objects_window(&w, s->objects, camera->eye, &camera->aim, width, height))
         return;
-    const double half = 0.5 * vec_length(w.right) / relume_window_distance(&w);
+    const double half = 0.5 * vec3_length(w.right) / relume_window_distance(&w);
     camera->aim.field_of_view_deg = 2.0 * atan(half) * (180.0 / 3.14159265358979323846);
 }
 

@@ -121,8 +121,8 @@ static double focus_at(const struct session *s, struct relume_vec3 p)
     struct relume_window w;
     if (!s->app.file.around || !app_window(&s->app, &w))
         return p.z;
-    const struct relume_vec3 normal = vec_unit(vec_cross(w.right, w.down));
-    return relume_window_distance(&w) - fabs(vec_dot(vec_sub(p, w.eye), normal));
+    const struct relume_vec3 normal = vec3_unit(vec3_cross(w.right, w.down));
+    return relume_window_distance(&w) - fabs(vec3_dot(vec3_sub(p, w.eye), normal));
 }
 
 // With a pinhole everything is sharp: it is opened.

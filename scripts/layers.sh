@@ -34,7 +34,7 @@ btf_model:base math image btf:base image light directions btf btf_environment
 surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base object
 scene:base math image geometry mesh:base image directions capture btf scene
-object:base math mesh:base image capture light relight view slab_set pack frame viewport btf btf_environment surface object renderer
+object:base math mesh frame:base image capture light relight view slab_set pack frame viewport btf btf_environment surface object renderer
 helper:base image mesh:base
 program::base image
 cli:program:*

@@ -153,16 +153,17 @@ RELUME_RESULT relume_status relume_objects_render(struct relume_image *out,
                                                   const struct relume_light *lights, int n,
                                                   const struct relume_render_params *params);
 
-// The objects in a relit scene: the frame of relume_renderer_frame with them drawn into it where
-// they stand before what the file's depth says, under the renderer's lights, and with their shadows
-// on the scene: each lamp is relit alone and reaches a point of the scene when no object lies
-// between. Scenes throw no shadows on objects. A pass shows the scene alone: leave it at colour.
-// `*out` is created. RELUME_EUNFIT (also: a file without depth), and as relume_renderer_frame.
-RELUME_RESULT relume_status relume_objects_frame(struct relume_image *out,
-                                                 const relume_objects *objects,
-                                                 relume_renderer *renderer,
-                                                 const struct relume_camera *camera,
-                                                 const struct relume_render_params *params);
+// The objects that stand in a renderer's scene from now on, borrowed until others are set or the
+// renderer is destroyed; NULL: none. relume_renderer_frame and _draw show them where they stand
+// before what the file's depth says, under the renderer's lights, and with their shadows on the
+// scene: each lamp is relit alone and reaches a point of the scene when no object lies between.
+// Scenes throw no shadows on objects. A pass shows the scene alone: leave it at colour. Rays,
+// single pixels and places are those of the scene. `params` are copied. RELUME_ENOMEM; then all is
+// as before. Frames also fail with RELUME_EINVAL (samples) and RELUME_EUNFIT (a file without
+// depth).
+RELUME_RESULT relume_status relume_renderer_set_objects(relume_renderer *renderer,
+                                                        const relume_objects *objects,
+                                                        const struct relume_render_params *params);
 
 #ifdef __cplusplus
 }

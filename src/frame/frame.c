@@ -146,10 +146,16 @@ static relume_status draw_frame(struct relume_image *out, relume_renderer *r,
     return status;
 }
 
+relume_status renderer_bare_frame(struct relume_image *out, relume_renderer *r,
+                                  const struct relume_camera *camera)
+{
+    return draw_frame(out, r, camera, SHOWN_LIGHT);
+}
+
 relume_status relume_renderer_frame(struct relume_image *out, relume_renderer *r,
                                     const struct relume_camera *camera)
 {
-    return draw_frame(out, r, camera, SHOWN_LIGHT);
+    return (r->draw_over ? r->draw_over : renderer_bare_frame)(out, r, camera);
 }
 
 relume_status relume_renderer_places(struct relume_image *out, relume_renderer *r,
@@ -247,17 +253,19 @@ relume_status relume_renderer_draw(relume_renderer *r, const struct relume_camer
 {
     struct relume_camera sized = *camera;
     struct relume_image picture;
-    struct putting putting = {.target = target, .picture = &picture};
+    struct putting putting = {
+        .target = target, .picture = &picture, .place = {0, 0, target->width, target->height}};
     int frame[2];
     if (!target->data || target->width < 1 || target->height < 1)
         return log_fail(r->params.log, RELUME_EINVAL, "the target has no memory or no size");
     sized.width = target->width;
     sized.height = target->height;
     if (is_whole_view(r, &sized) && r->params.pass == RELUME_PASS_COLOUR && is_packed(target) &&
-        target->format != RELUME_TARGET_RGBA)
+        !r->draw_over && target->format != RELUME_TARGET_RGBA)
         return draw_straight(r, &sized, target);
     const relume_status status =
-        draw_picture(&picture, &putting.place, frame, r, &sized, SHOWN_LIGHT);
+        r->draw_over ? r->draw_over(&picture, r, &sized)
+                     : draw_picture(&picture, &putting.place, frame, r, &sized, SHOWN_LIGHT);
     if (status)
         return status;
     byte_coder_init(&putting.coder, exp2f(target->exposure_ev));

@@ -173,6 +173,7 @@ void relume_renderer_destroy(relume_renderer **renderer)
     free(r->disparity);
     free(r->needed);
     free(r->lights);
+    free(r->over);
     free(r);
 }
 

@@ -44,6 +44,10 @@ struct relume_renderer {
     relume_status texels;               // of renderer_texels
     relume_slab *slab;                  // of a single slab, ...
     relume_slab_set *slabs;             // ... of several; NULL: not needed yet
+    // Draws a frame of light with what stands in the scene; NULL: nothing does.
+    relume_status (*draw_over)(struct relume_image *out, relume_renderer *r,
+                               const struct relume_camera *camera);
+    void *over;  // of it, freed with the renderer
 };
 
 __attribute__((format(printf, 3, 4))) void renderer_note(relume_renderer *r, enum note note,
@@ -78,6 +82,9 @@ bool renderer_may_take_depth(const relume_renderer *r);
 // So does one slab, but for a lens.
 bool renderer_takes_depth(const relume_renderer *r);
 
+// relume_renderer_frame without what stands in the scene.
+relume_status renderer_bare_frame(struct relume_image *out, relume_renderer *r,
+                                  const struct relume_camera *camera);
 // A frame of camera->width x camera->height: `*out` is created.
 relume_status frame_render(relume_renderer *r, const struct relume_camera *camera,
                            struct relume_image *out);

@@ -1,6 +1,8 @@
 // into.c - objects in a relit scene
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
+#include "frame/renderer.h"
 #include "object/object.h"
 
 #include <relume/viewport.h>
@@ -100,7 +102,7 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
         return status;
     status = relume_renderer_set_lights(renderer, light, 1);
     if (!status)
-        status = relume_renderer_frame(&lone, renderer, camera);
+        status = renderer_bare_frame(&lone, renderer, camera);
     s->lamps = lamps;
     s->lone = &lone;
     if (!status)
@@ -159,19 +161,26 @@ static relume_status light_scene(struct relume_image *scene, const struct relume
                                  const struct relume_light *lights, int n,
                                  const struct relume_render_params *params)
 {
-    struct shadows s = {
-        .o = o, .places = places, .sum = scene, .none = params && params->no_shadows};
+    struct shadows s = {.o = o, .places = places, .sum = scene, .none = params->no_shadows};
     relume_status status = relume_image_create(scene, places->width, places->height, 3);
     for (int i = 0; i < n && !status; i++)
-        status = add_light(&s, renderer, camera, &lights[i], params ? params->threads : 0);
+        status = add_light(&s, renderer, camera, &lights[i], params->threads);
     const relume_status restored = relume_renderer_set_lights(renderer, lights, n);
     return status ? status : restored;
 }
 
-relume_status relume_objects_frame(struct relume_image *out, const relume_objects *objects,
-                                   relume_renderer *renderer, const struct relume_camera *camera,
-                                   const struct relume_render_params *params)
+// What a renderer has been given.
+struct standing_in {
+    const relume_objects *objects;
+    struct relume_render_params params;
+};
+
+static relume_status draw_over(struct relume_image *out, relume_renderer *renderer,
+                               const struct relume_camera *camera)
 {
+    const struct standing_in *in = renderer->over;
+    const relume_objects *objects = in->objects;
+    const struct relume_render_params *params = &in->params;
     struct relume_image places = {0}, scene = {0};
     struct lighting lighting = {0};
     struct relume_viewport sight;
@@ -198,4 +207,17 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     lighting_destroy(&lighting);
     free(lights);
     return status;
+}
+
+relume_status relume_renderer_set_objects(relume_renderer *renderer, const relume_objects *objects,
+                                          const struct relume_render_params *params)
+{
+    const struct standing_in in = {objects, PARAMS_WORK(relume_render_params, params)};
+    struct standing_in *copy = objects ? mem_copy(&in, 1, sizeof in) : NULL;
+    if (objects && !copy)
+        return RELUME_ENOMEM;
+    free(renderer->over);
+    renderer->over = copy;
+    renderer->draw_over = objects ? draw_over : NULL;
+    return RELUME_OK;
 }

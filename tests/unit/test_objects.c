@@ -347,8 +347,23 @@ static struct relume_image scene_with(relume_pack *pack, double z, const char *m
     relume_renderer *r;
     CHECK_OK(relume_renderer_create(&r, pack, NULL));
     CHECK_OK(relume_renderer_set_lights(r, light, 1));
-    CHECK_OK(relume_objects_frame(&out, o, r, &(struct relume_camera){0},
-                                  relume_render_params(.samples = 1)));
+    const struct relume_camera camera = {0};
+    struct relume_image bare, drawn;
+    CHECK_OK(relume_renderer_frame(&bare, r, &camera));
+    CHECK_OK(relume_renderer_set_objects(r, o, relume_render_params(.samples = 1)));
+    CHECK_OK(relume_renderer_frame(&out, r, &camera));
+    // the same into memory, and the scene alone again without them
+    const size_t bytes = sizeof *out.data * 3 * (size_t)out.width * (size_t)out.height;
+    CHECK_OK(relume_image_create(&drawn, out.width, out.height, 3));
+    const struct relume_target target = {
+        .data = drawn.data, .width = out.width, .height = out.height};
+    CHECK_OK(relume_renderer_draw(r, &camera, &target));
+    assert_memory_equal(drawn.data, out.data, bytes);
+    CHECK_OK(relume_renderer_set_objects(r, NULL, NULL));
+    CHECK_OK(relume_renderer_draw(r, &camera, &target));
+    assert_memory_equal(drawn.data, bare.data, bytes);
+    relume_image_destroy(&bare);
+    relume_image_destroy(&drawn);
     relume_renderer_destroy(&r);
     relume_objects_destroy(&o);
     return out;

@@ -1,6 +1,6 @@
 // renderer_objects.c - frames with objects in them: the scene under each light alone, kept off
 // where an object stands between, then the objects where they stand before it. Twin:
-// relume_objects_frame.
+// relume_renderer_set_objects.
 #include "common/vec.h"
 #include "draw/renderer.h"
 #include "draw/renderer_parts.h"

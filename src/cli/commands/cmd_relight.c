@@ -192,20 +192,17 @@ static void show_normals(struct relume_image *frame, const char *path)
     }
 }
 
-static relume_status make_frame(struct relume_image *frame, relume_renderer *renderer,
-                                const struct relight_options *o, const struct relume_camera *camera)
+static relume_status set_objects(relume_objects **objects, relume_renderer *renderer,
+                                 const struct relight_options *o)
 {
-    relume_objects *objects;
     if (!o->objects)
-        return relume_renderer_frame(frame, renderer, camera);
-    relume_status status = objects_open(&objects, o->objects, &o->args);
-    if (!status)
-        status =
-            relume_objects_frame(frame, objects, renderer, camera,
-                                 relume_render_params(.log = o->args.log, .samples = o->samples,
-                                                      .threads = o->args.threads));
-    relume_objects_destroy(&objects);
-    return status;
+        return RELUME_OK;
+    const relume_status status = objects_open(objects, o->objects, &o->args);
+    return status ? status
+                  : relume_renderer_set_objects(renderer, *objects,
+                                                relume_render_params(.log = o->args.log,
+                                                                     .samples = o->samples,
+                                                                     .threads = o->args.threads));
 }
 
 // ---------------------------------------------------------------- glare
@@ -299,6 +296,7 @@ static relume_status render(const struct relight_options *o, const struct relume
 {
     relume_pack *pack;
     relume_renderer *renderer = NULL;
+    relume_objects *objects = NULL;
     relume_capture *capture = NULL;
     struct prefix_log about;
     struct relume_image frame = {0};
@@ -327,7 +325,9 @@ static relume_status render(const struct relight_options *o, const struct relume
     if (!status)
         status = relume_renderer_set_lights(renderer, lights, count);
     if (!status)
-        status = make_frame(&frame, renderer, o, camera);
+        status = set_objects(&objects, renderer, o);
+    if (!status)
+        status = relume_renderer_frame(&frame, renderer, camera);
     if (!status && o->pass == GLARE_PASS)
         status = add_glare(&frame, renderer, o, camera);
     if (!status && o->pass == RELUME_PASS_NORMALS)
@@ -340,6 +340,7 @@ static relume_status render(const struct relight_options *o, const struct relume
         status = relume_image_save(&frame, o->output, relume_image_params(.log = o->args.log));
     relume_image_destroy(&frame);
     relume_renderer_destroy(&renderer);
+    relume_objects_destroy(&objects);
     relume_capture_destroy(&capture);
     relume_pack_destroy(&pack);
     return status;

@@ -17,6 +17,11 @@ near() { # numbers, numbers
         exit !(n == 3 && m == 3 && !bad) }'
 }
 
+# of a slab whose window is 2 x 2: the ray of a camera and a pixel
+slab_ray() { awk -v u="$1" -v v="$2" -v x="$3" -v y="$4" -v n=$size 'BEGIN {
+    s = -1 + 2 * (x + .5) / n; t = 1 - 2 * (y + .5) / n
+    printf "--eye %g,%g,3 --direction %.9f,%.9f,-3", u, v, s - u, t - v }'; }
+
 agree() { # name, file, view, query's eye and direction, x, y
     for light in $lights; do
         light=$(echo $light | tr , " ")

@@ -6,6 +6,8 @@ work=$(mktemp -d) || exit 1
 trap 'cd /; rm -rf "$work"' EXIT
 cd "$work" || exit 1
 failures=0
+python=$(command -v python3 || true)
+case $BUILD in */build) config=release ;; *) config=$(basename "$BUILD") ;; esac
 
 ok() { echo "ok $1"; }
 not_ok() { # name, why
@@ -78,6 +80,19 @@ expect_ok() {
     fi
 }
 
+# A command that has to go well; what it says is left in err.txt.
+relume() { "$RELUME" "$@" -q 2>err.txt || { not_ok "relume $1" "$(cat err.txt)"; return 1; }; }
+psnr() { "$RELUME" compare "$1" "$2" | awk '$1 == "psnr_db" { print $2 }'; } # of two pictures
+not_encoded() { # name, pattern, capture, options...: status 1
+    name=$1 pattern=$2 capture=$3
+    shift 3
+    expect_fail "$name" 1 "$pattern" out.exr "$RELUME" encode "$capture" -o out.exr "$@"
+}
+encoded() { # name, pattern of stderr or -, capture, options...: into NAME.exr
+    name=$1 pattern=$2 capture=$3
+    shift 3
+    expect_ok "$name" "$pattern" "$RELUME" encode "$capture" -o "$name.exr" "$@"
+}
 same() { # name, file, file: equal bytes
     if cmp -s "$2" "$3"; then ok "$1"; else not_ok "$1" "$2 and $3 differ"; fi
 }
@@ -100,6 +115,10 @@ above() { # name, number, bound
 }
 # field NAME FILE: a number at the top of a JSON object
 field() { sed -n "s/.*\"$1\": \{0,1\}\([-0-9.e+]*\).*/\1/p" "$2" | head -n 1; }
+eval_field() { # file capture field
+    "$RELUME" eval "$1" "$2" --json 2>err.txt >eval.json
+    field "$3" eval.json
+}
 fresh() { # folder made new as a copy of another
     rm -rf "$2"
     cp -r "$1" "$2"

@@ -1,7 +1,6 @@
 #!/bin/sh
 # Import and export: files that are broken and wishes that cannot be met are refused with a sentence.
 . "$(dirname "$0")/lib.sh"
-relume() { "$RELUME" "$@" -q 2>err.txt || not_ok "relume $1 $2" "$(cat err.txt)"; }
 "$sphere" dome --size 40 --lights 40 --hemisphere --format png || exit 1
 relume encode dome -o pca.exr --basis pca --coefficients 27
 relume encode dome -o ptm.exr --basis ptm --coefficients 6

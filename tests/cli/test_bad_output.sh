@@ -105,7 +105,6 @@ echo text >text.exr; info 'text file' 'text.exr: cannot be read as OpenEXR' text
 expect_fail 'an ordinary EXR' 1 'light0000.exr: an OpenEXR file, but not a relume file' - "$RELUME" eval good/view00/light0000.exr good
 $relight picture.png; info 'a PNG' 'picture.png: one photograph under one light cannot be relit' picture.png
 "$mkimage" bigexr big.exr 1000000 1000000; info 'an EXR that claims 1000000 x 1000000' 'big.exr: ' big.exr
-python=$(command -v python3 || true)
 if [ "$python" ]; then
     "$python" - <<'E'
 b = open('good.exr', 'rb').read()

@@ -2,9 +2,7 @@
 # Photographs of many cameras become slabs, pictures of all directions panoramas; depth from views.
 . "$(dirname "$0")/lib.sh"
 
-relume() { "$RELUME" "$@" -q; }
 data="$TOP/../shared/data"
-psnr() { "$RELUME" compare "$1" "$2" | awk '$1 == "psnr_db" { print $2 }'; }
 
 relume synth teapot -o slab --views 3x3 --lights 1 --hemisphere --size 48 --samples 4 || exit 1
 relume encode slab -o slab.exr --basis table --bits half || exit 1

@@ -3,11 +3,6 @@
 # reader; what goes wrong says so in one line.
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/format.sh"
-relume() { "$RELUME" "$@" -q 2>err.txt || not_ok "relume $1" "$(cat err.txt)"; }
-eval_field() { # file capture field
-    "$RELUME" eval "$1" "$2" --json 2>err.txt >eval.json
-    field "$3" eval.json
-}
 
 both "dome --basis sh --coefficients 9 --codebook 40" "9 8"
 both "dome --basis sh --coefficients 16 --bits 16 --codebook 30 --stages 3" "9 8"
@@ -20,9 +15,6 @@ both "photos --basis ptm --colour luminance --codebook 50" "9 8"
 
 # ---- a slab: one set for all views, or one for each
 "$RELUME" synth teapot -o slab --size $size --views 2x2 --lights 20 --samples 1 -q
-slab_ray() { awk -v u="$1" -v v="$2" -v x="$3" -v y="$4" -v n=$size 'BEGIN {
-    s = -1 + 2 * (x + .5) / n; t = 1 - 2 * (y + .5) / n
-    printf "--eye %g,%g,3 --direction %.9f,%.9f,-3", u, v, s - u, t - v }'; }
 uv=$(sed -n 's/.*"uv": \[\([^]]*\)\].*/\1/p' slab/capture.json | sed -n 3p | tr -d ,)
 for share in '' --share; do
     relume encode slab -o slab.exr --basis sh --codebook 60 --stages 2 $share
@@ -100,7 +92,6 @@ expect_fail 'more groups than coefficients' 2 '5 groups of 4 coefficients' no.ex
 # ---- an index beyond its book: the first sample of view0000 in a file without compression
 relume encode dome -o raw.exr --codebook 5 --compression none
 cp raw.exr bad.exr
-python=$(command -v python3 || true)
 if [ "$python" ]; then
     "$python" - <<'PY'
 import struct

@@ -1,12 +1,7 @@
 #!/bin/sh
 # The contract, end to end, on captures whose pixels are known (samples/sphere.c).
 . "$(dirname "$0")/lib.sh"
-relume() { "$RELUME" "$@" 2>err.txt || not_ok "relume $1" "$(cat err.txt)"; }
 diff() { "$mkimage" maxdiff "$1" "$2"; }
-eval_field() { # file capture field
-    "$RELUME" eval "$1" "$2" --json 2>err.txt >eval.json
-    field "$3" eval.json
-}
 valid_json() { # name, file
     if [ "$python" ] && "$python" -m json.tool <"$2" >/dev/null 2>&1 && ! grep -qiE 'nan|inf[^o]' "$2" && [ "$(wc -l <"$2")" -eq 1 ]; then
         ok "$1"
@@ -16,7 +11,6 @@ valid_json() { # name, file
         skip "$1" 'no python3'
     fi
 }
-python=$(command -v python3 || true)
 
 # ---- planar: what is in the span of the basis comes back, down to the quantiser
 "$sphere" wrap --size 32 --lights 40 --shade wrap --mask || exit 1

@@ -1,7 +1,6 @@
 #!/bin/sh
 # Import and export: what comes back, what an independent decoder sees, and what is refused.
 . "$(dirname "$0")/lib.sh"
-relume() { "$RELUME" "$@" -q 2>err.txt || not_ok "relume $1 $2" "$(cat err.txt)"; }
 decoder="$TOP/tests/tools/relight_decode.py" python=
 for p in python3 /usr/bin/python3; do
     [ "$python" ] || ! "$p" -c 'import numpy, PIL' 2>/dev/null || python=$p

@@ -4,7 +4,6 @@
 # OpenEXR's own tools where they are installed.
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/format.sh"
-relume() { "$RELUME" "$@" -q 2>err.txt || not_ok "relume $1" "$(cat err.txt)"; }
 small='--lights 8 --size 16 --samples 1'
 
 # ---- relume files: every projection, storage, kind of codebook

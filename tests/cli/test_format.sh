@@ -36,9 +36,6 @@ agree "lights on common circles" grid.exr 0 "$(planar 10 11)" 10 11
 # A slab: the ray from a camera through the middle of a pixel of its window [-1, 1].
 "$RELUME" synth teapot -o slab --size $size --views 2x2 --lights 20 --samples 1 -q
 "$RELUME" encode slab -o slab.exr --basis sh -q
-slab_ray() { awk -v u="$1" -v v="$2" -v x="$3" -v y="$4" -v n=$size 'BEGIN {
-    s = -1 + 2 * (x + .5) / n; t = 1 - 2 * (y + .5) / n
-    printf "--eye %g,%g,3 --direction %.9f,%.9f,-3", u, v, s - u, t - v }'; }
 uv=$(sed -n 's/.*"uv": \[\([^]]*\)\].*/\1/p' slab/capture.json | sed -n 3p | tr -d ,)
 agree "view 2 of a slab" slab.exr 2 "$(slab_ray $uv 14 13)" 14 13
 

@@ -2,11 +2,6 @@
 # The seeds of every fuzz target, and the inputs that once failed (tests/fuzz/corpus), end well.
 . "$(dirname "$0")/lib.sh"
 unset MAKEFLAGS
-case $BUILD in
-*/build) config=release ;;
-*) config=$(basename "$BUILD") ;;
-esac
-
 make -s -C "$TOP" config=$config fuzzers >make.txt 2>&1 || not_ok "make fuzzers" "$(tail -n 5 make.txt)"
 for source in "$TOP"/tests/fuzz/fuzz_*.c; do
     name=$(basename "$source" .c)

@@ -4,10 +4,9 @@
 . "$(dirname "$0")/lib.sh"
 prefix=$work/prefix
 case $BUILD in
-*/build) config=release sanitizer= ;;
-*/asan) config=asan sanitizer=-fsanitize=address,undefined ;;
-*/tsan) config=tsan sanitizer=-fsanitize=thread ;;
-*) config=$(basename "$BUILD") sanitizer= ;;
+*/asan) sanitizer=-fsanitize=address,undefined ;;
+*/tsan) sanitizer=-fsanitize=thread ;;
+*) sanitizer= ;;
 esac
 CC=${CC:-gcc} CXX=${CXX:-g++}
 

@@ -2,7 +2,6 @@
 # Every kind of light on the command line, on a sphere and a slab whose pixels are known; rigs; what
 # is refused.
 . "$(dirname "$0")/lib.sh"
-relume() { "$RELUME" "$@" 2>err.txt || not_ok "relume $1" "$(cat err.txt)"; }
 diff() { "$mkimage" maxdiff "$1" "$2"; }
 at() { # eye x, eye y, options...: r g b of a planar file there
     x=$1 y=$2

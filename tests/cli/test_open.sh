@@ -4,7 +4,6 @@
 . "$(dirname "$0")/lib.sh"
 mkdir tmp
 export TMPDIR="$work/tmp"
-relume() { "$RELUME" "$@" -q 2>err.txt || not_ok "relume $1 $2" "$(cat err.txt)"; }
 light='dir 0.4 0.3 0.8'
 "$sphere" dome --size 32 --lights 30 --hemisphere --format png || exit 1
 relume encode dome -o pca.exr --basis pca --coefficients 12

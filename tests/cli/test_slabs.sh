@@ -4,8 +4,6 @@
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/format.sh"
 
-relume() { "$RELUME" "$@" -q; }
-psnr() { "$RELUME" compare "$1" "$2" | awk '$1 == "psnr_db" { print $2 }'; }
 pooled() { "$RELUME" eval "$1" "$2" --json -q | sed 's/.*"psnr_pooled_db": \([0-9.]*\).*/\1/'; }
 
 # A block of twelve triangles: quick to make, with edges and a far side.

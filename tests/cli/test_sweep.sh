@@ -6,7 +6,6 @@
 "$sphere" small --size 16 --lights 7 --hemisphere
 mkdir tmp
 export TMPDIR="$work/tmp"
-python=$(command -v python3 || true)
 sweep="$RELUME sweep cap --leave-out 5"
 grid="--basis pca,sh,table --coefficients 4,9 --bits 8,half"
 

@@ -3,10 +3,6 @@
 # newcomer would, in an empty folder; then what each leaves is looked at. Their pictures are small.
 . "$(dirname "$0")/lib.sh"
 PATH=$BUILD:$BUILD/samples:$TOP/samples:$PATH
-case $BUILD in
-*/build) config=release ;;
-*) config=$(basename "$BUILD") ;;
-esac
 unset MAKEFLAGS
 check 'the samples are built' make -s -C "$TOP" config=$config samples
 

@@ -2,8 +2,6 @@
 # How a slab or a panorama is looked at, and how a picture is developed.
 . "$(dirname "$0")/lib.sh"
 
-relume() { "$RELUME" "$@" -q; }
-psnr() { "$RELUME" compare "$1" "$2" | awk '$1 == "psnr_db" { print $2 }'; }
 
 is() { if [ "$2" = "$3" ]; then ok "$1"; else not_ok "$1" "found '$2', expected '$3'"; fi; }
 

@@ -139,6 +139,7 @@ static bool try_job(void)
         abort();
     if (!helper_start(&job, take() % 2 ? HELPER_PICTURE : HELPER_MESH, "a file", NULL)) {
         const int end = job_end();
+        job.processor_s = 10;
         if (end >= 0)
             say_all(end);
         while (heard < 8 && !helper_ask(&job, "message", 7, -1, answer, 128))

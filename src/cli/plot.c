@@ -434,21 +434,19 @@ static void draw_page(struct drawing *d, const struct plot_point *const *sorted)
     draw_legend(d);
 }
 
-static cairo_status_t add_bytes(void *closure, const unsigned char *data, unsigned length)
+static cairo_status_t add_bytes(void *file, const unsigned char *data, unsigned length)
 {
-    struct relume_buffer *s = closure;
-    const struct relume_writer to = relume_buffer_writer(s);
-    return to.write(s, data, length, s->size) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_NO_MEMORY;
+    return fwrite(data, 1, length, file) == length ? CAIRO_STATUS_SUCCESS
+                                                   : CAIRO_STATUS_WRITE_ERROR;
 }
 
-static bool draw_to_stream(struct drawing *d, const struct plot_point *const *sorted,
-                           enum plot_format format, struct relume_buffer *s)
+static bool draw_to_file(struct drawing *d, const struct plot_point *const *sorted, bool png,
+                         FILE *file)
 {
-    const bool png = format == PLOT_PNG;
     cairo_surface_t *surface =
         png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(2.0 * WIDTH),
                                          (int)(2.0 * HEIGHT))
-            : cairo_svg_surface_create_for_stream(add_bytes, s, WIDTH, HEIGHT);
+            : cairo_svg_surface_create_for_stream(add_bytes, file, WIDTH, HEIGHT);
     d->c = cairo_create(surface);
     if (png)
         cairo_scale(d->c, 2.0, 2.0);
@@ -456,44 +454,53 @@ static bool draw_to_stream(struct drawing *d, const struct plot_point *const *so
     bool good = cairo_status(d->c) == CAIRO_STATUS_SUCCESS;
     cairo_destroy(d->c);
     if (png)
-        good &= cairo_surface_write_to_png_stream(surface, add_bytes, s) == CAIRO_STATUS_SUCCESS;
+        good &= cairo_surface_write_to_png_stream(surface, add_bytes, file) == CAIRO_STATUS_SUCCESS;
     cairo_surface_finish(surface);
     good &= cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS;
     cairo_surface_destroy(surface);
     return good;
 }
 
-relume_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
-                        size_t *size)
+static relume_status save(const struct plot *plot, const struct plot_point *const *sorted, bool png,
+                          const char *stem, const struct relume_log *log)
 {
-    *bytes = NULL;
-    *size = 0;
-    if (plot->points < 1)
-        return RELUME_EINVAL;
     struct drawing d = {
         .plot = plot,
         .frame = {LEFT, TOP, WIDTH, HEIGHT - BOTTOM},
         .taken = calloc((size_t)plot->points, 2 * sizeof *d.taken),
         .line = calloc((size_t)plot->points, sizeof *d.line),
     };
-    const struct plot_point **sorted = calloc((size_t)plot->points, sizeof *sorted);
-    struct relume_buffer s = {0};
-    bool good = d.taken && d.line && sorted;
+    char *bytes = NULL, path[4200];
+    size_t size = 0;
+    FILE *memory = open_memstream(&bytes, &size);
+    snprintf(path, sizeof path, "%.4096s.%s", stem, png ? "png" : "svg");
+    bool good = d.taken && d.line && memory;
     if (good) {
-        for (int i = 0; i < plot->points; i++)
-            sorted[i] = &plot->point[i];
-        qsort(sorted, (size_t)plot->points, sizeof *sorted, by_place);
         choose_axes(&d);
-        good = draw_to_stream(&d, sorted, format, &s);
+        good = draw_to_file(&d, sorted, png, memory);
     }
+    if (memory && fclose(memory))
+        good = false;
+    const relume_status status = good ? relume_file_save(path, bytes, size, log) : RELUME_ENOMEM;
+    free(bytes);
     free(d.taken);
     free(d.line);
-    free(sorted);
-    if (!good) {
-        relume_buffer_destroy(&s);
+    return status;
+}
+
+relume_status plot_save(const struct plot *plot, const char *stem, const struct relume_log *log)
+{
+    if (plot->points < 1)
+        return RELUME_EINVAL;
+    const struct plot_point **sorted = calloc((size_t)plot->points, sizeof *sorted);
+    if (!sorted)
         return RELUME_ENOMEM;
-    }
-    *bytes = (char *)s.data;
-    *size = s.size;
-    return RELUME_OK;
+    for (int i = 0; i < plot->points; i++)
+        sorted[i] = &plot->point[i];
+    qsort(sorted, (size_t)plot->points, sizeof *sorted, by_place);
+    relume_status status = save(plot, sorted, false, stem, log);
+    if (!status)
+        status = save(plot, sorted, true, stem, log);
+    free(sorted);
+    return status;
 }

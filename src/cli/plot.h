@@ -26,10 +26,7 @@ struct plot {
     bool curves;  // lines alone: no marks, no labels, no hull
 };
 
-enum plot_format { PLOT_SVG, PLOT_PNG };
-
-// The file's bytes, to be freed. RELUME_EINVAL when there is no point, RELUME_ENOMEM.
-relume_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
-                        size_t *size);
+// STEM.svg and STEM.png. RELUME_EINVAL when there is no point, RELUME_EIO, RELUME_ENOMEM.
+relume_status plot_save(const struct plot *plot, const char *stem, const struct relume_log *log);
 
 #endif

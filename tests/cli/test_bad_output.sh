@@ -147,6 +147,18 @@ usage 'two inputs' 'found 2 inputs' 'encode good good -o u.exr'
 usage 'value missing' 'after it; found none' 'encode good -o'
 usage 'threads -1' 'from 0 to 256' 'encode good -o u.exr --threads -1'
 usage 'threads nan' 'whole number' 'encode good -o u.exr --threads nan'
+usage 'two numbers of three' "--eye: expected three numbers x,y,z; found '1,2'" 'relight good.exr -o u.exr --eye 1,2'
+usage 'a size of no pixels' "--size: expected WxH, W or xH, at most 65536 a side and 2.30 pixels; found '0x4'" 'relight good.exr -o u.exr --size 0x4'
+usage 'a number or a word' "--exposure: expected a number from -100 to 100, or auto; found '101'" 'relight good.exr -o u.exr --exposure 101'
+usage 'an empty word of a list' "--coefficients: expected words separated by commas, at most 64; found '4,,9'" 'sweep good --coefficients 4,,9'
+usage 'a comma behind a list' "--basis: expected words separated by commas, at most 64; found 'sh,'" 'sweep good --basis sh,'
+usage 'a wrong part of a repeated option' "unknown --without 'lid'; did you mean 'lids'" 'glare x.exr -o u.exr --without fibres --without lid'
+usage 'bytes' "--max-memory: expected a size like 500M or 4G; found '4Q'" 'info good.exr --max-memory 4Q'
+usage 'a flag with a value' "--json: takes no value; found '1'" 'info good.exr --json=1'
+expect_ok 'the last of two values counts' - "$RELUME" encode good -o=u.exr $L --bits 16 --bits=8
+expect_ok 'eight bits' - "$RELUME" info u.exr
+check 'of 8 bits' grep -q '^storage *8 bits' out.txt
+rm u.exr
 
 light() { expect_fail "light '$1'" 2 "$2" u.exr "$RELUME" relight good.exr -o u.exr --light "$1"; }
 light 'sun 1 2 3' "light 'sun 1 2 3': unknown kind"

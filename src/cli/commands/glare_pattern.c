@@ -58,37 +58,10 @@ static relume_status save_psf(const struct viewer_eye *e, const char *path,
     return status;
 }
 
-static relume_status save_aperture(const struct viewer_eye *e, const char *path,
-                                   const struct relume_log *log)
-{
-    struct relume_image image;
-    relume_status status = relume_psf_aperture(&image, e->psf);
-    if (!status)
-        status = relume_image_save(&image, path, relume_image_params(.log = log));
-    relume_image_destroy(&image);
-    return status;
-}
-
 // ---------------------------------------------------------------- diagrams
 
-static relume_status save_plot(const struct plot *plot, const char *folder, const char *name,
-                               const struct relume_log *log)
-{
-    relume_status status = RELUME_OK;
-    for (int png = 0; !status && png < 2; png++) {
-        char *bytes = NULL, path[4200];
-        size_t size = 0;
-        snprintf(path, sizeof path, "%s/%s.%s", folder, name, png ? "png" : "svg");
-        status = plot_draw(plot, png ? PLOT_PNG : PLOT_SVG, &bytes, &size);
-        if (!status)
-            status = relume_file_save(path, bytes, size, log);
-        free(bytes);
-    }
-    return status;
-}
-
 // Fig. 8.3: the diameter over time for three fields, and for the one that is looked at.
-static relume_status save_pupil(const struct viewer_eye *e, const char *folder,
+static relume_status save_pupil(const struct viewer_eye *e, const char *stem,
                                 const struct relume_log *log)
 {
     enum { SERIES = 4, STEPS = 400 };
@@ -122,7 +95,7 @@ static relume_status save_pupil(const struct viewer_eye *e, const char *folder,
                               .linear = true,
                               .curves = true};
     if (!status)
-        status = save_plot(&plot, folder, "pupil", log);
+        status = plot_save(&plot, stem, log);
     free(point);
     return status;
 }
@@ -150,7 +123,7 @@ static void measure_rings(double light[RINGS], double angle[RINGS], int count[RI
         }
 }
 
-static relume_status save_observer(const struct viewer_eye *e, const char *folder,
+static relume_status save_observer(const struct viewer_eye *e, const char *stem,
                                    const struct relume_log *log)
 {
     static const struct plot_series series[] = {{"this eye", 1, 0}, {"CIE 1999 observer", 0, 1}};
@@ -182,37 +155,46 @@ static relume_status save_observer(const struct viewer_eye *e, const char *folde
                               .points = n,
                               .curves = true};
     if (!status)
-        status = save_plot(&plot, folder, "observer", log);
+        status = plot_save(&plot, stem, log);
     relume_image_destroy(&image);
     return status;
 }
 
 // ---------------------------------------------------------------- all
 
+static relume_status save_aperture(const struct viewer_eye *e, const char *path,
+                                   const struct relume_log *log)
+{
+    struct relume_image image;
+    relume_status status = relume_psf_aperture(&image, e->psf);
+    if (!status)
+        status = relume_image_save(&image, path, relume_image_params(.log = log));
+    relume_image_destroy(&image);
+    return status;
+}
+
 relume_status save_pattern(struct viewer_eye *e, const struct args *args, const char *path)
 {
-    const struct relume_log *const log = args->log;
-    const char *const base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    static const struct {
+        const char *name;
+        relume_status (*save)(const struct viewer_eye *e, const char *path,
+                              const struct relume_log *log);
+    } files[] = {{"psf.exr", save_psf},
+                 {"psf.png", save_psf},
+                 {"aperture.png", save_aperture},
+                 {"pupil", save_pupil},
+                 {"observer", save_observer}};
+    struct fill folder;
     char name[4200];
     relume_status status = relume_psf_update(e->psf, e->eye);
-    if (status || strchr(base, '.'))
-        return status ? status : save_psf(e, path, log);
+    if (status || strchr(base_name(path), '.'))
+        return status ? status : save_psf(e, path, args->log);
     if (strlen(path) > 4000)
         return usage_error("--psf: expected a shorter name");
-    struct fill folder;
-    status = fill_open(&folder, path, log);
-    path = folder.path;
-    static const char *const patterns[] = {"psf.exr", "psf.png"};
-    for (int i = 0; !status && i < 2; i++) {
-        snprintf(name, sizeof name, "%s/%s", path, patterns[i]);
-        status = save_psf(e, name, log);
+    status = fill_open(&folder, path, args->log);
+    for (size_t i = 0; !status && i < sizeof files / sizeof *files; i++) {
+        snprintf(name, sizeof name, "%s/%s", folder.path, files[i].name);
+        status = files[i].save(e, name, args->log);
     }
-    snprintf(name, sizeof name, "%s/aperture.png", path);
-    if (!status)
-        status = save_aperture(e, name, log);
-    if (!status)
-        status = save_pupil(e, path, log);
-    if (!status)
-        status = save_observer(e, path, log);
     return fill_end(&folder, status);
 }

@@ -300,19 +300,6 @@ static void describe(const struct sweep *sweep, char *text, size_t size)
                  100.0 * sweep->measured);
 }
 
-static relume_status save_plot(const struct sweep *sweep, const struct plot *plot,
-                               enum plot_format format, const char *extension)
-{
-    char *bytes, path[4096];
-    size_t size;
-    relume_status status = plot_draw(plot, format, &bytes, &size);
-    snprintf(path, sizeof path, "%s%s", sweep->out, extension);
-    if (!status)
-        status = relume_file_save(path, bytes, size, sweep->args->log);
-    free(bytes);
-    return status;
-}
-
 static relume_status save_diagram(const struct sweep *sweep)
 {
     struct diagram *d = calloc(1, sizeof *d);
@@ -336,11 +323,8 @@ static relume_status save_diagram(const struct sweep *sweep)
                               .point = d->point,
                               .points = d->points};
     relume_status status = d->point ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && d->points) {
-        status = save_plot(sweep, &plot, PLOT_SVG, ".svg");
-        if (!status)
-            status = save_plot(sweep, &plot, PLOT_PNG, ".png");
-    }
+    if (!status && d->points)
+        status = plot_save(&plot, sweep->out, sweep->args->log);
     free(d->point);
     free(d);
     return status;

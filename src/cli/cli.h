@@ -62,10 +62,12 @@ const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_lo
 __attribute__((format(printf, 3, 4))) void announce(const struct args *args,
                                                     enum relume_level level, const char *format,
                                                     ...);
-// "relume: ..." on stderr; returns RELUME_EINVAL, so that a command may return it.
-__attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
-// The same for inputs at fault: RELUME_EUNFIT.
-__attribute__((format(printf, 1, 2))) relume_status data_error(const char *format, ...);
+// "relume: ..." on stderr; returns `status`, so that a command may return it. Of wrong usage, and
+// of inputs at fault.
+__attribute__((format(printf, 2, 3))) relume_status refuse(relume_status status, const char *format,
+                                                           ...);
+#define usage_error(...) refuse(RELUME_EINVAL, __VA_ARGS__)
+#define data_error(...)  refuse(RELUME_EUNFIT, __VA_ARGS__)
 
 // What a PSNR means for who looks at the pictures: "differences not visible".
 const char *judgement(double psnr_db);

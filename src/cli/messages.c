@@ -50,8 +50,8 @@ static bool on_prefixed_progress(void *user, const char *what, double done)
 const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_log *to,
                                     const char *prefix)
 {
-    *p = (struct prefix_log){
-        {on_prefixed, on_prefixed_progress, p, to->context, false}, to, prefix};
+    *p =
+        (struct prefix_log){{on_prefixed, on_prefixed_progress, p, to->context, false}, to, prefix};
     return &p->log;
 }
 
@@ -90,13 +90,6 @@ bool on_progress(void *user, const char *what, double done)
     return !stopping_asked();
 }
 
-static void say_error(const char *format, va_list list)
-{
-    char text[2048];
-    vsnprintf(text, sizeof text, format, list);
-    print_line("", text);
-}
-
 void announce(const struct args *args, enum relume_level level, const char *format, ...)
 {
     char text[2048];
@@ -107,20 +100,13 @@ void announce(const struct args *args, enum relume_level level, const char *form
     args->log->message(args->log->user, level, text);
 }
 
-relume_status usage_error(const char *format, ...)
+relume_status refuse(relume_status status, const char *format, ...)
 {
+    char text[2048];
     va_list list;
     va_start(list, format);
-    say_error(format, list);
+    vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    return RELUME_EINVAL;
-}
-
-relume_status data_error(const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    say_error(format, list);
-    va_end(list);
-    return RELUME_EUNFIT;
+    print_line("", text);
+    return status;
 }

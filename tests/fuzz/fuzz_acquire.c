@@ -98,10 +98,10 @@ static bool try_poses(const struct fuzz *f, struct bytes b)
 }
 
 // What the tool's reader of times needs of the tool.
-relume_status data_error(const char *format, ...)
+relume_status refuse(relume_status status, const char *format, ...)
 {
     (void)format;
-    return RELUME_EDAMAGED;
+    return status;
 }
 
 const char *base_name(const char *path)

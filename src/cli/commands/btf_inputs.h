@@ -7,9 +7,9 @@
 struct btf_options {
     struct args args;
     const char *output, *mesh, *map;
-    const struct relume_btf_model *model;
     const struct relume_btf_set *directions;
-    struct ints models;  // places in relume_btf_models
+    int model;  // its place in relume_btf_models, or -1
+    struct ints models;
     struct relume_vec3 eye, camera, look_at, up;
     int clusters, components, ratio, lobes, levels, leave_out, pictures, samples, tiles, tile, size,
         seed, picture[2], matrix[2];

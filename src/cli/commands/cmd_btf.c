@@ -10,12 +10,12 @@
 #define OPTIONS struct btf_options
 
 // The place of a model in relume_btf_models.
-static relume_status take_models(void *place, const struct option *o, const char *text,
-                                 const struct relume_log *log)
+static relume_status take_model(void *place, const struct option *o, const char *text,
+                                const struct relume_log *log)
 {
     const char *names[32];
     int n = 0;
-    for (; relume_btf_models[n] && n < 31; n++) {
+    for (; n < 31 && relume_btf_models[n]; n++) {
         names[n] = relume_btf_model_name(relume_btf_models[n]);
         if (!strcmp(names[n], text)) {
             *(int *)place = n;
@@ -24,15 +24,6 @@ static relume_status take_models(void *place, const struct option *o, const char
     }
     names[n] = NULL;
     return unknown_word(log, o->name, text, names);
-}
-
-static relume_status take_model(void *model, const struct option *o, const char *text,
-                                const struct relume_log *log)
-{
-    int place = 0;
-    const relume_status status = take_models(&place, o, text, log);
-    *(const struct relume_btf_model **)model = relume_btf_models[place];
-    return status;
 }
 
 static relume_status take_set(void *set, const struct option *o, const char *text,
@@ -64,7 +55,7 @@ static const struct option options[] = {
         2, 64),
     GROUP("measurements"),
     WORDS("--models", models, "A,B,...", "compare: only these models; default: all", OPTION_OWN,
-          .take = take_models),
+          .take = take_model),
     FLAG("--unseen", unseen, "eval: only views and lights that were left out of the fit"),
     INT("--pictures", pictures, "N",
         "compare, eval: pictures compared by CIEDE2000 and SSIM; default 25", 0, 65536),
@@ -121,19 +112,6 @@ static const struct option options[] = {
     {0},
 };
 
-// Those of --models, or all; NULL-terminated.
-static void choose_models(const struct relume_btf_model *out[MOST_ITEMS + 1],
-                          const struct btf_options *o)
-{
-    int n = 0;
-    for (; n < o->models.count; n++)
-        out[n] = relume_btf_models[o->models.item[n]];
-    for (int i = 0; !n && i < MOST_ITEMS && (out[i] = relume_btf_models[i]); i++)
-        ;
-    if (n)
-        out[n] = NULL;
-}
-
 static struct relume_btf_fit_params fit_params(const struct btf_options *o)
 {
     return (struct relume_btf_fit_params){
@@ -179,34 +157,15 @@ static relume_status make_part(relume_btf **out, const relume_btf *whole,
     return status;
 }
 
-static relume_status judge_left_out(struct relume_btf_error *out, const relume_btf *part,
-                                    const relume_btf *whole, const struct relume_btf_model *model,
-                                    const struct btf_options *o)
-{
-    const struct relume_btf_fit_params p = fit_params(o);
-    relume_btf_fitted *fitted;
-    relume_status status = relume_btf_fit(&fitted, part, model, &p);
-    if (!status)
-        status = relume_btf_judge(out, fitted, whole,
-                                  relume_btf_judge_params(.log = o->args.log, .unseen = true,
-                                                          .threads = o->args.threads));
-    relume_btf_fitted_destroy(&fitted);
-    return status;
-}
-
 static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
                            const relume_btf *btf, const struct btf_options *o)
 {
-    const relume_status status =
-        relume_btf_judge(&row->error, fitted, btf,
-                         relume_btf_judge_params(.log = o->args.log, .threads = o->args.threads,
-                                                 .unseen = o->unseen, .pictures = o->pictures));
-    if (status)
-        return status;
     row->info = relume_btf_fitted_info(fitted);
     row->cost = relume_btf_fitted_cost(fitted);
     row->evaluations = btf_speed(fitted);
-    return RELUME_OK;
+    return relume_btf_judge(&row->error, fitted, btf,
+                            relume_btf_judge_params(.log = o->args.log, .threads = o->args.threads,
+                                                    .unseen = o->unseen, .pictures = o->pictures));
 }
 
 // `before` is what stands before its row in JSON.
@@ -217,15 +176,20 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
     const struct relume_btf_fit_params p = fit_params(o);
     struct btf_row row = {.held_out = NULL};
     struct relume_btf_error held_out;
-    relume_btf_fitted *fitted;
+    relume_btf_fitted *fitted, *of_part = NULL;
     const double start = now_s();
     relume_status status = relume_btf_fit(&fitted, btf, model, &p);
     row.fit_s = now_s() - start;
     if (!status)
         status = judge(&row, fitted, btf, o);
     if (!status && part) {
-        status = judge_left_out(&held_out, part, btf, model, o);
         row.held_out = &held_out;
+        status = relume_btf_fit(&of_part, part, model, &p);
+        if (!status)
+            status = relume_btf_judge(&held_out, of_part, btf,
+                                      relume_btf_judge_params(.log = o->args.log, .unseen = true,
+                                                              .threads = o->args.threads));
+        relume_btf_fitted_destroy(&of_part);
     }
     if (!status) {
         if (o->json)
@@ -240,16 +204,17 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
 static relume_status compare(const struct args *args)
 {
     const struct btf_options *o = (const void *)args;
-    const struct relume_btf_model *models[MOST_ITEMS + 1];
     relume_btf *btf = NULL, *part = NULL;
-    choose_models(models, o);
     relume_status status = btf_open(&btf, o->args.input[0], o);
     if (!status)
         status = make_part(&part, btf, o);
     if (!status && !o->json)
         btf_heading(part != NULL);
-    for (int i = 0; !status && models[i]; i++)
-        status = compare_one(btf, part, models[i], i ? ",\n" : "{\"models\":[", o);
+    const struct ints *named = &o->models;  // none: all
+    for (int i = 0; !status && (named->count ? i < named->count : relume_btf_models[i] != NULL);
+         i++)
+        status = compare_one(btf, part, relume_btf_models[named->count ? named->item[i] : i],
+                             i ? ",\n" : "{\"models\":[", o);
     if (!status && o->json)
         puts("]}");
     relume_btf_destroy(&part);
@@ -265,7 +230,8 @@ relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels
     struct relume_btf_fit_params p = fit_params(o);
     p.levels = (given(o, &o->levels) ? o->levels : levels);
     *out = NULL;
-    return relume_btf_fit(out, btf, o->model ? o->model : relume_btf_model_find("rfnlc"), &p);
+    return relume_btf_fit(
+        out, btf, o->model < 0 ? relume_btf_model_find("rfnlc") : relume_btf_models[o->model], &p);
 }
 
 static relume_status fit(const struct args *args)
@@ -295,8 +261,6 @@ static relume_status eval(const struct args *args)
     relume_btf *btf = NULL;
     relume_btf_fitted *fitted = NULL;
     struct btf_row row = {.fit_s = (double)NAN};
-    if (o->args.inputs != 2)
-        return usage_error("btf eval: expected a model and a BTF");
     relume_status status =
         relume_btf_fitted_open(&fitted, o->args.input[0], relume_btf_params(.log = o->args.log));
     if (!status)
@@ -388,8 +352,13 @@ static relume_status info(const struct args *args)
 
 // ---------------------------------------------------------------- the command
 
-static const struct btf_options defaults = {
-    .pictures = 25, .samples = 3, .repeat = 1.0, .tiles = 10, .size = 64, .matrix = {16, 16}};
+static const struct btf_options defaults = {.model = -1,
+                                            .pictures = 25,
+                                            .samples = 3,
+                                            .repeat = 1.0,
+                                            .tiles = 10,
+                                            .size = 64,
+                                            .matrix = {16, 16}};
 
 // Options of the other tasks are taken and change nothing; help shows `what` these groups are.
 #define TASK(task, function, asks, does, shows, count, what)                                       \

@@ -99,6 +99,7 @@ RELUME_RESULT relume_status relume_acquire(struct relume_acquisition *out, const
                                            const struct relume_acquire_params *params);
 RELUME_API void relume_acquisition_destroy(struct relume_acquisition *acquisition);
 
+// How lights are refined. Borrowed while relume_acquire_refine runs; `curl` is filled.
 struct relume_acquire_refine_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -81,6 +81,7 @@ RELUME_RESULT relume_status relume_warp_homography(struct relume_image *out,
 RELUME_API double relume_edge_correlation(const struct relume_image *a,
                                           const struct relume_image *b);
 
+// How ghosts are found. Borrowed during the call.
 struct relume_ghost_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -28,6 +28,7 @@ struct relume_ball {
     double half_angle_rad;    // perspective: of the cone that touches the ball; else 0
 };
 
+// How balls are looked for and measured. Borrowed during the call; lengths in pixels.
 struct relume_ball_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -86,6 +86,8 @@ struct relume_btf_info {
     struct relume_image relief, normals;
 };
 
+// How BTFs and models of them are opened, kept and saved. `scratch`, `log` and `limits` are
+// borrowed during the call.
 struct relume_btf_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -22,6 +22,7 @@ enum {
     RELUME_PREFILTERED_STEPS = 33,      // of a cosine from -1 to 1
 };
 
+// How an environment is prefiltered. Borrowed during the call.
 struct relume_prefiltered_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -58,8 +59,8 @@ struct relume_prefiltered_info {
     // lobe is that at the rim of the same azimuth.
     const float *part;
 };
-// The arrays as they are; they hold as long as the prefilter.
-RELUME_API struct relume_prefiltered_info relume_prefiltered_info(
+// It and its arrays belong to the prefilter.
+RELUME_API const struct relume_prefiltered_info *relume_prefiltered_info(
     const relume_prefiltered *prefilter);
 
 // The maps in a unit direction of the world, `exponent` > 0.
@@ -87,6 +88,7 @@ struct relume_btf_frame {
     struct relume_vec3 right, up, normal;  // along the sample's rows, up in its picture, off it
 };
 
+// How environment light on one orientation is prepared. Borrowed during the call.
 struct relume_btf_oriented_light_params {
     size_t struct_size;  // filled by the macro (base.h)
     // Prefiltered maps of this orientation, for models of lobes: exact at the horizon, where those

@@ -112,6 +112,8 @@ RELUME_RESULT relume_status relume_manifest_write(const struct relume_manifest *
 // An opened capture. Never changes after opening. Thread-safety: safe.
 typedef struct relume_capture relume_capture;
 
+// How a capture is opened. Borrowed during the call, but for the log's context, which must outlive
+// the capture.
 struct relume_capture_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -202,6 +204,7 @@ RELUME_RESULT relume_status relume_capture_mask(struct relume_image *out,
 // the image's height. Thread-safety: one thread at a time.
 typedef struct relume_table relume_table;
 
+// How a table reads. `log` is used as long as the table lives; the rest is copied.
 struct relume_table_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

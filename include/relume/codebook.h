@@ -59,6 +59,7 @@ struct relume_codebook_info {
 // It belongs to the book.
 RELUME_API const struct relume_codebook_info *relume_codebook_info(const relume_codebook *book);
 
+// How nearest codes are looked for. Borrowed during the call.
 struct relume_codebook_assign_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -88,6 +88,8 @@ struct relume_samples {
     float *data;  // [lights][pixels][rgb], in the domain of the coefficients
 };
 
+// How a coder is made. All that is pointed at is borrowed during the call and copied where it is
+// kept.
 struct relume_coder_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -254,6 +256,7 @@ enum relume_step { RELUME_STEP_DEFAULT = 0, RELUME_STEP_PLANE, RELUME_STEP_COMMO
 // needed to quantise them. Thread-safety: reading is safe.
 typedef struct relume_coefficients relume_coefficients;
 
+// How views are encoded. Borrowed during the call.
 struct relume_encode_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -34,21 +34,23 @@ struct relume_files {
     void *user;
 };
 
+// What a context holds; see each field for what is copied and what is borrowed.
 struct relume_context_params {
-    size_t struct_size;           // filled by the macro (base.h)
+    size_t struct_size;  // filled by the macro (base.h)
     // Of everything opened with it, where params name none. Borrowed as long as the context lives,
     // and read whenever something is opened. NULL: the defaults.
     const struct relume_limits *limits;
-    int threads;                  // where params name none; default: all cores
-    bool keep_inputs;             // files that are read are noted, and no output replaces one
-    struct relume_files files;    // where `open` is not NULL
+    int threads;                // where params name none; default: all cores
+    bool keep_inputs;           // files that are read are noted, and no output replaces one
+    struct relume_files files;  // where `open` is not NULL
 };
 #define relume_context_params(...)                                                                 \
     (&(const struct relume_context_params){RELUME_SIZED(relume_context_params), __VA_ARGS__})
 
-// All else is copied; what `files.user` means must live as long as the context. It must outlive every object that was opened
-// with it: a relume_pack, a relume_capture. RELUME_ENOMEM. Thread-safety: it does not change, but
-// for the list of inputs, which has a lock: any number of threads.
+// All else is copied; what `files.user` means must live as long as the context. It must outlive
+// every object that was opened with it: a relume_pack, a relume_capture. RELUME_ENOMEM.
+// Thread-safety: it does not change, but for the list of inputs, which has a lock: any number of
+// threads.
 RELUME_RESULT relume_status relume_context_create(relume_context **out,
                                                   const struct relume_context_params *params);
 // `*context` becomes NULL, and may have been NULL.

@@ -22,6 +22,7 @@ extern RELUME_API const struct relume_pattern *const relume_patterns[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_pattern *relume_pattern_find(const char *name);
 
+// How directions are spread. Borrowed during the call.
 struct relume_directions_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

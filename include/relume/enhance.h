@@ -45,6 +45,8 @@ struct relume_pass_range {
                       // the highlight
 };
 
+// How a pass shows a picture. Values are those of linear light; pictures are borrowed during the
+// call.
 struct relume_pass_params {
     size_t struct_size;  // filled by the macro (base.h)
     float gain;      // diffuse gain: of the shading's curvature; unsharp: of the detail; default 2

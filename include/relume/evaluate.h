@@ -31,6 +31,7 @@ struct relume_evaluation {
 };
 RELUME_API void relume_evaluation_destroy(struct relume_evaluation *evaluation);
 
+// What is measured, and how sentences call the two sides. Borrowed during the call.
 struct relume_evaluate_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

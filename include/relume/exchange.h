@@ -44,6 +44,8 @@ RELUME_API enum relume_kind relume_kind_of(const char *path);
 // For sentences; constant.
 RELUME_API const char *relume_kind_name(enum relume_kind kind);
 
+// How anything is opened. `log` is used as long as the pack lives; the rest is borrowed during the
+// call.
 struct relume_open_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

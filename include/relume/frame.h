@@ -53,6 +53,8 @@ RELUME_API void relume_frame_size(int *width, int *height, const int own[2],
 RELUME_API struct relume_rect relume_camera_rect(int frame[2], const struct relume_pack_info *info,
                                                  const struct relume_camera *camera);
 
+// How frames are made. Copied; what it points at is borrowed during the call, of a renderer as long
+// as it has these params.
 struct relume_frame_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

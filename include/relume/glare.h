@@ -31,6 +31,7 @@ RELUME_API const char *const *relume_glare_mode_names(void);  // by number, then
 // All names; NULL ends the list.
 RELUME_API const char *const *relume_glare_border_names(void);
 
+// How a glare pattern is laid over a frame. Borrowed during the call.
 struct relume_glare_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

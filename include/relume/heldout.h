@@ -48,8 +48,8 @@ struct relume_heldout_info {
     enum relume_domain domain;
     size_t pixels, all_pixels;  // in memory and in the capture, of all views
 };
-// A copy.
-RELUME_API struct relume_heldout_info relume_heldout_info(const relume_heldout *heldout);
+// It belongs to `heldout`.
+RELUME_API const struct relume_heldout_info *relume_heldout_info(const relume_heldout *heldout);
 
 // How coefficients are stored.
 struct relume_heldout_store {

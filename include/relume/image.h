@@ -48,6 +48,7 @@ RELUME_API float relume_transfer_decode(struct relume_transfer transfer, float c
 // The code of a linear value; the inverse of relume_transfer_decode.
 RELUME_API float relume_transfer_encode(struct relume_transfer transfer, float linear);
 
+// How pictures are loaded and saved. Borrowed during the call.
 struct relume_image_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -98,6 +99,7 @@ enum relume_filter {
 // "auto", "nearest", "linear", "cubic". RELUME_EINVAL when `name` is none of these.
 RELUME_RESULT relume_status relume_filter_parse(enum relume_filter *out, const char *name);
 
+// How pictures are scaled. Borrowed during the call.
 struct relume_scale_params {
     size_t struct_size;  // filled by the macro (base.h)
     int threads;         // default: all cores

@@ -66,6 +66,8 @@ RELUME_RESULT relume_status relume_slab_ingest(const char *dir, const char *cons
                                                const struct relume_slab_ingest_params *slab,
                                                const struct relume_ingest_params *params);
 
+// How views of posed photographs become a slab. Borrowed during the call; lengths in units of the
+// model.
 struct relume_posed_params {
     size_t struct_size;  // filled by the macro (base.h)
     int grid[2];         // cameras across and down; default 5 x 5
@@ -100,6 +102,7 @@ enum relume_panorama_source {
     RELUME_PANORAMA_STITCH,      // overlapping perspective photographs -> sphere
 };
 
+// How photographs become a panorama. Borrowed during the call.
 struct relume_panorama_params {
     size_t struct_size;     // filled by the macro (base.h)
     double v_min, v_max;    // cylinder: tangents of the lowest and highest elevation; default:

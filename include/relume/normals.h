@@ -20,6 +20,7 @@ struct relume_normals {
     struct relume_image albedo;  // linear value under a light of 1 from the normal's direction
 };
 
+// How normals are fitted. Borrowed during the call.
 struct relume_normals_params {
     size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // progress

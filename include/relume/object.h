@@ -128,6 +128,8 @@ RELUME_API bool relume_object_light_at(struct relume_vec3 *towards, float rgb[3]
 
 // ---------------------------------------------------------------- pictures
 
+// How objects are ray traced. Borrowed during the call; a renderer copies it
+// (relume_renderer_set_objects) and goes on using `log`.
 struct relume_render_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

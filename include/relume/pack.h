@@ -60,6 +60,8 @@ struct relume_pack_contents {
 // depend on the processor. RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb);
 
+// How relume files are written and opened. Borrowed during the call; an open pack goes on using
+// `log` and what `reader` reads from.
 struct relume_pack_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -74,6 +74,7 @@ RELUME_API void relume_photographs_free(struct relume_photographs *list);
 RELUME_API int relume_exif_brackets(int *group, const struct relume_exif *notes, int n,
                                     double pause_s);
 
+// How a photograph is read. Borrowed during the call.
 struct relume_photograph_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

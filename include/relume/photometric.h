@@ -26,6 +26,7 @@ struct relume_photometric {
     int lights;
 };
 
+// How normals and albedo are fitted to photographs. Borrowed during the call.
 struct relume_photometric_params {
     size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // progress
@@ -43,6 +44,7 @@ RELUME_RESULT relume_status relume_photometric_fit(struct relume_photometric *ou
                                                    const struct relume_photometric_params *params);
 RELUME_API void relume_photometric_destroy(struct relume_photometric *photometric);
 
+// How normals become heights. Borrowed during the call; heights are in world units.
 struct relume_height_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

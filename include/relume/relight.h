@@ -109,6 +109,8 @@ RELUME_API void relume_environment_weights(float *weights, float constant[3],
 // safe.
 typedef struct relume_refit relume_refit;
 
+// How codes are fitted again in linear light. `like` must outlive the refit; the rest is borrowed
+// during the call.
 struct relume_refit_params {
     size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // gets the loss as a note

@@ -39,6 +39,7 @@ RELUME_RESULT relume_status relume_response_load(struct relume_response *out, co
 RELUME_RESULT relume_status relume_response_save(const struct relume_response *response,
                                                  const char *path, const struct relume_log *log);
 
+// How a response is recovered. Borrowed during the call.
 struct relume_recover_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -88,6 +89,7 @@ struct relume_exposure_report {
     double used;       // mean weight in [0, 1]
 };
 
+// How exposures are merged. Borrowed during the call.
 struct relume_merge_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

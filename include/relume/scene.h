@@ -28,6 +28,7 @@ RELUME_API const struct relume_scene_kind *relume_scene_find(const char *name);
 // Geometry and materials ready for tracing. Never changes. Thread-safety: safe.
 typedef struct relume_scene relume_scene;
 
+// What a scene is made of. Borrowed during the call.
 struct relume_scene_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -55,6 +56,7 @@ enum relume_ring {
 // "4", "6", "8", "cube". RELUME_EINVAL when `name` is none of these.
 RELUME_RESULT relume_status relume_ring_parse(enum relume_ring *out, const char *name);
 
+// What is photographed and how. All that is pointed at is borrowed during the call.
 struct relume_synth_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -104,6 +106,7 @@ RELUME_API const char *relume_btf_material_name(const struct relume_btf_material
 // One line for help texts; constant.
 RELUME_API const char *relume_btf_material_summary(const struct relume_btf_material *material);
 
+// What a sample is measured by. All that is pointed at is borrowed during the call.
 struct relume_btf_synth_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

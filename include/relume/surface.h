@@ -164,6 +164,7 @@ struct relume_btf_camera {
     double fov_deg;              // across the picture, (0, 180)
 };
 
+// How a surface is drawn. Borrowed during the call.
 struct relume_btf_draw_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

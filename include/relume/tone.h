@@ -28,6 +28,7 @@ extern RELUME_API const struct relume_tone *const relume_tones[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_tone *relume_tone_find(const char *name);
 
+// How linear light becomes what a screen shows. Borrowed during the call.
 struct relume_tone_params {
     size_t struct_size;              // filled by the macro (base.h)
     const struct relume_tone *tone;  // default: linear

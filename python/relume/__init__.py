@@ -10,13 +10,13 @@ Errors are `relume.Error` with the library's sentence; warnings go to logging, "
 from ._arrays import image_bytes, load_image, save_image
 from ._capture import Capture, EncodeReport, bases, encode, light_directions
 from ._file import Evaluation, File, Info, open
-from ._library import (Cancelled, DamagedError, Error, FormatError, InputError, LimitError,
+from ._library import (Cancelled, Context, DamagedError, Error, FormatError, InputError, LimitError,
                        MachineError, NotFoundError, OutputError, UnfitError, UnsupportedError,
                        UsageError)
 from ._sweep import SweepRow, sweep
 
 __all__ = [
-    "Cancelled", "Capture", "DamagedError", "EncodeReport", "Error", "Evaluation", "File",
+    "Cancelled", "Capture", "Context", "DamagedError", "EncodeReport", "Error", "Evaluation", "File",
     "FormatError", "Info", "InputError", "LimitError", "MachineError", "NotFoundError",
     "OutputError", "SweepRow", "UnfitError", "UnsupportedError", "UsageError", "bases", "encode",
     "image_bytes", "light_directions", "load_image", "open", "save_image", "sweep",

@@ -31,6 +31,9 @@ struct relume_vec3 { double x, y, z; };
 struct relume_limits { int max_side; uint64_t max_pixels; int max_lights; int max_views;
     uint64_t max_memory; bool any_format; };
 struct relume_log { void *message; void *progress; void *user; void *context; bool leave_unnoted; };
+struct relume_files { void *open; void *close; void *user; };
+struct relume_context_params { size_t struct_size; void *limits; int threads; bool keep_inputs;
+    struct relume_files files; };
 struct relume_reader { void *read; void *user; uint64_t size; };
 struct relume_writer { void *write; void *finish; void *user; };
 struct relume_buffer { void *data; size_t size, room; bool whole; };
@@ -107,6 +110,8 @@ struct relume_target { void *data; int format; int width, height; ptrdiff_t stri
 
 FUNCTIONS = """
 const char *relume_status_text(relume_status status);
+relume_status relume_context_create(relume_context **out, const struct relume_context_params *params);
+void relume_context_destroy(relume_context **context);
 struct relume_reader relume_memory_reader(const void *bytes, size_t size);
 struct relume_writer relume_buffer_writer(struct relume_buffer *buffer);
 void relume_buffer_destroy(struct relume_buffer *buffer);

@@ -13,7 +13,7 @@ import numpy as np
 from ._abi import CONSTANTS, structs
 from ._arrays import Buffer, Source, copy_from, memory, take_image
 from ._capture import Capture, name_of
-from ._library import Handle, Log, Progress, UsageError, lib
+from ._library import Context, Handle, Log, Progress, UsageError, lib
 
 Light = Union[str, Sequence[float], np.ndarray]
 """A light in the words of the command line ("point 1 2 3", "env sky.hdr 90"), or a vector towards a
@@ -80,12 +80,14 @@ def _camera(view, eye, look, size):
 class File(Handle):
     """An open file. Calls from several threads are made one after the other."""
 
-    def __init__(self, source: Source, *, name: str = "memory", threads: int = 0):
+    def __init__(self, source: Source, *, name: str = "memory", threads: int = 0,
+                 context: Context | None = None):
         """`source`: the name of a relume file or of anything else that can be shown (.ptm, .rti, a
         web folder, a capture), or the bytes of a file, whose `name` says by its ending what it is
-        if it is no relume file."""
+        if it is no relume file. `context`: where names are looked for, limits."""
         super().__init__(lib.relume_pack_destroy)
-        self._log, self._lock, self._source = Log(), threading.RLock(), source
+        self._log, self._lock = Log(context=context), threading.RLock()
+        self._source = source
         self._threads = threads
         self._renderer: Handle | None = None
         self._rig: Handle | None = None
@@ -252,6 +254,7 @@ class File(Handle):
         return found
 
 
-def open(source: Source, *, name: str = "memory", threads: int = 0) -> File:
+def open(source: Source, *, name: str = "memory", threads: int = 0,
+         context: Context | None = None) -> File:
     """Open a relume file, anything that can be shown as one, or the bytes of one, called `name`."""
-    return File(source, name=name, threads=threads)
+    return File(source, name=name, threads=threads, context=context)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
+import errno
 import logging
 import os
 import pathlib
-from typing import Callable, Optional
+from typing import Callable, Mapping, Optional
 
 from . import _abi
 from ._abi import CONSTANTS, structs
@@ -115,13 +116,15 @@ _PROGRESS = ctypes.CFUNCTYPE(ctypes.c_bool, ctypes.c_void_p, ctypes.c_char_p, ct
 class Log:
     """A relume_log: keeps the sentences of errors, passes warnings and notes on to logging."""
 
-    def __init__(self, progress: Progress | None = None):
+    def __init__(self, progress: Progress | None = None, context: Context | None = None):
         self._progress, self._errors = progress, []
         self._raised: BaseException | None = None
         self._functions = (_MESSAGE(self._hear), _PROGRESS(self._go_on))
         self.struct = structs["relume_log"](
             ctypes.cast(self._functions[0], ctypes.c_void_p),
-            ctypes.cast(self._functions[1], ctypes.c_void_p) if progress else None)
+            ctypes.cast(self._functions[1], ctypes.c_void_p) if progress else None,
+            context=context.pointer if context else None)
+        self._context = context  # lives as long
 
     @property
     def address(self) -> int:
@@ -188,3 +191,33 @@ class Handle:
 
     def __del__(self):
         self.close()
+
+
+_OPEN = ctypes.CFUNCTYPE(ctypes.c_bool, ctypes.c_void_p, ctypes.c_char_p,
+                         ctypes.POINTER(structs["relume_reader"]), use_errno=True)
+
+
+class Context(Handle):
+    """What calls share: the number of threads, limits (max_side, max_pixels, max_lights, max_views,
+    max_memory, any_format), and `files`: names and bytes that are read in place of the file system,
+    as {"coin/capture.json": ..., "coin/0.png": ...}."""
+
+    def __init__(self, *, files: Mapping[str, bytes] | None = None, threads: int = 0, **limits):
+        super().__init__(lib.relume_context_destroy)
+        self._files, self._limits = files, structs["relume_limits"](**limits)
+        self._open = _OPEN(self._find)
+        params = structs["relume_context_params"](
+            limits=ctypes.addressof(self._limits), threads=threads)
+        if files is not None:
+            params.files.open = ctypes.cast(self._open, ctypes.c_void_p)
+        if lib.relume_context_create(self.out, ctypes.byref(params)):
+            raise MemoryError("relume: out of memory")
+
+    def _find(self, _user, path, out):
+        data = self._files.get(os.fsdecode(path))
+        if data is None:
+            ctypes.set_errno(errno.ENOENT)
+            return False
+        out[0] = lib.relume_memory_reader(ctypes.cast(ctypes.c_char_p(data), ctypes.c_void_p),
+                                          len(data))
+        return True

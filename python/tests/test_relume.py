@@ -275,6 +275,23 @@ class Exchange(Fixture):
             relume.open(ptm[:-9], name="coin.ptm")
 
 
+class Contexts(Fixture):
+    def test_files_and_limits(self):
+        with relume.open(self.data) as file:
+            want, ptm = file.relight((0, 0, 1)), file.export("ptm")
+        store = {"shelf/coin.exr": self.data, "shelf/coin.ptm": ptm}
+        with relume.Context(files=store, threads=1) as context:
+            with relume.open("shelf/coin.exr", context=context) as file:
+                np.testing.assert_array_equal(file.relight((0, 0, 1)), want)
+            with relume.open("shelf/coin.ptm", context=context) as file:
+                self.assertEqual(file.info.basis, "ptm")
+            with self.assertRaisesRegex(relume.NotFoundError, "shelf/other.exr: no such file"):
+                relume.open("shelf/other.exr", context=context)
+        with relume.Context(max_side=3) as context:
+            with self.assertRaisesRegex(relume.LimitError, "expected sizes within the limits"):
+                relume.open(self.data, context=context)
+
+
 @unittest.skipUnless(TOOL, "RELUME names no tool")
 class Tool(Fixture):
     def run_tool(self, *arguments):

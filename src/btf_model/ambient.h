@@ -12,6 +12,7 @@ struct relume_prefiltered {
     float *diffuse, *specular, *part;
     struct relume_environment_cell *cell;  // in the world: E dw / pi
     int cells;
+    struct relume_prefiltered_info info;  // of the above
 };
 
 // Maps of `cells`, a copy of which they keep; nothing is cut off at a horizon. RELUME_ENOMEM.

@@ -234,6 +234,8 @@ relume_status prefilter_from_cells(relume_prefiltered **out,
     p->specular = mem_zeroed(EXPONENTS * plane, sizeof *p->specular);
     p->part = mem_zeroed((size_t)2 * EXPONENTS * STEPS, sizeof *p->part);
     p->cell = mem_copy(cell, (size_t)cells, sizeof *cell);
+    p->info =
+        (struct relume_prefiltered_info){p->width, p->height, p->diffuse, p->specular, p->part};
     relume_status status =
         p->diffuse && p->specular && p->part && p->cell ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {
@@ -276,9 +278,9 @@ void relume_prefiltered_destroy(relume_prefiltered **prefilter)
     free(p);
 }
 
-struct relume_prefiltered_info relume_prefiltered_info(const relume_prefiltered *p)
+const struct relume_prefiltered_info *relume_prefiltered_info(const relume_prefiltered *p)
 {
-    return (struct relume_prefiltered_info){p->width, p->height, p->diffuse, p->specular, p->part};
+    return &p->info;
 }
 
 // ---------------------------------------------------------------- lookups

@@ -654,7 +654,7 @@ relume_status relume_heldout_open(relume_heldout **out, const relume_capture *ca
     return status;
 }
 
-struct relume_heldout_info relume_heldout_info(const relume_heldout *heldout)
+const struct relume_heldout_info *relume_heldout_info(const relume_heldout *heldout)
 {
-    return heldout->info;
+    return &heldout->info;
 }

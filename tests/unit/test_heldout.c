@@ -136,8 +136,8 @@ static void test_against_files(void **state)
         struct relume_heldout_quality before, after;
         CHECK_OK(relume_heldout_open(
             &h, capture, relume_heldout_params(.leave_out = LEFT_OUT, .domain = c->domain)));
-        assert_int_equal(relume_heldout_info(h).folds, FOLDS);
-        assert_int_equal(relume_heldout_info(h).fewest, 8);
+        assert_int_equal(relume_heldout_info(h)->folds, FOLDS);
+        assert_int_equal(relume_heldout_info(h)->fewest, 8);
         CHECK_OK(relume_heldout_measure(
             h, c->basis, relume_coder_params(.coefficients = c->coefficients, .choose = c->choose),
             &c->store, 1, &before, &after));
@@ -173,8 +173,8 @@ static void test_second_capture(void **state)
         relume_heldout *h;
         CHECK_OK(relume_heldout_open(&h, part,
                                      relume_heldout_params(.test = rest, .threads = i ? 7 : 1)));
-        assert_int_equal(relume_heldout_info(h).folds, 1);
-        assert_int_equal(relume_heldout_info(h).judged, 3);
+        assert_int_equal(relume_heldout_info(h)->folds, 1);
+        assert_int_equal(relume_heldout_info(h)->judged, 3);
         CHECK_OK(relume_heldout_measure(h, &relume_basis_sh, relume_coder_params(.coefficients = 4),
                                         store, 3, &before[i], after[i]));
         relume_heldout_destroy(&h);
@@ -217,13 +217,13 @@ static void test_bands(void **state)
     struct relume_heldout_quality whole, bands;
     CHECK_OK(relume_capture_open(&capture, tall, NULL));
     CHECK_OK(relume_heldout_open(&h, capture, NULL));
-    assert_int_equal(relume_heldout_info(h).pixels, 20 * 400);
+    assert_int_equal(relume_heldout_info(h)->pixels, 20 * 400);
     CHECK_OK(relume_heldout_measure(h, &relume_basis_table, NULL, NULL, 0, &whole, NULL));
     relume_heldout_destroy(&h);
     // a third of 20 x 400 pixels x 5 lights x 19 bytes
     CHECK_OK(relume_heldout_open(&h, capture, relume_heldout_params(.memory = 260000)));
-    assert_int_equal(relume_heldout_info(h).all_pixels, 20 * 400);
-    assert_int_equal(relume_heldout_info(h).pixels, 20 * 64 * 2);
+    assert_int_equal(relume_heldout_info(h)->all_pixels, 20 * 400);
+    assert_int_equal(relume_heldout_info(h)->pixels, 20 * 64 * 2);
     CHECK_OK(relume_heldout_measure(h, &relume_basis_table, NULL, NULL, 0, &bands, NULL));
     CHECK_NEAR(bands.psnr_db, whole.psnr_db, 1.0);  // the pattern repeats down the image
     CHECK_NEAR(bands.ssim, whole.ssim, 0.05);

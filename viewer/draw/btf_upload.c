@@ -374,7 +374,7 @@ relume_status btf_need_table(struct btf_material *m, const struct gl *gl,
     if (!m->shader->lobes)
         return upload_cones(m, gl, relume_btf_surface_info(from->surface).model, prefilter, log);
     return fill_buffer(m, gl, &m->table, &m->table_buffer, GL_R32F, PARTS, PARTS * sizeof(float),
-                       relume_prefiltered_info(prefilter).part, log);
+                       relume_prefiltered_info(prefilter)->part, log);
 }
 
 void btf_release(struct btf_material *m, const struct gl *gl)

@@ -11,16 +11,16 @@
 // One below the other: the diffuse map, then those of the exponents.
 static relume_status upload(struct sky_map *map, const struct gl *gl, const struct relume_log *log)
 {
-    const struct relume_prefiltered_info i = relume_prefiltered_info(map->prefilter);
-    const size_t plane = 3 * (size_t)i.width * (size_t)i.height;
+    const struct relume_prefiltered_info *i = relume_prefiltered_info(map->prefilter);
+    const size_t plane = 3 * (size_t)i->width * (size_t)i->height;
     float *texels = malloc((RELUME_PREFILTERED_EXPONENTS + 1) * plane * sizeof *texels);
     if (!texels)
         return RELUME_ENOMEM;
-    memcpy(texels, i.diffuse, plane * sizeof *texels);
-    memcpy(texels + plane, i.specular, RELUME_PREFILTERED_EXPONENTS * plane * sizeof *texels);
+    memcpy(texels, i->diffuse, plane * sizeof *texels);
+    memcpy(texels + plane, i->specular, RELUME_PREFILTERED_EXPONENTS * plane * sizeof *texels);
     gl->GenTextures(1, &map->texture);
-    light_uniforms_upload(gl, 0, map->texture, GL_RGB32F, GL_RGB, i.width,
-                          (RELUME_PREFILTERED_EXPONENTS + 1) * i.height, texels);
+    light_uniforms_upload(gl, 0, map->texture, GL_RGB32F, GL_RGB, i->width,
+                          (RELUME_PREFILTERED_EXPONENTS + 1) * i->height, texels);
     free(texels);
     return gl_check(gl, "uploading an environment", log);
 }

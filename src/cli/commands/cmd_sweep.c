@@ -365,8 +365,8 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
                               .domain = s->domain, .threads = s->args->threads,
                               .memory = (uint64_t)s->options->memory << 20));
     if (!status) {
-        const struct relume_heldout_info info = relume_heldout_info(w->heldout);
-        s->measured = (double)info.pixels / (double)info.all_pixels;
+        const struct relume_heldout_info *info = relume_heldout_info(w->heldout);
+        s->measured = (double)info->pixels / (double)info->all_pixels;
         status = relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, s->args->log);
     }
     if (!status && s->measured < 1.0)

@@ -10,25 +10,6 @@
 
 enum { MOST = 1 << 26 };
 
-struct list {
-    struct relume_ray *ray;
-    int count, room;
-};
-
-static bool add(struct list *list, const double v[6])
-{
-    if (list->count == list->room) {
-        const int room = list->room ? 2 * list->room : 64;
-        struct relume_ray *more = realloc(list->ray, (size_t)room * sizeof *more);
-        if (!more)
-            return false;
-        list->ray = more;
-        list->room = room;
-    }
-    list->ray[list->count++] = (struct relume_ray){{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-    return true;
-}
-
 // The numbers of a line, -1 where there is something else.
 static int numbers_of(double v[6], const char *text)
 {
@@ -45,7 +26,7 @@ static int numbers_of(double v[6], const char *text)
     }
 }
 
-static relume_status read_line(struct list *list, char *line, int number, const char *name,
+static relume_status read_line(struct relume_buffer *list, char *line, int number, const char *name,
                                const struct relume_log *log)
 {
     double v[6];
@@ -62,16 +43,18 @@ static relume_status read_line(struct list *list, char *line, int number, const 
         return say(log, RELUME_EFORMAT,
                    "%s: line %d: the direction is 0 0 0; expected where the ray goes", name,
                    number);
-    if (list->count == MOST)
+    const struct relume_ray ray = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    if (list->size == MOST * sizeof ray)
         return say(log, RELUME_EFORMAT, "%s: line %d: expected at most %d rays", name, number,
                    MOST);
-    return add(list, v) ? RELUME_OK : RELUME_ENOMEM;
+    const struct relume_writer to = relume_buffer_writer(list);
+    return to.write(list, &ray, sizeof ray, list->size) ? RELUME_OK : RELUME_ENOMEM;
 }
 
 relume_status rays_read(struct relume_ray **out, int *count, const char *path,
                         const struct relume_log *log)
 {
-    struct list list = {0};
+    struct relume_buffer list = {0};
     char *line = NULL;
     size_t room = 0;
     relume_status status = RELUME_OK;
@@ -86,16 +69,16 @@ relume_status rays_read(struct relume_ray **out, int *count, const char *path,
         status = read_line(&list, line, number, name, log);
     if (!status && ferror(file))
         status = relume_input_fail(log, name, "cannot be read", errno);
-    if (!status && !list.count)
+    if (!status && !list.size)
         status = say(log, RELUME_EFORMAT, "%s: holds no rays; expected six numbers per line", name);
     if (!stream)
         (void)fclose(file);
     free(line);
     if (status) {
-        free(list.ray);
+        relume_buffer_destroy(&list);
         return status;
     }
-    *out = list.ray;
-    *count = list.count;
+    *out = (struct relume_ray *)(void *)list.data;
+    *count = (int)(list.size / sizeof **out);
     return RELUME_OK;
 }

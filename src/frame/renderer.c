@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "frame/passes.h"
+#include "image/image.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,13 +14,6 @@
 static const uint64_t DEFAULT_MEMORY = (uint64_t)1 << 30;
 
 // ---------------------------------------------------------------- what is kept
-
-static uint64_t image_bytes(const struct relume_image *image)
-{
-    return image->data ? (uint64_t)image->width * (uint64_t)image->height *
-                             (uint64_t)image->channels * sizeof *image->data
-                       : 0;
-}
 
 static uint64_t codes_bytes(const struct relume_codes *codes)
 {
@@ -42,15 +36,41 @@ static uint64_t view_bytes(const relume_renderer *r, int view)
 
 uint64_t relume_renderer_bytes(const relume_renderer *r)
 {
-    uint64_t bytes = 0;
-    for (int i = 0; i < r->info->views; i++)
-        bytes += view_bytes(r, i);
+    uint64_t bytes = r->bytes;
+    for (int i = 0; i < r->changes; i++)
+        bytes += view_bytes(r, r->changed[i]) - r->kept[r->changed[i]].bytes;
     return bytes;
+}
+
+// A view of which more or less is kept from now on: its bytes are to be counted again.
+static void change(relume_renderer *r, int view)
+{
+    struct kept *k = &r->kept[view];
+    if (!k->changed)
+        r->changed[r->changes++] = view;
+    k->changed = true;
+}
+
+static void settle(relume_renderer *r)
+{
+    r->bytes = relume_renderer_bytes(r);
+    while (r->changes) {
+        const int view = r->changed[--r->changes];
+        r->kept[view].bytes = view_bytes(r, view);
+        r->kept[view].changed = false;
+    }
+}
+
+static void use(relume_renderer *r, int view)
+{
+    r->kept[view].used = r->frame;
+    change(r, view);
 }
 
 // Positions, which the assumed depth changes.
 static void forget_places(relume_renderer *r, int view)
 {
+    change(r, view);
     relume_image_destroy(&r->kept[view].surface);
     relume_image_destroy(&r->image[SHOWN_PLACES][view]);
 }
@@ -65,7 +85,7 @@ static void forget(relume_renderer *r, int view)
     free(k->texel);
     if (k->code_bytes)
         relume_pack_drop(r->pack, view);
-    *k = (struct kept){0};
+    *k = (struct kept){.bytes = k->bytes, .changed = true};
 }
 
 void relume_renderer_forget(relume_renderer *r)
@@ -78,8 +98,8 @@ void relume_renderer_forget(relume_renderer *r)
 static void trim(relume_renderer *r)
 {
     const uint64_t most = r->params.memory ? r->params.memory : DEFAULT_MEMORY;
-    uint64_t bytes = relume_renderer_bytes(r);
-    while (bytes > most) {
+    settle(r);
+    while (r->bytes > most) {
         int oldest = -1;
         for (int i = 0; i < r->info->views; i++)
             if (r->kept[i].used && r->kept[i].used < r->frame &&
@@ -87,8 +107,8 @@ static void trim(relume_renderer *r)
                 oldest = i;
         if (oldest < 0)
             return;
-        bytes -= view_bytes(r, oldest);
         forget(r, oldest);
+        settle(r);
     }
 }
 
@@ -129,9 +149,11 @@ static bool create_arrays(relume_renderer *r)
     r->kept = mem_zeroed(views, sizeof *r->kept);
     r->disparity = mem_zeroed(views, sizeof *r->disparity);
     r->needed = mem_zeroed(views, sizeof *r->needed);
+    r->changed = mem_zeroed(views, sizeof *r->changed);
     for (int i = 0; i < SHOWN; i++)
         r->image[i] = mem_zeroed(views, sizeof *r->image[i]);
-    return r->kept && r->disparity && r->needed && r->image[SHOWN_LIGHT] && r->image[SHOWN_PLACES];
+    return r->kept && r->disparity && r->needed && r->changed && r->image[SHOWN_LIGHT] &&
+           r->image[SHOWN_PLACES];
 }
 
 relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
@@ -172,6 +194,7 @@ void relume_renderer_destroy(relume_renderer **renderer)
     free(r->kept);
     free(r->disparity);
     free(r->needed);
+    free(r->changed);
     free(r->lights);
     free(r->over);
     free(r);
@@ -352,6 +375,7 @@ relume_status renderer_need_disparity(relume_renderer *r, int view)
 {
     if (r->disparity[view].data)
         return RELUME_OK;
+    change(r, view);
     const relume_slab *slab =
         r->slabs ? relume_slab_set_slab(r->slabs, r->info->slab_of ? r->info->slab_of[view] : 0)
                  : r->slab;
@@ -376,7 +400,7 @@ relume_status renderer_relit(struct relume_relit *relit, relume_renderer *r, int
                                    .lights = r->lights,
                                    .count = r->light_count,
                                    .log = r->said ? NULL : r->params.log};
-    k->used = r->frame;
+    use(r, view);
     const relume_status status = relume_pack_codes(&relit->codes, r->pack, view);
     if (status)
         return status;
@@ -403,7 +427,7 @@ relume_status renderer_relight(relume_renderer *r, int view, struct relume_image
 relume_status renderer_need(relume_renderer *r, int view)
 {
     struct kept *k = &r->kept[view];
-    k->used = r->frame;
+    use(r, view);
     if (r->shown == SHOWN_PLACES)
         return need_places(r, view);
     if (k->lit == r->lighting)
@@ -430,7 +454,7 @@ relume_status renderer_need_partly(relume_renderer *r, int view)
     struct relume_image *image = &r->image[SHOWN_LIGHT][view];
     if (!goes_by_texels(r))
         return renderer_need(r, view);
-    k->used = r->frame;
+    use(r, view);
     if (k->lit == r->lighting || k->partly == r->lighting)
         return RELUME_OK;
     k->lit = k->partly = 0;

@@ -22,6 +22,8 @@ struct kept {
     uint32_t *texel;              // [texels]: the lighting that each shows
     struct relume_image surface;  // for near lights; empty: not asked for
     uint64_t code_bytes;          // that the pack holds for it
+    uint64_t bytes;               // of all, as the renderer's sum has it
+    bool changed;                 // the sum is to be put right
 };
 
 struct relume_renderer {
@@ -38,6 +40,8 @@ struct relume_renderer {
     enum shown shown;
     relume_relighter *relighter;
     struct kept *kept;                  // [views]
+    uint64_t bytes;                     // of them all, but for what has changed:
+    int *changed, changes;              // [views]
     struct relume_image *image[SHOWN];  // [views]
     struct relume_image *disparity;     // [views]
     bool *needed;                       // [views]: by the present frame

@@ -7,6 +7,14 @@
 
 #include <relume/image.h>
 
+// Of the pixels; 0 for an empty image.
+static inline uint64_t image_bytes(const struct relume_image *image)
+{
+    return image->data ? (uint64_t)image->width * (uint64_t)image->height *
+                             (uint64_t)image->channels * sizeof *image->data
+                       : 0;
+}
+
 // What `transfer` AUTO means for an open file.
 struct relume_transfer image_transfer(struct relume_transfer transfer,
                                       const struct picture_info *info);

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/params.h"
+#include "image/image.h"
 
 #include <relume/relight.h>
 #include <string.h>
@@ -96,11 +97,6 @@ void relume_relighter_destroy(relume_relighter **relighter)
     relume_refit_destroy(&r->learned);
     free(r->view);
     free(r);
-}
-
-static uint64_t image_bytes(const struct relume_image *image)
-{
-    return image->data ? 3 * (uint64_t)image->width * (uint64_t)image->height * sizeof(float) : 0;
 }
 
 uint64_t relume_relighter_bytes(const relume_relighter *r, int view)

@@ -224,6 +224,32 @@ static void memory_is_bounded(void **state)
     relume_renderer_destroy(&r);
 }
 
+// The sum of what is kept is carried from frame to frame: whatever came before, a frame adds what
+// it adds to an empty renderer, and without what is kept there is nothing.
+static void bytes_do_not_drift(void **state)
+{
+    (void)state;
+    relume_renderer *r = make_renderer(relume_frame_params(.memory = 1 << 15));
+    for (int k = 0; k < CAMERAS; k++) {
+        struct relume_image out;
+        relume_renderer *fresh = make_renderer(NULL);
+        CHECK_OK(relume_renderer_frame(&out, fresh, &cameras[k]));
+        relume_image_destroy(&out);
+        for (int i = 0; i < CAMERAS; i++) {
+            relume_renderer_set(r, relume_frame_params(.memory = 1 << 15, .assume_depth = i % 3));
+            CHECK_OK(relume_renderer_frame(&out, r, &cameras[(k + i) % CAMERAS]));
+            relume_image_destroy(&out);
+        }
+        relume_renderer_forget(r);
+        assert_int_equal(relume_renderer_bytes(r), 0);
+        CHECK_OK(relume_renderer_frame(&out, r, &cameras[k]));
+        relume_image_destroy(&out);
+        assert_int_equal(relume_renderer_bytes(r), relume_renderer_bytes(fresh));
+        relume_renderer_destroy(&fresh);
+    }
+    relume_renderer_destroy(&r);
+}
+
 // One pixel by itself is that of the frame: bit by bit where it is a texel, and to rounding where
 // four cameras are mixed in double precision along the ray and in single along the row.
 static void a_pixel_is_that_of_the_frame(void **state)
@@ -361,6 +387,7 @@ int main(void)
         cmocka_unit_test(what_is_kept_still_holds),
         cmocka_unit_test(lights_alone_relight),
         cmocka_unit_test(memory_is_bounded),
+        cmocka_unit_test(bytes_do_not_drift),
         cmocka_unit_test(a_pixel_is_that_of_the_frame),
         cmocka_unit_test(places_are_where_depth_says),
         cmocka_unit_test(one_ray_finds_its_texels),

@@ -1,23 +1,24 @@
 #!/bin/sh
 # Turn shader files into one C file: embed.sh FOLDER FILE.glsl... > shaders.c
-# A line `#include "room/other.glsl"` is replaced by that file below FOLDER, so that every text in
-# the program is complete; FOLDER/room/name.frag.glsl is "room_name.frag" to the program. Strings are
+# A line `#include "room/other.glsl"` is replaced by that file below FOLDER, and so on in there,
+# so that every text in the program is complete; FOLDER/room/name.frag.glsl is "room_name.frag" to the program. Strings are
 # split by lines: a compiler promises only 4095 characters each.
 set -eu
 
 expand() {
-    awk -v folder="$folder" '
-        /^#include "/ {
-            file = $0
-            sub(/^#include "/, "", file)
-            sub(/".*/, "", file)
-            file = folder "/" file
-            while ((got = (getline line < file)) > 0) print line
+    awk -v folder="$folder" -v first="$1" '
+        function put(file,    line, got) {
+            while ((got = (getline line < file)) > 0)
+                if (line ~ /^#include "/) {
+                    sub(/^#include "/, "", line)
+                    sub(/".*/, "", line)
+                    put(folder "/" line)
+                } else
+                    print line
             if (got < 0) { print "embed.sh: cannot read " file > "/dev/stderr"; exit 1 }
             close(file)
-            next
         }
-        { print }' "$1"
+        BEGIN { put(first) }'
 }
 
 folder=$1

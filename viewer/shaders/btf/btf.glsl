@@ -4,6 +4,12 @@
 //
 // Compiled twice: for a lamp, and with SKY defined for an environment. Each level of detail is a
 // pass of its own, which adds its part of what lies between two levels.
+#include "texels.glsl"
+#include "cube.glsl"
+#include "light.glsl"
+#include "shadow.glsl"
+#include "sky.glsl"
+
 uniform sampler2D place, normal_s, tangent_t, footprint;  // btf_surface.frag
 uniform int part;                              // that is drawn
 uniform vec4 eye;                              // its place, 1; or the direction towards it, 0

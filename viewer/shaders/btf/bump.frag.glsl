@@ -1,13 +1,7 @@
 #version 330 core
 // A colour and a normal for each texel, one mean BRDF. Twin: model_bump.c.
 const bool view_grid = false, light_grid = false;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
-
 #include "btf/upright.glsl"
 
 uniform samplerBuffer array0, array1;  // color, normal [texels]

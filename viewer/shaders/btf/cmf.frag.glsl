@@ -2,11 +2,6 @@
 // Products of factors of view, light, half vector and difference. Twin: model_cmf.c.
 #define OWN_BLEND
 const bool view_grid = true, light_grid = true;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
 #include "btf/upright.glsl"
 

@@ -2,13 +2,7 @@
 // Lafortune lobes for each texel. Twin: model_laf.c.
 #define LOBES
 const bool view_grid = false, light_grid = false;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
-
 #include "btf/lafortune.glsl"
 
 vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)

@@ -2,11 +2,6 @@
 // A colour for each texel times n.l. Twin: model_lit.c.
 #define LOBES
 const bool view_grid = false, light_grid = false;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
 
 uniform samplerBuffer array0;  // texture [texels]

@@ -2,11 +2,6 @@
 // Principal components within clusters of texels. Twin: model_lpca.c.
 #define OWN_BLEND
 const bool view_grid = true, light_grid = true;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
 #include "btf/pairs.glsl"
 

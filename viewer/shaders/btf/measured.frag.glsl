@@ -1,11 +1,6 @@
 #version 330 core
 // The measured values. Twin: relume_btf_evaluate.
 const bool view_grid = true, light_grid = true;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
 
 uniform samplerBuffer array0;  // values [views][lights][texels]

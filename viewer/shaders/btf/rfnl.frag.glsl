@@ -2,13 +2,7 @@
 // Cosine lobes of the light for each view. Twin: model_rfnl.c.
 #define LOBES
 const bool view_grid = true, light_grid = false;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
-
 #include "btf/fields.glsl"
 
 vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)

@@ -2,13 +2,7 @@
 // The same for clusters of texels. Twin: model_rfnlc.c.
 #define LOBES
 const bool view_grid = true, light_grid = false;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
-
 #include "btf/fields.glsl"
 uniform usamplerBuffer array3;  // cluster [texels]
 

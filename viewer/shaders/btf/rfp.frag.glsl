@@ -1,11 +1,6 @@
 #version 330 core
 // A biquadratic polynomial of the light for each view. Twin: model_rfp.c.
 const bool view_grid = true, light_grid = false;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
 
 uniform samplerBuffer array0;  // coefficient [texels][views][6]

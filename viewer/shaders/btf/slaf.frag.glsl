@@ -2,13 +2,7 @@
 // Lafortune lobes and a factor for each view. Twin: model_laf.c.
 #define LOBES
 const bool view_grid = true, light_grid = false;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
-
 #include "btf/lafortune.glsl"
 uniform samplerBuffer array3;  // factor [texels][views]
 

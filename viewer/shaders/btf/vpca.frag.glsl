@@ -2,11 +2,6 @@
 // Principal components of each view's pictures. Twin: model_vpca.c.
 #define OWN_BLEND
 const bool view_grid = true, light_grid = true;
-#include "texels.glsl"
-#include "cube.glsl"
-#include "light.glsl"
-#include "shadow.glsl"
-#include "sky.glsl"
 #include "btf/btf.glsl"
 
 uniform samplerBuffer array0;  // mean [views][texels]

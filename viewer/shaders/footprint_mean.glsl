@@ -1,0 +1,15 @@
+// The mean of what a pixel of the frame covers, `texels` along each side of it: of value_at, which
+// the shader defines, at places of the frame counted from the pixel's middle.
+#include "footprint.glsl"
+vec4 value_at(vec2 within);
+
+vec4 footprint_mean(vec2 texels)
+{
+    Footprint across = footprint_of(texels.x);
+    Footprint down = footprint_of(texels.y);
+    vec4 sum = vec4(0.0);
+    for (int j = 0; j < down.count; j++)
+        for (int i = 0; i < across.count; i++)
+            sum += value_at(vec2(footprint_place(across, i), footprint_place(down, j)));
+    return sum / float(across.count * down.count);
+}

@@ -501,7 +501,9 @@ static void the_screen_shows_srgb(void **state)
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     struct program present;
     struct target frame;
-    assert_int_equal(draw_present_create(&present, &fixture_gl, &fixture_log), RELUME_OK);
+    assert_int_equal(
+        program_create_fragment(&present, &fixture_gl, &draw_present_fragment, &fixture_log),
+        RELUME_OK);
     assert_int_equal(target_create(&frame, &fixture_gl, 1, 1, &fixture_log), RELUME_OK);
     GLuint vertices;
     fixture_gl.GenVertexArrays(1, &vertices);
@@ -532,7 +534,9 @@ static void tones_are_the_library_s(void **state)
     struct program present;
     struct target frame;
     GLuint vertices;
-    assert_int_equal(draw_present_create(&present, &fixture_gl, &fixture_log), RELUME_OK);
+    assert_int_equal(
+        program_create_fragment(&present, &fixture_gl, &draw_present_fragment, &fixture_log),
+        RELUME_OK);
     assert_int_equal(target_create(&frame, &fixture_gl, 1, 1, &fixture_log), RELUME_OK);
     fixture_gl.GenVertexArrays(1, &vertices);
     fixture_gl.BindVertexArray(vertices);

@@ -12,8 +12,8 @@ enum { BTF_ARRAYS = 5, BTF_DOMES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_DOMES + 1, 
 
 // How a model is drawn.
 struct btf_shader {
-    const char *model;  // NULL ends the list
-    const char *source;  // a file of viewer/shaders/btf
+    const char *model;        // NULL ends the list
+    const char *source;       // a file of viewer/shaders/btf
     int numbers[BTF_ARRAYS];  // of a texel of each array: 1, 3 or 4; 0: there is none
     bool lobes;  // which an environment is looked up for, rather than summed over the lights
 };

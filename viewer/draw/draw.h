@@ -27,8 +27,7 @@ void draw_rectangle(const struct gl *gl, const struct program *program, const st
                     struct app_rectangle rectangle);
 
 // A view as it was captured.
-relume_status draw_picture_create(struct program *program, const struct gl *gl,
-                                  const struct relume_log *log);
+extern const struct fragment draw_picture_fragment;
 void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
                   const struct target *view);
 
@@ -40,14 +39,12 @@ struct slab_seen {
     const struct target *const *views;  // relit, by view number; NULL where they have no weight
 };
 // The quadralinear basis, or the nearest camera.
-relume_status draw_slab_create(struct program *program, const struct gl *gl,
-                               const struct relume_log *log);
+extern const struct fragment draw_slab_fragment;
 void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
                const struct slab_seen *seen, bool nearest);
 // Each camera where it sees the surface: `disparity` are textures by view number, of the views that
 // are there, `range` the least and the greatest value in any of them.
-relume_status draw_slab_depth_create(struct program *program, const struct gl *gl,
-                                     const struct relume_log *log);
+extern const struct fragment draw_slab_depth_fragment;
 void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
                      const struct slab_seen *seen, const GLuint *disparity, const double range[2]);
 // Make four views between which a cell lies, and their disparities if there are any, samplers 0 to
@@ -55,6 +52,10 @@ void draw_slab_depth(const struct program *program, const struct gl *gl, const s
 // none was.
 bool draw_use_cell(const struct gl *gl, const struct target *const *views, const GLuint *disparity,
                    const int cell[4]);
+
+// What slab_window.glsl and its shaders know of the window: `at` are picture, st and eye.
+void draw_use_window(const struct gl *gl, const struct place *place, const struct slab_seen *seen,
+                     const GLint at[3]);
 
 // Several slabs through a window of the world, which the place's picture shows.
 struct slabs_seen {
@@ -68,23 +69,19 @@ struct slabs_seen {
 };
 // Both add weighted values and their weights (alpha) to a black target, which draw_mean then
 // divides.
-relume_status draw_slabs_create(struct program *program, const struct gl *gl,
-                                const struct relume_log *log);
+extern const struct fragment draw_slabs_fragment;
 void draw_slabs(const struct program *program, const struct gl *gl, const struct place *place,
                 const struct slabs_seen *seen, bool nearest);
-relume_status draw_slabs_depth_create(struct program *program, const struct gl *gl,
-                                      const struct relume_log *log);
+extern const struct fragment draw_slabs_depth_fragment;
 void draw_slabs_depth(const struct program *program, const struct gl *gl, const struct place *place,
                       const struct slabs_seen *seen);
 
 // Through an aperture: adds weighted values and their weights (alpha) to a black target, which
 // draw_mean then divides. `aperture` and `focus` as relume_view_params.
-relume_status draw_slab_lens_create(struct program *program, const struct gl *gl,
-                                    const struct relume_log *log);
+extern const struct fragment draw_slab_lens_fragment;
 void draw_slab_lens(const struct program *program, const struct gl *gl, const struct place *place,
                     const struct slab_seen *seen, double aperture, double focus);
-relume_status draw_mean_create(struct program *program, const struct gl *gl,
-                               const struct relume_log *log);
+extern const struct fragment draw_mean_fragment;
 void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
                const struct target *sum);
 
@@ -97,14 +94,12 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
                    const struct target *view);
 
 // The ball of gizmo_ball, lit from `light` (as the viewer sees it).
-relume_status draw_ball_create(struct program *program, const struct gl *gl,
-                               const struct relume_log *log);
+extern const struct fragment draw_ball_fragment;
 void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
                struct gizmo_circle ball, struct relume_vec3 light, const float rgb[3]);
 
 // Lights that are in view, added to the frame.
-relume_status draw_source_create(struct program *program, const struct gl *gl,
-                                 const struct relume_log *log);
+extern const struct fragment draw_source_fragment;
 void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
                   const struct relume_visible_light *sources, int n);
 
@@ -114,8 +109,7 @@ struct window_place {
 };
 // A linear frame onto a framebuffer whose first row is the lowest (0: the screen), through
 // relume_tones[tone], coded as sRGB; `white` > 0.
-relume_status draw_present_create(struct program *program, const struct gl *gl,
-                                  const struct relume_log *log);
+extern const struct fragment draw_present_fragment;
 void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
                   const struct window_place *window, int tone, double white, GLuint framebuffer);
 

@@ -6,11 +6,7 @@
 enum { BALL = DRAW_OWN, LIGHT, VALUE, COUNT };
 static const char *const uniforms[] = {"rectangle", "frame_size", "ball", "light", "value"};
 
-relume_status draw_ball_create(struct program *program, const struct gl *gl,
-                               const struct relume_log *log)
-{
-    return program_create(program, gl, "ball.frag", uniforms, COUNT, log);
-}
+const struct fragment draw_ball_fragment = {"ball.frag", uniforms, COUNT};
 
 void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
                struct gizmo_circle ball, struct relume_vec3 light, const float rgb[3])

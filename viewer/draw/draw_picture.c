@@ -4,11 +4,7 @@
 enum { VIEW = DRAW_OWN, PICTURE, EXPOSURE, COUNT };
 static const char *const uniforms[] = {"rectangle", "frame_size", "view", "picture", "exposure"};
 
-relume_status draw_picture_create(struct program *program, const struct gl *gl,
-                                  const struct relume_log *log)
-{
-    return program_create(program, gl, "picture.frag", uniforms, COUNT, log);
-}
+const struct fragment draw_picture_fragment = {"picture.frag", uniforms, COUNT};
 
 void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
                   const struct target *view)

@@ -4,11 +4,7 @@
 enum { FRAME = DRAW_OWN, TONE, WHITE, LEFT, COUNT };
 static const char *const uniforms[] = {"rectangle", "frame_size", "frame", "tone", "white", "left"};
 
-relume_status draw_present_create(struct program *program, const struct gl *gl,
-                                  const struct relume_log *log)
-{
-    return program_create(program, gl, "present.frag", uniforms, COUNT, log);
-}
+const struct fragment draw_present_fragment = {"present.frag", uniforms, COUNT};
 
 void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
                   const struct window_place *window, int tone, double white, GLuint framebuffer)

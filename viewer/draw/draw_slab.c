@@ -12,10 +12,10 @@ enum {
     VIEW_10,
     VIEW_01,
     VIEW_11,
-    PICTURE,
+    PICTURE,  // of draw_use_window, to EYE
     ST,
-    CELL,
     EYE,
+    CELL,
     EXPOSURE,
     COMMON,
     NEAREST = COMMON,
@@ -26,24 +26,15 @@ enum {
     DEPTH_COUNT,
 };
 #define COMMON_UNIFORMS                                                                            \
-    "rectangle", "frame_size", "view00", "view10", "view01", "view11", "picture", "st", "cell",    \
-        "eye", "exposure"
+    "rectangle", "frame_size", "view00", "view10", "view01", "view11", "picture", "st", "eye",     \
+        "cell", "exposure"
 static const char *const linear_uniforms[] = {COMMON_UNIFORMS, "nearest"};
 static const char *const depth_uniforms[] = {
     COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01", "disparity11", "range", "here",
 };
 
-relume_status draw_slab_create(struct program *program, const struct gl *gl,
-                               const struct relume_log *log)
-{
-    return program_create(program, gl, "slab.frag", linear_uniforms, LINEAR_COUNT, log);
-}
-
-relume_status draw_slab_depth_create(struct program *program, const struct gl *gl,
-                                     const struct relume_log *log)
-{
-    return program_create(program, gl, "slab_depth.frag", depth_uniforms, DEPTH_COUNT, log);
-}
+const struct fragment draw_slab_fragment = {"slab.frag", linear_uniforms, LINEAR_COUNT};
+const struct fragment draw_slab_depth_fragment = {"slab_depth.frag", depth_uniforms, DEPTH_COUNT};
 
 // Along one axis: the cameras on both sides of a cell and the part of the window seen through it.
 struct strip {
@@ -126,27 +117,32 @@ static void draw_cell(const struct cells *c, const struct strip *across, const s
     draw_rectangle(c->gl, c->program, c->place, pixels_of(c, across, down));
 }
 
-static void set_uniforms(const struct cells *c, double reach)
-{
-    const struct gl *gl = c->gl;
-    const struct relume_geometry *g = c->seen->geometry;
-    const struct relume_vec3 *eye = &c->seen->eye;
-    const struct app_rectangle *p = &c->place->picture;
-    const GLint *at = c->program->at;
-    gl->UseProgram(c->program->id);
-    for (int i = 0; i < 4; i++)
-        gl->Uniform1i(at[VIEW_00 + i], i);
-    gl->Uniform4f(at[PICTURE], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
-    gl->Uniform4f(at[ST], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
-                  (float)g->st_max[1]);
-    gl->Uniform3f(at[EYE], (float)eye->x, (float)eye->y, (float)reach);
-    gl->Uniform1f(at[EXPOSURE], c->place->exposure);
-}
-
 static double reach_of(const struct slab_seen *seen)
 {
     const struct relume_geometry *g = seen->geometry;
     return (g->uv_z - seen->eye.z) / (g->st_z - seen->eye.z);
+}
+
+void draw_use_window(const struct gl *gl, const struct place *place, const struct slab_seen *seen,
+                     const GLint at[3])
+{
+    const struct relume_geometry *g = seen->geometry;
+    const struct app_rectangle *p = &place->picture;
+    gl->Uniform4f(at[0], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
+    gl->Uniform4f(at[1], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
+                  (float)g->st_max[1]);
+    gl->Uniform3f(at[2], (float)seen->eye.x, (float)seen->eye.y, (float)reach_of(seen));
+}
+
+static void set_uniforms(const struct cells *c)
+{
+    const struct gl *gl = c->gl;
+    const GLint *at = c->program->at;
+    gl->UseProgram(c->program->id);
+    for (int i = 0; i < 4; i++)
+        gl->Uniform1i(at[VIEW_00 + i], i);
+    draw_use_window(gl, c->place, c->seen, at + PICTURE);
+    gl->Uniform1f(at[EXPOSURE], c->place->exposure);
 }
 
 static void draw_cells(const struct cells *c)
@@ -170,7 +166,7 @@ void draw_slab(const struct program *program, const struct gl *gl, const struct 
                const struct slab_seen *seen, bool nearest)
 {
     const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), NULL};
-    set_uniforms(&cells, reach_of(seen));
+    set_uniforms(&cells);
     gl->Uniform1i(program->at[NEAREST], nearest);
     draw_cells(&cells);
 }
@@ -180,7 +176,7 @@ void draw_slab_depth(const struct program *program, const struct gl *gl, const s
 {
     const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), disparity};
     const double nearest = fmin(range[1], relume_slab_eye_disparity(seen->slab, seen->eye));
-    set_uniforms(&cells, reach_of(seen));
+    set_uniforms(&cells);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
     gl->Uniform2f(program->at[RANGE], (float)range[0], (float)nearest);

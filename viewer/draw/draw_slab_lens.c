@@ -8,17 +8,8 @@ static const char *const uniforms[] = {
 enum { SUM = DRAW_OWN, EXPOSURE, MEAN_COUNT };
 static const char *const mean_uniforms[] = {"rectangle", "frame_size", "sum", "exposure"};
 
-relume_status draw_slab_lens_create(struct program *program, const struct gl *gl,
-                                    const struct relume_log *log)
-{
-    return program_create(program, gl, "slab_lens.frag", uniforms, COUNT, log);
-}
-
-relume_status draw_mean_create(struct program *program, const struct gl *gl,
-                               const struct relume_log *log)
-{
-    return program_create(program, gl, "mean.frag", mean_uniforms, MEAN_COUNT, log);
-}
+const struct fragment draw_slab_lens_fragment = {"slab_lens.frag", uniforms, COUNT};
+const struct fragment draw_mean_fragment = {"mean.frag", mean_uniforms, MEAN_COUNT};
 
 static void set_uniforms(const struct program *program, const struct gl *gl,
                          const struct place *place, const struct slab_seen *seen, double aperture,
@@ -26,16 +17,11 @@ static void set_uniforms(const struct program *program, const struct gl *gl,
 {
     const struct relume_geometry *g = seen->geometry;
     const struct relume_slab_grid grid = relume_slab_grid(seen->slab);
-    const struct app_rectangle *p = &place->picture;
-    const double reach = (g->uv_z - seen->eye.z) / (g->st_z - seen->eye.z);
     const double disparity = relume_slab_plane_disparity(seen->slab, g->st_z + focus);
     const GLint *at = program->at;
     gl->UseProgram(program->id);
     gl->Uniform1i(at[VIEW], 0);
-    gl->Uniform4f(at[PICTURE], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
-    gl->Uniform4f(at[ST], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
-                  (float)g->st_max[1]);
-    gl->Uniform3f(at[EYE], (float)seen->eye.x, (float)seen->eye.y, (float)reach);
+    draw_use_window(gl, place, seen, at + PICTURE);
     gl->Uniform4f(at[GRID], (float)grid.u[0], (float)grid.v[0], (float)grid.u[grid.columns - 1],
                   (float)grid.v[grid.rows - 1]);
     gl->Uniform2f(at[LENS], (float)(0.5 * aperture), (float)disparity);

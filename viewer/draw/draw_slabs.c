@@ -39,17 +39,8 @@ static const char *const depth_uniforms[] = {
     "disparity11",   "range",       "extent",      "here",
 };
 
-relume_status draw_slabs_create(struct program *program, const struct gl *gl,
-                                const struct relume_log *log)
-{
-    return program_create(program, gl, "slabs.frag", flat_uniforms, FLAT_COUNT, log);
-}
-
-relume_status draw_slabs_depth_create(struct program *program, const struct gl *gl,
-                                      const struct relume_log *log)
-{
-    return program_create(program, gl, "slabs_depth.frag", depth_uniforms, DEPTH_COUNT, log);
-}
+const struct fragment draw_slabs_fragment = {"slabs.frag", flat_uniforms, FLAT_COUNT};
+const struct fragment draw_slabs_depth_fragment = {"slabs_depth.frag", depth_uniforms, DEPTH_COUNT};
 
 // One slab, the window in its own frame.
 struct turned {

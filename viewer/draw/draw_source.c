@@ -6,11 +6,7 @@
 enum { MIDDLE = DRAW_OWN, VALUE, COUNT };
 static const char *const uniforms[] = {"rectangle", "frame_size", "middle", "value"};
 
-relume_status draw_source_create(struct program *program, const struct gl *gl,
-                                 const struct relume_log *log)
-{
-    return program_create(program, gl, "source.frag", uniforms, COUNT, log);
-}
+const struct fragment draw_source_fragment = {"source.frag", uniforms, COUNT};
 
 void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
                   const struct relume_visible_light *sources, int n)

@@ -16,23 +16,22 @@ static relume_status create_programs(struct renderer *r)
 {
     const struct {
         struct program *program;
-        relume_status (*create)(struct program *, const struct gl *, const struct relume_log *);
+        const struct fragment *fragment;
     } list[] = {
-        {&r->picture, draw_picture_create},
-        {&r->slab, draw_slab_create},
-        {&r->slab_depth, draw_slab_depth_create},
-        {&r->slab_lens, draw_slab_lens_create},
-        {&r->slabs, draw_slabs_create},
-        {&r->slabs_depth, draw_slabs_depth_create},
-        {&r->mean, draw_mean_create},
-
-        {&r->ball, draw_ball_create},
-        {&r->source, draw_source_create},
-        {&r->present, draw_present_create},
+        {&r->picture, &draw_picture_fragment},
+        {&r->slab, &draw_slab_fragment},
+        {&r->slab_depth, &draw_slab_depth_fragment},
+        {&r->slab_lens, &draw_slab_lens_fragment},
+        {&r->slabs, &draw_slabs_fragment},
+        {&r->slabs_depth, &draw_slabs_depth_fragment},
+        {&r->mean, &draw_mean_fragment},
+        {&r->ball, &draw_ball_fragment},
+        {&r->source, &draw_source_fragment},
+        {&r->present, &draw_present_fragment},
     };
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
-        status = list[i].create(list[i].program, r->gl, r->log);
+        status = program_create_fragment(list[i].program, r->gl, list[i].fragment, r->log);
     if (!status && r->geometry.projection >= RELUME_CYLINDRICAL)
         status = draw_panorama_create(&r->panorama, r->gl, &r->geometry, r->log);
     return status;

@@ -129,6 +129,12 @@ relume_status program_create(struct program *program, const struct gl *gl, const
     return program_create_variant(program, gl, fragment, NULL, uniforms, n, log);
 }
 
+relume_status program_create_fragment(struct program *program, const struct gl *gl,
+                                      const struct fragment *fragment, const struct relume_log *log)
+{
+    return program_create(program, gl, fragment->name, fragment->uniforms, fragment->count, log);
+}
+
 void program_destroy(struct program *program, const struct gl *gl)
 {
     gl->DeleteProgram(program->id);

@@ -16,6 +16,13 @@ struct program {
 // of the caller's enum. RELUME_ESYSTEM with the compiler's words.
 relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
                              const char *const *uniforms, int n, const struct relume_log *log);
+struct fragment {
+    const char *name, *const *uniforms;
+    int count;  // of uniforms
+};
+relume_status program_create_fragment(struct program *program, const struct gl *gl,
+                                      const struct fragment *fragment,
+                                      const struct relume_log *log);
 // The same with `defines`, lines that follow the first.
 relume_status program_create_variant(struct program *program, const struct gl *gl,
                                      const char *fragment, const char *defines,

@@ -233,8 +233,8 @@ int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
 // ---------------------------------------------------------------- one pixel
 
 // Adds what a slab says of a ray, times its weight: r, g, b, weight. False without weight.
-typedef bool ray_adder(double sum[4], const struct picture *p, const struct seen *s, double x,
-                       double y);
+typedef bool (*ray_adder)(double sum[4], const struct picture *p, const struct seen *s, double x,
+                          double y);
 
 static bool add_passing(double sum[4], const struct picture *p, const struct seen *s, double x,
                         double y)
@@ -331,7 +331,7 @@ static void add(double sum[4], const struct picture *p, const struct seen *s, do
                 bool beside)
 {
     const double dx = p->pixel[0], dy = p->pixel[1];
-    ray_adder *const add_ray = beside ? add_beside : add_passing;
+    const ray_adder add_ray = beside ? add_beside : add_passing;
     struct footprint side[2];
     find_footprint(side, p, s, x, y, beside);
     const struct footprint across = side[0], down = side[1];

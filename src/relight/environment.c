@@ -17,7 +17,8 @@ enum { CELL_COLUMNS = 256, CELL_ROWS = 128, SHOWN_COLUMNS = 1024, SHOWN_ROWS = 5
 
 struct relume_environment {
     struct relume_image map;
-    int count;
+    int count, rows;
+    int end[CELL_ROWS];  // of each row, in `cell`
     struct relume_environment_cell *cell;
 };
 
@@ -133,6 +134,7 @@ static void keep_cells(relume_environment *e, const struct gathered *cells, int 
         for (int c = 0; c < 3; c++)
             to->rgb[c] = (float)(g->rgb[c] / M_PI);
     }
+    e->end[e->rows++] = e->count;
 }
 
 static relume_status make_cells(relume_environment *e)
@@ -231,6 +233,23 @@ struct relume_vec3 relume_environment_turn(struct relume_vec3 direction, double 
     return vec3_of(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
 }
 
+// Along the surface so much of what comes from the border of the captured region is met, at most.
+static const double upright = 0.05, most_upright = 0.25;
+
+// The share of what the border of the captured region gives, for light from beyond it. A single
+// light's (relume_coder_clamp) is what predicts lamps best, 2 to 4 % too much in the sum; this has
+// the same end along the surface and the mean of a plane's z / z', which is 1/2, so that an even
+// sky shows a white plane as 1: rest + (1 - rest) t^power.
+static double share_of_sky(const struct relume_captured_region *region, vec3 direction, vec3 from,
+                           double share)
+{
+    const double to = vec3_dot(direction, region->facing), border = vec3_dot(from, region->facing);
+    if (share >= 1.0 || !(border > 0.0))
+        return share;
+    const double rest = fmin(upright / (border + upright), most_upright);
+    return rest + (1.0 - rest) * pow(fmin(fmax(to / border, 0.0), 1.0), 0.5 / (0.5 - rest));
+}
+
 void relume_environment_weights(float *weights, float constant[3], const relume_weight_grid *grid,
                                 const struct relume_light *light)
 {
@@ -244,7 +263,8 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
         vec3 from;
         if (info->hemispherical && pole_from_world(d, info->pole_y).z < 0.0)
             continue;
-        const float share = (float)relume_coder_clamp(&from, coder, d);
+        const double lone = relume_coder_clamp(&from, coder, d);
+        const float share = (float)share_of_sky(relume_coder_region(coder), d, from, lone);
         for (int c = 0; c < 3; c++)
             value[c] = share * light->rgb[c] * e->cell[i].rgb[c];
         relume_weight_grid_add(weights, constant, sums, from, value);
@@ -253,17 +273,33 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
 
 // ---------------------------------------------------------------- sampling
 
-// By inversion of the running sum of luminance, one draw in each of n equal shares.
+static const double golden = 0.6180339887498949;
+
+// The first of the running sums from `at` on that is above `want`, the last at most.
+static int find_above(const double *sum, int at, int last, double want)
+{
+    while (at < last && sum[at] <= want)
+        at++;
+    return at;
+}
+
+// A Fibonacci lattice, shifted: its rows by inversion of the running sum of luminance over the rows
+// of cells, its columns by that within a row, so that what is drawn is spread evenly both ways.
 static void draw(struct relume_light *out, int n, const struct relume_light *light,
                  const double *sum, uint64_t seed)
 {
     const relume_environment *e = light->environment;
     const double total = sum[e->count - 1];
     struct random random = random_stream(seed, 0, 0);
-    for (int i = 0, at = 0; i < n; i++) {
-        const double want = (i + random_next(&random)) / n * total;
-        while (at < e->count - 1 && sum[at] <= want)
-            at++;
+    const double down = random_next(&random), along = random_next(&random);
+    for (int i = 0, row = 0; i < n; i++) {
+        const double want = (i + down) / n * total;
+        while (row < e->rows - 1 && (e->end[row] == 0 || sum[e->end[row] - 1] <= want))
+            row++;
+        const int first = row ? e->end[row - 1] : 0, last = e->end[row] - 1;
+        const double from = first ? sum[first - 1] : 0.0, part = i * golden + along;
+        const int at =
+            find_above(sum, first, last, from + (part - floor(part)) * (sum[last] - from));
         const struct relume_environment_cell *cell = &e->cell[at];
         const double factor = total / (n * luminance_709(cell->rgb));
         out[i] = (struct relume_light){

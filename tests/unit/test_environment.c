@@ -128,6 +128,17 @@ static void test_oddities(void **state)
 
 enum { MAP_W = 24, MAP_H = 12, CUT = 10 };
 
+// Light from beyond what was captured, as docs/lights.md has it.
+static double share_of(const struct relume_coder_info *info, const relume_coder *coder,
+                       struct relume_vec3 d, struct relume_vec3 *from)
+{
+    const double lone = relume_coder_clamp(from, coder, d);
+    if (lone >= 1.0 || info->pole_y || !info->hemispherical)
+        return lone;
+    const double r = fmin(0.05 / (from->z + 0.05), 0.25);
+    return r + (1 - r) * pow(fmin(d.z / from->z, 1.0), 1 / (1 - 2 * r));
+}
+
 // Sum over the map in CUT x CUT pieces a pixel, the basis evaluated at each: in double.
 static void slow(double *sum, const struct learned *l, const struct relume_image *map,
                  double rotate, const float tint[3])
@@ -148,7 +159,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
             if (info->hemispherical && (info->pole_y ? d.y : d.z) < 0)
                 continue;
             struct relume_vec3 from;
-            const double share = relume_coder_clamp(&from, l->coder, d);
+            const double share = share_of(info, l->coder, d, &from);
             relume_coder_weights(flat ? flat : l->coder, from, weights, constant);
             const float *e = map->data + 3 * (y / CUT * MAP_W + x / CUT);
             for (int c = 0; c < 3; c++) {

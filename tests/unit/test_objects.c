@@ -384,8 +384,9 @@ static void scenes_without_depth_hide(void **state)
 }
 
 // Under an even sky a square takes its form factor off, in closed form. Half of the 64 lamps that
-// stand for the sky are above the plane: their shadows together are 0.898 of it, those of 4096
-// lamps 0.995. Without the cosine it was 0.376.
+// stand for the sky are above the plane: over 25 seeds such a lattice takes 0.94 to 1.06 of it,
+// 3 % off on average; draws that were stratified one way only took 0.67 to 1.19. Without the
+// cosine it was 0.376.
 static void skies_throw_whole_shadows(void **state)
 {
     (void)state;
@@ -413,7 +414,7 @@ static void skies_throw_whole_shadows(void **state)
             want += hidden_part(wx, wy, 0.3);
         }
     relume_image_destroy(&open);
-    CHECK_NEAR(got / want, 1.0, 0.12);
+    CHECK_NEAR(got / want, 1.0, 0.06);
     relume_image_destroy(&out);
     relume_image_destroy(&map);
     relume_environment_destroy(&e);

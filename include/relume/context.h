@@ -7,7 +7,8 @@
 //     relume_open(&pack, "coin.ptm", relume_open_params(.log = &log));
 //
 // It goes with the log, which every params struct takes. A log without one, and no log, have the
-// defaults.
+// defaults. Memory is not a context's: all of it comes from the process's malloc, so that a program
+// which wants another allocator links one; what callers are to free they give to free().
 #ifndef RELUME_CONTEXT_H
 #define RELUME_CONTEXT_H
 
@@ -29,8 +30,8 @@ struct relume_files {
     bool (*open)(void *user, const char *path, struct relume_reader *out);
     // What `open` has given is read no more. May be NULL.
     void (*close)(void *user, struct relume_reader *reader);
-    // Of both. Thread-safety: both are called from threads of the library, one call at a time for
-    // one context; readers as relume_reader says.
+    // Of both. Thread-safety: both are called from threads of the library, one call at a time, and
+    // must not call the library; readers as relume_reader says.
     void *user;
 };
 

@@ -490,6 +490,55 @@ static void test_other_formats_in_memory(void **state)
     relume_pack_destroy(&pack);
 }
 
+// What callbacks say of a name counts: it is another's to know, it is none, it cannot be read.
+static bool answer_open(void *user, const char *path, struct relume_reader *out)
+{
+    (void)path, (void)out;
+    errno = *(const int *)user;
+    return false;
+}
+
+static bool fail_read(void *user, void *bytes, size_t size, uint64_t offset)
+{
+    (void)user, (void)bytes, (void)size, (void)offset;
+    errno = EIO;
+    return false;
+}
+
+static bool unreadable_open(void *user, const char *path, struct relume_reader *out)
+{
+    (void)user, (void)path;
+    *out = (struct relume_reader){fail_read, NULL, 100};
+    return true;
+}
+
+static void test_names_that_are_not_there(void **state)
+{
+    (void)state;
+    struct test_log log;
+    int answer = 0;
+    relume_pack *pack;
+    relume_capture *capture;
+    test_log_init(&log);
+    CHECK_OK(relume_context_create(&log.log.context,
+                                   relume_context_params(.files = {answer_open, NULL, &answer})));
+    CHECK_OK(relume_open(&pack, pack_path, relume_open_params(.log = &log.log)));
+    relume_pack_destroy(&pack);
+    answer = EACCES;
+    assert_int_equal(relume_open(&pack, pack_path, relume_open_params(.log = &log.log)),
+                     RELUME_ENOTFOUND);
+    assert_null(pack);
+    relume_context_destroy(&log.log.context);
+    CHECK_OK(relume_context_create(&log.log.context,
+                                   relume_context_params(.files = {unreadable_open, NULL, NULL})));
+    log.lines = 0;
+    assert_int_equal(relume_capture_open(&capture, "a.lp", relume_capture_params(.log = &log.log)),
+                     RELUME_ENOTFOUND);
+    assert_int_equal(log.lines, 1);
+    assert_memory_equal(log.text, "a.lp: ", 6);
+    relume_context_destroy(&log.log.context);
+}
+
 static void test_a_web_folder_of_names(void **state)
 {
     (void)state;
@@ -559,6 +608,7 @@ int main(void)
         cmocka_unit_test(test_formats_by_name),
         cmocka_unit_test(test_a_capture_of_names),
         cmocka_unit_test(test_other_formats_in_memory),
+        cmocka_unit_test(test_names_that_are_not_there),
         cmocka_unit_test(test_a_web_folder_of_names),
         cmocka_unit_test(test_a_context_has_the_defaults),
     };

@@ -40,7 +40,7 @@ struct relume_basis {
     // The raw functions at a unit direction in the pole's frame (pole = third axis): K values, or
     // one per light where the basis interpolates.
     void (*evaluate)(const relume_coder *coder, struct relume_vec3 light, double *values);
-    void (*release)(relume_coder *coder);  // free the private data
+    void (*release)(relume_coder *coder);  // free the private data; NULL: there is none
 };
 extern RELUME_API const struct relume_basis relume_basis_table;  // the captured pictures themselves
 extern RELUME_API const struct relume_basis relume_basis_ptm;    // polynomial texture maps

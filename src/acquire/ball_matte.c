@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "math/lsq.h"
+#include "math/sort.h"
 
 #include <string.h>
 
@@ -21,12 +22,6 @@ struct patch {
     float rgb[3];
     double value, weight, miss;
 };
-
-static int by_miss(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 // Pixels of the ball, at most MOST of them, evenly.
 static int gather(struct patch *out, const struct relume_ball *ball,
@@ -87,7 +82,7 @@ static double weigh(struct patch *p, int n, const double lamp[4], double *scratc
         if (p[i].weight > 0.0)
             scratch[lit++] = p[i].miss;
     }
-    qsort(scratch, (size_t)lit, sizeof *scratch, by_miss);
+    sort_doubles(scratch, (size_t)lit);
     const double scale = fmax(2.385 * 1.4826 * (lit ? scratch[lit / 2] : 0.0), 1e-4 * size);
     for (int i = 0; i < n; i++)
         p[i].weight /= 1.0 + p[i].miss * p[i].miss / (scale * scale);

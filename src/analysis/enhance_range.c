@@ -3,6 +3,7 @@
 #include <relume/enhance.h>
 
 #include "math/luminance.h"
+#include "math/sort.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,16 +23,10 @@ int relume_pass_step(int width, int height)
 
 // ---------------------------------------------------------------- percentiles
 
-static int compare(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // Sorts.
 static float percentile(float *values, size_t n, double share)
 {
-    qsort(values, n, sizeof *values, compare);
+    sort_floats(values, n);
     return values[(size_t)(share * (double)(n - 1) + 0.5)];
 }
 

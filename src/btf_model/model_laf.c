@@ -11,6 +11,7 @@
 #include "image/half.h"
 #include "math/lsq.h"
 #include "math/luminance.h"
+#include "math/sort.h"
 
 #include <string.h>
 
@@ -58,19 +59,13 @@ struct texel {
     double albedo[3][UNKNOWNS];  // of each colour: rho_d, rho_j
 };
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 // What most pairs reach is taken for Lambertian; lobes stand on it.
 static void subtract_diffuse(const struct work *w, struct texel *s)
 {
     const size_t n = w->fitted_count;
     for (size_t i = 0; i < n; i++)
         s->rest[i] = s->y[i] / w->fitted_cosine[i];
-    qsort(s->rest, n, sizeof *s->rest, by_size);
+    sort_doubles(s->rest, n);
     const double diffuse = s->rest[(size_t)(DIFFUSE_RANK * (double)n)];
     for (size_t i = 0; i < n; i++) {
         s->y[i] -= diffuse * w->fitted_cosine[i];

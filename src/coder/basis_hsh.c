@@ -19,11 +19,6 @@ static void evaluate(const relume_coder *coder, struct relume_vec3 light, double
     hsh_evaluate(harmonics_degree(coder->info.coefficients), light, values);
 }
 
-static void release(relume_coder *coder)
-{
-    (void)coder;
-}
-
 const struct relume_basis relume_basis_hsh = {
     .name = "hsh",
     .summary = "hemispherical harmonics, 1 4 9 16 25 coefficients, hemisphere",
@@ -34,5 +29,4 @@ const struct relume_basis relume_basis_hsh = {
     .has_count = has_count,
     .prepare = harmonics_prepare,
     .evaluate = evaluate,
-    .release = release,
 };

@@ -61,11 +61,6 @@ static relume_status prepare(relume_coder *coder, const struct relume_log *log)
     return status;
 }
 
-static void release(relume_coder *coder)
-{
-    (void)coder;
-}
-
 const struct relume_basis relume_basis_pca = {
     .name = "pca",
     .summary = "principal components of the capture, R, G, B together; any number of coefficients",
@@ -76,5 +71,4 @@ const struct relume_basis relume_basis_pca = {
     .has_count = has_count,
     .prepare = prepare,
     .evaluate = coder_interpolate,
-    .release = release,
 };

@@ -30,11 +30,6 @@ static void evaluate(const relume_coder *coder, struct relume_vec3 light, double
         values[i] = terms[skip + i];
 }
 
-static void release(relume_coder *coder)
-{
-    (void)coder;
-}
-
 const struct relume_basis relume_basis_ptm = {
     .name = "ptm",
     .summary = "polynomial texture map: x^2 y^2 xy x y 1; 3 or 6 coefficients, hemisphere",
@@ -45,5 +40,4 @@ const struct relume_basis relume_basis_ptm = {
     .has_count = has_count,
     .prepare = prepare,
     .evaluate = evaluate,
-    .release = release,
 };

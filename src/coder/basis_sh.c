@@ -18,11 +18,6 @@ static void evaluate(const relume_coder *coder, struct relume_vec3 light, double
     sh_evaluate(harmonics_degree(coder->info.coefficients), light, values);
 }
 
-static void release(relume_coder *coder)
-{
-    (void)coder;
-}
-
 const struct relume_basis relume_basis_sh = {
     .name = "sh",
     .summary = "spherical harmonics, 1 4 9 16 25 36 49 64 ... coefficients",
@@ -31,5 +26,4 @@ const struct relume_basis relume_basis_sh = {
     .has_count = has_count,
     .prepare = harmonics_prepare,
     .evaluate = evaluate,
-    .release = release,
 };

@@ -29,11 +29,6 @@ static relume_status prepare(relume_coder *coder, const struct relume_log *log)
     return RELUME_OK;
 }
 
-static void release(relume_coder *coder)
-{
-    (void)coder;
-}
-
 const struct relume_basis relume_basis_table = {
     .name = "table",
     .summary = "every photograph, interpolated between lights (the reference; large)",
@@ -42,5 +37,4 @@ const struct relume_basis relume_basis_table = {
     .has_count = has_count,
     .prepare = prepare,
     .evaluate = coder_interpolate,
-    .release = release,
 };

@@ -29,7 +29,8 @@ void relume_coder_destroy(relume_coder **coder)
     *coder = NULL;
     if (!c)
         return;
-    c->info.basis->release(c);
+    if (c->info.basis->release)
+        c->info.basis->release(c);
     if (c->info.interpolant)
         c->info.interpolant->release(c->interpolant);
     mesh_destroy(&c->around);

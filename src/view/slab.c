@@ -7,6 +7,7 @@
 #include "view/slab.h"
 
 #include "base/memory.h"
+#include "math/sort.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,17 +20,10 @@
 
 // ---------------------------------------------------------------- grid
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Sort `lines` and keep the least of each group closer than `same`; returns how many are left.
 static int keep_distinct(double *lines, int n, double same)
 {
-    qsort(lines, (size_t)n, sizeof *lines, compare_doubles);
+    sort_doubles(lines, (size_t)n);
     int kept = 1;
     for (int i = 1; i < n; i++)
         if (lines[i] - lines[kept - 1] > same)

@@ -128,10 +128,10 @@ struct slab_ray slab_ray_at(const struct slab_frame *frame, const double st[2]);
 // most from its own side. Returns from how far aside, as an angle; pi where they see nothing of it.
 double slab_ray_beside(struct slab_ray *ray, const struct slab_frame *frame,
                        struct relume_vec3 direction);
-// The mean of what a pixel covers: a shader adds to r, g, b and weight what a ray sees.
+// All pixels of the frame, each the mean of what it covers: a shader adds to r, g, b and weight
+// what a ray sees.
 typedef void slab_shader(double sum[4], const void *context, const struct slab_ray *ray);
-void slab_pixel(float rgb[3], const struct slab_frame *frame, int column, int row,
-                slab_shader *shade, const void *context);
+void slab_draw(const struct slab_frame *frame, slab_shader *shade, const void *context);
 // How far the texel of the ray's point moves in the view of the camera at (u, v) when the point's
 // disparity rises by 1.
 void slab_shift(double shift[2], const struct slab_frame *frame, const struct slab_ray *ray,

@@ -10,8 +10,6 @@
 #include "math/bilinear.h"
 #include "view/slab.h"
 
-#include "base/thread.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -351,16 +349,6 @@ static void shade_ray(double sum[4], const void *context, const struct slab_ray 
     sum[3] += 1.0;
 }
 
-static void draw_row(void *context, size_t row, int worker)
-{
-    const struct frame *f = context;
-    const struct relume_image *out = f->of->out;
-    (void)worker;
-    float *rgb = out->data + 3 * row * (size_t)out->width;
-    for (int x = 0; x < out->width; x++, rgb += 3)
-        slab_pixel(rgb, f->of, x, (int)row, shade_ray, f);
-}
-
 // ---------------------------------------------------------------- frame
 
 static bool usable(const struct slab_frame *f)
@@ -400,7 +388,7 @@ relume_status slab_frame_depth(const struct slab_frame *f)
     if (!usable(f))
         return RELUME_EINVAL;
     slab_depth_range(frame.range, f);
-    thread_for(f->params.threads, (size_t)f->out->height, draw_row, &frame);
+    slab_draw(f, shade_ray, &frame);
     return RELUME_OK;
 }
 

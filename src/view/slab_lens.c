@@ -10,7 +10,6 @@
 #include "view/slab.h"
 
 #include "base/memory.h"
-#include "base/thread.h"
 
 #include <math.h>
 
@@ -90,16 +89,6 @@ static void shade_ray(double sum[4], const void *context, const struct slab_ray 
     }
 }
 
-static void draw_row(void *context, size_t row, int worker)
-{
-    const struct frame *f = context;
-    const struct relume_image *out = f->of->out;
-    (void)worker;
-    float *rgb = out->data + 3 * row * (size_t)out->width;
-    for (int x = 0; x < out->width; x++, rgb += 3)
-        slab_pixel(rgb, f->of, x, (int)row, shade_ray, f);
-}
-
 // ---------------------------------------------------------------- frame
 
 static void find_cameras(struct frame *f)
@@ -132,7 +121,7 @@ relume_status slab_frame_lens(const struct slab_frame *f)
     if (!frame.camera)
         return RELUME_ENOMEM;
     find_cameras(&frame);
-    thread_for(p->threads, (size_t)f->out->height, draw_row, &frame);
+    slab_draw(f, shade_ray, &frame);
     free(frame.camera);
     return RELUME_OK;
 }

@@ -1,6 +1,7 @@
 // slab_ray.c - the rays of a pixel in a slab's frame
 #include "view/slab.h"
 
+#include "base/thread.h"
 #include "math/vec.h"
 
 static struct slab_ray ray_from(const struct slab_frame *f, double s, double t)
@@ -66,8 +67,8 @@ double slab_ray_beside(struct slab_ray *ray, const struct slab_frame *f, vec3 di
     return vec3_angle(vec3_unit(vec3_sub(middle, camera)), way);
 }
 
-void slab_pixel(float rgb[3], const struct slab_frame *f, int column, int row, slab_shader *shade,
-                const void *context)
+static void draw_pixel(float rgb[3], const struct slab_frame *f, int column, int row,
+                       slab_shader *shade, const void *context)
 {
     const struct footprint across = slab_footprint(&f->params, (double)f->width / f->out->width);
     const struct footprint down = slab_footprint(&f->params, (double)f->height / f->out->height);
@@ -80,6 +81,28 @@ void slab_pixel(float rgb[3], const struct slab_frame *f, int column, int row, s
         }
     for (int c = 0; c < 3; c++)
         rgb[c] = sum[3] > 0.0 ? (float)(sum[c] / sum[3]) : f->params.nothing;
+}
+
+struct drawing {
+    const struct slab_frame *frame;
+    slab_shader *shade;
+    const void *context;
+};
+
+static void draw_row(void *context, size_t row, int worker)
+{
+    const struct drawing *d = context;
+    const struct relume_image *out = d->frame->out;
+    (void)worker;
+    float *rgb = out->data + 3 * row * (size_t)out->width;
+    for (int x = 0; x < out->width; x++, rgb += 3)
+        draw_pixel(rgb, d->frame, x, (int)row, d->shade, d->context);
+}
+
+void slab_draw(const struct slab_frame *frame, slab_shader *shade, const void *context)
+{
+    struct drawing d = {frame, shade, context};
+    thread_for(frame->params.threads, (size_t)frame->out->height, draw_row, &d);
 }
 
 void slab_shift(double shift[2], const struct slab_frame *frame, const struct slab_ray *ray,

@@ -80,15 +80,22 @@ static relume_status finish(struct program *program, const struct gl *gl, const 
     return status;
 }
 
-relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
-                                  const char *fragment, const char *const *uniforms, int n,
-                                  const struct relume_log *log)
+static relume_status create(struct program *program, const struct gl *gl, const char *vertex,
+                            const char *fragment, const char *defines, const char *const *uniforms,
+                            int n, const struct relume_log *log)
 {
     GLuint stages[2] = {0, 0};
     relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, vertex, NULL, log);
     if (!status)
-        status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, NULL, log);
+        status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, defines, log);
     return finish(program, gl, stages, fragment, uniforms, n, status, log);
+}
+
+relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
+                                  const char *fragment, const char *const *uniforms, int n,
+                                  const struct relume_log *log)
+{
+    return create(program, gl, vertex, fragment, NULL, uniforms, n, log);
 }
 
 relume_status program_create_variant(struct program *program, const struct gl *gl,
@@ -96,11 +103,7 @@ relume_status program_create_variant(struct program *program, const struct gl *g
                                      const char *const *uniforms, int n,
                                      const struct relume_log *log)
 {
-    GLuint stages[2] = {0, 0};
-    relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, "rectangle.vert", NULL, log);
-    if (!status)
-        status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, defines, log);
-    return finish(program, gl, stages, fragment, uniforms, n, status, log);
+    return create(program, gl, "rectangle.vert", fragment, defines, uniforms, n, log);
 }
 
 relume_status program_create_compute(struct program *program, const struct gl *gl,

@@ -75,32 +75,33 @@ static void host_send(void *user, const struct app_event *event)
     (void)session_send(user, event);
 }
 
+// The listener hears of what it asked for, no more.
+static relume_status heard(struct session *s, relume_status status)
+{
+    s->listener = NULL;
+    return status;
+}
+
 static relume_status host_light(void *user, const char *spec, bool replace,
                                 const struct relume_log *log)
 {
     struct session *s = user;
     s->listener = log;
-    const relume_status status = session_light(s, spec, replace);
-    s->listener = NULL;
-    return status;
+    return heard(s, session_light(s, spec, replace));
 }
 
 static relume_status host_rig(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
     s->listener = log;
-    const relume_status status = session_load_rig(s, path);
-    s->listener = NULL;
-    return status;
+    return heard(s, session_load_rig(s, path));
 }
 
 static relume_status host_open(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
     s->listener = log;
-    const relume_status status = session_show(s, path);
-    s->listener = NULL;
-    return status;
+    return heard(s, session_show(s, path));
 }
 
 static relume_status host_glare(void *user, const char *words, const char **expected)

@@ -254,7 +254,7 @@ static double place_ball(const struct acquisition *s, const struct relume_ball *
     }
     const double eye = 2.0 * s->camera.focal_px / width;
     const double along = (eye - z) / -ball->axis.z;
-    *middle = vec3_add(vec3_of(0.0, 0.0, eye), vec3_scale(ball->axis, along));
+    *middle = vec3_along(vec3_of(0.0, 0.0, eye), ball->axis, along);
     return along * sin(ball->half_angle_rad);
 }
 
@@ -298,7 +298,7 @@ static relume_status gather(struct acquisition *s, int i, const struct relume_ba
         vec3 middle;
         const double radius = place_ball(s, &s->out->ball[b], &middle);
         to->light[to->n] = *l;
-        to->origin[to->n] = vec3_add(middle, vec3_scale(l->origin, radius));
+        to->origin[to->n] = vec3_along(middle, l->origin, radius);
         to->direction[to->n++] = l->direction;
         if (l->sight == RELUME_BALL_RIM || l->sight == RELUME_BALL_TWO)
             status = acquire_warn_alike(s, l->sight == RELUME_BALL_RIM ? ALIKE_RIM : ALIKE_TWO, 0.0,

@@ -97,7 +97,7 @@ static void add_pixel(struct spot *s, const struct window *w, int x, int y,
     if (!ball_normal(&n, &v, ball, camera, px, py))
         return;
     const vec3 l = vec3_sub(vec3_scale(n, 2.0 * vec3_dot(n, v)), v);
-    s->sum = vec3_add(s->sum, vec3_scale(l, weight));
+    s->sum = vec3_along(s->sum, l, weight);
     s->weight += weight;
     s->x += weight * px;
     s->y += weight * py;

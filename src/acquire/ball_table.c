@@ -95,15 +95,15 @@ static void project(double pixel[2], const struct place *p, vec3 at)
 static bool reflect(double here[2], double there[2], const struct place *p, double s, double a)
 {
     const double tilt = asin(s) * (1.0 - p->half_angle / (0.5 * M_PI));
-    const vec3 across = vec3_add(vec3_scale(p->right, cos(a)), vec3_scale(p->up, sin(a)));
-    const vec3 n = vec3_add(vec3_scale(p->to_eye, cos(tilt)), vec3_scale(across, sin(tilt)));
+    const vec3 across = vec3_along(vec3_scale(p->right, cos(a)), p->up, sin(a));
+    const vec3 n = vec3_along(vec3_scale(p->to_eye, cos(tilt)), across, sin(tilt));
     const vec3 v =
         p->camera->focal_px > 0.0 ? vec3_unit(vec3_scale(vec3_add(p->middle, n), -1.0)) : p->to_eye;
     const vec3 r = vec3_sub(vec3_scale(n, 2.0 * vec3_dot(n, v)), v);
     if (r.z > -0.05)
         return false;
     project(here, p, n);
-    project(there, p, vec3_add(n, vec3_scale(r, (-p->o.p[3] - n.z) / r.z)));
+    project(there, p, vec3_along(n, r, (-p->o.p[3] - n.z) / r.z));
     return true;
 }
 

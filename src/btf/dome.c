@@ -212,7 +212,7 @@ struct relume_direction_blend relume_direction_mesh_at(const relume_direction_me
         sum += b.weight[i];
     for (int i = 0; i < b.count; i++) {
         b.weight[i] /= sum;
-        middle = vec3_add(middle, vec3_scale(dome->point[b.index[i]], b.weight[i]));
+        middle = vec3_along(middle, dome->point[b.index[i]], b.weight[i]);
     }
     if (b.count == 1)
         middle = dome->point[b.index[0]];

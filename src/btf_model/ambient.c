@@ -127,8 +127,8 @@ void ambient_lobe(const relume_btf_oriented_light *a, const float t[3], float ex
         relume_prefiltered_specular(rgb, a->own, u, exponent);
         height *= 2.0 / ((double)exponent + 1.0);
     } else {
-        const vec3 axis = vec3_add(vec3_scale(f->right, u.x),
-                                   vec3_add(vec3_scale(f->up, u.y), vec3_scale(f->normal, u.z)));
+        const vec3 axis =
+            vec3_add(vec3_scale(f->right, u.x), vec3_along(vec3_scale(f->up, u.y), f->normal, u.z));
         relume_prefiltered_lobe(rgb, a->prefilter, f->normal, axis, exponent, cosine);
     }
     for (int c = 0; c < 3; c++)

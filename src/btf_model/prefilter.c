@@ -53,8 +53,7 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
         const int x = (int)(at[0] * CELL_COLUMNS) % CELL_COLUMNS;
         const int y = at[1] < 1.0 ? (int)(at[1] * CELL_ROWS) : CELL_ROWS - 1;
         const int to = y * CELL_COLUMNS + x;
-        cell[to].direction =
-            vec3_add(cell[to].direction, vec3_scale(d, luminance_709(from[i].rgb)));
+        cell[to].direction = vec3_along(cell[to].direction, d, luminance_709(from[i].rgb));
         for (int c = 0; c < 3; c++)
             cell[to].rgb[c] += light->rgb[c] * from[i].rgb[c];
     }

@@ -24,7 +24,7 @@ static void add_direction(struct relume_btf_environment *s, vec3 d, double solid
     for (int i = 0; i < b.count; i++) {
         struct relume_btf_light_lobe *cone = &s->cone[b.index[i]];
         cone->weight += arrives * b.weight[i];
-        cone->axis = vec3_add(cone->axis, vec3_scale(d, arrives * b.weight[i]));
+        cone->axis = vec3_along(cone->axis, d, arrives * b.weight[i]);
     }
 }
 
@@ -82,7 +82,7 @@ void relume_btf_environment_weight(float rgb[3], const relume_btf_environment *s
     const struct relume_btf_light_lobe *cone = &sky->cone[i];
     const vec3 axis =
         vec3_add(vec3_scale(f->right, cone->axis.x),
-                 vec3_add(vec3_scale(f->up, cone->axis.y), vec3_scale(f->normal, cone->axis.z)));
+                 vec3_along(vec3_scale(f->up, cone->axis.y), f->normal, cone->axis.z));
     relume_prefiltered_specular(rgb, sky->prefilter, axis, cone->exponent);
     for (int c = 0; c < 3; c++)
         rgb[c] *= (float)cone->weight;

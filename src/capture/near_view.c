@@ -77,7 +77,7 @@ static vec3 local_point(const struct near_view *near, double x, double y, double
         return vec3_of(on_plane.x, on_plane.y, g->camera_z - depth);
     const vec3 eye =
         slab ? vec3_of(near->uv[0], near->uv[1], g->uv_z) : vec3_of(0.0, 0.0, g->camera_z);
-    return vec3_add(eye, vec3_scale(vec3_unit(vec3_sub(on_plane, eye)), depth));
+    return vec3_along(eye, vec3_unit(vec3_sub(on_plane, eye)), depth);
 }
 
 // docs/conventions.md, panoramas.
@@ -92,7 +92,7 @@ static vec3 panorama_point(const struct near_view *near, double x, double y, dou
             : vec3_unit(vec3_of(sin(phi), g->v_max - down * (g->v_max - g->v_min), -cos(phi)));
     if (!(depth >= 0.0) || isinf(depth))
         return vec3_of(0.0, 0.0, 0.0);
-    return vec3_add(g->center, vec3_scale(ray, depth));
+    return vec3_along(g->center, ray, depth);
 }
 
 vec3 near_view_point(const struct near_view *near, double x, double y, double depth)

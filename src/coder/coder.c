@@ -155,7 +155,7 @@ static relume_status warn_degenerate(const relume_coder *c, const struct relume_
     double covariance[9] = {0}, values[3];
     vec3 mean = {0};
     for (int i = 0; i < n; i++)
-        mean = vec3_add(mean, vec3_scale(c->frame[i], 1.0 / n));
+        mean = vec3_along(mean, c->frame[i], 1.0 / n);
     for (int i = 0; i < n; i++) {
         const vec3 d = vec3_sub(c->frame[i], mean);
         const double row[3] = {d.x, d.y, d.z};

@@ -157,8 +157,8 @@ double relume_captured_region_clamp(struct relume_vec3 *inside,
         return 1.0;
     const double across = r > 0.0 ? sin(border) / r : 0.0;
     *inside = vec3_add(vec3_scale(zone->axis, cos(border)),
-                       vec3_add(vec3_scale(zone->right, r > 0.0 ? across * x : sin(border)),
-                                vec3_scale(zone->up, across * y)));
+                       vec3_along(vec3_scale(zone->right, r > 0.0 ? across * x : sin(border)),
+                                  zone->up, across * y));
     const double from = vec3_dot(*inside, zone->facing), to = vec3_dot(d, zone->facing);
     return from > 0.0 ? fmin(fmax((to + UPRIGHT) / (from + UPRIGHT), 0.0), 1.0)
                       : fmax(cos(beyond), 0.0);

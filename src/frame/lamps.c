@@ -56,7 +56,7 @@ static void add_distant(struct finding *f, const struct relume_light *light)
     const double wide = window ? vec3_length(f->sight->window.right) : 1.0;
     const vec3 towards = vec3_unit(light->direction);
     if (f->sight->kind != RELUME_VIEWPORT_PARALLEL)
-        add(f, vec3_add(f->eye, vec3_scale(towards, far_away * wide)), light->rgb);
+        add(f, vec3_along(f->eye, towards, far_away * wide), light->rgb);
 }
 
 int relume_viewport_lights(struct relume_visible_light *out, const struct relume_viewport *sight,

@@ -102,8 +102,8 @@ static vec3 on_window(const struct relume_viewport *s, double x, double y)
 {
     const struct relume_window *w = &s->window;
     const struct part p = part_of(s);
-    return vec3_add(w->corner, vec3_add(vec3_scale(w->right, (x - p.left) / p.wide),
-                                        vec3_scale(w->down, (y - p.top) / p.high)));
+    return vec3_add(w->corner, vec3_along(vec3_scale(w->right, (x - p.left) / p.wide), w->down,
+                                          (y - p.top) / p.high));
 }
 
 static vec3 normal_of(const struct relume_window *w)
@@ -144,8 +144,7 @@ void relume_viewport_ray(struct relume_vec3 *origin, struct relume_vec3 *directi
     case RELUME_VIEWPORT_PARALLEL:
         at = on_window(s, x, y);
         *direction = vec3_unit(normal_of(&s->window));
-        *origin =
-            vec3_add(at, vec3_scale(*direction, vec3_dot(vec3_sub(s->window.eye, at), *direction)));
+        *origin = vec3_along(at, *direction, vec3_dot(vec3_sub(s->window.eye, at), *direction));
         break;
     case RELUME_VIEWPORT_PANORAMA:
         *origin = s->geometry.center;
@@ -167,7 +166,7 @@ struct relume_vec3 relume_viewport_eye(const struct relume_viewport *s)
         return w->eye;
     if (s->kind != RELUME_VIEWPORT_PARALLEL)
         return s->geometry.center;
-    const vec3 middle = vec3_add(w->corner, vec3_scale(vec3_add(w->right, w->down), 0.5));
+    const vec3 middle = vec3_along(w->corner, vec3_add(w->right, w->down), 0.5);
     const double away = 0.5 * vec3_length(w->right) / tan(0.5 * RELUME_SCREEN_DEG * M_PI / 180.0);
     return vec3_sub(middle, vec3_scale(vec3_unit(normal_of(w)), away));
 }

@@ -13,7 +13,7 @@ static const struct frame frame_world = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0,
 
 static inline vec3 frame_vector(const struct frame *f, vec3 v)
 {
-    return vec3_add(vec3_add(vec3_scale(f->x, v.x), vec3_scale(f->y, v.y)), vec3_scale(f->z, v.z));
+    return vec3_along(vec3_along(vec3_scale(f->x, v.x), f->y, v.y), f->z, v.z);
 }
 
 static inline vec3 frame_point(const struct frame *f, vec3 p)
@@ -25,9 +25,9 @@ static inline vec3 frame_point(const struct frame *f, vec3 p)
 // them.
 static inline vec3 frame_normal(const struct frame *f, vec3 n)
 {
-    const vec3 v = vec3_add(
-        vec3_add(vec3_scale(vec3_cross(f->y, f->z), n.x), vec3_scale(vec3_cross(f->z, f->x), n.y)),
-        vec3_scale(vec3_cross(f->x, f->y), n.z));
+    const vec3 v =
+        vec3_along(vec3_along(vec3_scale(vec3_cross(f->y, f->z), n.x), vec3_cross(f->z, f->x), n.y),
+                   vec3_cross(f->x, f->y), n.z);
     return vec3_length(v) > 0.0 ? vec3_unit(v) : n;
 }
 

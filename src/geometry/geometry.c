@@ -100,7 +100,7 @@ vec3 relume_pose_turn(const struct relume_pose *pose, vec3 local)
     if (is_zero(a[0]))  // the world; nobody has normalised
         return local;
     return vec3_add(vec3_scale(a[0], local.x),
-                    vec3_add(vec3_scale(a[1], local.y), vec3_scale(a[2], local.z)));
+                    vec3_along(vec3_scale(a[1], local.y), a[2], local.z));
 }
 
 vec3 relume_pose_turn_back(const struct relume_pose *pose, vec3 world)

@@ -49,7 +49,7 @@ static bool least_squares(vec3 *g, const vec3 *direction, const struct lambert_s
         m[3] += w * l.y * l.y;
         m[4] += w * l.y * l.z;
         m[5] += w * l.z * l.z;
-        b = vec3_add(b, vec3_scale(l, w * (double)s[i].value));
+        b = vec3_along(b, l, w * (double)s[i].value);
     }
     return solve3(g, m, b);
 }

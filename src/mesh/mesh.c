@@ -63,7 +63,7 @@ static void add_corner(struct vertex *at, vec3 normal, vec3 left, vec3 right)
     if (l <= 0.0 || r <= 0.0)
         return;
     const double angle = vec3_angle(vec3_scale(left, 1.0 / l), vec3_scale(right, 1.0 / r));
-    put(at->normal, vec3_add(vertex_normal(at), vec3_scale(normal, angle)));
+    put(at->normal, vec3_along(vertex_normal(at), normal, angle));
 }
 
 void mesh_smooth(struct mesh *mesh)

@@ -103,9 +103,8 @@ static void add_tangents(vec3 *sum, const struct tangents *out, const struct mes
             const vec3 flat = off_normal(along, normal_of(&out->vertices[at]));
             const double length = vec3_length(flat);
             if (length > 0.0)
-                sum[at] = vec3_add(
-                    sum[at],
-                    vec3_scale(flat, angle_at(mesh, mesh->triangles[i].vertex, k) / length));
+                sum[at] = vec3_along(sum[at], flat,
+                                     angle_at(mesh, mesh->triangles[i].vertex, k) / length);
         }
     }
 }

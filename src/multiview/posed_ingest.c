@@ -129,9 +129,9 @@ static relume_status choose_world(struct posed *s)
 static vec3 to_model(const struct posed *s, vec3 p)
 {
     vec3 out = s->origin;
-    out = vec3_add(out, vec3_scale(s->axis[0], p.x / s->scale));
-    out = vec3_add(out, vec3_scale(s->axis[1], p.y / s->scale));
-    return vec3_add(out, vec3_scale(s->axis[2], p.z / s->scale));
+    out = vec3_along(out, s->axis[0], p.x / s->scale);
+    out = vec3_along(out, s->axis[1], p.y / s->scale);
+    return vec3_along(out, s->axis[2], p.z / s->scale);
 }
 
 static vec3 to_world(const struct posed *s, vec3 p)
@@ -155,11 +155,11 @@ static vec3 looked_at(const struct posed *s, const struct posed_camera *c)
     const double x = (0.5 * c->width - c->center[0]) / c->focal[0];
     const double y = (0.5 * c->height - c->center[1]) / c->focal[1];
     vec3 ray = camera_axis(c, 2);
-    ray = vec3_add(ray, vec3_scale(camera_axis(c, 0), x));
-    ray = vec3_add(ray, vec3_scale(camera_axis(c, 1), y));
+    ray = vec3_along(ray, camera_axis(c, 0), x);
+    ray = vec3_along(ray, camera_axis(c, 1), y);
     const vec3 eye = to_world(s, c->place), end = to_world(s, vec3_add(c->place, ray));
     const vec3 d = vec3_sub(end, eye);
-    return vec3_add(eye, vec3_scale(d, d.z < 0.0 ? -eye.z / d.z : 0.0));
+    return vec3_along(eye, d, d.z < 0.0 ? -eye.z / d.z : 0.0);
 }
 
 // As much as a photograph shows, around the mean of what they look at.

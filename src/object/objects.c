@@ -287,8 +287,8 @@ static struct frame turn(const double axis_angle[4])
     vec3 *const image[3] = {&f.x, &f.y, &f.z};
     for (int i = 0; i < 3; i++) {  // Rodrigues' formula
         const vec3 e = *image[i];
-        *image[i] = vec3_add(vec3_add(vec3_scale(e, c), vec3_scale(vec3_cross(a, e), s)),
-                             vec3_scale(a, vec3_dot(a, e) * (1.0 - c)));
+        *image[i] = vec3_along(vec3_along(vec3_scale(e, c), vec3_cross(a, e), s), a,
+                               vec3_dot(a, e) * (1.0 - c));
     }
     return f;
 }

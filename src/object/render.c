@@ -30,9 +30,9 @@ static void interpolate(struct surface_point *p, const struct relume_object_vert
     p->position = vec3_of(0, 0, 0);
     p->s = p->t = 0.0;
     for (int k = 0; k < 3; k++) {
-        p->position = vec3_add(p->position, vec3_scale(vector(v[k]->position), weight[k]));
-        normal = vec3_add(normal, vec3_scale(vector(v[k]->normal), weight[k]));
-        tangent = vec3_add(tangent, vec3_scale(vector(v[k]->tangent), weight[k]));
+        p->position = vec3_along(p->position, vector(v[k]->position), weight[k]);
+        normal = vec3_along(normal, vector(v[k]->normal), weight[k]);
+        tangent = vec3_along(tangent, vector(v[k]->tangent), weight[k]);
         p->s += weight[k] * (double)v[k]->texture[0];
         p->t += weight[k] * (double)v[k]->texture[1];
     }
@@ -94,11 +94,10 @@ static vec3 step_over(const struct surface_point *p, const struct ray *ray,
                       const struct ray *beside)
 {
     const vec3 turned = vec3_sub(beside->direction, ray->direction);
-    const vec3 across =
-        vec3_add(vec3_sub(beside->origin, ray->origin), vec3_scale(turned, p->distance));
+    const vec3 across = vec3_along(vec3_sub(beside->origin, ray->origin), turned, p->distance);
     const double facing = fmin(vec3_dot(ray->direction, p->geometric), -1e-6);
     const double further = -vec3_dot(across, p->geometric) / facing;
-    return vec3_add(across, vec3_scale(ray->direction, further));
+    return vec3_along(across, ray->direction, further);
 }
 
 // A step over the triangle's plane in texture coordinates.
@@ -289,8 +288,8 @@ struct view {
 static struct ray ray_at(const struct view *v, double x, double y)
 {
     const struct relume_window *w = v->window;
-    const vec3 at = vec3_add(w->corner, vec3_add(vec3_scale(w->right, x / v->width),
-                                                 vec3_scale(w->down, y / v->height)));
+    const vec3 at =
+        vec3_add(w->corner, vec3_along(vec3_scale(w->right, x / v->width), w->down, y / v->height));
     return (struct ray){w->eye, vec3_unit(vec3_sub(at, w->eye))};
 }
 

@@ -49,7 +49,7 @@ static struct relume_light_patch facet(const struct relume_light *area, double a
 {
     const vec3 across = vec3_cross(area->u, area->v);
     const double size = share * vec3_length(across) / M_PI;
-    const vec3 offset = vec3_add(vec3_scale(area->u, a), vec3_scale(area->v, b));
+    const vec3 offset = vec3_along(vec3_scale(area->u, a), area->v, b);
     return (struct relume_light_patch){
         .position = vec3_add(area->position, offset),
         .normal = vec3_unit(across),
@@ -86,7 +86,7 @@ static double distance_of(const struct relume_light *l, vec3 point)
         return (double)INFINITY;
     const double a = clamp_unit(vec3_dot(d, l->u) / vec3_dot(l->u, l->u));
     const double b = clamp_unit(vec3_dot(d, l->v) / vec3_dot(l->v, l->v));
-    return vec3_length(vec3_sub(d, vec3_add(vec3_scale(l->u, a), vec3_scale(l->v, b))));
+    return vec3_length(vec3_sub(d, vec3_along(vec3_scale(l->u, a), l->v, b)));
 }
 
 double relume_area_distance(const struct relume_light *area, const struct relume_image *surface)

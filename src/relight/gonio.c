@@ -53,7 +53,7 @@ static int place(double xy[2], int side, vec3 d)
 static vec3 ray(int side, int face, int x, int y)
 {
     const double a = (2 * x + 1.0) / side - 1.0, b = 1.0 - (2 * y + 1.0) / side;
-    const vec3 across = vec3_add(vec3_scale(faces[face].right, a), vec3_scale(faces[face].up, b));
+    const vec3 across = vec3_along(vec3_scale(faces[face].right, a), faces[face].up, b);
     return vec3_add(faces[face].ahead, across);
 }
 

@@ -181,7 +181,7 @@ static relume_status measure_truth(struct goniometer *g)
                     const double w = (i % per ? 1.0 : 0.5) * (j % per ? 1.0 : 0.5);
                     const int ci = x * per + i, cj = (size - 1 - y) * per + j;
                     height += w * g->height[corner(g, ci, cj)];
-                    normal = vec3_add(normal, vec3_scale(normal_at(g, ci, cj), w));
+                    normal = vec3_along(normal, normal_at(g, ci, cj), w);
                 }
             const size_t at = (size_t)y * (size_t)size + (size_t)x;
             normal = vec3_unit(normal);

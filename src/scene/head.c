@@ -68,7 +68,7 @@ static vec3 head_at(vec3 d)
     const vec3 p = egg(d);
     vec3 out = p;
     out.z += relief(p) * ramp(0.1, 0.45, d.z);
-    out = vec3_add(out, vec3_scale(d, hair(d, p)));
+    out = vec3_along(out, d, hair(d, p));
     // Ears: a rim with a hollow at the sides.
     const double ear = exp(-(pow((p.y - 0.02) / 0.12, 2) + pow((p.z + 0.02) / 0.065, 2)));
     const double hollow = exp(-(pow((p.y - 0.03) / 0.065, 2) + pow((p.z - 0.005) / 0.03, 2)));

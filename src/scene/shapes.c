@@ -91,7 +91,7 @@ void shape_sphere(struct mesh *out, vec3 center, double radius, int segments)
             const double theta_rad = M_PI * i / rings, phi_rad = 2.0 * M_PI * j / segments;
             const vec3 n = vec3_of(sin(theta_rad) * sin(phi_rad), cos(theta_rad),
                                    sin(theta_rad) * cos(phi_rad));
-            const vec3 p = vec3_add(center, vec3_scale(n, radius));
+            const vec3 p = vec3_along(center, n, radius);
             mesh_vertex(out, p, n, p);
         }
     const uint32_t row = (uint32_t)segments + 1;

@@ -89,9 +89,9 @@ static struct tangent_plane evaluate(const struct patch *p, double u, double v)
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
             const vec3 c = p->control[i][j];
-            at.position = vec3_add(at.position, vec3_scale(c, bu[i] * bv[j]));
-            at.along_u = vec3_add(at.along_u, vec3_scale(c, du[i] * bv[j]));
-            at.along_v = vec3_add(at.along_v, vec3_scale(c, bu[i] * dv[j]));
+            at.position = vec3_along(at.position, c, bu[i] * bv[j]);
+            at.along_u = vec3_along(at.along_u, c, du[i] * bv[j]);
+            at.along_v = vec3_along(at.along_v, c, bu[i] * dv[j]);
         }
     return at;
 }

@@ -48,8 +48,8 @@ static bool hit(const struct drawing *d, double px, double py, double out[2])
         return true;
     }
     const double a = 2.0 * px / d->image->width - 1.0, b = 1.0 - 2.0 * py / d->image->height;
-    const vec3 ray = vec3_add(d->lens.forward,
-                              vec3_add(vec3_scale(d->lens.right, a), vec3_scale(d->lens.up, b)));
+    const vec3 ray =
+        vec3_add(d->lens.forward, vec3_along(vec3_scale(d->lens.right, a), d->lens.up, b));
     const vec3 eye = d->camera->eye;
     if (!(ray.z < -1e-6))
         return false;

@@ -53,7 +53,7 @@ struct relume_window relume_lens_window(const struct relume_window *w, double ap
     const double grown = 1.0 - focus / relume_window_distance(w);
     return (struct relume_window){
         .eye = vec3_add(w->eye, vec3_add(beside, below)),
-        .corner = vec3_add(w->eye, vec3_scale(vec3_sub(w->corner, w->eye), grown)),
+        .corner = vec3_along(w->eye, vec3_sub(w->corner, w->eye), grown),
         .right = vec3_scale(w->right, grown),
         .down = vec3_scale(w->down, grown),
     };

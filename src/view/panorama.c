@@ -220,7 +220,7 @@ static vec3 face_ray(const struct panorama *p, int face, double x, double y)
     const struct face *f = &faces[face];
     const double a = 2.0 * x / (p->width / 6) - 1.0;
     const double b = 1.0 - 2.0 * y / p->height;
-    return vec3_add(f->ahead, vec3_add(vec3_scale(f->right, a), vec3_scale(f->up, b)));
+    return vec3_add(f->ahead, vec3_along(vec3_scale(f->right, a), f->up, b));
 }
 
 static vec3 cube_ray(const struct panorama *p, double x, double y)
@@ -330,8 +330,7 @@ static vec3 gaze_way(const struct gaze *g, double x, double y)
 {
     const double a = (x - g->half_width) * g->pixel, b = (g->half_height - y) * g->pixel;
     const double depth = g->stereographic ? 0.5 * (1.0 - a * a - b * b) : 1.0;
-    return vec3_add(vec3_add(vec3_scale(g->right, a), vec3_scale(g->up, b)),
-                    vec3_scale(g->ahead, depth));
+    return vec3_along(vec3_along(vec3_scale(g->right, a), g->up, b), g->ahead, depth);
 }
 
 static vec3 gaze_ray(const struct gaze *g, double x, double y)

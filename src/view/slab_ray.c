@@ -57,7 +57,7 @@ double slab_ray_beside(struct slab_ray *ray, const struct slab_frame *f, vec3 di
         return M_PI;
     const vec3 window =
         vec3_of(0.5 * (g->st_min[0] + g->st_max[0]), 0.5 * (g->st_min[1] + g->st_max[1]), g->st_z);
-    const vec3 middle = vec3_add(f->eye, vec3_scale(way, vec3_dot(vec3_sub(window, f->eye), way)));
+    const vec3 middle = vec3_along(f->eye, way, vec3_dot(vec3_sub(window, f->eye), way));
     *ray = (struct slab_ray){
         .uv = {f->eye.x + to_uv * way.x, f->eye.y + to_uv * way.y},
     };

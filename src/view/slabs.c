@@ -170,7 +170,7 @@ bool relume_slab_set_window(struct relume_window *out, const relume_slab_set *sl
     const vec3 down = vec3_cross(ahead, right);
     *out = (struct relume_window){
         .eye = eye,
-        .corner = vec3_sub(at, vec3_add(vec3_scale(right, half[0]), vec3_scale(down, half[1]))),
+        .corner = vec3_sub(at, vec3_along(vec3_scale(right, half[0]), down, half[1])),
         .right = vec3_scale(right, 2.0 * half[0]),
         .down = vec3_scale(down, 2.0 * half[1]),
     };

@@ -54,7 +54,7 @@ bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, ve
 
 static vec3 way_to(const struct seen *s, double x, double y)
 {
-    return vec3_add(s->corner, vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y)));
+    return vec3_add(s->corner, vec3_along(vec3_scale(s->right, x), s->down, y));
 }
 
 // Where the rays of a window meet the st plane of a slab, as a rectangle. The window's corners

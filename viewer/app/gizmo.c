@@ -56,7 +56,7 @@ bool gizmo_border(struct gizmo *out, const struct app *app, int step)
     const double phi = 2 * M_PI * step / RELUME_CAPTURED_REGION_STEPS;
     const double border = z->border[step % RELUME_CAPTURED_REGION_STEPS], r = sin(border);
     const struct relume_vec3 across =
-        vec3_add(vec3_scale(z->right, r * cos(phi)), vec3_scale(z->up, r * sin(phi)));
+        vec3_along(vec3_scale(z->right, r * cos(phi)), z->up, r * sin(phi));
     const struct relume_vec3 d = vec3_add(vec3_scale(z->axis, cos(border)), across);
     const struct app_axes a = app_frame_axes(app);
     *out = on_disc(

@@ -8,16 +8,15 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/tree.h"
 #include "math/sort.h"
 #include "multiview/views_colmap.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 bool acquire_has_poses(const char *path)
 {
-    struct stat s;
-    return !stat(path, &s) && S_ISDIR(s.st_mode);
+    return tree_is_folder(path);
 }
 
 static bool is_photograph(const struct acquisition *s, const char *name)

@@ -61,12 +61,6 @@ static int descriptor_of(const char *path)
     return -1;
 }
 
-static bool is_device(const char *path)
-{
-    struct stat s;
-    return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
-}
-
 static relume_status open_device(outfile *f, int descriptor)
 {
     f->kind = DEVICE;
@@ -186,7 +180,7 @@ static relume_status open_file(outfile *f, const char *path)
     if (!f->dir)
         return RELUME_ENOMEM;
     const int descriptor = descriptor_of(path);
-    if (descriptor >= 0 || is_device(path))
+    if (descriptor >= 0 || tree_is_device(path))
         return open_device(f, descriptor);
     if (beside_holds(f->target))
         return open_inside(f);

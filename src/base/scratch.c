@@ -8,7 +8,6 @@
 #include <fcntl.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 bool scratch_write(int fd, const void *bytes, size_t size, off_t offset)
@@ -70,10 +69,8 @@ static int open_unnamed(const char *folder)
 // No folder of its own to put anything beside it: devices, and the names of descriptors.
 static bool is_nowhere(const char *path)
 {
-    struct stat s;
     return !strncmp(path, "/dev/fd/", 8) || !strncmp(path, "/dev/std", 8) ||
-           !strncmp(path, "/proc/", 6) ||
-           (!stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode));
+           !strncmp(path, "/proc/", 6) || tree_is_device(path);
 }
 
 int scratch_open(const char *near)

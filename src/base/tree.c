@@ -91,6 +91,18 @@ char *tree_resolve(const char *path)
     return at;
 }
 
+bool tree_is_folder(const char *path)
+{
+    struct stat s;
+    return !stat(path, &s) && S_ISDIR(s.st_mode);
+}
+
+bool tree_is_device(const char *path)
+{
+    struct stat s;
+    return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+}
+
 // ---------------------------------------------------------------- contents
 
 static struct tree_entry *more(struct tree_list *list)

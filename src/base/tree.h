@@ -20,6 +20,10 @@ char *tree_base(const char *path);
 // new string. NULL with errno, ELOOP among others.
 char *tree_resolve(const char *path);
 
+// What is there, followed through links: a folder; neither a file nor a folder.
+bool tree_is_folder(const char *path);
+bool tree_is_device(const char *path);
+
 // One entry of a folder: `name` is relative to it.
 struct tree_entry {
     char *name;

@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "base/tree.h"
 #include "btf/btf.h"
 #include "image/half.h"
 
@@ -10,7 +11,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 struct angles {
     double theta_deg, phi_deg;
@@ -110,12 +110,6 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const struct picture *)a)->name, ((const struct picture *)b)->name);
 }
 
-static bool is_folder(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
-}
-
 static relume_status list_folder(struct pictures *p, const char *inside);
 
 static relume_status list_entry(struct pictures *p, const char *inside, const char *entry)
@@ -124,7 +118,7 @@ static relume_status list_entry(struct pictures *p, const char *inside, const ch
     char *name = top ? mem_text(entry) : mem_format("%s/%s", inside, entry);
     char *path = name ? mem_format("%s/%s", p->path, name) : NULL;
     relume_status status = path ? RELUME_OK : RELUME_ENOMEM;
-    if (path && !is_folder(path))
+    if (path && !tree_is_folder(path))
         status = add(p, name);
     else if (path && top)
         status = list_folder(p, name);

@@ -9,7 +9,6 @@
 #include "image/picture_kind.h"
 
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 // The description in a folder: its capture.json, else its only .lp file.
@@ -33,8 +32,7 @@ static relume_status find_description(char **out, const char *folder, const stru
 static relume_status read_description(relume_capture *c, const char *path,
                                       const struct relume_capture_params *p)
 {
-    struct stat s;
-    if (!stat(path, &s) && S_ISDIR(s.st_mode)) {
+    if (tree_is_folder(path)) {
         const relume_status status = find_description(&c->path, path, p->log);
         if (status)
             return status;

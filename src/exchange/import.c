@@ -1,6 +1,7 @@
 // import.c - a picture of another format becomes a relume file
 #include <relume/exchange.h>
 
+#include "base/tree.h"
 #include "exchange/ptm.h"
 #include "exchange/rti.h"
 #include "exchange/web.h"
@@ -15,7 +16,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 // Formats without lights get a spread of so many, for what wants to know where to look.
 enum { STAND_INS = 32 };
@@ -32,10 +32,9 @@ static relume_status read_any(struct foreign *f, const char *path,
                               const struct relume_import_params *p)
 {
     const struct relume_limits *limits = limits_of(p->limits, p->log);
-    struct stat st;
     if (!input_exists(path, p->log))
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file or folder", path);
-    const bool folder = !stat(path, &st) && S_ISDIR(st.st_mode);
+    const bool folder = tree_is_folder(path);
     if (folder && relume_kind_of(path) != RELUME_KIND_FOREIGN)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: a folder without info.json, so no web folder; expected one as relight "

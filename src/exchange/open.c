@@ -18,7 +18,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 static bool ends_with(const char *path, const char *end)
@@ -80,10 +79,9 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
     static const char *const foreign[] = {".ptm", ".lptm", ".rti", ".hsh", NULL};
     static const char *const photographs[] = {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", NULL};
     char head[HEAD];
-    struct stat s;
     if (!input_exists(path, log))
         return RELUME_KIND_UNKNOWN;
-    if (!stat(path, &s) && S_ISDIR(s.st_mode))
+    if (tree_is_folder(path))
         return kind_of_folder(path, log);
     if (is_among(path, foreign))
         return RELUME_KIND_FOREIGN;
@@ -151,10 +149,9 @@ static relume_status picture(const char *path, const char *out, const struct rel
 
 static relume_status unknown(const char *path, const struct relume_open_params *p)
 {
-    struct stat s;
     if (!input_exists(path, p->log))
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
-    if (stat(path, &s) || !S_ISDIR(s.st_mode))
+    if (!tree_is_folder(path))
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",

@@ -5,6 +5,7 @@
 #include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/tree.h"
 #include "exchange/bytes.h"
 #include "exchange/tiles.h"
 #include "image/jpeg.h"
@@ -13,7 +14,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum space { SPACE_RGB, SPACE_LRGB, SPACE_YCC, SPACE_MRGB, SPACE_MYCC, SPACES };
@@ -420,8 +420,7 @@ static relume_status read_planes(struct folder *w)
 
 static relume_status find_folder(struct folder *w, const char *path)
 {
-    struct stat st;
-    const bool is_folder = !stat(path, &st) && S_ISDIR(st.st_mode);
+    const bool is_folder = tree_is_folder(path);
     const char *slash = strrchr(path, '/');
     w->at = is_folder ? mem_text(path)
             : slash   ? mem_format("%.*s", (int)(slash - path), path)

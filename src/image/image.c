@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "base/tree.h"
 #include "image/exr.h"
 #include "image/half.h"
 #include "image/picture_kind.h"
@@ -13,7 +14,6 @@
 #include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 relume_status relume_image_create(struct relume_image *out, int width, int height, int channels)
 {
@@ -320,10 +320,8 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
 // /dev/stdout and the like have no extension to tell the format.
 static bool is_device(const char *path)
 {
-    struct stat s;
     const char *slash = strrchr(path, '/');
-    return !strchr(slash ? slash : path, '.') && !stat(path, &s) && !S_ISREG(s.st_mode) &&
-           !S_ISDIR(s.st_mode);
+    return !strchr(slash ? slash : path, '.') && tree_is_device(path);
 }
 
 bool relume_image_saves_linear(const char *path)

@@ -29,12 +29,6 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-static bool is_folder(const char *path)
-{
-    struct stat s;
-    return !stat(path, &s) && S_ISDIR(s.st_mode);
-}
-
 // ---------------------------------------------------------------- what is left out
 
 static const char relume_file[] = "a relume file";
@@ -161,7 +155,7 @@ static relume_status add_folder(struct gathering *g, const char *folder)
         free(entry[i]);
         if (status)
             continue;
-        if (!path || !is_folder(path))
+        if (!path || !tree_is_folder(path))
             status = add_file(g, path, false);
         else if (g->p->folders)
             status = add(g, path);
@@ -197,7 +191,7 @@ static void set_aside(struct gathering *g)
     for (int i = 0; i < list->count; i++) {
         char *path = list->path[i];
         const char *what = by_product(path);
-        if (!what || is_folder(path))
+        if (!what || tree_is_folder(path))
             list->path[n++] = path;
         else
             keep_beside(g, path, what);
@@ -240,7 +234,7 @@ static int photographs_in(const char *folder, const struct relume_log *log)
     int count = 0;
     for (int i = 0; i < n; i++) {
         char *path = mem_format("%s/%s", folder, entry[i]->d_name);
-        count += path && !is_folder(path) && !by_product(path) && !why_none(path, log);
+        count += path && !tree_is_folder(path) && !by_product(path) && !why_none(path, log);
         free(path);
         free(entry[i]);
     }
@@ -255,7 +249,7 @@ static void look_below(struct below *b, const char *folder, const struct relume_
     const int n = scandir(folder, &entry, is_seen, alphasort);
     for (int i = 0; i < n; i++) {
         char *path = mem_format("%s/%s", folder, entry[i]->d_name);
-        const int count = path && is_folder(path) ? photographs_in(path, log) : 0;
+        const int count = path && tree_is_folder(path) ? photographs_in(path, log) : 0;
         const size_t used = strlen(b->names);
         if (count && b->folders++ < 3)
             snprintf(b->names + used, sizeof b->names - used, "%s%.40s (%d)", used ? ", " : "",
@@ -289,8 +283,8 @@ static relume_status check_below(const struct gathering *g, const char *folder)
     struct below b = {0};
     int count = 0;
     for (int i = 0; i < list->count; i++)
-        count += is_folder(list->path[i]) || !by_product(list->path[i]);
-    if (count >= (p->least ? p->least : 1) || !is_folder(folder))
+        count += tree_is_folder(list->path[i]) || !by_product(list->path[i]);
+    if (count >= (p->least ? p->least : 1) || !tree_is_folder(folder))
         return RELUME_OK;
     look_below(&b, folder, p->log);
     relume_status status = RELUME_OK;

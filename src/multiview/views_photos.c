@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outdir.h"
+#include "base/tree.h"
 #include "capture/manifest.h"
 #include "image/photograph.h"
 
@@ -19,12 +20,6 @@ void photo_set_free(struct photo_set *set)
 {
     arena_free(&set->arena);
     *set = (struct photo_set){0};
-}
-
-static bool is_folder(const char *path)
-{
-    struct stat s;
-    return !stat(path, &s) && S_ISDIR(s.st_mode);
 }
 
 // What was named, in the arena.
@@ -53,7 +48,7 @@ static relume_status list_lights(struct photo_set *set, int index, const char *n
     int n = 1;
     relume_status status = RELUME_OK;
     c->name = arena_text(&set->arena, name);
-    if (is_folder(name)) {
+    if (tree_is_folder(name)) {
         status = list_photographs(&c->images, &n, &set->arena, &name, 1, false, index > 0, log);
     } else {
         c->images = arena_array(&set->arena, 1, sizeof *c->images);

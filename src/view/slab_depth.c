@@ -264,13 +264,16 @@ static bool stretch_of(struct stretch *out, const struct around *a, double least
     return all[0] <= all[1];
 }
 
+// Of the slope: not so deep behind a surface a ray is taken for one beside it.
+static const double shallow = 1.0 / 3.0;
+
 // Whether a camera sees through all of it: nowhere does the ray pass behind what it sees.
 static bool is_clear(const struct around *a, const struct camera *c, const struct stretch *s)
 {
     const int steps = count_steps(a, s->from, s->to);
     for (int k = 0; k <= steps; k++) {
         const double q = s->from + k * (s->to - s->from) / steps;
-        if (disparity_at(a, c, q) > q + a->slope)
+        if (disparity_at(a, c, q) > q + shallow * a->slope)
             return false;
     }
     return true;
@@ -286,7 +289,7 @@ static bool gather_clear(double sum[5], const struct around *a, const struct str
 }
 
 // Of a surface that leans up to so many times as much as the cameras stand apart ...
-static const double most_slope = 4.0;
+static const double most_slope = 12.0;
 // Points so far away are as good as at infinity.
 static const double endless = -0.98;
 

@@ -1,6 +1,7 @@
 // A ray beside the grid by depth, after slab_depth.glsl and slabs_ray.glsl; twin of
 // src/view/slab_depth.c.
-const float MOST_SLOPE = 4.0;
+const float MOST_SLOPE = 12.0;
+const float SHALLOW = 1.0 / 3.0;
 const float ENDLESS = -0.98;
 const float FAR = 1e30;  // no bound
 
@@ -42,7 +43,7 @@ bool is_clear(sampler2D disparity, Camera c, vec2 stretch)
         return false;
     for (int k = 0; k <= steps; k++) {
         float q = stretch.x + float(k) * (stretch.y - stretch.x) / float(steps);
-        if (disparity_at(disparity, c, q) > q + slope)
+        if (disparity_at(disparity, c, q) > q + SHALLOW * slope)
             return false;
     }
     return true;

@@ -33,18 +33,19 @@ static double largest(const struct relume_codes *codes, const struct relume_ligh
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const struct relume_vec3 d = light->direction;
     const double length = sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    struct relume_vec3 from;
     float weights[3 * 64], constant[3];
     double most = 0.0;
-    relume_coder_weights(codes->coder,
-                         (struct relume_vec3){d.x / length, d.y / length, d.z / length}, weights,
-                         constant);
+    const double share = relume_coder_clamp(
+        &from, codes->coder, (struct relume_vec3){d.x / length, d.y / length, d.z / length});
+    relume_coder_weights(codes->coder, from, weights, constant);
     for (int c = 0; c < 3; c++) {
         double sum = fabs((double)constant[c]);
         for (int k = 0; k < info->coefficients; k++)
             sum += fabs((double)weights[c * info->coefficients + k]) *
                    plane_bound(codes, relume_coder_plane(info, k, c));
         sum *= info->luminance ? plane_bound(codes, info->coefficients + c) : 1.0;
-        sum *= fabs((double)light->rgb[c]);
+        sum *= share * fabs((double)light->rgb[c]);
         most = isfinite(sum) ? fmax(most, sum) : INFINITY;
     }
     return most;

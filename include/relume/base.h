@@ -49,11 +49,12 @@ typedef enum relume_status {
 // The RELUME_VERSION_NUMBER of the library that is linked, which may be newer than the headers.
 RELUME_API int relume_version(void);
 
-// A fixed English text for `status`, never NULL; its name in one word ("not-found", "limit"); and
-// how a program that it ended should exit: 0 done, 1 the input, 2 usage, 3 the machine, 130
-// stopped.
+// A fixed English text for `status`, never NULL.
 RELUME_API const char *relume_status_text(relume_status status);
+// Its name in one word, constant: "not-found", "limit"; never NULL.
 RELUME_API const char *relume_status_name(relume_status status);
+// How a program that it ended should exit: 0 done, 1 the input, 2 usage, 3 the machine, 130
+// stopped.
 RELUME_API int relume_status_exit(relume_status status);
 // Whether the input was at fault.
 static inline bool relume_status_is_input(relume_status status)

@@ -52,7 +52,7 @@ struct relume_pack_contents {
     // rgb[rows][width][3] from `row` on, and return what failed. Called from several threads. NULL:
     // black. relume_pack_preview makes one.
     relume_status (*preview)(void *user, int row, int rows, float *rgb);
-    void *preview_user;
+    void *preview_user;  // of `preview`
 };
 
 // The middle view relit from the front, panoramas from above: hand it in as `preview`, the contents

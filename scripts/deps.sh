@@ -6,7 +6,7 @@
 set -eu
 
 packages="gcc g++ make pkg-config libc6-dev libopenexr-dev libopenimageio-dev libembree-dev
-libeigen3-dev libfftw3-dev libkissfft-dev libjansson-dev libjpeg-dev libpng-dev liblcms2-dev
+libeigen3-dev libfftw3-dev libkissfft-dev libjansson-dev libjpeg-dev libpng-dev liblcms2-dev libaom-dev libdav1d-dev zlib1g-dev
 libassimp-dev libcmocka-dev libcairo2-dev libglfw3-dev libosmesa6-dev
 libegl-dev libegl-mesa0 libimgui-dev fonts-dejavu-core libstb-dev xvfb xdotool"
 [ "${1:-}" = web ] && packages="chromium"

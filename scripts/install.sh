@@ -38,7 +38,7 @@ libdir=\${prefix}/lib
 Name: relume
 Description: image-based relighting
 Version: $version
-Requires.private: OpenEXR jansson libjpeg libpng lcms2
+Requires.private: OpenEXR jansson libjpeg libpng lcms2 aom dav1d zlib
 Libs: -L\${libdir} -lrelume
 Libs.private: -Wl,-rpath,\${libdir} -lembree3 -lstdc++ -lm -ldl -pthread
 Cflags: -I\${includedir}

@@ -20,8 +20,9 @@ acquire:base math image capture multiview:base image directions capture ball pho
 coder:base math image:base image capture coder
 codebook:base math image coder:base coder codebook
 selection:base math image coder compare:base image capture coder codebook heldout
-encode:base coder codebook:base image capture codebook coder light relight pack
-pack:base image coder:base image capture codebook coder pack
+lossy:base:base coder
+encode:base coder codebook lossy:base image capture codebook coder light relight pack
+pack:base image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig relighter
@@ -74,6 +75,9 @@ kissfft:src/math/fft_kiss.c
 jansson:src/base/json.c
 jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
+aom/:src/lossy/av1_write.c
+dav1d:src/lossy/av1_read.c
+zlib:src/lossy/lossy.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 GLFW:viewer/window/context_glfw.c samples/viewer.c

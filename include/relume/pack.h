@@ -36,6 +36,10 @@ struct relume_pack_view {
     // same ones share them in the file when all do.
     const relume_books *books;
     const uint16_t *const *index;  // [books] -> [height][width], as relume_books_assign
+    // The planes coded with loss, in place of what `coefficients` hold, of all views or none: words
+    // of docs/format.md, "Coded planes". `coefficients` are of RELUME_STORE_12.
+    const uint32_t *coded;
+    size_t coded_words;
 };
 // What is written. Everything is borrowed while relume_pack_write runs.
 struct relume_pack_contents {
@@ -96,6 +100,11 @@ struct relume_pack_encode_params {
                                               // those of this struct
     bool share;                               // one set of codebooks for all views
     bool no_depth;                            // leave depth out: no near lights, no views by depth
+    // With loss: as few bytes as reproduce the captured images at this PSNR (that of
+    // relume_evaluation.psnr_pooled_db), or as good as so many bytes of the file for each pixel of
+    // each view allow. At most one of the two; 0: without loss. `storage`, `step`, `compression`
+    // and `books` do not count then.
+    double psnr_db, bytes_per_pixel;
     const struct relume_writer *writer;       // write here in place of the file, as
                                               // relume_pack_params; temporary data in $TMPDIR
 };
@@ -108,6 +117,14 @@ RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
                                                const relume_coder *coder, const char *path,
                                                struct relume_encode_report *report,
                                                const struct relume_pack_encode_params *params);
+
+// The coder that needs the fewest bytes for `encode`'s psnr_db or bytes_per_pixel: principal
+// components, or where shadows are hard the captured images themselves (`table`), as tried on one
+// view. `coder` may fix the interpolant. It works in the display domain, which is what to encode in.
+// Errors of relume_coder_decide and relume_encode.
+RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,
+                                               const struct relume_coder_params *coder,
+                                               const struct relume_pack_encode_params *encode);
 
 // An open relume file. Views are read when first asked for and stay until dropped.
 // Thread-safety: one thread at a time.
@@ -126,7 +143,7 @@ struct relume_pack_info {
     enum relume_domain domain;
     struct relume_transfer display;  // the curve of DOMAIN_DISPLAY
     enum relume_storage storage;
-    const char *compression;  // of the coefficients: "piz", ...
+    const char *compression;  // of the coefficients: "piz", ...; "av1": coded with loss
     struct relume_geometry geometry;
     int slabs;  // around an object, each with its own pose; 0: `geometry` is all there is
     const struct relume_geometry *slab;  // [slabs]; the first is `geometry`

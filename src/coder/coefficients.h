@@ -65,10 +65,16 @@ struct encode_values {
     void (*row)(const void *user, int row, float *planes, size_t stride);
     const void *user;
 };
-// The `psnr_db` of a report for them, on the same rows. The images are read again. An input status,
+// How well they reproduce the captured images, as `relume eval` measures it.
+struct encode_judgement {
+    double psnr_db;  // as that of a report
+    double square;   // mean squared difference of display values, 1 = white, all lights pooled
+};
+// On the rows of a report, or `every` row. The images are read again. An input status,
 // RELUME_ENOMEM, RELUME_ECANCEL.
-relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
-                           int view, const struct encode_values *values,
+relume_status encode_judge(struct encode_judgement *out, relume_coefficients *c,
+                           const relume_capture *capture, int view, bool every,
+                           const struct encode_values *values,
                            const struct relume_encode_params *p);
 
 #endif

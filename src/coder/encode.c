@@ -412,6 +412,14 @@ static double shown_psnr(const struct encoding *e)
     return sum;
 }
 
+static double shown_square(const struct encoding *e)
+{
+    double sum = 0.0;
+    for (int i = 0; i < e->lights; i++)
+        sum += e->shown_error[i];
+    return e->error_count ? sum / (double)e->error_count : 0.0;
+}
+
 static relume_status alloc_encoder(struct encoding *e, const relume_capture *capture)
 {
     const size_t band = (size_t)BAND_ROWS * (size_t)e->width, planes = (size_t)e->planes;
@@ -516,21 +524,21 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
 
 // ---------------------------------------------------------------- other coefficients
 
-static relume_status judge_band(struct encoding *e, const struct encode_values *values)
+static relume_status judge_band(struct encoding *e, bool every, const struct encode_values *values)
 {
     relume_status status = read_band(e);
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
     for (int y = 0; !status && y < e->rows; y++)
-        if (is_measured(e->out, e->row + y)) {
+        if (every || is_measured(e->out, e->row + y)) {
             values->row(values->user, e->row + y, e->values + (size_t)y * (size_t)e->width, pixels);
             status = e->near ? measure_near(e, y) : measure_fit(e, y);
         }
     return status;
 }
 
-relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
-                           int view, const struct encode_values *values,
-                           const struct relume_encode_params *p)
+relume_status encode_judge(struct encode_judgement *out, relume_coefficients *c,
+                           const relume_capture *capture, int view, bool every,
+                           const struct encode_values *values, const struct relume_encode_params *p)
 {
     struct encoding e;
     relume_status status = begin(&e, c->info.coder, capture, view, p);
@@ -540,11 +548,11 @@ relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume
     if (!status)
         status = open_table(&e, capture, view, p);
     for (e.row = 0; !status && e.row < e.height; e.row += BAND_ROWS) {
-        status = judge_band(&e, values);
+        status = judge_band(&e, every, values);
         if (!status && !say_done(&e, capture, view, "measuring", p->log))
             status = RELUME_ECANCEL;
     }
-    *psnr_db = shown_psnr(&e);
+    *out = (struct encode_judgement){shown_psnr(&e), shown_square(&e)};
     near_fit_destroy(&e.near);
     relume_table_destroy(&e.table);
     free_encoder(&e);

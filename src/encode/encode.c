@@ -5,6 +5,7 @@
 #include "base/params.h"
 #include "codebook/books.h"
 #include "coder/coefficients.h"
+#include "encode/rate.h"
 
 #include <math.h>
 
@@ -14,6 +15,7 @@ struct material {
     struct relume_image *depth, *mask;  // [views]
     relume_books **books;               // [views], or the first for all
     uint16_t **index;                   // [views][RELUME_MOST_BOOKS]
+    struct lossy_words *words;          // [views]
     int views;
 };
 
@@ -28,10 +30,13 @@ static void destroy(struct material *m)
             relume_image_destroy(&m->mask[i]);
         if (m->books)
             relume_books_destroy(&m->books[i]);
+        if (m->words)
+            free(m->words[i].word);
         for (int b = 0; m->index && b < RELUME_MOST_BOOKS; b++)
             free(m->index[i * RELUME_MOST_BOOKS + b]);
     }
     free(m->books);
+    free(m->words);
     free(m->index);
     free(m->view);
     free(m->coefficients);
@@ -49,7 +54,8 @@ static bool create(struct material *m, int views)
     m->mask = mem_zeroed(n, sizeof *m->mask);
     m->books = mem_zeroed(n, sizeof *m->books);
     m->index = mem_zeroed(n * RELUME_MOST_BOOKS, sizeof *m->index);
-    return m->view && m->coefficients && m->depth && m->mask && m->books && m->index;
+    m->words = mem_zeroed(n, sizeof *m->words);
+    return m->words && m->view && m->coefficients && m->depth && m->mask && m->books && m->index;
 }
 
 static relume_status encode_view(struct material *m, int i, const relume_coder *coder,
@@ -147,12 +153,13 @@ static relume_status judge_books(const struct material *m, double *psnr_db,
     relume_status status = RELUME_OK;
     double sum = 0.0;
     for (int i = 0; !status && i < m->views; i++) {
-        double psnr = 0.0;
+        struct encode_judgement judgement;
         const struct shelf shelf = {m->view[i].books, m->index + i * RELUME_MOST_BOOKS,
                                     (size_t)relume_capture_width(capture)};
-        status = encode_judge(&psnr, m->coefficients[i], capture, i,
+        status = encode_judge(&judgement, m->coefficients[i], capture, i, false,
                               &(const struct encode_values){shelf_row, &shelf}, p);
-        sum += psnr / m->views;
+        if (!status)
+            sum += judgement.psnr_db / m->views;
     }
     *psnr_db = sum;
     return status;
@@ -180,16 +187,88 @@ static relume_status make_books(struct material *m, const struct relume_pack_enc
     return status;
 }
 
+static relume_status write_material(const struct material *m, const relume_capture *capture,
+                                    const relume_coder *coder,
+                                    const struct relume_encode_report *report, const char *path,
+                                    const struct relume_pack_encode_params *p)
+{
+    const struct relume_manifest *manifest = relume_capture_manifest(capture);
+    struct relume_pack_contents contents = {
+        .coder = coder,
+        .domain = relume_encode_domain(capture, p->domain),
+        .display = relume_encode_display(capture),
+        .geometry = manifest->geometry,
+        .slabs = manifest->slabs,
+        .slab = manifest->slab,
+        .views = manifest->views,
+        .view = m->view,
+        .report = *report,
+        .preview = relume_pack_preview,
+        .preview_user = &contents,
+    };
+    return relume_pack_write(&contents, path,
+                             relume_pack_params(.log = p->log, .compression = p->compression,
+                                                .threads = p->threads, .writer = p->writer));
+}
+
+// ---------------------------------------------------------------- with loss
+
+// The bytes of a file but for its words.
+static relume_status weigh_rest(double *bytes, const struct material *m,
+                                const relume_capture *capture, const relume_coder *coder,
+                                const struct relume_pack_encode_params *p)
+{
+    static const uint32_t nothing[1];
+    struct relume_buffer file = {0};
+    const struct relume_writer writer = relume_buffer_writer(&file);
+    struct relume_pack_encode_params to_memory = *p;
+    to_memory.writer = &writer;
+    for (int i = 0; i < m->views; i++) {
+        m->view[i].coded = nothing;
+        m->view[i].coded_words = 1;
+    }
+    const relume_status status = write_material(
+        m, capture, coder, &(const struct relume_encode_report){0}, NULL, &to_memory);
+    *bytes = (double)file.size;
+    relume_buffer_destroy(&file);
+    return status;
+}
+
+static relume_status code_planes(struct material *m, const relume_capture *capture,
+                                 const relume_coder *coder,
+                                 const struct relume_pack_encode_params *p,
+                                 struct relume_encode_report *report,
+                                 const struct relume_encode_params *encode)
+{
+    const double pixels =
+        (double)m->views * relume_capture_width(capture) * relume_capture_height(capture);
+    struct rate_target target = {p->psnr_db, 0.0};
+    struct rate_result result;
+    double rest = 0.0;
+    relume_status status = p->psnr_db > 0.0 ? RELUME_OK : weigh_rest(&rest, m, capture, coder, p);
+    target.bytes = fmax(p->bytes_per_pixel * pixels - rest, 1.0);
+    if (!status)
+        status =
+            rate_encode(m->words, &result, m->coefficients, m->views, capture, &target, encode);
+    for (int i = 0; !status && i < m->views; i++) {
+        m->view[i].coded = m->words[i].word;
+        m->view[i].coded_words = m->words[i].count;
+    }
+    report->psnr_db = status ? 0.0 : result.psnr_db;
+    return status;
+}
+
 relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,
                                  const char *path, struct relume_encode_report *report,
                                  const struct relume_pack_encode_params *params)
 {
     const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
+    const bool coded = p.psnr_db > 0.0 || p.bytes_per_pixel > 0.0;
     const struct relume_encode_params encode = {
         .log = p.log,
         .domain = relume_encode_domain(capture, p.domain),
-        .storage = p.storage,
-        .step = p.step,
+        .storage = coded ? RELUME_STORE_12 : p.storage,
+        .step = coded ? RELUME_STEP_COMMON : p.step,
         .threads = p.threads,
         .scratch = p.writer ? NULL : path,
     };
@@ -203,30 +282,16 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     struct relume_encode_report total = {0};
     if (!status)
         total = mean_report(&m);
-    if (!status && p.books)
+    if (!status && coded)
+        status = code_planes(&m, capture, coder, &p, &total, &encode);
+    if (!status && !coded && p.books)
         status = make_books(&m, &p, &total.store_rms);
-    if (!status && p.books && report)
+    if (!status && !coded && p.books && report)
         status = judge_books(&m, &total.psnr_db, capture, &encode);
-    if (!status) {
-        struct relume_pack_contents contents = {
-            .coder = coder,
-            .domain = encode.domain,
-            .display = relume_encode_display(capture),
-            .geometry = manifest->geometry,
-            .slabs = manifest->slabs,
-            .slab = manifest->slab,
-            .views = manifest->views,
-            .view = m.view,
-            .report = total,
-            .preview = relume_pack_preview,
-            .preview_user = &contents,
-        };
-        if (report)
-            *report = contents.report;
-        status = relume_pack_write(&contents, path,
-                                   relume_pack_params(.log = p.log, .compression = p.compression,
-                                                      .threads = p.threads, .writer = p.writer));
-    }
+    if (!status && report)
+        *report = total;
+    if (!status)
+        status = write_material(&m, capture, coder, &total, path, &p);
     destroy(&m);
     return status;
 }

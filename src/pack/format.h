@@ -6,9 +6,9 @@
 
 #define FORMAT_NAME "relume"
 
-// Several slabs are version 2, cylinders with discs 3; everything else stays what readers of
-// version 1 know.
-enum { FORMAT_VERSION = 3, FORMAT_DISCS = 3, FORMAT_SLABS = 2, FORMAT_PLAIN = 1 };
+// Several slabs are version 2, cylinders with discs 3, planes coded with loss 4; everything else
+// stays what readers of version 1 know.
+enum { FORMAT_VERSION = 4, FORMAT_CODED = 4, FORMAT_DISCS = 3, FORMAT_SLABS = 2, FORMAT_PLAIN = 1 };
 
 // Attributes of the first part
 #define ATTR_FORMAT        "relume.format"
@@ -38,6 +38,7 @@ enum { FORMAT_VERSION = 3, FORMAT_DISCS = 3, FORMAT_SLABS = 2, FORMAT_PLAIN = 1 
 #define ATTR_PARAMETER     "relume.parameter"
 #define ATTR_REPORT        "relume.report"
 #define ATTR_BOOKS         "relume.books"
+#define ATTR_CODING        "relume.coding"
 
 // Attributes of a view's part
 #define ATTR_VIEW   "relume.view"
@@ -49,6 +50,9 @@ enum { FORMAT_VERSION = 3, FORMAT_DISCS = 3, FORMAT_SLABS = 2, FORMAT_PLAIN = 1 
 #define ATTR_BOOK  "relume.book"
 #define ATTR_FIRST "relume.first"
 #define ATTR_LAST  "relume.last"
+
+// How planes are coded that are not kept as they are, and the channel of their words.
+#define CODING_AV1 "av1"
 
 // How its values are written: by enum relume_book_kind.
 extern const char *const format_book_kinds[3];

@@ -35,6 +35,7 @@ static relume_status check_format(relume_pack *p)
 
 static relume_status read_kinds(relume_pack *p)
 {
+    const char *coding = exr_get_text(p->file, 0, ATTR_CODING);
     const char *domain = exr_get_text(p->file, 0, ATTR_DOMAIN);
     const char *display = exr_get_text(p->file, 0, ATTR_DISPLAY);
     const char *storage = exr_get_text(p->file, 0, ATTR_STORAGE);
@@ -46,6 +47,9 @@ static relume_status read_kinds(relume_pack *p)
     if (!storage || relume_storage_parse(&p->info.storage, storage) ||
         p->info.storage == RELUME_STORE_LOG)
         return reader_bad(p, ATTR_STORAGE, "8, 10, 12, 16, half or float");
+    p->coded = coding != NULL;
+    if (coding && (strcmp(coding, CODING_AV1) || p->info.storage != RELUME_STORE_12))
+        return reader_bad(p, ATTR_CODING, "av1, of 12 bits");
     return RELUME_OK;
 }
 

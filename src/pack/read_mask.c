@@ -7,6 +7,8 @@
 #include "coder/codes.h"
 #include "pack/reader.h"
 
+#include <math.h>
+
 relume_status reader_mask_plane(relume_pack *p, int view, void *plane)
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
@@ -15,6 +17,23 @@ relume_status reader_mask_plane(relume_pack *p, int view, void *plane)
     for (size_t i = 0; !status && i < pixels; i++) {
         const float inside = !mask.data || mask.data[i] > 0.5f;
         (void)codes_keep(plane, p->info.storage, i, &inside, 1);
+    }
+    relume_image_destroy(&mask);
+    return status;
+}
+
+relume_status reader_mask_codes(relume_pack *p, int view)
+{
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    const struct relume_codes *codes = &p->loaded[view].codes;
+    struct relume_image mask;
+    const relume_status status = relume_pack_mask(&mask, p, view);
+    for (int k = 0; !status && mask.data && k < p->info.planes; k++) {
+        uint16_t *plane = (uint16_t *)p->loaded[view].data + (size_t)k * pixels;
+        const long zero = lrintf(-codes->offset[k] / codes->scale[k]);
+        for (size_t i = 0; i < pixels; i++)
+            if (mask.data[i] <= 0.5f)
+                plane[i] = (uint16_t)(zero < 0 ? 0 : zero > 4095 ? 4095 : zero);
     }
     relume_image_destroy(&mask);
     return status;

@@ -12,14 +12,17 @@ static relume_status check_view_part(relume_pack *p, int part, int view)
     const int planes = relume_coder_info(p->coder)->planes;
     char where[32];
     snprintf(where, sizeof where, "view %d", view);
-    if (i.width != p->info.width || i.height != p->info.height)
+    if (p->coded && (i.channels != 1 || !i.uniform || i.sample != EXR_SAMPLE_UINT))
+        return reader_bad(p, where, "rows of words");
+    if (!p->coded && (i.width != p->info.width || i.height != p->info.height))
         return reader_bad(p, where, "the size of the other parts");
     if (p->info.books) {
         if (i.channels != p->info.books || !i.uniform || i.sample != EXR_SAMPLE_UINT)
             return reader_bad(p, where, "one channel of whole numbers for every codebook");
         return RELUME_OK;
     }
-    if (i.channels != planes || !i.uniform || i.sample != codes_sample(p->info.storage))
+    if (!p->coded &&
+        (i.channels != planes || !i.uniform || i.sample != codes_sample(p->info.storage)))
         return reader_bad(p, where, "one channel of the stored type for every plane");
     if (!reader_floats(p, part, ATTR_SCALE, planes) || !reader_floats(p, part, ATTR_OFFSET, planes))
         return reader_bad(p, where, "a finite scale and offset for every plane");
@@ -80,6 +83,6 @@ relume_status reader_find_parts(relume_pack *p)
         status = find_view(p, v, &part);
     if (status)
         return status;
-    p->info.compression = exr_part_info(p->file, p->parts[0].codes).codec;
+    p->info.compression = p->coded ? CODING_AV1 : exr_part_info(p->file, p->parts[0].codes).codec;
     return reader_read_members(p);
 }

@@ -1,10 +1,12 @@
 // read_view.c - the samples of one view: its codes, depth and mask
 #include "base/memory.h"
 #include "coder/codes.h"
+#include "lossy/lossy.h"
 #include "pack/format.h"
 #include "pack/reader.h"
 
 #include <stdatomic.h>
+#include <string.h>
 
 // A part of numbers on its way into memory.
 struct loading {
@@ -66,6 +68,40 @@ static relume_status load_steps(struct loaded *to, const relume_pack *p, int par
     return RELUME_OK;
 }
 
+struct word_rows {
+    uint32_t *word;
+    size_t width;
+};
+
+static void load_words(void *context, int row, int rows, const void *samples)
+{
+    const struct word_rows *to = context;
+    memcpy(to->word + (size_t)row * to->width, samples,
+           (size_t)rows * to->width * sizeof *to->word);
+}
+
+// Planes that were coded with loss, black again where the mask says so.
+static relume_status load_coded(relume_pack *p, int view)
+{
+    const int part = p->parts[view].codes;
+    const struct exr_part_info info = exr_part_info(p->file, part);
+    const size_t count = (size_t)info.width * (size_t)info.height;
+    struct word_rows words = {mem_array(count, sizeof *words.word), (size_t)info.width};
+    int *order = lossy_order(p->coder);
+    const struct lossy_shape shape = {p->info.width, p->info.height, p->info.planes,
+                                      lossy_in_colour(p->coder), order};
+    relume_status status = words.word
+                               ? exr_read(p->file, part, p->threads, load_words, &words, p->log)
+                               : RELUME_ENOMEM;
+    if (!status)
+        status = lossy_decode(p->loaded[view].data, &shape, words.word, count, p->threads, NULL);
+    if (status == RELUME_EDAMAGED)
+        status = reader_bad(p, "a tile of the picture is damaged", "sound AV1 data");
+    free(words.word);
+    free(order);
+    return status;
+}
+
 relume_status reader_load_planes(relume_pack *p, int view)
 {
     struct loaded *to = &p->loaded[view];
@@ -80,12 +116,14 @@ relume_status reader_load_planes(relume_pack *p, int view)
     for (size_t i = 0; !status && i < planes; i++)
         to->plane[i] = (const char *)to->data + i * plane_bytes;
     if (!status)
-        status = reader_load(p, part, to->data, p->info.planes, 0);
+        status = p->coded ? load_coded(p, view) : reader_load(p, part, to->data, p->info.planes, 0);
     if (!status && planes > stored)
         status = reader_mask_plane(p, view, (char *)to->data + stored * plane_bytes);
     to->codes.storage = p->info.storage;
     to->codes.plane = to->plane;
-    return status ? status : load_steps(to, p, part, planes);
+    if (!status)
+        status = load_steps(to, p, part, planes);
+    return !status && p->coded ? reader_mask_codes(p, view) : status;
 }
 
 struct plane_sink {

@@ -36,6 +36,7 @@ struct relume_pack {
     struct view_parts *parts;  // [views]
     struct loaded *loaded;     // [views]
     struct read_books *books;  // [views]; shared ones in the first
+    bool coded;                // planes with loss
     int threads;
     const struct relume_log *log;
     struct relume_limits limits;
@@ -61,6 +62,9 @@ relume_status reader_load_planes(relume_pack *p, int view);
 // What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
 // mean, 1 inside and 0 outside; and the code vectors of nothing.
 relume_status reader_mask_plane(relume_pack *p, int view, void *plane);
+// Codes of coefficients that are 0 where the mask leaves out, into planes that were coded with
+// loss.
+relume_status reader_mask_codes(relume_pack *p, int view);
 bool reader_has_nothing(const relume_pack *p, int codes);
 relume_status reader_mask_indices(relume_pack *p, int view, uint16_t *index);
 

@@ -6,6 +6,35 @@
 
 #include <math.h>
 
+// Where planes are coded with loss the preview is coarse, so that it is not most of the file: one
+// colour for 16 x 16 pixels, halves of 7 bits. Blocks of rows that are packed together are 16 rows.
+enum { COARSE = 16, COARSE_BITS = 0xfff8 };
+
+static void make_coarse(float *rgb, size_t width, size_t rows)
+{
+    for (size_t y = 0; y < rows; y++)
+        for (size_t x = 0; x < width; x++)
+            for (size_t c = 0; c < 3; c++) {
+                const size_t first = y / COARSE * COARSE * width + x / COARSE * COARSE;
+                rgb[3 * (y * width + x) + c] = rgb[3 * first + c];
+            }
+}
+
+// The first pixel of each 16 x 16 becomes their mean.
+static void gather_coarse(float *rgb, size_t width, size_t rows)
+{
+    for (size_t y = 0; y < rows; y += COARSE)
+        for (size_t x = 0; x < width; x += COARSE)
+            for (size_t c = 0; c < 3; c++) {
+                float sum = 0.0f;
+                int n = 0;
+                for (size_t v = y; v < rows && v < y + COARSE; v++)
+                    for (size_t u = x; u < width && u < x + COARSE; u++, n++)
+                        sum += rgb[3 * (v * width + u) + c];
+                rgb[3 * (y * width + x) + c] = sum / (float)n;
+            }
+}
+
 // B, G, R as halves, none of which is infinite.
 static relume_status preview_rows(void *context, int row, int rows, void *samples)
 {
@@ -17,10 +46,16 @@ static relume_status preview_rows(void *context, int row, int rows, void *sample
         return RELUME_ENOMEM;
     const relume_status status =
         c->preview ? c->preview(c->preview_user, row, rows, rgb) : RELUME_OK;
+    if (!status && c->view->coded) {
+        gather_coarse(rgb, width, (size_t)rows);
+        make_coarse(rgb, width, (size_t)rows);
+    }
+    const uint16_t bits = c->view->coded ? COARSE_BITS : 0xffff;
     for (size_t y = 0; !status && y < (size_t)rows; y++)
         for (size_t channel = 3; channel-- > 0;)
             for (size_t x = 0; x < width; x++)
-                *out++ = half_from_float(fminf(rgb[3 * (y * width + x) + channel], 65504.0f));
+                *out++ =
+                    half_from_float(fminf(rgb[3 * (y * width + x) + channel], 65504.0f)) & bits;
     free(rgb);
     return status;
 }
@@ -109,6 +144,7 @@ void writer_add_header(struct writer *w)
     const struct relume_coefficients_info *info = relume_coefficients_info(c->view->coefficients);
     const double report[] = {c->report.fit_rms, c->report.store_rms};
     struct exr_part *part = writer_part(w, "preview", info->width, info->height);
+    part->codec = c->view->coded ? EXR_CODEC_ZIP : w->codec;
     part->sample = EXR_SAMPLE_HALF;
     part->channels = 3;
     part->channel = channels;
@@ -117,7 +153,8 @@ void writer_add_header(struct writer *w)
     relume_transfer_text(c->display, w->display, sizeof w->display);
     writer_text(part, ATTR_FORMAT, FORMAT_NAME);
     writer_int(part, ATTR_VERSION,
-               c->slabs           ? FORMAT_SLABS
+               c->view->coded     ? FORMAT_CODED
+               : c->slabs         ? FORMAT_SLABS
                : c->geometry.disc ? FORMAT_DISCS
                                   : FORMAT_PLAIN);
     writer_text(part, ATTR_CREATOR, "relume " RELUME_VERSION);
@@ -127,6 +164,8 @@ void writer_add_header(struct writer *w)
     writer_int(part, ATTR_VIEWS, c->views);
     if (isfinite(report[0]) && isfinite(report[1]))
         writer_doubles(w, part, ATTR_REPORT, report, 2);
+    if (c->view->coded)
+        writer_text(part, ATTR_CODING, CODING_AV1);
     if (c->view->books)
         writer_int(part, ATTR_BOOKS, relume_books_info(c->view->books)->books);
     describe_coder(w, part);

@@ -112,7 +112,7 @@ k = b'relume.version\0int\0\4\0\0\0'
 i = b.index(k) + len(k)
 open('new.exr', 'wb').write(b[:i] + b'\x09' + b[i + 1:])
 E
-    info 'a newer version' 'new.exr: version 9 of the format is newer than this program, which reads up to 3; update relume' new.exr
+    info 'a newer version' 'new.exr: version 9 of the format is newer than this program, which reads up to 4; update relume' new.exr
 else
     skip 'a newer version' 'no python3'
 fi

@@ -15,7 +15,7 @@ struct encode_options {
     enum relume_domain domain;
     enum relume_compression compression;
     struct relume_transfer transfer;
-    double quality, ridge, assume_depth;
+    double quality, psnr, bytes_per_pixel, ridge, assume_depth;
     unsigned luminance;
     bool robust, force, no_depth, skip_missing, repair, allow_outside;
     struct book_options books;
@@ -35,6 +35,10 @@ static const struct option options[] = {
         "coefficients per colour channel (pca: for all three); default: auto: as --quality asks, "
         "at least 27; others: by the basis",
         1, 4096),
+    NUMBER("--psnr", psnr, "DB",
+           "code with loss: as few bytes as reproduce the photographs at this PSNR", 10, 60),
+    NUMBER("--bytes-per-pixel", bytes_per_pixel, "B",
+           "code with loss: as good as so many bytes for each pixel of each view allow", 1e-3, 100),
     NUMBER("--quality", quality, "DB",
            "auto: as few coefficients as reproduce the photographs at this PSNR; default: 38, at "
            "most 128 of them",
@@ -87,6 +91,11 @@ struct request {
     double unseen;   // dB; 0: not known
 };
 
+static bool is_coded(const struct request *r)
+{
+    return r->pack.psnr_db > 0.0 || r->pack.bytes_per_pixel > 0.0;
+}
+
 static const char *storage_words(enum relume_storage storage)
 {
     static const char *const words[] = {
@@ -120,6 +129,8 @@ static void say_result(const struct args *args, const relume_capture *capture,
     bytes_words(bytes, capture, r->output);
     if (r->unseen > 0.0 && !one)
         snprintf(unseen, sizeof unseen, "; unseen light directions: about %.0f dB", r->unseen);
+    if (is_coded(r) && r->pack.psnr_db > report->psnr_db + 0.3)
+        snprintf(more, sizeof more, "; %g dB is more than it reaches", r->pack.psnr_db);
     if (short_of && !one && !r->coder.coefficients)
         snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
                  info->coefficients);
@@ -129,7 +140,7 @@ static void say_result(const struct args *args, const relume_capture *capture,
              "%s%s%s%s",
              r->output, one ? "" : "s", report->psnr_db, judgement(report->psnr_db),
              info->coefficients, relume_plural(info->coefficients), info->joint ? "" : " a colour",
-             storage_words(r->pack.storage), bytes, unseen, more);
+             is_coded(r) ? "coded with loss" : storage_words(r->pack.storage), bytes, unseen, more);
 }
 
 // Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
@@ -175,6 +186,10 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
                                                 .storage = r->pack.storage,
                                                 .threads = r->pack.threads};
     struct relume_decision decision;
+    if (is_coded(r) && r->pack.domain == RELUME_DOMAIN_AUTO)
+        r->pack.domain = RELUME_DOMAIN_DISPLAY;
+    if (is_coded(r) && r->decide)
+        return relume_pack_decide(coder, capture, &r->coder, &r->pack);
     if (!r->decide)
         return relume_coder_learn(coder, r->basis, capture, &r->coder, &encode);
     const relume_status status =
@@ -191,7 +206,7 @@ static relume_status write_file(const relume_capture *capture, const relume_code
                                 struct request *r, struct relume_encode_report *report)
 {
     relume_status status = relume_pack_encode(capture, coder, r->output, report, &r->pack);
-    if (status || r->bits || !is_coarse(report))
+    if (status || r->bits || is_coded(r) || !is_coarse(report))
         return status;
     r->pack.storage = RELUME_STORE_HALF;
     return relume_pack_encode(capture, coder, r->output, report, &r->pack);
@@ -258,6 +273,8 @@ static relume_status run(const struct args *args)
                  .step = o->step,
                  .compression = o->compression,
                  .no_depth = o->no_depth,
+                 .psnr_db = o->psnr,
+                 .bytes_per_pixel = o->bytes_per_pixel,
                  .share = o->books.share,
                  .threads = args->threads},
         .decide = !o->basis && !books && !o->robust && !o->luminance,
@@ -266,6 +283,12 @@ static relume_status run(const struct args *args)
     if (r.quality > 0.0 && (!r.decide || o->coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
                            "--basis, --coefficients, --codebook and --robust");
+    if (is_coded(&r) && (books || o->bits || given(o, &o->step) || given(o, &o->compression) ||
+                         o->quality > 0.0 || (o->psnr > 0.0 && o->bytes_per_pixel > 0.0)))
+        return usage_error(
+            "--psnr and --bytes-per-pixel choose bits, step and compression; expected "
+            "one of the two, without --bits, --step, --compression, --quality and "
+            "--codebook");
     const relume_status status = parse_books(args, &o->books, books, &r.books);
     r.pack.books = books ? &r.books : NULL;
     return status ? status : encode(args, &r);

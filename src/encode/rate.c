@@ -1,0 +1,280 @@
+// rate.c - the quantiser for a quality or a size, by trying
+#include "encode/rate.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "coder/codes.h"
+#include "coder/coefficients.h"
+#include "lossy/av1.h"
+
+#include <math.h>
+#include <string.h>
+
+// The slow coder is about a whole step better in quality at the same quantiser.
+enum { MOST_TRIED = 3, FIRST_GUESS = 30 * AV1_STEPS, SLOW_IS_FINER = AV1_STEPS };
+
+struct trial {
+    struct lossy_words words[MOST_TRIED];
+    double psnr_db, bytes;
+};
+
+struct rate {
+    relume_coefficients *const *coefficients;
+    int views, tried, speed;
+    int first;       // which view of the capture the coefficients begin with
+    double done;     // 0 .. 1
+    double step_db;  // what a step of the quantiser is worth
+    const relume_capture *capture;
+    const struct relume_encode_params *p;
+    struct rate_target target;  // bytes of the views that are tried
+    struct trial trial[AV1_COARSEST + 1];
+};
+
+// ---------------------------------------------------------------- views in parallel
+
+struct job {
+    const struct rate *rate;
+    int quantiser, views, each;  // threads for each
+    struct lossy_words *words;   // [views]
+    relume_status *status;       // [views]
+};
+
+static int view_of(const struct job *j, int i)
+{
+    return (int)((2LL * i + 1) * j->rate->views / (2LL * j->views));
+}
+
+static void code_view(void *context, size_t item, int worker)
+{
+    struct job *j = context;
+    (void)worker;
+    j->status[item] = lossy_encode(&j->words[item], j->rate->coefficients[view_of(j, (int)item)],
+                                   j->quantiser, j->rate->speed, j->each, j->rate->p->log);
+}
+
+// `views` of all of them, evenly spread.
+static relume_status code_views(const struct rate *r, struct lossy_words *words, int views,
+                                int quantiser)
+{
+    const int threads = thread_count(r->p->threads);
+    struct job j = {r, quantiser, views, views < threads ? threads / views : 1, words, NULL};
+    j.status = mem_zeroed((size_t)views, sizeof *j.status);
+    if (!j.status)
+        return RELUME_ENOMEM;
+    thread_for(threads, (size_t)views, code_view, &j);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < views; i++)
+        status = j.status[i];
+    free(j.status);
+    return status;
+}
+
+static double bytes_of(const struct lossy_words *words, int views)
+{
+    double sum = 0.0;
+    for (int i = 0; i < views; i++)
+        sum += 4.0 * (double)words[i].count;
+    return sum;
+}
+
+// ---------------------------------------------------------------- quality
+
+struct shown {
+    const struct relume_coefficients_info *info;
+    const uint16_t *codes;
+};
+
+static void shown_row(const void *user, int row, float *planes, size_t stride)
+{
+    const struct shown *s = user;
+    const size_t width = (size_t)s->info->width, size = width * (size_t)s->info->height;
+    for (int k = 0; k < s->info->planes; k++)
+        codes_restore(planes + (size_t)k * stride, RELUME_STORE_12, s->codes,
+                      (size_t)k * size + (size_t)row * width, width, s->info->scale[k],
+                      s->info->offset[k]);
+}
+
+static relume_status judge_view(double *square, const struct rate *r, int view,
+                                const struct lossy_words *words)
+{
+    relume_coefficients *c = r->coefficients[view];
+    const struct relume_coefficients_info *info = relume_coefficients_info(c);
+    int *order = lossy_order(info->coder);
+    const struct lossy_shape shape = {info->width, info->height, info->planes,
+                                      lossy_in_colour(info->coder), order};
+    uint16_t *codes =
+        mem_array((size_t)info->planes, (size_t)info->width * (size_t)info->height * sizeof *codes);
+    relume_status status =
+        codes ? lossy_decode(codes, &shape, words->word, words->count, r->p->threads, NULL)
+              : RELUME_ENOMEM;
+    const struct shown shown = {info, codes};
+    struct encode_judgement judgement = {0};
+    if (!status)
+        status = encode_judge(&judgement, c, r->capture, r->first + view, true,
+                              &(const struct encode_values){shown_row, &shown}, r->p);
+    *square += judgement.square;
+    free(order);
+    free(codes);
+    return status;
+}
+
+static relume_status judge(double *psnr_db, const struct rate *r, const struct lossy_words *words,
+                           int views)
+{
+    const struct job all = {.rate = r, .views = views};
+    relume_status status = RELUME_OK;
+    double square = 0.0;
+    for (int i = 0; !status && i < views; i++)
+        status = judge_view(&square, r, view_of(&all, i), &words[i]);
+    *psnr_db = -10.0 * log10(fmax(square / views, 1e-20));
+    return status;
+}
+
+// ---------------------------------------------------------------- search
+
+static relume_status try_one(struct rate *r, int quantiser)
+{
+    struct trial *t = &r->trial[quantiser];
+    relume_status status = code_views(r, t->words, r->tried, quantiser);
+    if (!status && r->target.psnr_db > 0.0)
+        status = judge(&t->psnr_db, r, t->words, r->tried);
+    t->bytes = bytes_of(t->words, r->tried);
+    return status;
+}
+
+static void forget(struct rate *r)
+{
+    for (int q = 0; q <= AV1_COARSEST; q++)
+        for (int i = 0; i < MOST_TRIED; i++)
+            free(r->trial[q].words[i].word);
+    memset(r->trial, 0, sizeof r->trial);
+}
+
+// How much better than wanted, in dB: half the bytes are about so many.
+static const double EACH_HALF = 5.0;
+
+static double surplus(const struct rate *r, int quantiser)
+{
+    const struct trial *t = &r->trial[quantiser];
+    return r->target.psnr_db > 0.0 ? t->psnr_db - r->target.psnr_db
+                                   : EACH_HALF * log2(fmax(t->bytes, 1.0) / r->target.bytes);
+}
+
+// Where the line through two trials meets the target, between them.
+static int between(const struct rate *r, int fine, int coarse)
+{
+    const double a = surplus(r, fine), b = surplus(r, coarse);
+    const int guess = fine + (int)lrint(a / fmax(a - b, 1e-9) * (coarse - fine));
+    return guess <= fine ? fine + 1 : guess >= coarse ? coarse - 1 : guess;
+}
+
+// Beyond the last trial, by what a step was worth so far.
+static int beyond(const struct rate *r, int from)
+{
+    const double d = surplus(r, from) / r->step_db;
+    const int guess = from + (int)(d < 0.0 ? floor(d) : ceil(d));
+    return guess == from ? from + 1 : guess;
+}
+
+static int within(int quantiser)
+{
+    return quantiser < AV1_FINEST     ? AV1_FINEST
+           : quantiser > AV1_COARSEST ? AV1_COARSEST
+                                      : quantiser;
+}
+
+// So near that the next step would hardly be nearer: qualities are wanted within 0.3 dB.
+static bool is_close(const struct rate *r, int quantiser)
+{
+    return r->target.psnr_db > 0.0 && fabs(surplus(r, quantiser)) < 0.2;
+}
+
+// Whether a trial is nearer to the target than another: in quality, or with as many bytes as are
+// allowed.
+static bool is_better(const struct rate *r, int quantiser, int than)
+{
+    const double a = surplus(r, quantiser), b = surplus(r, than);
+    if (r->target.psnr_db > 0.0)
+        return fabs(a) < fabs(b);
+    return a <= 0.0 ? b > 0.0 || a > b : b > 0.0 && a < b;
+}
+
+// What a step is worth, from two trials.
+static void learn_step(struct rate *r, int a, int b)
+{
+    const double each = (surplus(r, a) - surplus(r, b)) / (b - a);
+    r->step_db = fmin(fmax(each, 0.02), 0.5);
+}
+
+// From *quantiser on to the one that meets the target best.
+static relume_status search(struct rate *r, int speed, int *quantiser)
+{
+    int fine = AV1_FINEST - 1, coarse = AV1_COARSEST + 1;  // not tried
+    forget(r);
+    r->speed = speed;
+    for (int q = *quantiser, last = 0;;) {
+        const relume_status status = try_one(r, q);
+        if (status || !log_progress(r->p->log, "choosing the step", r->done))
+            return status ? status : RELUME_ECANCEL;
+        *quantiser = !last || is_better(r, q, *quantiser) ? q : *quantiser;
+        if (last)
+            learn_step(r, last, q);
+        last = q;
+        *(surplus(r, q) >= 0.0 ? &fine : &coarse) = q;
+        if (coarse - fine <= 1 || is_close(r, q))
+            return RELUME_OK;
+        q = within(fine >= AV1_FINEST && coarse <= AV1_COARSEST ? between(r, fine, coarse)
+                                                                : beyond(r, q));
+    }
+}
+
+// The fast coder finds about where, the slow one the step itself.
+relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
+                          relume_coefficients *const *coefficients, int views,
+                          const relume_capture *capture, const struct rate_target *target,
+                          const struct relume_encode_params *p)
+{
+    struct rate r = {.coefficients = coefficients,
+                     .views = views,
+                     .tried = views < MOST_TRIED ? views : MOST_TRIED,
+                     .capture = capture,
+                     .p = p,
+                     .step_db = 0.1,
+                     .target = *target};
+    r.target.bytes *= (double)r.tried / views;
+    result->quantiser = FIRST_GUESS;
+    relume_status status = search(&r, AV1_FAST, &result->quantiser);
+    r.done = 0.5;
+    if (target->psnr_db > 0.0)
+        result->quantiser = within(result->quantiser + SLOW_IS_FINER);
+    if (!status)
+        status = search(&r, AV1_SLOW, &result->quantiser);
+    if (!status && r.tried == views)
+        memcpy(words, r.trial[result->quantiser].words, (size_t)views * sizeof *words);
+    else if (!status)
+        status = code_views(&r, words, views, result->quantiser);
+    if (r.tried == views)
+        memset(r.trial[result->quantiser].words, 0, sizeof r.trial->words);
+    forget(&r);
+    return status ? status : judge(&result->psnr_db, &r, words, views);
+}
+
+relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, int view,
+                            const relume_capture *capture, double psnr_db,
+                            const struct relume_encode_params *p)
+{
+    struct rate r = {.coefficients = &coefficients,
+                     .views = 1,
+                     .tried = 1,
+                     .first = view,
+                     .capture = capture,
+                     .p = p,
+                     .step_db = 0.3,
+                     .target = {.psnr_db = psnr_db}};
+    int quantiser = FIRST_GUESS;
+    const relume_status status = search(&r, AV1_FAST, &quantiser);
+    *bytes = r.trial[quantiser].bytes * exp2(-surplus(&r, quantiser) / EACH_HALF);
+    forget(&r);
+    return status;
+}

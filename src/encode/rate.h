@@ -1,0 +1,32 @@
+// rate.h - how coarsely planes are coded for a wanted quality or size
+#ifndef ENCODE_RATE_H
+#define ENCODE_RATE_H
+
+#include "lossy/lossy.h"
+
+#include <relume/capture.h>
+
+struct rate_target {
+    double psnr_db;  // of the captured images, pooled; or 0
+    double bytes;    // of the words of all views
+};
+struct rate_result {
+    double psnr_db;  // as the target's
+    int quantiser;
+};
+
+// words[views] of the coefficients of all views, of the coarsest quantiser that reaches the PSNR
+// best or the finest that keeps the bytes. It is found on at most three of the views. Where the
+// target is out of reach it is the finest or coarsest. Caller frees the words, also on failure.
+// RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
+relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
+                          relume_coefficients *const *coefficients, int views,
+                          const relume_capture *capture, const struct rate_target *target,
+                          const struct relume_encode_params *p);
+
+// About the bytes of one `view` of the capture at that PSNR. Errors as above.
+relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, int view,
+                            const relume_capture *capture, double psnr_db,
+                            const struct relume_encode_params *p);
+
+#endif

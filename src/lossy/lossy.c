@@ -1,0 +1,374 @@
+// lossy.c - tiles of a view, and the colour of their pictures
+#include "lossy/lossy.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "lossy/av1.h"
+
+#include <string.h>
+#include <zlib.h>
+
+// Words at the head, before two for each tile: bytes of its sequence, and their CRC-32.
+enum { WORD_MAGIC, WORD_TILE, WORD_TILES, HEAD_WORDS };
+enum { MAGIC = 0x31564C52, TILE = 512, GRANULE = 8, LEAST_SIDE = 16 };  // "RLV1"
+
+struct tiles {
+    struct lossy_shape shape;
+    int size, across, count;
+};
+
+struct tile {
+    int x, y, width, height;
+    struct av1_shape video;  // whole blocks: edges are repeated
+};
+
+static struct tiles tiles_of(const struct lossy_shape *shape, int size)
+{
+    const int across = (shape->width + size - 1) / size;
+    const int down = (shape->height + size - 1) / size;
+    return (struct tiles){*shape, size, across, across * down};
+}
+
+static int padded(int side)
+{
+    const int whole = (side + GRANULE - 1) / GRANULE * GRANULE;
+    return whole > LEAST_SIDE ? whole : LEAST_SIDE;
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static struct tile tile_at(const struct tiles *t, int index)
+{
+    struct tile tile = {.x = index % t->across * t->size, .y = index / t->across * t->size};
+    tile.width = least(t->size, t->shape.width - tile.x);
+    tile.height = least(t->size, t->shape.height - tile.y);
+    const int components = t->shape.colour ? 3 : 1;
+    tile.video = (struct av1_shape){padded(tile.width), padded(tile.height), components,
+                                    t->shape.planes / components};
+    return tile;
+}
+
+static uint16_t *tile_samples(const struct tile *t)
+{
+    return mem_array((size_t)t->video.components * (size_t)t->video.pictures,
+                     (size_t)t->video.width * (size_t)t->video.height * sizeof(uint16_t));
+}
+
+// ---------------------------------------------------------------- colour
+
+// Rec. 709 luma and its colour differences, in 1 / 65536; codes are around 2048.
+enum { ONE = 65536, HALF_CODE = 2048, KR = 13933, KG = 46871, KB = 4732 };
+
+static uint16_t to_code(int64_t v)
+{
+    return (uint16_t)(v < 0 ? 0 : v > AV1_TOP ? AV1_TOP : v);
+}
+
+// v / d, to the nearest.
+static int64_t divided(int64_t v, int64_t d)
+{
+    return (v >= 0 ? v + d / 2 : v - d / 2) / d;
+}
+
+static void to_luma(uint16_t *s, size_t plane)
+{
+    for (size_t i = 0; i < plane; i++) {
+        const int64_t r = s[i], g = s[plane + i], b = s[2 * plane + i];
+        const int64_t y = KR * r + KG * g + KB * b;
+        s[i] = to_code(divided(y, ONE));
+        s[plane + i] = to_code(HALF_CODE + divided(b * ONE - y, 2 * (ONE - KB)));
+        s[2 * plane + i] = to_code(HALF_CODE + divided(r * ONE - y, 2 * (ONE - KR)));
+    }
+}
+
+static void from_luma(uint16_t *s, size_t plane)
+{
+    for (size_t i = 0; i < plane; i++) {
+        const int64_t y = (int64_t)s[i] * ONE;
+        const int64_t r = y + (s[2 * plane + i] - HALF_CODE) * 2 * (int64_t)(ONE - KR);
+        const int64_t b = y + (s[plane + i] - HALF_CODE) * 2 * (int64_t)(ONE - KB);
+        s[i] = to_code(divided(r, ONE));
+        s[plane + i] = to_code(divided(y * ONE - KR * r - KB * b, (int64_t)KG * ONE));
+        s[2 * plane + i] = to_code(divided(b, ONE));
+    }
+}
+
+static void convert(uint16_t *samples, const struct av1_shape *s,
+                    void (*colour)(uint16_t *, size_t))
+{
+    const size_t plane = (size_t)s->width * (size_t)s->height;
+    for (int p = 0; s->components == 3 && p < s->pictures; p++)
+        colour(samples + 3 * (size_t)p * plane, plane);
+}
+
+// ---------------------------------------------------------------- pictures
+
+bool lossy_in_colour(const relume_coder *coder)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    return !info->joint && !info->luminance;
+}
+
+// From each light to the nearest that is left: its picture is predicted from the last one's.
+static void chain(int *order, const struct relume_vec3 *d, int n)
+{
+    for (int i = 0; i < n; i++)
+        order[i] = i;
+    for (int i = 1; i < n; i++) {
+        const struct relume_vec3 from = d[order[i - 1]];
+        int best = i;
+        double closest = -2.0;
+        for (int k = i; k < n; k++) {
+            const struct relume_vec3 to = d[order[k]];
+            const double cosine = from.x * to.x + from.y * to.y + from.z * to.z;
+            best = cosine > closest ? k : best;
+            closest = cosine > closest ? cosine : closest;
+        }
+        const int light = order[best];
+        memmove(order + i + 1, order + i, (size_t)(best - i) * sizeof *order);
+        order[i] = light;
+    }
+}
+
+int *lossy_order(const relume_coder *coder)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    if (!info->interpolant || info->joint || info->lights != info->coefficients)
+        return NULL;
+    int *order = mem_array((size_t)info->lights, sizeof *order);
+    if (order)
+        chain(order, info->directions, info->lights);
+    return order;
+}
+
+// Which plane is component c of picture p.
+static size_t plane_of(const struct lossy_shape *s, int p, int c)
+{
+    const int picture = s->order ? s->order[p] : p;
+    return (size_t)(s->colour ? 3 * picture + c : picture);
+}
+
+static void repeat_edges(uint16_t *plane, const struct tile *t)
+{
+    const size_t stride = (size_t)t->video.width;
+    for (size_t y = 0; y < (size_t)t->height; y++)
+        for (size_t x = (size_t)t->width; x < stride; x++)
+            plane[y * stride + x] = plane[y * stride + x - 1];
+    for (size_t y = (size_t)t->height; y < (size_t)t->video.height; y++)
+        memcpy(plane + y * stride, plane + (y - 1) * stride, stride * sizeof *plane);
+}
+
+// ---------------------------------------------------------------- encoding
+
+struct encoding {
+    struct tiles tiles;
+    const relume_coefficients *from;
+    int quantiser, speed;
+    const struct relume_log *log;
+    relume_status *status;  // [tiles]
+    unsigned char **bytes;  // [tiles]
+    size_t *size;           // [tiles]
+};
+
+// Rows of a coefficient are [row][plane][x].
+static relume_status gather(uint16_t *samples, const struct encoding *e, const struct tile *t)
+{
+    const struct lossy_shape *s = &e->tiles.shape;
+    const size_t width = (size_t)s->width, stride = (size_t)t->video.width;
+    const size_t plane = stride * (size_t)t->video.height;
+    uint16_t *row = mem_array((size_t)s->planes, width * sizeof *row);
+    relume_status status = row ? RELUME_OK : RELUME_ENOMEM;
+    for (int y = 0; !status && y < t->height; y++) {
+        status = relume_coefficients_read(e->from, t->y + y, 1, row);
+        for (int p = 0; !status && p < t->video.pictures; p++)
+            for (int c = 0; c < t->video.components; c++)
+                memcpy(samples + (size_t)(p * t->video.components + c) * plane + (size_t)y * stride,
+                       row + plane_of(s, p, c) * width + t->x, (size_t)t->width * sizeof *row);
+    }
+    for (int p = 0; !status && p < s->planes; p++)
+        repeat_edges(samples + (size_t)p * plane, t);
+    free(row);
+    return status;
+}
+
+static void encode_tile(void *context, size_t item, int worker)
+{
+    struct encoding *e = context;
+    const struct tile t = tile_at(&e->tiles, (int)item);
+    uint16_t *samples = tile_samples(&t);
+    relume_status status = samples ? gather(samples, e, &t) : RELUME_ENOMEM;
+    (void)worker;
+    if (!status) {
+        convert(samples, &t.video, to_luma);
+        status = av1_encode(&e->bytes[item], &e->size[item], samples, &t.video, e->quantiser,
+                            e->speed, e->log);
+    }
+    e->status[item] = status;
+    free(samples);
+}
+
+static size_t words_for(size_t bytes)
+{
+    return (bytes + 3) / 4;
+}
+
+// Little-endian bytes as words, which every machine keeps.
+static void put_bytes(uint32_t *word, const unsigned char *bytes, size_t size)
+{
+    memset(word, 0, 4 * words_for(size));
+    for (size_t i = 0; i < size; i++)
+        word[i / 4] |= (uint32_t)bytes[i] << 8 * (i % 4);
+}
+
+static relume_status join(struct lossy_words *out, const struct encoding *e)
+{
+    const size_t tiles = (size_t)e->tiles.count;
+    size_t count = HEAD_WORDS + 2 * tiles, at = count;
+    for (size_t i = 0; i < tiles; i++)
+        count += words_for(e->size[i]);
+    uint32_t *word = mem_array(count, sizeof *word);
+    if (!word)
+        return RELUME_ENOMEM;
+    word[WORD_MAGIC] = MAGIC;
+    word[WORD_TILE] = (uint32_t)e->tiles.size;
+    word[WORD_TILES] = (uint32_t)tiles;
+    for (size_t i = 0; i < tiles; at += words_for(e->size[i++])) {
+        word[HEAD_WORDS + 2 * i] = (uint32_t)e->size[i];
+        word[HEAD_WORDS + 2 * i + 1] = (uint32_t)crc32(0, e->bytes[i], (uInt)e->size[i]);
+        put_bytes(word + at, e->bytes[i], e->size[i]);
+    }
+    *out = (struct lossy_words){word, count};
+    return RELUME_OK;
+}
+
+relume_status lossy_encode(struct lossy_words *out, const relume_coefficients *from, int quantiser,
+                           int speed, int threads, const struct relume_log *log)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(from);
+    int *order = lossy_order(info->coder);
+    const struct lossy_shape shape = {info->width, info->height, info->planes,
+                                      lossy_in_colour(info->coder), order};
+    struct encoding e = {tiles_of(&shape, TILE), from, quantiser, speed, log, NULL, NULL, NULL};
+    const size_t n = (size_t)e.tiles.count;
+    e.status = mem_zeroed(n, sizeof *e.status);
+    e.bytes = mem_zeroed(n, sizeof *e.bytes);
+    e.size = mem_zeroed(n, sizeof *e.size);
+    relume_status status = e.status && e.bytes && e.size ? RELUME_OK : RELUME_ENOMEM;
+    *out = (struct lossy_words){0};
+    if (!status)
+        thread_for(threads, n, encode_tile, &e);
+    for (size_t i = 0; !status && i < n; i++)
+        status = e.status[i];
+    if (!status)
+        status = join(out, &e);
+    for (size_t i = 0; e.bytes && i < n; i++)
+        free(e.bytes[i]);
+    free(e.bytes);
+    free(e.size);
+    free(e.status);
+    free(order);
+    return status;
+}
+
+// ---------------------------------------------------------------- decoding
+
+struct decoding {
+    struct tiles tiles;
+    const uint32_t *word;
+    size_t *at;  // [tiles]: where its words begin
+    uint16_t *codes;
+    relume_status *status;  // [tiles]
+};
+
+// Where tiles lie, when all of them are within the words.
+static bool find_tiles(struct decoding *d, size_t count)
+{
+    size_t at = HEAD_WORDS + 2 * (size_t)d->tiles.count;
+    for (int i = 0; i < d->tiles.count; i++) {
+        d->at[i] = at;
+        at += words_for(d->word[HEAD_WORDS + 2 * i]);
+    }
+    return at <= count;
+}
+
+static void scatter(const struct decoding *d, const struct tile *t, const uint16_t *samples)
+{
+    const struct lossy_shape *s = &d->tiles.shape;
+    const size_t width = (size_t)s->width, stride = (size_t)t->video.width;
+    for (int p = 0; p < t->video.pictures; p++)
+        for (int c = 0; c < t->video.components; c++) {
+            uint16_t *to = d->codes + plane_of(s, p, c) * width * (size_t)s->height +
+                           (size_t)t->y * width + t->x;
+            for (size_t y = 0; y < (size_t)t->height; y++, samples += stride)
+                memcpy(to + y * width, samples, (size_t)t->width * sizeof *to);
+            samples += (size_t)(t->video.height - t->height) * stride;
+        }
+}
+
+static void decode_tile(void *context, size_t item, int worker)
+{
+    struct decoding *d = context;
+    const struct tile t = tile_at(&d->tiles, (int)item);
+    const size_t size = d->word[HEAD_WORDS + 2 * item];
+    uint16_t *samples = tile_samples(&t);
+    unsigned char *bytes = mem_array(size, 1);
+    relume_status status = samples && bytes ? RELUME_OK : RELUME_ENOMEM;
+    (void)worker;
+    for (size_t i = 0; !status && i < size; i++)
+        bytes[i] = (unsigned char)(d->word[d->at[item] + i / 4] >> 8 * (i % 4));
+    if (!status && crc32(0, bytes, (uInt)size) != d->word[HEAD_WORDS + 2 * item + 1])
+        status = RELUME_EDAMAGED;
+    if (!status)
+        status = av1_decode(samples, &t.video, bytes, size);
+    if (!status) {
+        convert(samples, &t.video, from_luma);
+        scatter(d, &t, samples);
+    }
+    d->status[item] = status;
+    free(samples);
+    free(bytes);
+}
+
+static relume_status decode_all(struct decoding *d, int threads, const struct lossy_lost *lost)
+{
+    thread_for(threads, (size_t)d->tiles.count, decode_tile, d);
+    for (int i = 0; i < d->tiles.count; i++) {
+        const struct tile t = tile_at(&d->tiles, i);
+        if (d->status[i] == RELUME_EDAMAGED && lost)
+            lost->tile(lost->user, t.x, t.y, t.width, t.height);
+        else if (d->status[i])
+            return d->status[i];
+    }
+    return RELUME_OK;
+}
+
+relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape, const uint32_t *word,
+                           size_t count, int threads, const struct lossy_lost *lost)
+{
+    struct decoding d = {.word = word, .codes = codes};
+    if (count < HEAD_WORDS || word[WORD_MAGIC] != MAGIC || word[WORD_TILE] < LEAST_SIDE ||
+        word[WORD_TILE] > 4096)
+        return RELUME_EDAMAGED;
+    d.tiles = tiles_of(shape, (int)word[WORD_TILE]);
+    const size_t n = (size_t)d.tiles.count;
+    if (word[WORD_TILES] != n || count < HEAD_WORDS + 2 * n)
+        return RELUME_EDAMAGED;
+    d.at = mem_array(n, sizeof *d.at);
+    d.status = mem_zeroed(n, sizeof *d.status);
+    relume_status status = d.at && d.status ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && !find_tiles(&d, count))
+        status = RELUME_EDAMAGED;
+    if (!status) {
+        memset(codes, 0,
+               (size_t)shape->planes * (size_t)shape->width * (size_t)shape->height *
+                   sizeof *codes);
+        status = decode_all(&d, threads, lost);
+    }
+    free(d.at);
+    free(d.status);
+    return status;
+}

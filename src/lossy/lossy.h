@@ -1,0 +1,44 @@
+// lossy.h - the 12-bit codes of a view as tiles of video: the smallest a relume file gets
+//
+// A view is cut into tiles of up to 512 x 512 pixels, each of which is decoded alone. A tile is one
+// AV1 sequence, its pictures the coefficients one after the other: grey planes, or where red, green
+// and blue have planes of their own pictures in colour. How the words lie: docs/format.md.
+#ifndef LOSSY_LOSSY_H
+#define LOSSY_LOSSY_H
+
+#include <relume/coder.h>
+
+// What is coded: `planes` of codes 0 .. 4095, of three colours each where `colour` is set (plane
+// 3 k + c), the pictures one after the other in `order` (NULL: as they are numbered).
+struct lossy_shape {
+    int width, height, planes;
+    bool colour;
+    const int *order;  // [planes], [planes / 3] in colour
+};
+
+// Whether `planes` of a coder are in colour; and a good order for its pictures where it matters,
+// which is that of neighbouring lights: from malloc, NULL also when memory is short.
+bool lossy_in_colour(const relume_coder *coder);
+int *lossy_order(const relume_coder *coder);
+
+struct lossy_words {
+    uint32_t *word;  // [count], from malloc
+    size_t count;
+};
+// The codes of `from`, whose storage is RELUME_STORE_12. `quantiser` as av1.h.
+// `speed` likewise. Words do not depend on `threads`. RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM,
+// RELUME_ECANCEL.
+relume_status lossy_encode(struct lossy_words *out, const relume_coefficients *from, int quantiser,
+                           int speed, int threads, const struct relume_log *log);
+
+// Called with the rectangle of a tile that cannot be decoded; its codes are 0.
+struct lossy_lost {
+    void (*tile)(void *user, int x, int y, int width, int height);
+    void *user;
+};
+// Into codes[planes][height][width]. RELUME_EDAMAGED when words are no such tiles, or a tile cannot
+// be decoded and `lost` is NULL. RELUME_ENOMEM.
+relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape, const uint32_t *word,
+                           size_t count, int threads, const struct lossy_lost *lost);
+
+#endif

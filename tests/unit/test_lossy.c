@@ -1,0 +1,195 @@
+// test_lossy.c - planes coded with loss: near what they were, alone by tiles, and never believed
+#include "test.h"
+
+#include "lossy/av1.h"
+#include "lossy/lossy.h"
+
+#include <math.h>
+
+enum { LIGHTS = 6 };
+
+static const struct relume_vec3 lights[LIGHTS] = {
+    {0, 0, 1}, {0.6, 0, 0.8}, {0, 0.6, 0.8}, {-0.6, 0, 0.8}, {0, -0.6, 0.8}, {0.48, 0.36, 0.8}};
+
+// A smooth picture with an edge, another for every plane.
+static uint16_t sample(int plane, int x, int y)
+{
+    const double wave = 1200.0 * sin(0.11 * x + 0.5 * plane) * cos(0.07 * y - 0.3 * plane);
+    return (uint16_t)(2048.0 + wave + (x + 2 * y > 40 + 9 * plane ? 600.0 : 0.0));
+}
+
+struct made {
+    relume_coder *coder;
+    relume_coefficients *coefficients;
+    uint16_t *codes;
+    struct lossy_shape shape;
+    int *order;
+};
+
+// `table` has pictures in colour, `sh` of the luminance grey planes.
+static void make(struct made *m, int width, int height, bool colour)
+{
+    *m = (struct made){0};
+    assert_int_equal(relume_coder_create(
+                         &m->coder, colour ? &relume_basis_table : &relume_basis_sh, lights, LIGHTS,
+                         relume_coder_params(.coefficients = colour ? 0 : 4, .luminance = !colour,
+                                             .no_ridge = true)),
+                     RELUME_OK);
+    const int planes = relume_coder_info(m->coder)->planes;
+    const size_t pixels = (size_t)width * (size_t)height;
+    m->codes = malloc((size_t)planes * pixels * sizeof *m->codes);
+    const void *plane[3 * LIGHTS];
+    float scale[3 * LIGHTS], offset[3 * LIGHTS];
+    for (int p = 0; p < planes; p++) {
+        for (size_t i = 0; i < pixels; i++)
+            m->codes[(size_t)p * pixels + i] =
+                sample(p, (int)(i % (size_t)width), (int)(i / (size_t)width));
+        plane[p] = m->codes + (size_t)p * pixels;
+        scale[p] = 1.0f;
+        offset[p] = 0.0f;
+    }
+    const struct relume_codes codes = {.coder = m->coder,
+                                       .width = width,
+                                       .height = height,
+                                       .planes = planes,
+                                       .storage = RELUME_STORE_12,
+                                       .plane = plane,
+                                       .scale = scale,
+                                       .offset = offset};
+    assert_int_equal(relume_coefficients_keep(&m->coefficients, &codes, NULL), RELUME_OK);
+    m->order = lossy_order(m->coder);
+    m->shape = (struct lossy_shape){width, height, planes, lossy_in_colour(m->coder), m->order};
+    assert_int_equal(m->shape.colour, colour);
+}
+
+static void drop(struct made *m)
+{
+    relume_coefficients_destroy(&m->coefficients);
+    relume_coder_destroy(&m->coder);
+    free(m->codes);
+    free(m->order);
+}
+
+static double rms(const uint16_t *a, const uint16_t *b, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++)
+        sum += ((double)a[i] - b[i]) * ((double)a[i] - b[i]);
+    return sqrt(sum / (double)n);
+}
+
+static struct lossy_words encoded(const struct made *m, int quantiser, int threads)
+{
+    struct lossy_words words;
+    assert_int_equal(lossy_encode(&words, m->coefficients, quantiser, AV1_FAST, threads, NULL),
+                     RELUME_OK);
+    return words;
+}
+
+// Odd sizes, sizes below a block, and views of several tiles.
+static void test_planes_come_back(void **state)
+{
+    static const int sizes[][2] = {{37, 21}, {3, 2}, {520, 17}, {16, 530}};
+    (void)state;
+    for (size_t i = 0; i < 2 * sizeof sizes / sizeof *sizes; i++) {
+        struct made m;
+        make(&m, sizes[i / 2][0], sizes[i / 2][1], i % 2);
+        const size_t n = (size_t)m.shape.planes * (size_t)m.shape.width * (size_t)m.shape.height;
+        uint16_t *back = malloc(n * sizeof *back);
+        const struct lossy_words fine = encoded(&m, AV1_FINEST, 1),
+                                 coarse = encoded(&m, 50 * AV1_STEPS, 1);
+        assert_int_equal(lossy_decode(back, &m.shape, fine.word, fine.count, 1, NULL), RELUME_OK);
+        // the finest steps are some 8 of 4096 codes, of luma and the differences that make blue
+        assert_true(rms(back, m.codes, n) < 8.0);
+        assert_int_equal(lossy_decode(back, &m.shape, coarse.word, coarse.count, 1, NULL),
+                         RELUME_OK);
+        assert_true(rms(back, m.codes, n) < 320.0);  // a fifth of what the planes vary by
+        assert_true(coarse.count <= fine.count);
+        free(fine.word);
+        free(coarse.word);
+        free(back);
+        drop(&m);
+    }
+}
+
+static void test_threads_change_nothing(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, 600, 40, true);
+    const struct lossy_words one = encoded(&m, 122, 1), four = encoded(&m, 122, 4);
+    assert_int_equal(one.count, four.count);
+    assert_memory_equal(one.word, four.word, one.count * sizeof *one.word);
+    free(one.word);
+    free(four.word);
+    drop(&m);
+}
+
+static void note_tile(void *user, int x, int y, int width, int height)
+{
+    int *seen = user;
+    seen[0]++;
+    seen[1] = x;
+    seen[2] = y;
+    seen[3] = width;
+    seen[4] = height;
+}
+
+// Two tiles: damage to one leaves the other.
+static void test_a_damaged_tile_is_lost_alone(void **state)
+{
+    struct made m;
+    int seen[5] = {0};
+    const struct lossy_lost lost = {note_tile, seen};
+    (void)state;
+    make(&m, 600, 24, false);
+    struct lossy_words w = encoded(&m, 80, 1);
+    const size_t n = (size_t)m.shape.planes * 600 * 24;
+    uint16_t *whole = malloc(n * sizeof *whole), *part = malloc(n * sizeof *part);
+    assert_int_equal(lossy_decode(whole, &m.shape, w.word, w.count, 1, NULL), RELUME_OK);
+    w.word[w.count - 3] ^= 0x400;
+    assert_int_equal(lossy_decode(part, &m.shape, w.word, w.count, 1, NULL), RELUME_EDAMAGED);
+    assert_int_equal(lossy_decode(part, &m.shape, w.word, w.count, 1, &lost), RELUME_OK);
+    const int expected[5] = {1, 512, 0, 88, 24};
+    assert_memory_equal(seen, expected, sizeof expected);
+    for (size_t i = 0; i < n; i++)
+        assert_int_equal(part[i], i % 600 < 512 ? whole[i] : 0);
+    free(whole);
+    free(part);
+    free(w.word);
+    drop(&m);
+}
+
+static void test_words_are_not_believed(void **state)
+{
+    struct made m;
+    (void)state;
+    make(&m, 24, 24, true);
+    const struct lossy_words w = encoded(&m, 80, 1);
+    uint16_t *back = malloc((size_t)m.shape.planes * 24 * 24 * sizeof *back);
+    for (size_t count = 0; count < w.count; count++)
+        assert_int_equal(lossy_decode(back, &m.shape, w.word, count, 1, NULL), RELUME_EDAMAGED);
+    for (size_t i = 0; i < 5; i++) {  // the head: what it is, tiles, bytes, checksum
+        w.word[i] ^= 0x80000001u;
+        assert_int_equal(lossy_decode(back, &m.shape, w.word, w.count, 1, NULL), RELUME_EDAMAGED);
+        w.word[i] ^= 0x80000001u;
+    }
+    const struct lossy_shape other = {32, 24, m.shape.planes, true, m.order};
+    uint16_t *wide = malloc((size_t)m.shape.planes * 32 * 24 * sizeof *wide);
+    assert_int_equal(lossy_decode(wide, &other, w.word, w.count, 1, NULL), RELUME_EDAMAGED);
+    free(wide);
+    free(back);
+    free(w.word);
+    drop(&m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_planes_come_back),
+        cmocka_unit_test(test_threads_change_nothing),
+        cmocka_unit_test(test_a_damaged_tile_is_lost_alone),
+        cmocka_unit_test(test_words_are_not_believed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

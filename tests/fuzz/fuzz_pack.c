@@ -28,12 +28,14 @@ static const char *const words[] = {"relume.format",
                                     "relume.parameter",
                                     "relume.scale",
                                     "relume.offset",
+                                    "relume.coding",
                                     "relume.books",
                                     "relume.book",
                                     "relume.first",
                                     "relume.last",
                                     "book0",
                                     "view0000.book0",
+                                    "av1",
                                     "chroma",
                                     "luma",
                                     "channels",
@@ -141,6 +143,16 @@ static void add_books(struct fuzz *f, const struct fixture *fixture, bool share,
     fuzz_add(f, fuzz_load(f->path));
 }
 
+static void add_coded(struct fuzz *f, const struct fixture *fixture,
+                      const struct relume_basis *basis, int coefficients)
+{
+    fixture_write(fixture, f->folder);
+    fixture_must(fixture_encode(f->folder, f->path, basis, coefficients,
+                                relume_pack_encode_params(.psnr_db = 25.0, .threads = 1)),
+                 "encode");
+    fuzz_add(f, fuzz_load(f->path));
+}
+
 static void add(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
                 int coefficients, enum relume_storage storage, enum relume_compression compression)
 {
@@ -180,5 +192,7 @@ int main(int argc, char **argv)
               RELUME_STORE_12);
     add_books(&f, &slab, false, relume_books_params(.codes = 3, .split = RELUME_SPLIT_PRODUCT),
               RELUME_STORE_HALF);
+    add_coded(&f, &plain, &relume_basis_table, 0);
+    add_coded(&f, &slab, &relume_basis_pca, 4);
     return fuzz_run(&f, argc, argv, one);
 }

@@ -254,8 +254,12 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
         m->view[i].coded = m->words[i].word;
         m->view[i].coded_words = m->words[i].count;
     }
-    report->psnr_db = status ? 0.0 : result.psnr_db;
-    return status;
+    if (status)
+        return status;
+    const double all = pow(10.0, -result.psnr_db / 20.0), fit = report->fit_rms;
+    report->psnr_db = result.psnr_db;
+    report->store_rms = report->steps_rms = sqrt(fmax(all * all - fit * fit, 0.0));
+    return RELUME_OK;
 }
 
 relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,

@@ -18,6 +18,7 @@ for capture in bust room slab; do
     is_near "$capture: 34 dB are 34 dB" $capture.exr $capture 34
     "$RELUME" info $capture.exr >info.txt
     if grep -q '^storage       12 bits, av1$' info.txt; then ok "$capture: info names the coding"; else not_ok "$capture: info names the coding" "$(cat info.txt)"; fi
+    if grep -q '0.01 % from rounding' info.txt; then not_ok "$capture: info says what coding costs" "$(cat info.txt)"; else ok "$capture: info says what coding costs"; fi
     relume check $capture.exr >/dev/null
 done
 

@@ -39,7 +39,7 @@ struct relume_pack_view {
     // The planes coded with loss, in place of what `coefficients` hold, of all views or none: words
     // of docs/format.md, "Coded planes". `coefficients` are of RELUME_STORE_12.
     const uint32_t *coded;
-    size_t coded_words;
+    size_t coded_words;  // how many
 };
 // What is written. Everything is borrowed while relume_pack_write runs.
 struct relume_pack_contents {
@@ -105,8 +105,8 @@ struct relume_pack_encode_params {
     // each view allow. At most one of the two; 0: without loss. `storage`, `step`, `compression`
     // and `books` do not count then.
     double psnr_db, bytes_per_pixel;
-    const struct relume_writer *writer;       // write here in place of the file, as
-                                              // relume_pack_params; temporary data in $TMPDIR
+    const struct relume_writer *writer;  // write here in place of the file, as
+                                         // relume_pack_params; temporary data in $TMPDIR
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \
@@ -120,8 +120,8 @@ RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
 
 // The coder that needs the fewest bytes for `encode`'s psnr_db or bytes_per_pixel: principal
 // components, or where shadows are hard the captured images themselves (`table`), as tried on one
-// view. `coder` may fix the interpolant. It works in the display domain, which is what to encode in.
-// Errors of relume_coder_decide and relume_encode.
+// view. `coder` may fix the interpolant. It works in the display domain, which is what to encode
+// in. Errors of relume_coder_decide and relume_encode.
 RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,
                                                const struct relume_coder_params *coder,
                                                const struct relume_pack_encode_params *encode);

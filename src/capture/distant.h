@@ -12,8 +12,8 @@ relume_status distant_create(struct distant **out, const struct near_view *near,
                              const vec3 *direction, int threads);
 void distant_destroy(struct distant **distant);
 
-// `band` as relume_table_read fills it, from row `row` of the view, levelled (near_view.h); in place.
-// RELUME_ENOMEM.
+// `band` as relume_table_read fills it, from row `row` of the view, levelled (near_view.h); in
+// place. RELUME_ENOMEM.
 relume_status distant_resample(struct distant *distant, int row, int rows, float *band);
 
 #endif

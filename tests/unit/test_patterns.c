@@ -215,7 +215,8 @@ static void broken_direction_files_are_refused(void **state)
     }
     vec3 *v;
     int n;
-    assert_int_equal(relume_captured_lights_read(&v, &n, "/nowhere/at/all", NULL), RELUME_ENOTFOUND);
+    assert_int_equal(relume_captured_lights_read(&v, &n, "/nowhere/at/all", NULL),
+                     RELUME_ENOTFOUND);
 }
 
 static relume_status load_text(struct relume_captured_lights *out, const char *text, bool positions)

@@ -70,11 +70,11 @@ relume_status relume_pack_decide(relume_coder **out, const relume_capture *captu
         relume_coder_destroy(out);
         status = relume_coder_learn(out, &relume_basis_pca, capture, &more, &encode);
     }
-    if (status || 3 * components <= 2 * lights ||
-        relume_coder_info(*out)->basis == &relume_basis_table)
+    if (status || 3 * components <= 2 * lights || !relume_coder_info(*out)->basis->learned)
         return status;
     struct relume_coder_params all = *coder;
     all.coefficients = 0;
+    all.choose = false;  // an interpolant that smooths would cost quality before coding does
     status = relume_coder_learn(&pictures, &relume_basis_table, capture, &all, &encode);
     if (!status && decision.psnr_db < wanted(&p) + LEAST_SPARE_DB) {
         relume_coder_destroy(out);

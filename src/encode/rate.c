@@ -250,14 +250,18 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
         result->quantiser = within(result->quantiser + SLOW_IS_FINER);
     if (!status)
         status = search(&r, AV1_SLOW, &result->quantiser);
-    if (!status && r.tried == views)
-        memcpy(words, r.trial[result->quantiser].words, (size_t)views * sizeof *words);
-    else if (!status)
+    struct trial *best = &r.trial[result->quantiser];
+    result->psnr_db = best->psnr_db;
+    if (!status && r.tried == views) {
+        memcpy(words, best->words, (size_t)views * sizeof *words);
+        memset(best->words, 0, sizeof best->words);
+    } else if (!status) {
         status = code_views(&r, words, views, result->quantiser);
-    if (r.tried == views)
-        memset(r.trial[result->quantiser].words, 0, sizeof r.trial->words);
+    }
     forget(&r);
-    return status ? status : judge(&result->psnr_db, &r, words, views);
+    if (!status && (r.tried < views || !(target->psnr_db > 0.0)))
+        status = judge(&result->psnr_db, &r, words, views);
+    return status;
 }
 
 relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, int view,

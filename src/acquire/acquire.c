@@ -44,7 +44,7 @@ relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...
     if (!image)
         return RELUME_ENOMEM;
     unlink(image);
-    free(image);
+    mem_free(image);
     const relume_status status = acquire_warn(s, "%s: left out: %s", s->shot[i].path, text);
     forget(s, i);
     if (!status && s->shots < 3)
@@ -57,15 +57,15 @@ relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...
 void relume_acquisition_destroy(struct relume_acquisition *acquisition)
 {
     for (int i = 0; acquisition->photo && i < acquisition->lights; i++)
-        free(acquisition->photo[i].path);
+        mem_free(acquisition->photo[i].path);
     for (int i = 0; i < acquisition->warnings; i++)
-        free(acquisition->warning[i]);
-    free(acquisition->photo);
-    free(acquisition->direction);
-    free(acquisition->position);
-    free(acquisition->intensity);
-    free(acquisition->ball);
-    free(acquisition->warning);
+        mem_free(acquisition->warning[i]);
+    mem_free(acquisition->photo);
+    mem_free(acquisition->direction);
+    mem_free(acquisition->position);
+    mem_free(acquisition->intensity);
+    mem_free(acquisition->ball);
+    mem_free(acquisition->warning);
     relume_photometric_destroy(&acquisition->photometric);
     *acquisition = (struct relume_acquisition){0};
 }
@@ -146,7 +146,7 @@ static relume_status write_manifest(const struct acquisition *s, const char *pat
         .view = &view,
     };
     const relume_status status = relume_manifest_write(&m, path, s->p.log);
-    free(images);
+    mem_free(images);
     return status;
 }
 
@@ -164,7 +164,7 @@ static relume_status write_lp(const struct acquisition *s, const char *path)
     }
     const relume_status status =
         fclose(f) ? RELUME_ENOMEM : outfile_save(path, text, size, s->p.log);
-    free(text);
+    mem_free_libc(text);
     return status;
 }
 
@@ -192,7 +192,7 @@ static relume_status in_folder(const struct acquisition *s, const char *name,
 {
     char *path = mem_format("%s/%s", outdir_path(s->dir), name);
     const relume_status status = path ? write(s, path) : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -224,7 +224,7 @@ static relume_status refine(struct acquisition *s, const relume_capture *capture
     for (int i = 0; !status && i < out->lights; i++)
         for (int c = 0; c < 3; c++)
             out->intensity[i][c] *= (float)bright[i];
-    free(bright);
+    mem_free(bright);
     if (status || residual[1] == residual[0])  // they stay, and that has been said
         return status ? status : describe(s);
     log_line(s->p.log, RELUME_NOTE, "%s refined: brightness error %.1f %%, %.1f %% before",
@@ -265,7 +265,7 @@ static relume_status name_outliers(struct acquisition *s)
                 "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
                 s->shot[i].path, 100.0 * p->light_residual[i], 100.0 * usual);
     }
-    free(sorted);
+    mem_free(sorted);
     return status;
 }
 
@@ -407,7 +407,7 @@ static void release(struct acquisition *s)
 {
     for (int i = 0; s->shot && i < s->shots; i++)
         relume_image_destroy(&s->shot[i].small);
-    free(s->shot);
+    mem_free(s->shot);
     relume_image_destroy(&s->first);
     relume_image_destroy(&s->gain);
     relume_image_destroy(&s->grey);

@@ -47,7 +47,7 @@ static relume_status check_scene(struct acquisition *s)
     for (int i = 0; i < s->shots; i++)
         all[i] = (double)(s->shot[i].likeness = likeness(s, i));
     const double usual = median(all, s->shots);
-    free(all);
+    mem_free(all);
     relume_status status = RELUME_OK;
     for (int i = 0; !status && usual > LIKE && i < s->shots;) {
         const double like = (double)s->shot[i].likeness;

@@ -1,6 +1,8 @@
 // acquire_coverage.c - the lights on the sphere, seen from the viewer, as SVG
 #include "acquire/acquire.h"
 
+#include "base/memory.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -90,6 +92,6 @@ char *acquire_light_sphere(const struct relume_acquisition *out)
     fputs("</svg>\n", f);
     if (!fclose(f))
         return text;
-    free(text);
+    mem_free_libc(text);
     return NULL;
 }

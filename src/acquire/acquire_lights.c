@@ -450,7 +450,7 @@ static relume_status lights_from_balls(struct acquisition *s)
     if (!status)
         status = locate_all(s, light);
     s->has_intensities = s->p.matte;
-    free(light);
+    mem_free(light);
     return status;
 }
 
@@ -528,7 +528,7 @@ static relume_status lights_from_file(struct acquisition *s)
                      s->p.lights, list.count, relume_plural(list.count), s->p.photograph_count);
     if (!status)
         take_lights(s, &list, order);
-    free(order);
+    mem_free(order);
     relume_captured_lights_destroy(&list);
     return status;
 }

@@ -52,7 +52,7 @@ static relume_status find_distance(double *out, const struct posed_model *model,
     }
     sort_doubles(z, n);
     *out = n ? z[n / 2] : 0.0;
-    free(z);
+    mem_free(z);
     return RELUME_OK;
 }
 
@@ -115,7 +115,7 @@ relume_status acquire_lights_from_poses(struct acquisition *s)
                           s->p.lights, object->name);
     if (!status)
         place(s, object, lamp, distance);
-    free(lamp);
+    mem_free(lamp);
     posed_model_free(&model);
     return status;
 }

@@ -111,7 +111,7 @@ static relume_status save(const struct acquisition *s, const struct shot *shot,
     const relume_status status =
         path ? relume_image_save(image, path, relume_image_params(.log = s->p.log, .half = true))
              : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 

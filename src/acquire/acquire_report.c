@@ -137,7 +137,7 @@ static void put_sphere(struct report *r)
     fputs("<figcaption>the lights as seen from the camera; pale discs: twice the estimated error; "
           "red: the widest gap, and where lights should be added</figcaption></figure>\n",
           r->f);
-    free(svg);
+    mem_free(svg);
 }
 
 static void put_surface(struct report *r)
@@ -244,8 +244,8 @@ static relume_status write_sphere(const struct acquisition *s, const char *dir)
     char *svg = acquire_light_sphere(s->out), *path = mem_format("%s/lights.svg", dir);
     const relume_status status =
         svg && path ? outfile_save(path, svg, strlen(svg), s->p.log) : RELUME_ENOMEM;
-    free(svg);
-    free(path);
+    mem_free(svg);
+    mem_free(path);
     return status;
 }
 
@@ -255,7 +255,7 @@ relume_status acquire_report(const struct acquisition *s, const char *dir)
     size_t size = 0;
     struct report r = {.s = s, .dir = dir, .f = path ? open_memstream(&text, &size) : NULL};
     if (!r.f) {
-        free(path);
+        mem_free(path);
         return RELUME_ENOMEM;
     }
     fprintf(r.f,
@@ -279,7 +279,7 @@ relume_status acquire_report(const struct acquisition *s, const char *dir)
         r.status = outfile_save(path, text, size, s->p.log);
     if (!r.status)
         r.status = write_sphere(s, dir);
-    free(text);
-    free(path);
+    mem_free_libc(text);
+    mem_free(path);
     return r.status;
 }

@@ -46,7 +46,7 @@ static float quantile(const float *v, size_t n, double part)
         some[i] = v[i * step];
     sort_floats(some, count);
     const float found = some[(size_t)(part * (double)(count - 1))];
-    free(some);
+    mem_free(some);
     return found;
 }
 
@@ -209,10 +209,10 @@ static relume_status search_level(const struct relume_image *image, double scale
         vote_all(&v, fmaxf(least, 1e-6f));
         collect(&v, scale, list, n);
     }
-    free(v.gx);
-    free(v.gy);
-    free(v.size);
-    free(v.count);
+    mem_free(v.gx);
+    mem_free(v.gy);
+    mem_free(v.size);
+    mem_free(v.count);
     return status;
 }
 
@@ -385,7 +385,7 @@ relume_status relume_ball_candidates(struct relume_ball *out, int most, int *fou
     if (!status)
         status = choose(out, most, found, list, n, &pyramid, mean, camera, &p);
     destroy_pyramid(&pyramid);
-    free(list);
+    mem_free(list);
     return status;
 }
 

@@ -161,8 +161,8 @@ relume_status ball_follow(struct relume_ball *ball, const struct relume_ball_cam
     relume_status status = f.point && f.change && f.scratch ? RELUME_OK : RELUME_ENOMEM;
     if (!status && !follow(&f, reach * ball->radius))
         status = RELUME_EUNFIT;
-    free(f.point);
-    free(f.change);
-    free(f.scratch);
+    mem_free(f.point);
+    mem_free(f.change);
+    mem_free(f.scratch);
     return status;
 }

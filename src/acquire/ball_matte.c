@@ -138,7 +138,7 @@ relume_status relume_ball_matte(struct relume_ball_light *out, const struct relu
         out->x = ball->x;
         out->y = ball->y;
     }
-    free(patch);
-    free(scratch);
+    mem_free(patch);
+    mem_free(scratch);
     return status;
 }

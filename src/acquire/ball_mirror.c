@@ -205,7 +205,7 @@ relume_status relume_ball_mirror(struct relume_ball_light *out, const struct rel
     const relume_status status = w.todo && w.stack ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         *out = look(&w, ball, camera);
-    free(w.todo);
-    free(w.stack);
+    mem_free(w.todo);
+    mem_free(w.stack);
     return status;
 }

@@ -337,6 +337,6 @@ relume_status ball_on_table(struct relume_ball *ball, bool *is,
         *ball = outlined;
         ball->sigma = SIGMA * ball->radius;
     }
-    free(pair);
+    mem_free(pair);
     return RELUME_OK;
 }

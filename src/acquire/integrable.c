@@ -210,8 +210,8 @@ bool integrable_map(double a[9], double curl[2], const struct lattice *lattice)
         curl[0] = relative_curl(&s, identity);
         curl[1] = relative_curl(&s, a);
     }
-    free(s.c);
-    free(s.weight);
-    free(s.sorted);
+    mem_free(s.c);
+    mem_free(s.weight);
+    mem_free(s.sorted);
     return good;
 }

@@ -211,7 +211,7 @@ static relume_status find_residuals(struct fit *f)
             out->normal.data[3 * k + 2] != 0.0f)
             some[n++] = out->error.data[k];
     out->residual = median(some, n);
-    free(some);
+    mem_free(some);
     return RELUME_OK;
 }
 
@@ -246,12 +246,12 @@ static relume_status alloc(struct fit *f)
 
 static void release(struct fit *f)
 {
-    free(f->samples);
-    free(f->white);
-    free(f->scratch);
-    free(f->towards);
-    free(f->bright);
-    free(f->miss);
+    mem_free(f->samples);
+    mem_free(f->white);
+    mem_free(f->scratch);
+    mem_free(f->towards);
+    mem_free(f->bright);
+    mem_free(f->miss);
     near_view_close(&f->near);
     relume_image_destroy(&f->mask);
 }
@@ -261,7 +261,7 @@ void relume_photometric_destroy(struct relume_photometric *photometric)
     relume_image_destroy(&photometric->normal);
     relume_image_destroy(&photometric->albedo);
     relume_image_destroy(&photometric->error);
-    free(photometric->light_residual);
+    mem_free(photometric->light_residual);
     *photometric = (struct relume_photometric){0};
 }
 

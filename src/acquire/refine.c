@@ -129,8 +129,8 @@ static relume_status read_pixels(struct refiner *r, const struct relume_log *log
     if (!status)
         status = read_rows(r, &mask, band, white, log);
     relume_image_destroy(&mask);
-    free(band);
-    free(white);
+    mem_free(band);
+    mem_free(white);
     return status;
 }
 
@@ -331,7 +331,7 @@ static relume_status judge(bool *believed, const struct refiner *r, const vec3 *
         return RELUME_ENOMEM;
     const double off =
         fmax(disagreement(r, vec3_of(1, 0, 0), sorted), disagreement(r, vec3_of(0, 1, 0), sorted));
-    free(sorted);
+    mem_free(sorted);
     for (int i = 0; i < r->lights; i++)
         sum += pow(degrees_between(r->light[i], given[i]), 2.0);
     const double change = sqrt(sum / r->lights);
@@ -365,7 +365,7 @@ static relume_status find_residual(double *residual, struct refiner *r)
         sort_doubles(miss, n);
     *residual = n ? miss[n / 2] : (double)NAN;
     const relume_status status = miss ? RELUME_OK : RELUME_ENOMEM;
-    free(miss);
+    mem_free(miss);
     return status;
 }
 
@@ -378,7 +378,7 @@ static relume_status integrate(struct refiner *r, double curl[2], const struct r
     if (!moved)
         return RELUME_ENOMEM;
     if (!integrable_map(a, curl, &lattice)) {
-        free(moved);
+        mem_free(moved);
         return log_fail(log, RELUME_EUNFIT,
                         "lights cannot be made to fit a surface of heights: too little of it is "
                         "connected");
@@ -401,7 +401,7 @@ static relume_status integrate(struct refiner *r, double curl[2], const struct r
         for (int i = 0; i < r->lights; i++)
             r->light[i] = vec3_scale(moved[i], 1.0 / mean);
     }
-    free(moved);
+    mem_free(moved);
     return RELUME_OK;
 }
 
@@ -499,13 +499,13 @@ relume_status relume_acquire_refine(struct relume_vec3 *direction, double *inten
         intensity[i] = vec3_length(r.light[i]);
         direction[i] = vec3_unit(r.light[i]);
     }
-    free(r.slot);
-    free(r.value);
-    free(r.g);
-    free(r.known);
-    free(r.weight);
-    free(r.light);
-    free(r.bright);
-    free(r.scratch);
+    mem_free(r.slot);
+    mem_free(r.value);
+    mem_free(r.g);
+    mem_free(r.known);
+    mem_free(r.weight);
+    mem_free(r.light);
+    mem_free(r.bright);
+    mem_free(r.scratch);
     return status;
 }

@@ -93,7 +93,7 @@ static relume_status put_bytes(FILE *page, const char *dir, int width, int heigh
         status = put_file(page, path, log);
     fputs("\" alt=\"\">", page);
     unlink(path);
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -109,7 +109,7 @@ relume_status report_picture(FILE *page, const char *dir, const struct relume_im
         return RELUME_ENOMEM;
     shrink(bytes, w, h, image, step, gain, look);
     const relume_status status = put_bytes(page, dir, w, h, bytes, log);
-    free(bytes);
+    mem_free(bytes);
     return status;
 }
 

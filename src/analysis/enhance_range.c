@@ -2,6 +2,7 @@
 // seen as well as plaster: percentiles of a grid of pixels
 #include <relume/enhance.h>
 
+#include "base/memory.h"
 #include "math/luminance.h"
 #include "math/sort.h"
 
@@ -128,7 +129,7 @@ relume_status relume_pass_measure(struct relume_pass_range *out, const struct re
 {
     struct grid g = grid_of(image, albedo, lights, n);
     *out = (struct relume_pass_range){.low = 0.0f, .high = 1.0f, .pivot = 1.0f, .scale = 1.0f};
-    g.value = malloc((size_t)(SIDE * SIDE) * sizeof *g.value);
+    g.value = mem_array((size_t)SIDE * SIDE, sizeof *g.value);
     if (!g.value)
         return RELUME_ENOMEM;
     walk(&g, brightest);
@@ -148,6 +149,6 @@ relume_status relume_pass_measure(struct relume_pass_range *out, const struct re
     // one value alone is in the middle
     if (!(out->high > out->low))
         out->low = 0.0f, out->high = 2.0f * fmaxf(out->high, 1e-6f);
-    free(g.value);
+    mem_free(g.value);
     return RELUME_OK;
 }

@@ -130,8 +130,8 @@ static relume_status fit_bands(struct fit *f)
         if (!status && !log_progress(f->params.log, "normals", (f->row + f->rows) / (double)height))
             status = RELUME_ECANCEL;
     }
-    free(planes);
-    free(indices);
+    mem_free(planes);
+    mem_free(indices);
     return status;
 }
 
@@ -172,8 +172,8 @@ relume_status relume_normals_fit(struct relume_normals *out, const struct relume
         status = relume_image_create(&out->albedo, codes->width, codes->height, 3);
     if (!status)
         status = fit_bands(&f);
-    free(f.samples);
-    free(f.scratch);
+    mem_free(f.samples);
+    mem_free(f.scratch);
     if (status)
         relume_normals_destroy(out);
     return status;

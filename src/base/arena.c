@@ -52,7 +52,7 @@ void arena_free(struct arena *arena)
 {
     while (arena->blocks) {
         struct arena_block *next = arena->blocks->next;
-        free(arena->blocks);
+        mem_free(arena->blocks);
         arena->blocks = next;
     }
 }

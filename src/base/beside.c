@@ -46,19 +46,19 @@ static void drop(beside *b)
 {
     if (b->fd >= 0)
         close(b->fd);
-    free(b->dir);
-    free(b->path);
-    free(b->lock);
-    free(b->new);
-    free(b->old);
-    free(b);
+    mem_free(b->dir);
+    mem_free(b->path);
+    mem_free(b->lock);
+    mem_free(b->new);
+    mem_free(b->old);
+    mem_free(b);
 }
 
 static beside *of_path(const char *dir, char *path)
 {
     beside *b = path ? mem_zeroed(1, sizeof *b) : NULL;
     if (!b) {
-        free(path);
+        mem_free(path);
         errno = ENOMEM;
         return NULL;
     }
@@ -132,7 +132,7 @@ static void put_back(const beside *b, const char *name)
     char *target = *name ? mem_format("%s/%s", b->dir, name) : NULL;
     if (target && access(target, F_OK))
         (void)tree_rename(b->old, target, TREE_NEW);
-    free(target);
+    mem_free(target);
 }
 
 static void sweep_one(const char *dir, const char *entry)
@@ -192,7 +192,7 @@ static int try_lock(beside *b, const char *name)
     good = good && !taken && write(b->fd, text, strlen(text)) == (ssize_t)strlen(text);
     if (!text)
         errno = ENOMEM;
-    free(text);
+    mem_free(text);
     return good ? 1 : gone || taken ? 0 : -1;
 }
 

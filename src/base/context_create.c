@@ -22,7 +22,7 @@ void relume_context_destroy(relume_context **context)
 {
     if (*context)
         inputs_destroy((*context)->inputs);
-    free(*context);
+    mem_free(*context);
     *context = NULL;
 }
 

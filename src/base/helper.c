@@ -64,7 +64,7 @@ static int spawn(const char *path, int end)
 #endif
     const int error = posix_spawn(&program, path, &files, NULL, arguments, environment);
     posix_spawn_file_actions_destroy(&files);
-    free(environment);
+    mem_free(environment);
     return error;
 }
 
@@ -165,7 +165,7 @@ static struct helper_process *new_process(enum helper_kind kind, struct helper_r
     if (!good) {
         if (ends[0] >= 0)
             close(ends[0]);
-        free(p);
+        mem_free(p);
         return NULL;
     }
     p->kind = kind;
@@ -179,8 +179,8 @@ static void free_process(struct helper_process *p)
 {
     close(p->channel);
     pthread_mutex_destroy(&p->lock);
-    free(p->blamed);
-    free(p);
+    mem_free(p->blamed);
+    mem_free(p);
 }
 
 // One that will not wait much longer for work, or does not any more.
@@ -247,7 +247,7 @@ relume_status helper_start(struct helper_job *job, enum helper_kind kind, const 
     if (job->path && (job->process = process_for(kind, &reply)))
         return RELUME_OK;
     const int error = job->path ? reply.error : ENOMEM;
-    free(job->path);
+    mem_free(job->path);
     job->path = NULL;
     if (error == ENOMEM || error == EMFILE || error == ENFILE)
         return relume_input_fail(log, path, "cannot be read", error);
@@ -358,6 +358,6 @@ void helper_end(struct helper_job *job)
         }
     }
     pthread_mutex_unlock(&table_lock);
-    free(job->path);
+    mem_free(job->path);
     *job = (struct helper_job){0};
 }

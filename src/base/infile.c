@@ -206,7 +206,7 @@ void infile_close(struct infile *s)
         give_back(s->files, &s->from);
     s->files = NULL;
     pthread_mutex_destroy(&s->lock);
-    free(s->path);
+    mem_free(s->path);
     s->path = NULL;
 }
 
@@ -313,7 +313,7 @@ static int stream_close(void *cookie)
 {
     struct stream *s = cookie;
     infile_close(&s->in);
-    free(s);
+    mem_free(s);
     return 0;
 }
 
@@ -329,7 +329,7 @@ FILE *infile_stream(struct infile **in, const char *path, const struct relume_re
     if (s && !f) {
         const int error = errno;
         infile_close(&s->in);
-        free(s);
+        mem_free(s);
         errno = error;
     }
     if (f && in)
@@ -406,7 +406,7 @@ relume_status input_load(char **out, size_t *size, const char *path, uint64_t mo
     if (!status)
         (*out)[ *size = (size_t)in.size] = '\0';
     else
-        free(*out), *out = NULL;
+        mem_free(*out), *out = NULL;
     infile_close(&in);
     return status;
 }
@@ -488,6 +488,6 @@ struct relume_writer relume_buffer_writer(struct relume_buffer *buffer)
 
 void relume_buffer_destroy(struct relume_buffer *buffer)
 {
-    free(buffer->data);
+    mem_free(buffer->data);
     *buffer = (struct relume_buffer){0};
 }

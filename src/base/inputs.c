@@ -38,8 +38,8 @@ void inputs_destroy(struct inputs *i)
     if (!i)
         return;
     pthread_mutex_destroy(&i->mutex);
-    free(i->item);
-    free(i);
+    mem_free(i->item);
+    mem_free(i);
 }
 
 // Open addressing; `room` is a power of two, a free place has the number 0, which no file has.
@@ -60,7 +60,7 @@ static bool grow(struct inputs *i)
     for (size_t n = 0; n < i->room; n++)
         if (i->item[n].number)
             *find(item, room, i->item[n]) = i->item[n];
-    free(i->item);
+    mem_free(i->item);
     i->item = item;
     i->room = room;
     return true;
@@ -126,7 +126,7 @@ static char *path_if_read(struct inputs *inputs, char *path)
     struct stat s;
     if (path && !lstat(path, &s) && holds(inputs, &s))
         return path;
-    free(path);
+    mem_free(path);
     return NULL;
 }
 
@@ -159,6 +159,6 @@ relume_status input_refuse(const char *path, const char *output, const struct re
                          output, inner)
               : log_fail(log, RELUME_EINVAL,
                          "%s: is read here and would be lost; choose another name", output);
-    free(found);
+    mem_free(found);
     return status;
 }

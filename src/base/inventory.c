@@ -60,7 +60,7 @@ static bool write_list(const char *folder, const struct tree_list *list)
         errno = ENOMEM;
     else
         errno = error;
-    free(path);
+    mem_free(path);
     return good;
 }
 
@@ -77,7 +77,7 @@ static bool sync_all(const char *folder, const struct tree_list *list)
     for (size_t i = 0; good && i < list->count; i++) {
         char *path = mem_format("%s/%s", folder, list->item[i].name);
         good = path && sync_entry(path);
-        free(path);
+        mem_free(path);
     }
     return good && tree_sync(folder);
 }
@@ -106,7 +106,7 @@ static char *read_text(const char *path)
     if (!fstat(fd, &s) && S_ISREG(s.st_mode))
         text = mem_zeroed((size_t)s.st_size + 1, 1);
     if (text && read(fd, text, (size_t)s.st_size) != (ssize_t)s.st_size) {
-        free(text);
+        mem_free(text);
         text = NULL;
     }
     const int error = errno;
@@ -138,8 +138,8 @@ static bool read_inventory(struct tree_list *list, const char *folder)
         if (e.name)
             list->item[list->count++] = e;
     }
-    free(text);
-    free(path);
+    mem_free(text);
+    mem_free(path);
     errno = good ? ENOMEM : error;
     return good && list->item;
 }
@@ -214,13 +214,13 @@ static void remove_listed(const char *folder, const struct tree_list *made)
         char *path = find(made, e->name) ? mem_format("%s/%s", folder, e->name) : NULL;
         if (path)
             remove(path);
-        free(path);
+        mem_free(path);
     }
     tree_list_free(&found);
     char *own = path_of(folder);
     if (own)
         unlink(own);
-    free(own);
+    mem_free(own);
     rmdir(folder);
 }
 
@@ -229,7 +229,7 @@ static void set_apart(const char *path, const char *beside)
     char *to = mem_format("%s/kept-by-relume-XXXXXX", beside);
     if (to && mkdtemp(to) && rename(path, to))
         rmdir(to);
-    free(to);
+    mem_free(to);
 }
 
 void inventory_remove(const char *path, const char *beside)

@@ -144,6 +144,6 @@ char *jvalue_quote(const char *text)
     json_t *string = json_string(copy ? relume_printable(copy) : text);
     char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
     json_decref(string);
-    free(copy);
-    return quoted;
+    mem_free(copy);
+    return mem_take(quoted);
 }

@@ -3,6 +3,7 @@
 
 #include "base/context.h"
 #include "base/infile.h"
+#include "base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -92,6 +93,6 @@ bool jvalue_place(int line_column[2], const char *path, const struct relume_log 
         line_column[0] += *p == '\n';
         line_column[1] = *p == '\n' ? 1 : line_column[1] + !inside;
     }
-    free(text);
+    mem_free(text);
     return at != NULL;
 }

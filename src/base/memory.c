@@ -8,6 +8,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -78,13 +79,45 @@ char *mem_text(const char *text)
     return mem_copy(text, strlen(text) + 1, 1);
 }
 
+void *mem_large(size_t bytes)
+{
+    enum { LARGE_PAGE = 2 << 20 };
+    void *memory = NULL;
+    if (bytes < LARGE_PAGE)
+        return mem_array(bytes, 1);
+    if (refuse() || posix_memalign(&memory, LARGE_PAGE, bytes))
+        return NULL;
+    madvise(memory, bytes, MADV_HUGEPAGE);
+    return memory;
+}
+
+void mem_free(void *memory)
+{
+    free(memory);
+}
+
+void mem_free_libc(void *memory)
+{
+    free(memory);
+}
+
+char *mem_take(char *text)
+{
+    char *copy = text ? mem_text(text) : NULL;
+    mem_free_libc(text);
+    return copy;
+}
+
 char *mem_format(const char *format, ...)
 {
-    va_list args;
+    va_list args, again;
     va_start(args, format);
-    char *text = NULL;
-    if (refuse() || vasprintf(&text, format, args) < 0)
-        text = NULL;
+    va_copy(again, args);
+    const int n = vsnprintf(NULL, 0, format, args);
+    char *text = n < 0 ? NULL : mem_array((size_t)n + 1, 1);
+    if (text)
+        vsnprintf(text, (size_t)n + 1, format, again);
+    va_end(again);
     va_end(args);
     return text;
 }

@@ -5,7 +5,7 @@
 #include <relume/base.h>
 #include <stdlib.h>
 
-// count * size bytes, NULL when that overflows or memory is short. Free with free().
+// count * size bytes, NULL when that overflows or memory is short. Free with mem_free().
 // Never returns NULL for a count of 0.
 void *mem_array(size_t count, size_t size);
 void *mem_zeroed(size_t count, size_t size);
@@ -17,6 +17,14 @@ void *mem_resize(void *old, size_t count, size_t size);
 bool mem_grow(void *array, size_t count, size_t size);
 void *mem_copy(const void *from, size_t count, size_t size);
 char *mem_text(const char *text);
+// Memory of its own pages, large ones where the system has them: far fewer faults.
+void *mem_large(size_t bytes);
+// All memory of the above, and NULL.
+void mem_free(void *memory);
+// What the C library or a library of others allocated: getline, open_memstream, scandir, realpath.
+void mem_free_libc(void *memory);
+// A copy of such a text, which is freed; NULL of NULL.
+char *mem_take(char *text);
 // A new string like printf's, NULL when memory is short.
 __attribute__((format(printf, 1, 2))) char *mem_format(const char *format, ...);
 

@@ -1,6 +1,8 @@
 // module.c - the one file that opens shared libraries by name
 #include "base/module.h"
 
+#include "base/memory.h"
+
 #include <dlfcn.h>
 #include <errno.h>
 #include <link.h>
@@ -53,10 +55,10 @@ static Dl_serinfo *search_path(void)
     if (!dladdr1((void *)(size_t)module_open, &own, &object, RTLD_DL_LINKMAP) ||
         dlinfo(object, RTLD_DI_SERINFOSIZE, &size))
         return NULL;
-    Dl_serinfo *list = malloc(size.dls_size);
+    Dl_serinfo *list = mem_array(size.dls_size, 1);
     if (list &&
         (dlinfo(object, RTLD_DI_SERINFOSIZE, list) || dlinfo(object, RTLD_DI_SERINFO, list))) {
-        free(list);
+        mem_free(list);
         return NULL;
     }
     return list;
@@ -70,6 +72,6 @@ bool module_program(const char *name, char path[PATH_MAX])
         const int n = snprintf(path, PATH_MAX, "%s/%s", list->dls_serpath[i].dls_name, name);
         found = n > 0 && n < PATH_MAX && !access(path, X_OK);
     }
-    free(list);
+    mem_free(list);
     return found;
 }

@@ -97,7 +97,7 @@ static relume_status make_place(relume_making *m)
     char *name = m->target ? tree_base(m->target) : mem_text("");
     errno = ENOMEM;
     m->beside = name ? beside_open(m->dir, name) : NULL;
-    free(name);
+    mem_free(name);
     if (!m->beside || (m->kind == RELUME_MADE_FOLDER && mkdir(beside_new(m->beside), 0777)))
         return fail(m, "cannot be created");
     m->called = (struct called){.path = beside_new(m->beside), .name = m->path};
@@ -238,10 +238,10 @@ void relume_making_abort(relume_making **making)
         return;
     called_leave(&m->called);
     beside_close(&m->beside);
-    free(m->path);
-    free(m->target);
-    free(m->dir);
-    free(m);
+    mem_free(m->path);
+    mem_free(m->target);
+    mem_free(m->dir);
+    mem_free(m);
 }
 
 // ---------------------------------------------------------------- as the library calls it

@@ -101,7 +101,7 @@ static relume_status copy_to_device(outfile *f)
     if (f->device >= 0 && close(f->device) && good)
         status = fail(f, "writing failed");
     f->device = -1;
-    free(block);
+    mem_free(block);
     return status;
 }
 
@@ -119,7 +119,7 @@ static relume_status enter_beside(outfile *f)
 {
     char *name = tree_base(f->target);
     f->beside = name ? beside_open(f->dir, name) : NULL;
-    free(name);
+    mem_free(name);
     return f->beside ? RELUME_OK : fail(f, "cannot be written");
 }
 
@@ -312,10 +312,10 @@ void outfile_abort(outfile **file)
     if (f->device >= 0)
         close(f->device);
     beside_close(&f->beside);
-    free(f->path);
-    free(f->target);
-    free(f->dir);
-    free(f);
+    mem_free(f->path);
+    mem_free(f->target);
+    mem_free(f->dir);
+    mem_free(f);
 }
 
 relume_status outfile_save_to(const char *path, const struct relume_writer *writer,
@@ -349,7 +349,7 @@ static relume_status check_parent(const char *path, const struct relume_log *log
                      path, parent);
     else if (parent && access(parent, W_OK))
         status = log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
-    free(parent);
+    mem_free(parent);
     return status;
 }
 
@@ -361,7 +361,7 @@ relume_status relume_file_check(const char *path, const struct relume_log *log)
     const bool plain = !stat(path, &s) && (S_ISREG(s.st_mode) || S_ISDIR(s.st_mode));
     char *target = plain ? tree_resolve(path) : NULL;
     const relume_status status = target ? outfile_check(target, path, log) : RELUME_OK;
-    free(target);
+    mem_free(target);
     return status;
 }
 

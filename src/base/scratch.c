@@ -62,7 +62,7 @@ static int open_unnamed(const char *folder)
         unlink(name);
     else if (!name)
         errno = ENOMEM;
-    free(name);
+    mem_free(name);
     return fd;
 }
 
@@ -81,7 +81,7 @@ int scratch_open(const char *near)
     const int fd = folder ? open_unnamed(folder) : -1;
     if (!folder)
         errno = ENOMEM;
-    free(folder);
+    mem_free(folder);
     return fd;
 }
 

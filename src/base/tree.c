@@ -68,8 +68,8 @@ static char *follow(char *path)
         to[n] = '\0';
         next = *to == '/' ? without_slashes(to) : parent ? mem_format("%s/%s", parent, to) : NULL;
     }
-    free(parent);
-    free(path);
+    mem_free(parent);
+    mem_free(path);
     return next;
 }
 
@@ -80,7 +80,7 @@ char *tree_resolve(const char *path)
     char *at = without_slashes(path);
     for (int i = 0; at && !lstat(at, &s) && S_ISLNK(s.st_mode); i++) {
         if (i == MOST) {
-            free(at);
+            mem_free(at);
             errno = ELOOP;
             return NULL;
         }
@@ -122,7 +122,7 @@ static bool list_entry(struct tree_list *out, const char *root, const char *with
     char *path = e->name ? mem_format("%s/%s", root, e->name) : NULL;
     struct stat s;
     const bool good = path && !lstat(path, &s);
-    free(path);
+    mem_free(path);
     if (!good)
         return false;
     e->is_folder = S_ISDIR(s.st_mode);
@@ -141,7 +141,7 @@ static bool list_folder(struct tree_list *out, const char *root, const char *wit
     const int error = errno;
     if (dir)
         closedir(dir);
-    free(path);
+    mem_free(path);
     errno = error;
     return good;
 }
@@ -154,7 +154,7 @@ static bool list_all(struct tree_list *out, const char *root)
         if (out->item[i].is_folder) {
             char *inner = mem_format("%s/", out->item[i].name);
             good = inner && list_folder(out, root, inner);
-            free(inner);
+            mem_free(inner);
         }
     return good;
 }
@@ -177,8 +177,8 @@ bool tree_list(struct tree_list *out, const char *path)
 void tree_list_free(struct tree_list *list)
 {
     for (size_t i = 0; i < list->count; i++)
-        free(list->item[i].name);
-    free(list->item);
+        mem_free(list->item[i].name);
+    mem_free(list->item);
     *list = (struct tree_list){0};
 }
 
@@ -200,7 +200,7 @@ char *tree_only(const char *folder, const char *ending)
         closedir(dir);
     if (n == 1)
         return found;
-    free(found);
+    mem_free(found);
     return NULL;
 }
 

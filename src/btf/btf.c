@@ -121,7 +121,7 @@ relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *par
     btf->own = scratch_map(near, own_bytes(btf));
     const int error = errno;
     btf->values = btf->own;
-    free(near);
+    mem_free(near);
     if (btf->own)
         return RELUME_OK;
     const char *temp = getenv("TMPDIR");
@@ -159,13 +159,13 @@ void relume_btf_destroy(relume_btf **btf)
     relume_direction_mesh_destroy(&b->lights);
     relume_image_destroy(&b->info.relief);
     relume_image_destroy(&b->info.normals);
-    free((void *)b->info.name);
-    free(b->path);
-    free(b->view);
-    free(b->light);
-    free(b->view_at);
-    free(b->light_at);
-    free(b);
+    mem_free((void *)b->info.name);
+    mem_free(b->path);
+    mem_free(b->view);
+    mem_free(b->light);
+    mem_free(b->view_at);
+    mem_free(b->light_at);
+    mem_free(b);
 }
 
 const struct relume_btf_info *relume_btf_info(const relume_btf *btf)
@@ -221,10 +221,10 @@ relume_status relume_btf_part(relume_btf **out, const relume_btf *whole, const i
         memcpy((*out)->view_at, v_at, (size_t)view_count * sizeof *v_at);
         memcpy((*out)->light_at, l_at, (size_t)light_count * sizeof *l_at);
     }
-    free(v);
-    free(l);
-    free(v_at);
-    free(l_at);
+    mem_free(v);
+    mem_free(l);
+    mem_free(v_at);
+    mem_free(l_at);
     return status;
 }
 

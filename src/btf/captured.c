@@ -121,8 +121,8 @@ relume_status btf_open_capture(relume_btf **out, const char *path,
     if (status)
         relume_btf_destroy(out);
     relume_capture_destroy(&c.capture);
-    free(c.view);
-    free(c.light);
-    free(c.light_at);
+    mem_free(c.view);
+    mem_free(c.light);
+    mem_free(c.light_at);
     return status;
 }

@@ -164,13 +164,13 @@ relume_status relume_direction_mesh_create(relume_direction_mesh **out,
 void relume_direction_mesh_destroy(relume_direction_mesh **dome)
 {
     if (*dome) {
-        free((*dome)->point);
-        free((*dome)->triangle);
-        free((*dome)->across);
-        free((*dome)->beside);
-        free((*dome)->start);
+        mem_free((*dome)->point);
+        mem_free((*dome)->triangle);
+        mem_free((*dome)->across);
+        mem_free((*dome)->beside);
+        mem_free((*dome)->start);
     }
-    free(*dome);
+    mem_free(*dome);
     *dome = NULL;
 }
 

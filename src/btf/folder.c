@@ -59,7 +59,7 @@ static relume_status open_values(relume_btf *btf, const struct folder *f)
                           "%s: expected halfs [%d][%d][%d][%d][3] as btf.json says", path,
                           btf->info.views, btf->info.lights, btf->info.height, btf->info.width);
     btf->values = btf->file.data;
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -81,7 +81,7 @@ static relume_status open_truth(struct relume_image *out, const jvalue *root, co
     if (!status && (out->width != info->width || out->height != info->height))
         status = log_fail(f->log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d", path,
                           out->width, out->height, info->width, info->height);
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -129,8 +129,8 @@ static relume_status open_json(relume_btf **out, const jvalue *root, const struc
         status = open_values(*out, f);
     relume_image_destroy(&info.relief);
     relume_image_destroy(&info.normals);
-    free(view);
-    free(light);
+    mem_free(view);
+    mem_free(light);
     return status;
 }
 
@@ -139,7 +139,7 @@ static bool has_manifest(const char *folder)
     struct stat info;
     char *path = mem_format("%s/capture.json", folder);
     const bool has = path && !stat(path, &info);
-    free(path);
+    mem_free(path);
     return has;
 }
 
@@ -171,7 +171,7 @@ relume_status relume_btf_open(relume_btf **out, const char *path,
         return RELUME_ENOMEM;
     struct stat info;
     if (stat(f.json, &info)) {
-        free(f.json);
+        mem_free(f.json);
         return has_manifest(path) ? btf_open_capture(out, path, params)
                                   : btf_open_pictures(out, path, params);
     }
@@ -182,7 +182,7 @@ relume_status relume_btf_open(relume_btf **out, const char *path,
     if (status)
         relume_btf_destroy(out);
     jvalue_free(&root);
-    free(f.json);
+    mem_free(f.json);
     return status;
 }
 
@@ -217,11 +217,11 @@ static relume_status save_json(const relume_btf *b, const char *folder,
                           i->relief.data ? "\n  \"relief\": \"relief.exr\"," : "",
                           i->normals.data ? " \"normals\": \"normals.exr\"," : "", view, light);
     const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
-    free(path);
-    free(name);
-    free(view);
-    free(light);
-    free(text);
+    mem_free(path);
+    mem_free(name);
+    mem_free(view);
+    mem_free(light);
+    mem_free(text);
     return status;
 }
 
@@ -233,7 +233,7 @@ static relume_status save_truth(const struct relume_image *image, const char *fo
     char *path = mem_format("%s/%s", folder, name);
     const relume_status status =
         path ? relume_image_save(image, path, relume_image_params(.log = log)) : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -246,7 +246,7 @@ static relume_status save_values(const relume_btf *b, const char *folder,
                              (size_t)b->info.width, 3}};
     char *path = mem_format("%s/values.npy", folder);
     const relume_status status = path ? npy_save(&npy, b->values, path, log) : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 

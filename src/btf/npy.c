@@ -96,7 +96,7 @@ static bool read_header(struct npy_file *f, size_t *offset)
     const char *order = member(header, "fortran_order");
     const bool good = read_kind(&f->npy, member(header, "descr")) && order &&
                       !strncmp(order, "False", 5) && read_shape(&f->npy, member(header, "shape"));
-    free(header);
+    mem_free(header);
     *offset = PREFIX + length;
     return good;
 }

@@ -98,7 +98,7 @@ static relume_status add(struct pictures *p, const char *name)
                         p->path, name);
     one.name = mem_text(name);
     if (!one.name || !mem_grow(&p->all, p->count, sizeof *p->all)) {
-        free(one.name);
+        mem_free(one.name);
         return RELUME_ENOMEM;
     }
     p->all[p->count++] = one;
@@ -122,8 +122,8 @@ static relume_status list_entry(struct pictures *p, const char *inside, const ch
         status = add(p, name);
     else if (path && top)
         status = list_folder(p, name);
-    free(path);
-    free(name);
+    mem_free(path);
+    mem_free(name);
     return status;
 }
 
@@ -138,7 +138,7 @@ static relume_status list_folder(struct pictures *p, const char *inside)
     DIR *dir = opendir(path);
     if (!dir)
         status = relume_input_fail(p->log, path, "cannot be read", errno);
-    free(path);
+    mem_free(path);
     const struct dirent *e;
     while (dir && !status && (e = readdir(dir)))
         status = e->d_name[0] == '.' ? RELUME_OK : list_entry(p, inside, e->d_name);
@@ -304,7 +304,7 @@ static relume_status load(const struct pictures *p, size_t index, struct relume_
                    image, path,
                    relume_image_params(.log = log, .limits = p->params ? p->params->limits : NULL))
              : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -427,8 +427,8 @@ static relume_status fill_one(const struct pictures *p, relume_btf *btf, int vie
         sum[i] /= (float)total;
     if (!status)
         relume_btf_store(btf, view, light, sum);
-    free(sum);
-    free(taken);
+    mem_free(sum);
+    mem_free(taken);
     return status;
 }
 
@@ -469,8 +469,8 @@ static relume_status make_btf(relume_btf **out, const struct pictures *p)
     if (!status)
         status = btf_make_room(*out, p->params);
     relume_image_destroy(&first);
-    free(view);
-    free(light);
+    mem_free(view);
+    mem_free(light);
     return status;
 }
 
@@ -493,10 +493,10 @@ relume_status btf_open_pictures(relume_btf **out, const char *path,
     if (status)
         relume_btf_destroy(out);
     for (size_t i = 0; i < p.count; i++)
-        free(p.all[i].name);
-    free(p.all);
-    free(p.views);
-    free(p.lights);
-    free(p.grid);
+        mem_free(p.all[i].name);
+    mem_free(p.all);
+    mem_free(p.views);
+    mem_free(p.lights);
+    mem_free(p.grid);
     return status;
 }

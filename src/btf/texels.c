@@ -58,7 +58,7 @@ relume_status btf_for_texels(const relume_btf *btf, int threads, const struct re
     if (!status)
         status = run(&p, workers, log, what);
     for (int i = 0; p.scratch && i < workers; i++)
-        free(p.scratch[i]);
-    free(p.scratch);
+        mem_free(p.scratch[i]);
+    mem_free(p.scratch);
     return status;
 }

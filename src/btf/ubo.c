@@ -409,7 +409,7 @@ static relume_status make_btf(relume_btf **out, const struct ubo *u)
     };
     const struct relume_log *log = u->params ? u->params->log : NULL;
     relume_status status = name ? btf_start(out, &info, u->path, log) : RELUME_ENOMEM;
-    free(name);
+    mem_free(name);
     if (status || (u->params && u->params->outline))
         return status;
     struct relume_btf_params params = u->params ? *u->params : (struct relume_btf_params){0};
@@ -451,7 +451,7 @@ relume_status btf_open_ubo(relume_btf **out, const char *path,
         relume_btf_destroy(out);
     if (u.bytes)
         munmap((void *)u.bytes, u.size);
-    free(u.view);
-    free(u.light);
+    mem_free(u.view);
+    mem_free(u.light);
     return status;
 }

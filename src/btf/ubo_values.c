@@ -166,10 +166,10 @@ static bool work_start(struct work *b, const struct ubo *u)
 static void work_end(struct work *b)
 {
     for (int c = 0; c < UBO_COLOURS; c++) {
-        free(b->pair[c]);
-        free(b->product[c]);
+        mem_free(b->pair[c]);
+        mem_free(b->product[c]);
     }
-    free(b->texel);
+    mem_free(b->texel);
 }
 
 static void read_pairs(const struct work *b, const struct ubo *u, size_t first, size_t n)
@@ -292,6 +292,6 @@ relume_status ubo_store(const struct ubo *u, relume_btf *btf)
         status = store_batches(&s, threads);
     for (int i = 0; i < threads && s.work; i++)
         work_end(&s.work[i]);
-    free(s.work);
+    mem_free(s.work);
     return status;
 }

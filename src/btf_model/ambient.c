@@ -68,7 +68,7 @@ static relume_status fill(relume_btf_oriented_light *a,
     }
     const relume_status status =
         p && p->own_maps && a->model->lobes > 0 ? make_own_maps(a, cell, n, p->threads) : RELUME_OK;
-    free(cell);
+    mem_free(cell);
     return status;
 }
 
@@ -96,9 +96,9 @@ void relume_btf_oriented_light_destroy(relume_btf_oriented_light **ambient)
 {
     if (*ambient) {
         relume_prefiltered_destroy(&(*ambient)->own);
-        free((*ambient)->weight);
+        mem_free((*ambient)->weight);
     }
-    free(*ambient);
+    mem_free(*ambient);
     *ambient = NULL;
 }
 

@@ -124,8 +124,8 @@ static bool move(struct means *m)
             m->center[(size_t)c * n + k] = (float)(sum[(size_t)c * n + k] / (double)count[c]);
     }
     const bool good = sum && count;
-    free(sum);
-    free(count);
+    mem_free(sum);
+    mem_free(count);
     return good;
 }
 
@@ -151,8 +151,8 @@ relume_status reduce_cluster(const struct reduced *r, const struct fitting *f, i
         before = now;
         good = move(&m);
     }
-    free(m.center);
-    free(m.squared);
+    mem_free(m.center);
+    mem_free(m.squared);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -178,7 +178,7 @@ relume_status members_make(struct members *out, const int *which, size_t texels,
 
 void members_free(struct members *m)
 {
-    free(m->texel);
-    free(m->first);
+    mem_free(m->texel);
+    mem_free(m->first);
     m->texel = m->first = NULL;
 }

@@ -29,7 +29,7 @@ static bool mean(const struct members *m, size_t cluster, const relume_btf *btf,
     }
     for (size_t k = 0; k < n && sum; k++)
         values[k] = (float)sum[k];
-    free(sum);
+    mem_free(sum);
     return sum != NULL;
 }
 
@@ -42,7 +42,7 @@ static void fit_one(void *context, size_t item, int worker)
     if (!values || !mean(&w->members, cluster, w->f->btf, values) ||
         !w->fit(w->context, cluster, values))
         __atomic_store_n(&w->failed, true, __ATOMIC_RELAXED);
-    free(values);
+    mem_free(values);
 }
 
 static relume_status fit_all(struct work *w)
@@ -86,6 +86,6 @@ relume_status clusters_fit(const struct fitting *f, int which,
     for (size_t i = 0; i < texels && !status; i++)
         ((uint16_t *)f->out->array[which].data)[i] = (uint16_t)number[i];
     members_free(&w.members);
-    free(number);
+    mem_free(number);
     return status;
 }

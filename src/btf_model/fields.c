@@ -80,8 +80,8 @@ relume_status fields_start(struct fields *s, relume_btf_fitted *m)
 
 void fields_end(struct fields *s)
 {
-    free(s->light);
-    free(s->near);
+    mem_free(s->light);
+    mem_free(s->near);
 }
 
 // ---------------------------------------------------------------- where lobes start
@@ -316,9 +316,9 @@ bool fields_fit(const struct fields *s, size_t entry, const float *values)
         spare.specular = halfs + 3;
         fit_entry(s, &to, &spare, values, &w);
     }
-    free(room);
-    free(halfs);
-    free(spare.lobe);
+    mem_free(room);
+    mem_free(halfs);
+    mem_free(spare.lobe);
     return good;
 }
 

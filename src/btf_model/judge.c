@@ -172,9 +172,9 @@ relume_status relume_btf_judge(struct relume_btf_error *out, const relume_btf_fi
         if (p.pictures > 0)
             status = compare_pictures(&j, &p, out);
     }
-    free(j.view);
-    free(j.light);
-    free(j.pair);
-    free(j.error);
+    mem_free(j.view);
+    mem_free(j.light);
+    mem_free(j.pair);
+    mem_free(j.error);
     return status;
 }

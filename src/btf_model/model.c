@@ -46,7 +46,7 @@ static void free_arrays(relume_btf_fitted *m)
 {
     for (int i = 0; i < m->arrays; i++) {
         if (!m->array[i].file.map)
-            free(m->array[i].data);
+            mem_free(m->array[i].data);
         npy_close(&m->array[i].file);
     }
     m->arrays = 0;
@@ -59,13 +59,13 @@ void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
     if (!m)
         return;
     free_arrays(m);
-    free(m->prepared);
+    mem_free(m->prepared);
     relume_btf_fitted_destroy(&m->half);
     relume_direction_mesh_destroy(&m->view_dome);
     relume_direction_mesh_destroy(&m->light_dome);
-    free(m->view);
-    free(m->light);
-    free(m);
+    mem_free(m->view);
+    mem_free(m->light);
+    mem_free(m);
 }
 
 // ---------------------------------------------------------------- fitting

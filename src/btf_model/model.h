@@ -68,7 +68,7 @@ struct relume_btf_model {
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
-    // Whatever makes reading faster, into m->prepared, to be freed with free(); NULL: nothing does.
+    // Whatever makes reading faster, into m->prepared, which mem_free() frees; NULL: nothing does.
     relume_status (*prepare)(relume_btf_fitted *m);
     struct relume_btf_cost (*cost)(const relume_btf_fitted *m);
     // Whether arrays that are fine by themselves fit together; NULL: they do.

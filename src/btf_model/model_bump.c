@@ -119,7 +119,7 @@ static relume_status fit(struct fitting *f)
         w.mean ? btf_for_texels(f->btf, f->threads, f->log, "fitting", &w, measure) : RELUME_ENOMEM;
     if (!status)
         average(f, w.mean);
-    free(w.mean);
+    mem_free(w.mean);
     return status;
 }
 

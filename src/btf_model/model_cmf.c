@@ -184,9 +184,9 @@ static bool fit_mean(const void *context, size_t cluster, const float *value)
     }
     for (size_t i = 0; i < 3 * n && good; i++)
         model_halfs(m, FACTOR)[cluster * 3 * n + i] = half_from_float(fminf(factor[i], 65504.0f));
-    free(factor);
-    free(product);
-    free(sums);
+    mem_free(factor);
+    mem_free(product);
+    mem_free(sums);
     return good;
 }
 
@@ -202,8 +202,8 @@ static relume_status fit(struct fitting *f)
         places_of(m->view[i / lights], m->light[i % lights], &w.half[i], &w.difference[i]);
     if (!status)
         status = clusters_fit(f, CLUSTER, fit_mean, &w);
-    free(w.half);
-    free(w.difference);
+    mem_free(w.half);
+    mem_free(w.difference);
     return status;
 }
 

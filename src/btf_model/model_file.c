@@ -37,10 +37,10 @@ static relume_status save_json(const relume_btf_fitted *m, const char *folder,
                           m->lobes, relume_btf_fitted_info(m).levels, m->texel_bytes, m->pair_bytes,
                           m->without_cosine ? "false" : "true", view, light);
     const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
-    free(path);
-    free(view);
-    free(light);
-    free(text);
+    mem_free(path);
+    mem_free(view);
+    mem_free(light);
+    mem_free(text);
     return status;
 }
 
@@ -51,7 +51,7 @@ static relume_status save_level(const relume_btf_fitted *m, const char *folder,
     for (int i = 0; i < m->arrays && !status; i++) {
         char *file = mem_format("%s/%s.npy", folder, m->array[i].name);
         status = file ? npy_save(&m->array[i].npy, m->array[i].data, file, log) : RELUME_ENOMEM;
-        free(file);
+        mem_free(file);
     }
     return status ? status : save_json(m, folder, log);
 }
@@ -66,7 +66,7 @@ relume_status model_save_into(const relume_btf_fitted *m, const char *folder,
             status = log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
         if (!status)
             status = path ? save_level(m, path, log) : RELUME_ENOMEM;
-        free(path);
+        mem_free(path);
     }
     return status;
 }
@@ -212,7 +212,7 @@ static relume_status read_array(struct model_array *a, const struct reader *r)
     if (!status && !values_are_good(a))
         status = log_fail(r->log, RELUME_EDAMAGED,
                           "%s: expected finite values, and clusters that exist", path);
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -252,7 +252,7 @@ static relume_status open_level(relume_btf_fitted **out, const char *folder, int
         relume_btf_fitted_destroy(&m);
     *out = m;
     jvalue_free(&root);
-    free(r.json);
+    mem_free(r.json);
     return status;
 }
 
@@ -274,7 +274,7 @@ static relume_status open_half(relume_btf_fitted *m, const char *folder, int lev
                           "%s: %s of %d x %d texels; expected %s of %d x %d and as many directions",
                           path, m->half->model->name, m->half->width, m->half->height,
                           m->model->name, btf_half_side(m->width), btf_half_side(m->height));
-    free(path);
+    mem_free(path);
     return status;
 }
 

@@ -229,10 +229,10 @@ static void fit_texel(void *context, size_t texel, const float *values)
         store(w, texel, &s);
     else
         __atomic_store_n(&w->failed, true, __ATOMIC_RELAXED);
-    free(s.y);
-    free(s.rest);
-    free(s.lobe);
-    free(s.factor);
+    mem_free(s.y);
+    mem_free(s.rest);
+    mem_free(s.lobe);
+    mem_free(s.factor);
 }
 
 static relume_status fit_all(struct fitting *f, bool scaled)
@@ -262,10 +262,10 @@ static relume_status fit_all(struct fitting *f, bool scaled)
     }
     if (!status)
         status = btf_for_texels(f->btf, f->threads, f->log, "fitting", &w, fit_texel);
-    free(w.product);
-    free(w.cosine);
-    free(w.fitted);
-    free(w.fitted_cosine);
+    mem_free(w.product);
+    mem_free(w.cosine);
+    mem_free(w.fitted);
+    mem_free(w.fitted_cosine);
     return status ? status : w.failed ? RELUME_ENOMEM : RELUME_OK;
 }
 

@@ -66,8 +66,8 @@ static void solve_cluster(void *context, size_t item, int worker)
     double *gram = mem_zeroed(n * n, sizeof *gram), *row = mem_array(n, sizeof *row);
     if (!gram || !row || !solve(p, item, gram, row))
         __atomic_store_n(&p->failed, true, __ATOMIC_RELAXED);
-    free(gram);
-    free(row);
+    mem_free(gram);
+    mem_free(row);
 }
 
 static double residual(const struct local *p, const double *x, size_t cluster)
@@ -150,9 +150,9 @@ static relume_status lloyd(const struct fitting *f, const struct reduced *r, int
             break;
         before = now;
     }
-    free(p.squared);
-    free(p.mean);
-    free(p.vector);
+    mem_free(p.squared);
+    mem_free(p.mean);
+    mem_free(p.vector);
     return status;
 }
 
@@ -178,15 +178,15 @@ struct cluster {
 
 static void free_cluster(struct cluster *s)
 {
-    free(s->row);
-    free(s->turned);
-    free(s->product);
-    free(s->gram);
-    free(s->root);
-    free(s->vector);
-    free(s->mean);
-    free(s->pattern);
-    free(s->texel);
+    mem_free(s->row);
+    mem_free(s->turned);
+    mem_free(s->product);
+    mem_free(s->gram);
+    mem_free(s->root);
+    mem_free(s->vector);
+    mem_free(s->mean);
+    mem_free(s->pattern);
+    mem_free(s->texel);
 }
 
 static bool alloc_cluster(struct cluster *s, size_t components)
@@ -325,7 +325,7 @@ static relume_status fit(struct fitting *f)
     if (!status)
         status = finish(f, which);
     reduce_free(&r);
-    free(which);
+    mem_free(which);
     return status;
 }
 

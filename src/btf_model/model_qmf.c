@@ -269,7 +269,7 @@ static relume_status fit(struct fitting *f)
     if (!status)
         status = quantise(&w, most);
     reduce_free(&w.r);
-    free(w.plane);
+    mem_free(w.plane);
     return status;
 }
 

@@ -66,7 +66,7 @@ static relume_status fit(struct fitting *f)
     relume_status status = w.solution && solve(&w) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = btf_for_texels(f->btf, f->threads, f->log, "fitting", &w, fit_texel);
-    free(w.solution);
+    mem_free(w.solution);
     return status;
 }
 

@@ -124,10 +124,10 @@ static void fit_view(void *context, size_t item, int worker)
     };
     if (!w.rows || !w.gram || !w.vector || !w.values_of || !solve(&w, work->f))
         __atomic_store_n(&work->failed, true, __ATOMIC_RELAXED);
-    free(w.rows);
-    free(w.gram);
-    free(w.vector);
-    free(w.values_of);
+    mem_free(w.rows);
+    mem_free(w.gram);
+    mem_free(w.vector);
+    mem_free(w.values_of);
 }
 
 static relume_status fit(struct fitting *f)

@@ -138,7 +138,7 @@ static relume_status filter(relume_prefiltered *p, int threads)
             f.power[i][e] = power > 1e-12 ? (float)power : 0.0f;
         }
     thread_for(threads, (size_t)p->height, filter_row, &f);
-    free(f.power);
+    mem_free(f.power);
     return RELUME_OK;
 }
 
@@ -260,7 +260,7 @@ relume_status relume_prefiltered_create(relume_prefiltered **out, const struct r
     status = cell ? prefilter_from_cells(out, cell, gather(cell, light),
                                          p.height ? p.height : USUAL_HEIGHT, p.rim, p.threads)
                   : RELUME_ENOMEM;
-    free(cell);
+    mem_free(cell);
     return status;
 }
 
@@ -270,11 +270,11 @@ void relume_prefiltered_destroy(relume_prefiltered **prefilter)
     *prefilter = NULL;
     if (!p)
         return;
-    free(p->diffuse);
-    free(p->specular);
-    free(p->part);
-    free(p->cell);
-    free(p);
+    mem_free(p->diffuse);
+    mem_free(p->specular);
+    mem_free(p->part);
+    mem_free(p->cell);
+    mem_free(p);
 }
 
 const struct relume_prefiltered_info *relume_prefiltered_info(const relume_prefiltered *p)

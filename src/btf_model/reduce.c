@@ -31,13 +31,13 @@ struct work {
 
 static void free_work(struct work *w)
 {
-    free(w->across);
-    free(w->across_turned);
-    free(w->along);
-    free(w->along_turned);
+    mem_free(w->across);
+    mem_free(w->across_turned);
+    mem_free(w->along);
+    mem_free(w->along_turned);
     for (int i = 0; i < GROUP; i++) {
-        free(w->view[i]);
-        free(w->part[i]);
+        mem_free(w->view[i]);
+        mem_free(w->part[i]);
     }
 }
 
@@ -139,7 +139,7 @@ static bool gram_of(const float *columns, size_t n, int m, double *gram)
             rows[i] = (double)columns[first * (size_t)m + i];
         lsq_add_gram(gram, m, rows, (int)count);
     }
-    free(rows);
+    mem_free(rows);
     return rows != NULL;
 }
 
@@ -167,11 +167,11 @@ static bool orthonormalise(struct work *w)
                 turned[j * m + i] = (float)gram[i * m + j];
         lsq_multiply((int)w->values, w->width, w->width, w->along, w->width, turned, w->width, out,
                      w->width);
-        free(w->along);
+        mem_free(w->along);
         w->along = out;
     }
-    free(gram);
-    free(turned);
+    mem_free(gram);
+    mem_free(turned);
     return good;
 }
 
@@ -197,10 +197,10 @@ static bool finish(struct work *w, struct reduced *out)
                      turned, out->count);
         turn(turned, w->values, count, out->basis);
     }
-    free(gram);
-    free(values);
-    free(vectors);
-    free(rotate);
+    mem_free(gram);
+    mem_free(values);
+    mem_free(vectors);
+    mem_free(rotate);
     return good;
 }
 
@@ -246,7 +246,7 @@ relume_status reduce_make(struct reduced *out, const struct fitting *f, int coun
 
 void reduce_free(struct reduced *r)
 {
-    free(r->score);
-    free(r->basis);
+    mem_free(r->score);
+    mem_free(r->basis);
     r->score = r->basis = NULL;
 }

@@ -56,9 +56,9 @@ static bool sort(struct sorted *s, const float *values, size_t count, size_t str
 
 static void free_sorted(struct sorted *s)
 {
-    free(s->value);
-    free(s->sum);
-    free(s->squares);
+    mem_free(s->value);
+    mem_free(s->sum);
+    mem_free(s->squares);
 }
 
 // How many values lie below `x`, of those from `from` on.

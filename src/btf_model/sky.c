@@ -66,8 +66,8 @@ relume_status relume_btf_environment_create(relume_btf_environment **out,
 void relume_btf_environment_destroy(relume_btf_environment **sky)
 {
     if (*sky)
-        free((*sky)->cone);
-    free(*sky);
+        mem_free((*sky)->cone);
+    mem_free(*sky);
     *sky = NULL;
 }
 

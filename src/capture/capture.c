@@ -15,8 +15,8 @@ void relume_capture_destroy(relume_capture **capture)
         return;
     image_cache_destroy(&(*capture)->cache);
     draft_free(&(*capture)->draft);
-    free((*capture)->path);
-    free(*capture);
+    mem_free((*capture)->path);
+    mem_free(*capture);
     *capture = NULL;
 }
 

@@ -82,6 +82,6 @@ relume_status relume_directions_discrepancy(double *out, const struct relume_vec
     }
     for (int k = 0; k < CENTRES; k++)
         *out = fmax(*out, worst_around(spiral_point(k), lights, n, cosines, &p));
-    free(cosines);
+    mem_free(cosines);
     return RELUME_OK;
 }

@@ -44,14 +44,14 @@ void distant_destroy(struct distant **distant)
     *distant = NULL;
     if (!d)
         return;
-    free(d->chosen);
-    free(d->node[0]);
-    free(d->node[1]);
-    free(d->work);
-    free(d->column);
-    free(d->pixels);
-    free(d->weights);
-    free(d);
+    mem_free(d->chosen);
+    mem_free(d->node[0]);
+    mem_free(d->node[1]);
+    mem_free(d->work);
+    mem_free(d->column);
+    mem_free(d->pixels);
+    mem_free(d->weights);
+    mem_free(d);
 }
 
 static void choose_nearest(struct distant *d, int light)
@@ -150,7 +150,7 @@ static void solve_node(void *context, size_t item, int worker)
             solve_light(d, seen, j, work, to + j * n);
         else
             to[j * n] = NAN;
-    free(seen);
+    mem_free(seen);
 }
 
 // The nodes of row `row` lie in node[row % 2] afterwards. False when memory is short.

@@ -3,9 +3,6 @@
 
 #include "base/memory.h"
 
-#include <stdlib.h>
-#include <sys/mman.h>
-
 relume_status image_cache_create(struct image_cache **out, int images, size_t budget)
 {
     struct image_cache *k = *out = mem_zeroed(1, sizeof *k);
@@ -25,10 +22,10 @@ void image_cache_destroy(struct image_cache **cache)
     if (!k)
         return;
     for (int i = 0; k->image && i < k->images; i++)
-        free(k->image[i]);
-    free(k->image);
+        mem_free(k->image[i]);
+    mem_free(k->image);
     pthread_mutex_destroy(&k->lock);
-    free(k);
+    mem_free(k);
 }
 
 const uint8_t *image_cache_find(struct image_cache *cache, int image)
@@ -46,26 +43,13 @@ static void give_back(struct image_cache *cache, size_t bytes)
     pthread_mutex_unlock(&cache->lock);
 }
 
-// Memory of its own pages, large ones where the system has them: far fewer faults.
-static void *large(size_t bytes)
-{
-    enum { LARGE_PAGE = 2 << 20 };
-    if (bytes < LARGE_PAGE)
-        return malloc(bytes);
-    void *memory = NULL;
-    if (posix_memalign(&memory, LARGE_PAGE, bytes))
-        return NULL;
-    madvise(memory, bytes, MADV_HUGEPAGE);
-    return memory;
-}
-
 uint8_t *image_cache_reserve(struct image_cache *cache, size_t bytes)
 {
     pthread_mutex_lock(&cache->lock);
     const bool fits = bytes <= cache->left;
     cache->left -= fits ? bytes : 0;
     pthread_mutex_unlock(&cache->lock);
-    uint8_t *rows = fits ? large(bytes) : NULL;
+    uint8_t *rows = fits ? mem_large(bytes) : NULL;
     if (fits && !rows)
         give_back(cache, bytes);
     return rows;
@@ -81,6 +65,6 @@ void image_cache_settle(struct image_cache *cache, int image, uint8_t *rows, siz
     pthread_mutex_unlock(&cache->lock);
     if (wanted)
         return;
-    free(rows);
+    mem_free(rows);
     give_back(cache, bytes);
 }

@@ -112,7 +112,7 @@ relume_status dome_lights(struct relume_captured_lights *out, const jvalue *root
     if (!status)
         status = read_adjustments(out, jvalue_member(root, "ledAdjust"), path, log);
     if (form == 0) {
-        free(out->position);
+        mem_free(out->position);
         out->position = NULL;
     }
     return status;

@@ -147,9 +147,9 @@ static relume_status from_lines(struct relume_captured_lights *out, const char *
 
 void relume_captured_lights_destroy(struct relume_captured_lights *list)
 {
-    free(list->direction);
-    free(list->position);
-    free(list->intensity);
+    mem_free(list->direction);
+    mem_free(list->position);
+    mem_free(list->intensity);
     *list = (struct relume_captured_lights){0};
 }
 
@@ -168,7 +168,7 @@ relume_status relume_captured_lights_load(struct relume_captured_lights *out, co
     if (!status)
         status = read[kind](out, path, log);
     if (!status && kind != KIND_JSON && !positions) {
-        free(out->position);
+        mem_free(out->position);
         out->position = NULL;
     }
     if (!status && positions && !out->position)

@@ -99,7 +99,7 @@ static relume_status read_text(char **out, const char *path, const struct relume
     const bool failed = ferror(file);
     fclose(file);
     if (!memory || fclose(memory)) {
-        free(text);
+        mem_free_libc(text);
         return RELUME_ENOMEM;
     }
     relume_status status = RELUME_OK;
@@ -108,11 +108,11 @@ static relume_status read_text(char **out, const char *path, const struct relume
     else if (size >= MOST || memchr(text, '\0', size))
         status = log_fail(log, RELUME_EFORMAT, "%s: not a text file; expected a .lp file", path);
     if (status) {
-        free(text);
+        mem_free_libc(text);
         return status;
     }
-    *out = text;
-    return RELUME_OK;
+    *out = mem_take(text);
+    return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status parse_lines(struct draft *d, char *text, const char *path,
@@ -197,7 +197,7 @@ relume_status lp_read(struct draft *out, const char *path, const struct relume_l
         return status;
     const bool has_bom = !strncmp(text, "\xef\xbb\xbf", 3);
     status = parse_lines(out, text + (has_bom ? 3 : 0), path, limits, log);
-    free(text);
+    mem_free(text);
     if (status)
         draft_free(out);
     return status;
@@ -304,14 +304,14 @@ relume_status lp_resolve(struct draft *draft, const char *path,
     if (found < 0 && errno != ENOENT) {
         const relume_status status =
             relume_input_fail(params->log, folder, "cannot be listed", errno);
-        free(copy);
+        mem_free(copy);
         return status;
     }
     const int file_count = found > 0 ? found : 0;
     const relume_status status = resolve(draft, path, folder, files, file_count, params);
     for (int i = 0; i < file_count; i++)
-        free(files[i]);
-    free(files);
-    free(copy);
+        mem_free_libc(files[i]);
+    mem_free_libc(files);
+    mem_free(copy);
     return status;
 }

@@ -435,7 +435,7 @@ relume_status manifest_read(struct draft *out, const char *path,
     } else {
         status = RELUME_ENOMEM;
     }
-    free(copy);
+    mem_free(copy);
     jvalue_free(&root);
     if (status)
         draft_free(out);

@@ -3,6 +3,7 @@
 
 #include "base/json.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "base/outfile.h"
 
 #include <stdio.h>
@@ -12,7 +13,7 @@ static void put_text(FILE *f, const char *text)
 {
     char *quoted = jvalue_quote(text);
     fputs(quoted ? quoted : "\"\"", f);
-    free(quoted);
+    mem_free(quoted);
 }
 
 static void put_vectors(FILE *f, const char *key, const struct relume_vec3 *v, int n)
@@ -151,6 +152,6 @@ relume_status relume_manifest_write(const struct relume_manifest *manifest, cons
     fputs("  ]\n}\n", f);
     const bool failed = fclose(f) != 0;
     const relume_status status = failed ? RELUME_ENOMEM : outfile_save(path, text, size, log);
-    free(text);
+    mem_free_libc(text);
     return status;
 }

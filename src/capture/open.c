@@ -19,7 +19,7 @@ static relume_status find_description(char **out, const char *folder, const stru
         return RELUME_ENOMEM;
     if (input_exists(path, log))
         return RELUME_OK;
-    free(path);
+    mem_free(path);
     *out = tree_only(folder, ".lp");
     if (*out)
         return RELUME_OK;
@@ -83,7 +83,7 @@ static relume_status skip_missing(relume_capture *c, const struct relume_log *lo
         }
     }
     keep_lights(d, keep);
-    free(keep);
+    mem_free(keep);
     if (d->m.lights == 0)
         return log_fail(log, RELUME_ENOTFOUND, "%s: no image exists; expected %d", c->path, before);
     return RELUME_OK;

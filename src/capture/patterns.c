@@ -111,7 +111,7 @@ static relume_status fill_poisson(double (*out)[2], int n, uint64_t seed, bool h
             }
         }
     }
-    free(kept);
+    mem_free(kept);
     return RELUME_OK;
 }
 
@@ -178,6 +178,6 @@ relume_status relume_directions_make(struct relume_vec3 *out, int n,
             square[k][1] = fmax(square[k][1], 1e-9);
         out[k] = world_from_pole(on_sphere(square[k], p.hemisphere), p.pole_y);
     }
-    free(square);
+    mem_free(square);
     return status;
 }

@@ -65,17 +65,17 @@ void relume_table_destroy(relume_table **table)
         return;
     for (int i = 0; i < t->open; i++)
         close_stream(t, &t->stream[i], i);
-    free(t->stream);
-    free(t->status);
-    free(t->broken);
-    free(t->repaired);
-    free(t->whole);
+    mem_free(t->stream);
+    mem_free(t->status);
+    mem_free(t->broken);
+    mem_free(t->repaired);
+    mem_free(t->whole);
     distant_destroy(&t->distant);
     near_view_close(&t->lamps);
-    free(t->display);
-    free(t->fetched);
-    free(t->band);
-    free(t);
+    mem_free(t->display);
+    mem_free(t->fetched);
+    mem_free(t->band);
+    mem_free(t);
 }
 
 static relume_status open_near(relume_table *t, struct relume_transfer display, bool as_seen)
@@ -211,7 +211,7 @@ static void count_broken(void *context, size_t item, int worker)
         }
         image_stream_close(&stream);
     }
-    free(band);
+    mem_free(band);
 }
 
 // The error about an image that is not finite names it and counts.

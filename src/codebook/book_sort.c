@@ -130,8 +130,8 @@ relume_status book_sort(float *vectors, int codes, int dim)
             memcpy(vectors + (size_t)c * n, copy + (size_t)items[c].code * n, n * sizeof *vectors);
     }
     const bool good = copy && work && items;
-    free(copy);
-    free(work);
-    free(items);
+    mem_free(copy);
+    mem_free(work);
+    mem_free(items);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

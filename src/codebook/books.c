@@ -26,13 +26,13 @@ void relume_books_destroy(relume_books **books)
     if (!b)
         return;
     for (int i = 0; i < RELUME_MOST_BOOKS; i++) {
-        free(b->own[i].numbers);
-        free(b->own[i].scale);
-        free(b->own[i].offset);
-        free(b->own[i].vectors);
+        mem_free(b->own[i].numbers);
+        mem_free(b->own[i].scale);
+        mem_free(b->own[i].offset);
+        mem_free(b->own[i].vectors);
         nearest_destroy(&b->own[i].nearest);
     }
-    free(b);
+    mem_free(b);
 }
 
 const struct relume_books_info *relume_books_info(const relume_books *books)
@@ -51,9 +51,9 @@ struct sample {
 
 static void free_sample(struct sample *s)
 {
-    free(s->residual);
-    free(s->part);
-    free(s->index);
+    mem_free(s->residual);
+    mem_free(s->part);
+    mem_free(s->index);
 }
 
 static bool alloc_sample(struct sample *s)
@@ -85,8 +85,8 @@ static relume_status draw_sample(struct sample *s, const relume_coefficients *co
                 taken++;
             }
         }
-    free(row);
-    free(waiting);
+    mem_free(row);
+    mem_free(waiting);
     return status;
 }
 
@@ -166,9 +166,9 @@ static relume_status remove_book(struct sample *s, const relume_books *books, in
     const bool good = r.distance && r.apart && r.scratch;
     if (good)
         thread_for(threads, (s->n + CHUNK - 1) / CHUNK, remove_chunk, &r);
-    free(r.distance);
-    free(r.apart);
-    free(r.scratch);
+    mem_free(r.distance);
+    mem_free(r.apart);
+    mem_free(r.scratch);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -192,7 +192,7 @@ static relume_status learn_book(relume_books *books, int i, struct sample *s,
     status = vectors ? keep_vectors(books, i, vectors) : RELUME_ENOMEM;
     if (!status)
         status = remove_book(s, books, i, p->threads);
-    free(vectors);
+    mem_free(vectors);
     relume_codebook_destroy(&trained);
     return status;
 }

@@ -37,16 +37,16 @@ struct assignment {
 
 static void free_work(struct work *w)
 {
-    free(w->waiting);
-    free(w->row);
-    free(w->residual);
-    free(w->part);
-    free(w->scratch);
-    free(w->distance);
-    free(w->apart);
-    free(w->which);
-    free(w->wanted);
-    free(w->kept);
+    mem_free(w->waiting);
+    mem_free(w->row);
+    mem_free(w->residual);
+    mem_free(w->part);
+    mem_free(w->scratch);
+    mem_free(w->distance);
+    mem_free(w->apart);
+    mem_free(w->which);
+    mem_free(w->wanted);
+    mem_free(w->kept);
 }
 
 static bool alloc_work(struct work *w, const struct assignment *a)
@@ -267,8 +267,8 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
     for (int i = 0; a.work && i < workers; i++)
         free_work(&a.work[i]);
     captured_destroy(&a.captured);
-    free(a.work);
-    free(a.loss);
+    mem_free(a.work);
+    mem_free(a.loss);
     for (int b = 0; b < RELUME_MOST_BOOKS; b++)
         dither_close(&a.dither[b]);
     return status;

@@ -75,7 +75,7 @@ static relume_status search(struct search *s, int codes, int dim, int threads, u
         thread_for(threads, (s->n + CHUNK - 1) / CHUNK, search_chunk, s);
     else
         status = RELUME_ENOMEM;
-    free(s->scratch);
+    mem_free(s->scratch);
     nearest_destroy(&nearest);
     s->nearest = NULL;
     return status;
@@ -289,15 +289,15 @@ static bool alloc_training(struct training *t)
 
 static void free_training(struct training *t)
 {
-    free(t->code);
-    free(t->index);
-    free(t->distance);
-    free(t->order);
-    free(t->begin);
-    free(t->error);
-    free(t->apart);
-    free(t->before);
-    free(t->drift);
+    mem_free(t->code);
+    mem_free(t->index);
+    mem_free(t->distance);
+    mem_free(t->order);
+    mem_free(t->begin);
+    mem_free(t->error);
+    mem_free(t->apart);
+    mem_free(t->before);
+    mem_free(t->drift);
 }
 
 static relume_status train(struct training *t, const struct relume_codebook_params *p)
@@ -366,15 +366,15 @@ relume_status relume_codebook_train(relume_codebook **out, const float *vectors,
     if (!status)
         status = make_book(out, &t);
     free_training(&t);
-    free(sample);
+    mem_free(sample);
     return status;
 }
 
 void relume_codebook_destroy(relume_codebook **book)
 {
     if (*book)
-        free((*book)->vectors);
-    free(*book);
+        mem_free((*book)->vectors);
+    mem_free(*book);
     *book = NULL;
 }
 
@@ -406,7 +406,7 @@ relume_status relume_codebook_assign(const relume_codebook *book, const float *v
         sum += s.distance[i];
     if (squared_error)
         *squared_error = sum;
-    free(s.distance);
-    free(s.apart);
+    mem_free(s.distance);
+    mem_free(s.apart);
     return status;
 }

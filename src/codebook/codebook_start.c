@@ -137,7 +137,7 @@ relume_status start_split(struct training *t)
         t->codes += split;
         t->bounded = false;
     }
-    free(cells);
-    free(axis);
+    mem_free(cells);
+    mem_free(axis);
     return status;
 }

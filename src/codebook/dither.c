@@ -60,8 +60,8 @@ relume_status dither_open(struct dither *d, const float *vectors, int codes, siz
 
 void dither_close(struct dither *d)
 {
-    free(d->neighbour);
-    free(d->other);
+    mem_free(d->neighbour);
+    mem_free(d->other);
     *d = (struct dither){0};
 }
 
@@ -173,7 +173,7 @@ static relume_status find_contours(const struct dither *d, const uint16_t *index
         out->at[out->count - 1].area += 1.0;
     }
     const bool good = pairs && out->at;
-    free(pairs);
+    mem_free(pairs);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -232,6 +232,6 @@ relume_status dither_spend(const struct dither *d, uint16_t *index)
                 find(&c, index[i], d->other[i]))
                 index[i] = d->other[i];
     }
-    free(c.at);
+    mem_free(c.at);
     return status;
 }

@@ -37,10 +37,10 @@ relume_status nearest_create(struct nearest *out, int codes, int dim, unsigned c
 
 void nearest_destroy(struct nearest *n)
 {
-    free(n->center);
-    free(n->packed);
-    free(n->exact);
-    free(n->half);
+    mem_free(n->center);
+    mem_free(n->packed);
+    mem_free(n->exact);
+    mem_free(n->half);
     *n = (struct nearest){0};
 }
 

@@ -115,7 +115,7 @@ relume_status relume_coder_apply(const relume_coder *coder, const float *samples
     for (size_t x = 0; x < n; x += CODER_CHUNK)
         coder_apply(coder, samples + 3 * x, stride, n - x < CODER_CHUNK ? n - x : CODER_CHUNK,
                     planes + x, plane_stride, work);
-    free(work);
+    mem_free(work);
     return RELUME_OK;
 }
 
@@ -136,7 +136,7 @@ relume_status captured_create(struct captured *out, const relume_coder *coder,
             out->constant[c * lights + i] = constant[c];
         }
     }
-    free(weights);
+    mem_free(weights);
     if (!good)
         captured_destroy(out);
     return good ? RELUME_OK : RELUME_ENOMEM;
@@ -144,8 +144,8 @@ relume_status captured_create(struct captured *out, const relume_coder *coder,
 
 void captured_destroy(struct captured *c)
 {
-    free(c->basis);
-    free(c->constant);
+    mem_free(c->basis);
+    mem_free(c->constant);
     *c = (struct captured){0, NULL, NULL};
 }
 

@@ -18,7 +18,7 @@ static relume_status prepare(relume_coder *coder, const struct relume_log *log)
         roughness[k] = square * square;
     }
     const relume_status status = fit_map(coder, roughness, log);
-    free(roughness);
+    mem_free(roughness);
     return status;
 }
 

@@ -32,9 +32,9 @@ relume_status census_create(struct census *c, const relume_capture *capture,
 
 void census_destroy(struct census *c)
 {
-    free(c->white);
-    free(c->count);
-    free(c->lit);
+    mem_free(c->white);
+    mem_free(c->count);
+    mem_free(c->lit);
     *c = (struct census){0};
 }
 

@@ -131,8 +131,8 @@ relume_status interpolant_choose(double *parameter, double *rms, const struct re
         memcpy(parameter, best, sizeof best);
         *rms = exp(0.5 * least);
     }
-    free(gram);
-    free(s.b);
-    free(s.error);
+    mem_free(gram);
+    mem_free(s.b);
+    mem_free(s.error);
     return status;
 }

@@ -34,14 +34,14 @@ void relume_coder_destroy(relume_coder **coder)
     if (c->info.interpolant)
         c->info.interpolant->release(c->interpolant);
     mesh_destroy(&c->around);
-    free(c->world);
-    free(c->frame);
-    free(c->transform);
-    free(c->mean);
-    free(c->map);
-    free(c->base);
+    mem_free(c->world);
+    mem_free(c->frame);
+    mem_free(c->transform);
+    mem_free(c->mean);
+    mem_free(c->map);
+    mem_free(c->base);
     robust_destroy(c->robust);
-    free(c);
+    mem_free(c);
 }
 
 vec3 clamp_to_captured(bool hemispherical, vec3 d)
@@ -285,15 +285,15 @@ static bool append_row(relume_coder *coder, size_t k, size_t samples)
     if (!coder->map)
         return true;
     if (!map || !base) {
-        free(map);
-        free(base);
+        mem_free(map);
+        mem_free(base);
         return false;
     }
     memcpy(map, coder->map, k * samples * sizeof *map);
     memcpy(base, coder->base, k * sizeof *base);
     base[k] = 1.0f;
-    free(coder->map);
-    free(coder->base);
+    mem_free(coder->map);
+    mem_free(coder->base);
     coder->map = map;
     coder->base = base;
     return true;
@@ -306,7 +306,7 @@ relume_status relume_coder_append_mean(relume_coder *coder)
         return RELUME_OK;
     float *grown = mem_array(3 * (k + 1) * raw, sizeof *grown);
     if (!grown || !append_row(coder, k, 3 * raw)) {
-        free(grown);
+        mem_free(grown);
         return RELUME_ENOMEM;
     }
     for (size_t c = 0; c < 3; c++) {
@@ -314,8 +314,8 @@ relume_status relume_coder_append_mean(relume_coder *coder)
         memcpy(to, coder->transform + c * k * raw, k * raw * sizeof *to);
         memcpy(to + k * raw, coder->mean + c * raw, raw * sizeof *to);
     }
-    free(coder->transform);
-    free(coder->mean);
+    mem_free(coder->transform);
+    mem_free(coder->mean);
     coder->transform = grown;
     coder->mean = NULL;
     coder->info.transform = grown;

@@ -161,7 +161,7 @@ void relume_codes_plane(const struct relume_codes *codes, int plane, size_t firs
 
 void relume_codes_part_destroy(struct relume_codes_part *part)
 {
-    free(part->memory);
+    mem_free(part->memory);
     *part = (struct relume_codes_part){.memory = NULL};
 }
 

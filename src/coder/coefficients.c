@@ -23,10 +23,10 @@ void relume_coefficients_destroy(relume_coefficients **coefficients)
         return;
     if (c->fd >= 0)
         close(c->fd);
-    free(c->scale);
-    free(c->offset);
-    free(c->band);
-    free(c);
+    mem_free(c->scale);
+    mem_free(c->offset);
+    mem_free(c->band);
+    mem_free(c);
 }
 
 relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder, int width,
@@ -303,7 +303,7 @@ relume_status relume_coefficients_read(const relume_coefficients *coefficients, 
         for (size_t p = 0; good && p < planes; p++, to += width * bytes)
             coefficients_quantise(c, (int)p, y, packed + p * width * wait, width, to);
     }
-    free(packed);
+    mem_free(packed);
     return good ? RELUME_OK : RELUME_EIO;
 }
 
@@ -356,7 +356,7 @@ relume_status relume_coefficients_keep(relume_coefficients **out, const struct r
     if (status == RELUME_EIO)
         status = log_fail(p.log, RELUME_EIO, "%s: no room for temporary data; %s",
                           p.scratch ? p.scratch : "$TMPDIR", strerror(errno));
-    free(room);
+    mem_free(room);
     if (status)
         relume_coefficients_destroy(out);
     return status;

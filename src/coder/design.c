@@ -8,10 +8,10 @@ static const double JOINT_PRIOR = 1e-3;  // of the mean of the diagonal: compone
 
 void design_destroy(struct design *d)
 {
-    free(d->y);
-    free(d->constant);
-    free(d->prior);
-    free(d->fill);
+    mem_free(d->y);
+    mem_free(d->constant);
+    mem_free(d->prior);
+    mem_free(d->fill);
     *d = (struct design){0};
 }
 
@@ -68,6 +68,6 @@ relume_status design_create(struct design *out, const relume_coder *coder)
     } else {
         design_destroy(out);
     }
-    free(weights);
+    mem_free(weights);
     return whole ? RELUME_OK : RELUME_ENOMEM;
 }

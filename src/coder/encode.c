@@ -174,7 +174,7 @@ static relume_status measure_fit(struct encoding *e, int row)
                     e->error_count++;
                 }
     }
-    free(again);
+    mem_free(again);
     return RELUME_OK;
 }
 
@@ -199,7 +199,7 @@ static relume_status measure_near(struct encoding *e, int row)
             e->error_count++;
         }
     }
-    free(again);
+    mem_free(again);
     return RELUME_OK;
 }
 
@@ -378,12 +378,12 @@ static relume_status measure_storage(relume_coefficients *c, struct encoding *e)
     }
     c->report.store_rms = count ? sqrt(sum / (double)count) : 0.0;
     e->stored_error /= count ? (double)count : 1.0;
-    free(waiting);
-    free(codes);
-    free(before);
-    free(after);
-    free(wanted);
-    free(stored);
+    mem_free(waiting);
+    mem_free(codes);
+    mem_free(before);
+    mem_free(after);
+    mem_free(wanted);
+    mem_free(stored);
     return status;
 }
 
@@ -446,16 +446,16 @@ static relume_status alloc_encoder(struct encoding *e, const relume_capture *cap
 
 static void free_encoder(struct encoding *e)
 {
-    free(e->samples);
-    free(e->own);
-    free(e->values);
-    free(e->chunk);
-    free(e->work);
-    free(e->packed[0]);
-    free(e->packed[1]);
-    free(e->total);
-    free(e->shown_error);
-    free(e->screen);
+    mem_free(e->samples);
+    mem_free(e->own);
+    mem_free(e->values);
+    mem_free(e->chunk);
+    mem_free(e->work);
+    mem_free(e->packed[0]);
+    mem_free(e->packed[1]);
+    mem_free(e->total);
+    mem_free(e->shown_error);
+    mem_free(e->screen);
     captured_destroy(&e->captured);
     census_destroy(&e->census);
     relume_image_destroy(&e->mask);

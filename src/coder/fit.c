@@ -37,11 +37,11 @@ struct system {
 
 static void free_system(struct system *s)
 {
-    free(s->y);
-    free(s->v);
-    free(s->f);
-    free(s->h);
-    free(s->b);
+    mem_free(s->y);
+    mem_free(s->v);
+    mem_free(s->f);
+    mem_free(s->h);
+    mem_free(s->b);
 }
 
 static bool alloc_system(struct system *s)
@@ -106,8 +106,8 @@ static relume_status check_rank(const struct system *s, const relume_coder *code
                  "the %d light directions determine only %d of %d coefficients", s->n, rank, s->k);
     else if (!status && rank < s->k)
         status = refuse_rank(s, coder->info.basis, rank, log);
-    free(gram);
-    free(values);
+    mem_free(gram);
+    mem_free(values);
     return status;
 }
 
@@ -145,7 +145,7 @@ static relume_status assume_far_side(struct system *s, const relume_coder *coder
             f[b.light[j]] += (1.0 - towards_pole) * b.weight[j];
         coder->info.basis->evaluate(coder, d, s->v + (size_t)i * (size_t)s->k);
     }
-    free(mean);
+    mem_free(mean);
     mesh_destroy(&lights);
     return RELUME_OK;
 }

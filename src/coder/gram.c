@@ -48,7 +48,7 @@ relume_status gram_sum(double *gram, size_t n, size_t count,
             for (size_t i = 0; i < n * n; i++)
                 gram[i] += s.part[p * n * n + i];
     }
-    free(s.part);
-    free(s.rows);
+    mem_free(s.part);
+    mem_free(s.rows);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

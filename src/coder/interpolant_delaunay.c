@@ -21,7 +21,7 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
     d->lights = n;
     const relume_status status = mesh_create(&d->mesh, lights, n);
     if (status) {
-        free(d);
+        mem_free(d);
         *data = NULL;
     }
     return status;
@@ -45,7 +45,7 @@ static void release(void *data)
 {
     struct delaunay *d = data;
     mesh_destroy(&d->mesh);
-    free(d);
+    mem_free(d);
 }
 
 const struct relume_interpolant interpolant_delaunay = {

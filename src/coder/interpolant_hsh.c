@@ -20,8 +20,8 @@ struct trend {
 static void release(void *data)
 {
     struct trend *t = data;
-    free(t->weight);
-    free(t);
+    mem_free(t->weight);
+    mem_free(t);
 }
 
 static relume_status solve(struct trend *t, const struct relume_vec3 *lights, double ridge)
@@ -43,7 +43,7 @@ static relume_status solve(struct trend *t, const struct relume_vec3 *lights, do
                 sum += gram[j * TERMS + k] * rows[i * TERMS + k];
             t->weight[i * TERMS + j] = sum;
         }
-    free(rows);
+    mem_free(rows);
     return status;
 }
 

@@ -118,9 +118,9 @@ static void transpose(double *a, size_t n)
 static void release(void *data)
 {
     struct kernel *k = data;
-    free(k->light);
-    free(k->inverse);
-    free(k);
+    mem_free(k->light);
+    mem_free(k->inverse);
+    mem_free(k);
 }
 
 static relume_status prepare(void **data, struct kernel kind, double least,

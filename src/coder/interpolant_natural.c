@@ -21,8 +21,8 @@ struct cells {
 static void release(void *data)
 {
     struct cells *c = data;
-    free(c->light);
-    free(c);
+    mem_free(c->light);
+    mem_free(c);
 }
 
 static int nearest_light(const struct cells *c, vec3 d)

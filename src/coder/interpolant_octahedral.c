@@ -63,5 +63,5 @@ const struct relume_interpolant interpolant_octahedral = {
     .summary = "bilinear in an octahedral grid, whose nodes the lights must be (imported files)",
     .prepare = prepare,
     .evaluate = evaluate,
-    .release = free,
+    .release = mem_free,
 };

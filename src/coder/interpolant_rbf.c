@@ -16,8 +16,8 @@ enum { MANY = 200 };
 static void release(void *data)
 {
     struct gaussians *g = data;
-    free(g->light);
-    free(g);
+    mem_free(g->light);
+    mem_free(g);
 }
 
 // The mean distance to the nearest other light.

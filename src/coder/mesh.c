@@ -19,9 +19,9 @@ void mesh_destroy(mesh **m)
 {
     if (!*m)
         return;
-    free((*m)->point);
-    free((*m)->triangle);
-    free(*m);
+    mem_free((*m)->point);
+    mem_free((*m)->triangle);
+    mem_free(*m);
     *m = NULL;
 }
 

@@ -43,13 +43,13 @@ void near_fit_destroy(struct near_fit **fit)
     if (!s)
         return;
     for (int i = 0; s->node && i < s->rows; i++)
-        free(s->node[i]);
-    free(s->node);
-    free(s->mixed);
-    free(s->work);
-    free(s->cells);
+        mem_free(s->node[i]);
+    mem_free(s->node);
+    mem_free(s->mixed);
+    mem_free(s->work);
+    mem_free(s->cells);
     design_destroy(&s->design);
-    free(s);
+    mem_free(s);
 }
 
 static int cell_for(int width, int height)
@@ -162,7 +162,7 @@ static bool need_nodes(struct near_fit *s)
     const int first = s->row / s->cell, last = (s->row + s->band_rows - 1) / s->cell + 1;
     for (int i = 0; i < s->rows; i++) {
         if (i < first || i > last) {
-            free(s->node[i]);
+            mem_free(s->node[i]);
             s->node[i] = NULL;
         } else if (!s->node[i]) {
             s->node[i] = mem_array((size_t)s->columns * s->node_size, sizeof **s->node);

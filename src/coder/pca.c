@@ -38,22 +38,22 @@ struct solver {
 
 void components_destroy(struct components *c)
 {
-    free(c->mean);
-    free(c->analysis);
-    free(c->function);
+    mem_free(c->mean);
+    mem_free(c->analysis);
+    mem_free(c->function);
     *c = (struct components){0};
 }
 
 static void free_solver(struct solver *s)
 {
-    free(s->covariance);
-    free(s->weights);
-    free(s->metric);
-    free(s->root);
-    free(s->inverse);
-    free(s->product);
-    free(s->transposed);
-    free(s->values);
+    mem_free(s->covariance);
+    mem_free(s->weights);
+    mem_free(s->metric);
+    mem_free(s->root);
+    mem_free(s->inverse);
+    mem_free(s->product);
+    mem_free(s->transposed);
+    mem_free(s->values);
 }
 
 static bool alloc_solver(struct solver *s)
@@ -183,9 +183,9 @@ static relume_status expect_errors(struct solver *s, const vec3 *d)
         for (int i = 0; i < DIRECTIONS; i++)
             s->expected[i] = 0.5 * exp(alpha + beta * d[i].z);
     }
-    free(gram);
-    free(b);
-    free(error);
+    mem_free(gram);
+    mem_free(b);
+    mem_free(error);
     return status;
 }
 
@@ -207,7 +207,7 @@ static relume_status find_metric(struct solver *s)
             row[j] = s->weights[(size_t)i * n + j] * sqrt(s->emphasis[i] / total);
         lsq_add_gram(s->metric, (int)n, row, 1);
     }
-    free(row);
+    mem_free(row);
     for (size_t j = 0; j < n; j++)
         trace += s->metric[j * n + j];
     for (size_t j = 0; j < n; j++)

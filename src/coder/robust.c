@@ -22,7 +22,7 @@ void robust_destroy(struct robust *r)
 {
     if (r)
         design_destroy(&r->design);
-    free(r);
+    mem_free(r);
 }
 
 relume_status robust_create(struct robust **out, const relume_coder *coder)

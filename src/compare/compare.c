@@ -201,9 +201,9 @@ relume_status relume_image_compare(struct relume_difference *out, const struct r
             thread_for(p.threads, parts, compare_structure, &job);
         collect(out, job.block, blocks, !p.no_delta_e);
     }
-    free(job.luma[0]);
-    free(job.luma[1]);
-    free(job.block);
-    free(job.scratch);
+    mem_free(job.luma[0]);
+    mem_free(job.luma[1]);
+    mem_free(job.block);
+    mem_free(job.scratch);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

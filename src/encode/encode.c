@@ -31,17 +31,17 @@ static void destroy(struct material *m)
         if (m->books)
             relume_books_destroy(&m->books[i]);
         if (m->words)
-            free(m->words[i].word);
+            mem_free(m->words[i].word);
         for (int b = 0; m->index && b < RELUME_MOST_BOOKS; b++)
-            free(m->index[i * RELUME_MOST_BOOKS + b]);
+            mem_free(m->index[i * RELUME_MOST_BOOKS + b]);
     }
-    free(m->books);
-    free(m->words);
-    free(m->index);
-    free(m->view);
-    free(m->coefficients);
-    free(m->depth);
-    free(m->mask);
+    mem_free(m->books);
+    mem_free(m->words);
+    mem_free(m->index);
+    mem_free(m->view);
+    mem_free(m->coefficients);
+    mem_free(m->depth);
+    mem_free(m->mask);
 }
 
 static bool create(struct material *m, int views)

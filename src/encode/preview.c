@@ -79,6 +79,6 @@ relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb)
     for (size_t i = 0; view->mask && i < pixels; i++)
         if (!(view->mask->data[(size_t)row * width + i] > 0.5f))
             memset(rgb + 3 * i, 0, 3 * sizeof *rgb);
-    free(memory);
+    mem_free(memory);
     return status;
 }

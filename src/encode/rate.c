@@ -66,7 +66,7 @@ static relume_status code_views(const struct rate *r, struct lossy_words *words,
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < views; i++)
         status = j.status[i];
-    free(j.status);
+    mem_free(j.status);
     return status;
 }
 
@@ -114,8 +114,8 @@ static relume_status judge_view(double *square, const struct rate *r, int view,
         status = encode_judge(&judgement, c, r->capture, r->first + view, true,
                               &(const struct encode_values){shown_row, &shown}, r->p);
     *square += judgement.square;
-    free(order);
-    free(codes);
+    mem_free(order);
+    mem_free(codes);
     return status;
 }
 
@@ -147,7 +147,7 @@ static void forget(struct rate *r)
 {
     for (int q = 0; q <= AV1_COARSEST; q++)
         for (int i = 0; i < MOST_TRIED; i++)
-            free(r->trial[q].words[i].word);
+            mem_free(r->trial[q].words[i].word);
     memset(r->trial, 0, sizeof r->trial);
 }
 

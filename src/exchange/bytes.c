@@ -2,6 +2,7 @@
 #include "exchange/bytes.h"
 
 #include "base/infile.h"
+#include "base/memory.h"
 
 #include <errno.h>
 #include <math.h>
@@ -16,7 +17,7 @@ relume_status bytes_load(struct bytes *out, const char *path, const struct relum
 
 void bytes_free(struct bytes *b)
 {
-    free(b->data);
+    mem_free(b->data);
     *b = (struct bytes){0};
 }
 

@@ -72,11 +72,11 @@ static void destroy(struct material *m)
 {
     relume_coefficients_destroy(&m->coefficients);
     relume_coder_destroy(&m->coder);
-    free(m->light);
-    free(m->transform);
-    free(m->mean);
-    free(m->plane);
-    free(m->words);
+    mem_free(m->light);
+    mem_free(m->transform);
+    mem_free(m->mean);
+    mem_free(m->plane);
+    mem_free(m->words);
 }
 
 // A file may scale by zero or below it; codes are turned so that the scale is positive.
@@ -126,14 +126,14 @@ static relume_status separate(struct material *m)
         }
     }
     if (status) {
-        free(scale);
-        free(offset);
+        mem_free(scale);
+        mem_free(offset);
         return status;
     }
-    free(f->scale);
-    free(f->offset);
-    free(f->transform);
-    free(f->mean);
+    mem_free(f->scale);
+    mem_free(f->offset);
+    mem_free(f->transform);
+    mem_free(f->mean);
     f->scale = scale;
     f->offset = offset;
     f->transform = f->mean = NULL;

@@ -32,7 +32,7 @@ static bool holds(const char *folder, const char *name, const struct relume_log 
 {
     char *path = mem_format("%s/%s", folder, name);
     const bool found = path && input_exists(path, log);
-    free(path);
+    mem_free(path);
     return found;
 }
 
@@ -42,7 +42,7 @@ static enum relume_kind kind_of_folder(const char *path, const struct relume_log
         return RELUME_KIND_FOREIGN;
     char *lp = holds(path, "capture.json", log) ? NULL : tree_only(path, ".lp");
     const bool capture = lp || holds(path, "capture.json", log);
-    free(lp);
+    mem_free(lp);
     return capture ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
 }
 
@@ -192,7 +192,7 @@ static relume_status open_converted(relume_pack **out, enum relume_kind kind, co
     if (!status)
         status = relume_pack_open(
             out, name, relume_pack_params(.log = log, .limits = p->limits, .threads = p->threads));
-    free(name);
+    mem_free(name);
     close(fd);
     return status;
 }

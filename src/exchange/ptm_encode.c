@@ -168,8 +168,8 @@ static relume_status compress(struct coder *c, int i, const float *residual)
         trellis_quantise(dct, blocks, c->step[i], SHEET_LAMBDA, codes);
         status = jpeg_encode(&c->plane[i].bytes, &c->plane[i].size, &picture);
     }
-    free(dct);
-    free(codes);
+    mem_free(dct);
+    mem_free(codes);
     return status;
 }
 
@@ -185,7 +185,7 @@ static void code_plane(void *context, size_t item, int worker)
         find_residual(c, i, residual);
         status = compress(c, i, residual);
     }
-    free(residual);
+    mem_free(residual);
     if (!status)
         status =
             jpeg_decode(&back, c->plane[i].bytes, c->plane[i].size, "plane of a .ptm", NULL, NULL);
@@ -275,10 +275,10 @@ relume_status ptm_encode_jpeg(struct ptm_jpeg *out, const struct foreign *f, dou
         out->predicted += c->tree.reference[i] >= 0;
         out->inverted += c->tree.inverted[i];
         out->records += c->plane[i].records;
-        free(c->plane[i].bytes);
-        free(c->plane[i].side);
+        mem_free(c->plane[i].bytes);
+        mem_free(c->plane[i].side);
     }
-    free(c);
+    mem_free(c);
     if (status)
         ptm_jpeg_free(out);
     return status;
@@ -286,7 +286,7 @@ relume_status ptm_encode_jpeg(struct ptm_jpeg *out, const struct foreign *f, dou
 
 void ptm_jpeg_free(struct ptm_jpeg *file)
 {
-    free(file->bytes);
-    free(file->codes);
+    mem_free_libc(file->bytes);
+    mem_free(file->codes);
     *file = (struct ptm_jpeg){0};
 }

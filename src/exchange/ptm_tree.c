@@ -48,8 +48,8 @@ static void take_plane(struct samples *s, const struct foreign *f, int i, int ev
 static void free_samples(struct samples *s)
 {
     for (int i = 0; i < s->planes; i++) {
-        free(s->code[i]);
-        free(s->coefficient[i]);
+        mem_free(s->code[i]);
+        mem_free(s->coefficient[i]);
     }
 }
 
@@ -71,7 +71,7 @@ static relume_status take_samples(struct samples *s, const struct foreign *f)
     }
     for (int i = 0; good && i < s->planes; i++)
         take_plane(s, f, i, every, work);
-    free(work);
+    mem_free(work);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 

@@ -92,7 +92,7 @@ relume_status ptm_write(const struct foreign *f, const char *path,
         gather_all(f, bytes + text_size);
         status = outfile_save_to(path, writer, bytes, text_size + body, log);
     }
-    free(text);
-    free(bytes);
+    mem_free_libc(text);
+    mem_free(bytes);
     return status;
 }

@@ -156,7 +156,7 @@ relume_status rti_write(const struct foreign *f, const char *path,
                     *to++ = f->codes[(3 * k + c) * pixels + i];
         status = outfile_save_to(path, writer, bytes, text_size + pixels * 3 * terms, log);
     }
-    free(text);
-    free(bytes);
+    mem_free_libc(text);
+    mem_free(bytes);
     return status;
 }

@@ -151,8 +151,8 @@ relume_status sheet_encode(struct sheet_result *out, const struct sheet *sheet, 
     if (!status)
         status = jpeg_encode(&out->bytes, &out->size, &picture);
     report(sheet, coding, out);
-    free(codes);
-    free(dct);
-    free(quantised);
+    mem_free(codes);
+    mem_free(dct);
+    mem_free(quantised);
     return status;
 }

@@ -91,7 +91,7 @@ static relume_status encode(const struct relume_image *image, const char *out,
     if (!status)
         status = write(&codes, p->sphere, out, p);
     relume_coder_destroy(&coder);
-    free(planes);
+    mem_free(planes);
     return status;
 }
 

@@ -69,7 +69,7 @@ static void encode_tile(void *context, size_t item, int worker)
     l->status[item] = cut(l, (int)item % l->columns, (int)item / l->columns, &tile, &room);
     if (!l->status[item])
         l->status[item] = sheet_encode(&l->tile[item], &tile, l->step);
-    free(room);
+    mem_free(room);
 }
 
 static relume_status make_folder(const char *path, const struct relume_log *log)
@@ -85,7 +85,7 @@ static relume_status write_tiles(const struct level *l, const struct relume_log 
     for (int i = 0; !status && i < l->columns * l->rows; i++) {
         char *name = mem_format("%s/%d_%d.jpg", l->folder, i % l->columns, i / l->columns);
         status = name ? outfile_save(name, l->tile[i].bytes, l->tile[i].size, log) : RELUME_ENOMEM;
-        free(name);
+        mem_free(name);
     }
     return status;
 }
@@ -105,9 +105,9 @@ static relume_status write_level(struct level *l, int threads, const struct relu
     if (!status)
         status = write_tiles(l, log);
     for (size_t i = 0; l->tile && i < n; i++)
-        free(l->tile[i].bytes);
-    free(l->tile);
-    free(l->status);
+        mem_free(l->tile[i].bytes);
+    mem_free(l->tile);
+    mem_free(l->status);
     return status;
 }
 
@@ -133,7 +133,7 @@ static relume_status go_up(struct level *l)
         float *half = halve(l->sheet.plane[p], l->sheet.width, l->sheet.height);
         if (!half)
             return RELUME_ENOMEM;
-        free(l->own[p]);
+        mem_free(l->own[p]);
         l->own[p] = half;
         l->sheet.plane[p] = half;
     }
@@ -151,7 +151,7 @@ static relume_status write_dzi(const char *path, const struct sheet *s, int side
                             "  <Size Width=\"%d\" Height=\"%d\"/>\n</Image>\n",
                             OVERLAP, side, s->width, s->height);
     const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
-    free(text);
+    mem_free(text);
     return status;
 }
 
@@ -184,17 +184,17 @@ static relume_status write_sheet(const struct web_folder *w, int index, double s
         char *folder = mem_format("%s/%d", files, level);
         l.folder = folder;
         status = folder ? write_level(&l, threads, log) : RELUME_ENOMEM;
-        free(folder);
+        mem_free(folder);
         if (!status && level > 0)
             status = go_up(&l);
     }
     if (!status && unlink(jpeg))
         status = log_fail(log, RELUME_EIO, "%s: cannot be removed; %s", jpeg, strerror(errno));
     for (int p = 0; p < SHEET_PLANES; p++)
-        free(l.own[p]);
-    free(dzi);
-    free(files);
-    free(jpeg);
+        mem_free(l.own[p]);
+    mem_free(dzi);
+    mem_free(files);
+    mem_free(jpeg);
     return status;
 }
 

@@ -93,8 +93,8 @@ static relume_status read_description(struct pyramid *p)
     char *text = status ? NULL : mem_format("%.*s", (int)b.size, (const char *)b.data);
     if (!status)
         status = text ? parse(p, path, text) : RELUME_ENOMEM;
-    free(text);
-    free(path);
+    mem_free(text);
+    mem_free(path);
     bytes_free(&b);
     return status;
 }
@@ -110,7 +110,7 @@ static int is_there(const struct pyramid *p, int level, int column, int row)
 {
     char *path = tile_path(p, level, column, row);
     const int found = !path ? -1 : input_exists(path, p->log);
-    free(path);
+    mem_free(path);
     return found;
 }
 
@@ -140,7 +140,7 @@ static relume_status find_tiles(struct pyramid *p)
             path ? log_fail(p->log, RELUME_ENOTFOUND, "%s: no such tile; expected %d x %d of them",
                             path, columns, rows)
                  : RELUME_ENOMEM;
-        free(path);
+        mem_free(path);
         return status;
     }
     return RELUME_OK;
@@ -176,7 +176,7 @@ static relume_status read_tile(const struct pyramid *p, int column, int row, str
     if (!status)
         status = place_tile(p, column, row, &tile, path, out);
     jpeg_codes_free(&tile);
-    free(path);
+    mem_free(path);
     return status;
 }
 

@@ -225,7 +225,7 @@ static relume_status read_basis_file(struct folder *w, size_t size)
     for (size_t i = 0; !status && i < size; i++)
         w->basis[i] = b.data[i];
     bytes_free(&b);
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -343,7 +343,7 @@ static bool is_tiled(const struct folder *w, int image)
 {
     char *path = mem_format("%s/plane_%d.dzi", w->at, image);
     const bool tiled = path && input_exists(path, w->log);
-    free(path);
+    mem_free(path);
     return tiled;
 }
 
@@ -360,7 +360,7 @@ static relume_status read_jpeg(struct folder *w, int image, struct jpeg_codes *c
         status = log_fail(w->log, RELUME_EDAMAGED,
                           "%s: %d x %d pixels, %d components; expected %d x %d and 3", path,
                           codes->width, codes->height, codes->planes, w->f->width, w->f->height);
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -449,12 +449,12 @@ relume_status web_read(struct foreign *out, const char *path, const struct relum
         status = give_meaning(&w);
     if (w.root)
         jvalue_free(&w.root);
-    free(w.at);
-    free(w.info);
-    free(w.scale);
-    free(w.bias);
-    free(w.range);
-    free(w.basis);
+    mem_free(w.at);
+    mem_free(w.info);
+    mem_free(w.scale);
+    mem_free(w.bias);
+    mem_free(w.range);
+    mem_free(w.basis);
     if (status)
         foreign_free(out);
     return status;

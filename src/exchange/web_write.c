@@ -62,8 +62,8 @@ struct job {
 
 static void free_sheet(struct sheet_result *sheet)
 {
-    free(sheet->bytes);
-    free(sheet->block);
+    mem_free(sheet->bytes);
+    mem_free(sheet->block);
     *sheet = (struct sheet_result){0};
 }
 
@@ -118,7 +118,7 @@ relume_status web_encode(struct web_folder *w, double step, bool all, int thread
         status = job.status[i];
     if (!status)
         choose_kept(w, step, all);
-    free(job.status);
+    mem_free(job.status);
     return status;
 }
 
@@ -177,7 +177,7 @@ relume_status web_visible_error(const struct web_folder *w, double *levels)
     sort_doubles(seen, n);
     if (n)
         *levels = seen[(size_t)(SEEN_OF_BLOCKS * (double)(n - 1))];
-    free(seen);
+    mem_free(seen);
     return RELUME_OK;
 }
 
@@ -185,7 +185,7 @@ void web_folder_free(struct web_folder *w)
 {
     for (int i = 0; w->sheet && i < w->sheets; i++)
         free_sheet(&w->sheet[i]);
-    free(w->sheet);
+    mem_free(w->sheet);
     *w = (struct web_folder){0};
 }
 
@@ -308,8 +308,8 @@ static relume_status write_info(const struct web_folder *w, const char *path, in
     char *name = mem_format("%s/info.json", path);
     const relume_status status =
         failed || !name ? RELUME_ENOMEM : outfile_save(name, text, size, log);
-    free(text);
-    free(name);
+    mem_free_libc(text);
+    mem_free(name);
     return status;
 }
 
@@ -321,7 +321,7 @@ relume_status web_write(const struct web_folder *w, const char *path, int qualit
         char *name = mem_format("%s/plane_%d.jpg", path, i);
         status =
             name ? outfile_save(name, w->sheet[i].bytes, w->sheet[i].size, log) : RELUME_ENOMEM;
-        free(name);
+        mem_free(name);
     }
     return status;
 }

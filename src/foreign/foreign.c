@@ -26,12 +26,12 @@ relume_status foreign_create(struct foreign *f, const char *path, long width, lo
 
 void foreign_free(struct foreign *f)
 {
-    free(f->codes);
-    free(f->scale);
-    free(f->offset);
-    free(f->transform);
-    free(f->mean);
-    free((void *)(uintptr_t)f->functions.lights);
+    mem_free(f->codes);
+    mem_free(f->scale);
+    mem_free(f->offset);
+    mem_free(f->transform);
+    mem_free(f->mean);
+    mem_free((void *)(uintptr_t)f->functions.lights);
     *f = (struct foreign){0};
 }
 

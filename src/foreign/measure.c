@@ -68,10 +68,10 @@ static void compare_band(void *context, size_t item, int worker)
             j->square[item * (size_t)j->lights + v / 3] +=
                 compare_row(j, v, a + v * n, b + v * n, coloured ? c + (k + v % 3) * n : NULL, n);
     }
-    free(x);
-    free(c);
-    free(a);
-    free(b);
+    mem_free(x);
+    mem_free(c);
+    mem_free(a);
+    mem_free(b);
 }
 
 // Rows of weights as matrices over the source's numbers and over the stored planes.
@@ -110,8 +110,8 @@ static relume_status prepare(struct judge *j, size_t bands)
         foreign_weights(j->f, light, foreign, constant);
         fill_rows(j, i, file, foreign, constant);
     }
-    free(file);
-    free(foreign);
+    mem_free(file);
+    mem_free(foreign);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -147,11 +147,11 @@ relume_status measure_psnr(double *psnr_db, const struct foreign *f, const struc
     for (size_t b = 0; !status && b < bands; b++)
         status = j.status[b];
     *psnr_db = status ? 0.0 : mean_psnr(&j, bands);
-    free(j.file);
-    free(j.file_constant);
-    free(j.foreign);
-    free(j.foreign_constant);
-    free(j.square);
-    free(j.status);
+    mem_free(j.file);
+    mem_free(j.file_constant);
+    mem_free(j.foreign);
+    mem_free(j.foreign_constant);
+    mem_free(j.square);
+    mem_free(j.status);
     return status;
 }

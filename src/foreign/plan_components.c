@@ -51,10 +51,10 @@ static double *metric_of(const struct plan_view *v)
     if (root && gram)
         lsq_product(true, false, v->numbers, v->numbers, (int)rows, root, root, gram);
     if (!root) {
-        free(gram);
+        mem_free(gram);
         gram = NULL;
     }
-    free(root);
+    mem_free(root);
     return gram;
 }
 
@@ -80,7 +80,7 @@ relume_status plan_components(struct plan *p, const struct source *s,
         take_components(p, &view, &c);
     plan_view_close(&view);
     principal_free(&c);
-    free(metric);
+    mem_free(metric);
     if (status)
         plan_free(p);
     return status;

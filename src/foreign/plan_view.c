@@ -16,25 +16,25 @@ enum { SPIRAL = 2048 };
 
 void plan_free(struct plan *p)
 {
-    free(p->map);
-    free(p->shift);
-    free(p->transform);
-    free(p->mean);
-    free(p->weight);
-    free(p->energy);
+    mem_free(p->map);
+    mem_free(p->shift);
+    mem_free(p->transform);
+    mem_free(p->mean);
+    mem_free(p->weight);
+    mem_free(p->energy);
     *p = (struct plan){0};
 }
 
 void plan_view_close(struct plan_view *v)
 {
-    free(v->direction);
-    free(v->share);
-    free(v->f);
-    free(v->a);
-    free(v->nodes);
-    free(v->shown);
-    free(v->mean);
-    free(v->covariance);
+    mem_free(v->direction);
+    mem_free(v->share);
+    mem_free(v->f);
+    mem_free(v->a);
+    mem_free(v->nodes);
+    mem_free(v->shown);
+    mem_free(v->mean);
+    mem_free(v->covariance);
     *v = (struct plan_view){0};
 }
 
@@ -119,10 +119,10 @@ static relume_status solve_nodes(struct plan_view *v, const double *prior, doubl
         lsq_product(true, false, n, width, n, h, half, v->nodes);
         lsq_product(false, false, v->directions, width, n, v->f, v->nodes, v->shown);
     }
-    free(sf);
-    free(h);
-    free(b);
-    free(half);
+    mem_free(sf);
+    mem_free(h);
+    mem_free(b);
+    mem_free(half);
     return status;
 }
 
@@ -146,7 +146,7 @@ static relume_status fit_nodes(struct plan_view *v, const struct source *s,
         memcpy(v->nodes, prior, (size_t)f->count * width * sizeof *prior);
         lsq_product(false, false, v->directions, (int)width, f->count, v->f, v->nodes, v->shown);
     }
-    free(prior);
+    mem_free(prior);
     return status;
 }
 
@@ -199,7 +199,7 @@ relume_status plan_view_loss(const struct plan_view *v, double *lost)
         *lost += v->share[i / 3] * (square + bias * bias);
     }
     const bool good = clean && product;
-    free(clean);
-    free(product);
+    mem_free(clean);
+    mem_free(product);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

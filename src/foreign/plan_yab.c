@@ -39,12 +39,12 @@ struct maker {
 static void destroy(struct maker *m)
 {
     for (int k = 0; k < PARTS; k++) {
-        free(m->part[k].node);
-        free(m->part[k].kept);
+        mem_free(m->part[k].node);
+        mem_free(m->part[k].kept);
         principal_free(&m->part[k].c);
     }
-    free(m->covariance);
-    free(m->luminance);
+    mem_free(m->covariance);
+    mem_free(m->luminance);
 }
 
 static size_t width_of(const struct maker *m)
@@ -110,7 +110,7 @@ static double *metric_of(const struct maker *m, const double *node, double energ
             shown[i] *= sqrt(energy * v->share[i / n]);
         lsq_product(true, false, (int)n, (int)n, v->directions, shown, shown, gram);
     }
-    free(shown);
+    mem_free(shown);
     return gram;
 }
 
@@ -122,7 +122,7 @@ static relume_status analyse(const struct maker *m, struct part *p, double energ
         return RELUME_ENOMEM;
     const int n = (int)width_of(m);
     const relume_status status = principal_find(&p->c, metric, m->covariance, n, count);
-    free(metric);
+    mem_free(metric);
     return status;
 }
 
@@ -153,7 +153,7 @@ static relume_status analyse_luminance(struct maker *m, int chroma, int count)
     }
     principal_free(&y->c);
     const relume_status status = rest ? analyse(m, y, energy_of[PART_Y], count) : RELUME_ENOMEM;
-    free(rest);
+    mem_free(rest);
     return status;
 }
 

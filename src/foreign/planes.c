@@ -37,8 +37,8 @@ void planes_free(struct planes *p)
 {
     scratch_unmap(p->data,
                   (size_t)p->width * (size_t)p->height * (size_t)p->count * sizeof *p->data);
-    free(p->minimum);
-    free(p->maximum);
+    mem_free(p->minimum);
+    mem_free(p->maximum);
     *p = (struct planes){0};
 }
 
@@ -89,8 +89,8 @@ static void make_band(void *context, size_t item, int worker)
             memcpy(m->out->data + p * pixels + (size_t)row * (size_t)m->s->width, c + p * n,
                    n * sizeof *c);
     }
-    free(x);
-    free(c);
+    mem_free(x);
+    mem_free(c);
 }
 
 static void find_range(void *context, size_t item, int worker)
@@ -126,8 +126,8 @@ relume_status planes_make(struct planes *out, const struct plan *plan, const str
         status = m.status[i];
     if (!status)
         thread_for(threads, (size_t)plan->planes, find_range, out);
-    free(m.map);
-    free(m.status);
+    mem_free(m.map);
+    mem_free(m.status);
     if (status)
         planes_free(out);
     return status;

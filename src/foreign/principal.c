@@ -19,9 +19,9 @@ static double *scaled_columns(const double *vectors, const double *values, int n
 
 void principal_free(struct principal *c)
 {
-    free(c->value);
-    free(c->forward);
-    free(c->back);
+    mem_free(c->value);
+    mem_free(c->forward);
+    mem_free(c->back);
     *c = (struct principal){0};
 }
 
@@ -53,11 +53,11 @@ relume_status principal_find(struct principal *out, double *metric, const double
         lsq_product(false, true, count, n, n, vectors, root, out->forward);
         lsq_product(false, true, count, n, n, vectors, inverse, out->back);
     }
-    free(values);
-    free(vectors);
-    free(half);
-    free(z);
-    free(root);
-    free(inverse);
+    mem_free(values);
+    mem_free(vectors);
+    mem_free(half);
+    mem_free(z);
+    mem_free(root);
+    mem_free(inverse);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

@@ -58,7 +58,7 @@ relume_status source_open(struct source *s, const struct relume_codes *codes,
 void source_close(struct source *s)
 {
     relume_coder_destroy(&s->between);
-    free(s->light);
+    mem_free(s->light);
     *s = (struct source){0};
 }
 
@@ -80,7 +80,7 @@ static relume_status read_products(const struct source *s, size_t first, size_t 
             for (size_t x = 0; x < n; x++)
                 to[c * n + x] = to[x] * colour[c * n + x];
     }
-    free(colour);
+    mem_free(colour);
     return RELUME_OK;
 }
 
@@ -182,9 +182,9 @@ static void survey_part(void *context, size_t item, int worker)
             add_band(v->sum + item * p, v->product + item * p * p, x,
                      (size_t)rows * (size_t)s->width, s->numbers, turned, gram);
     }
-    free(x);
-    free(turned);
-    free(gram);
+    mem_free(x);
+    mem_free(turned);
+    mem_free(gram);
 }
 
 static size_t surveyed_pixels(const struct survey *v)
@@ -219,7 +219,7 @@ relume_status source_statistics(const struct source *s, int threads, double *mea
         for (size_t part = 0; part < SUMS; part++)
             covariance[i] += v.product[part * p * p + i] / n;
     }
-    free(v.sum);
-    free(v.product);
+    mem_free(v.sum);
+    mem_free(v.product);
     return status;
 }

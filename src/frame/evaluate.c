@@ -58,7 +58,7 @@ static bool pass_progress(void *user, const char *what, double done)
 
 void relume_evaluation_destroy(struct relume_evaluation *evaluation)
 {
-    free(evaluation->light);
+    mem_free(evaluation->light);
     *evaluation = (struct relume_evaluation){0};
 }
 
@@ -340,9 +340,9 @@ static void destroy(struct evaluator *e)
 {
     relume_renderer_destroy(&e->renderer);
     relume_image_destroy(&e->relit);
-    free(e->light);
-    free(e->image);
-    free(e->status);
+    mem_free(e->light);
+    mem_free(e->image);
+    mem_free(e->status);
 }
 
 relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,

@@ -143,7 +143,7 @@ relume_status relume_frame_visible_lights(struct relume_image *frame, int *seen,
     relume_visible_lights_draw(frame, sources, count);
     if (seen)
         *seen = count;
-    free(sources);
+    mem_free(sources);
     relume_image_destroy(&scene.places);
     return status;
 }

@@ -201,7 +201,7 @@ relume_status relume_renderer_rays(float (*rgb)[3], relume_renderer *r,
         if (!status && i % 4096 == 4095 && !log_progress(r->params.log, "looking", (double)i / n))
             status = RELUME_ECANCEL;
     }
-    free(q.range);
+    mem_free(q.range);
     return status;
 }
 

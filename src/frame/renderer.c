@@ -82,7 +82,7 @@ static void forget(relume_renderer *r, int view)
     relume_image_destroy(&r->image[SHOWN_LIGHT][view]);
     relume_image_destroy(&r->disparity[view]);
     relume_relighter_drop(r->relighter, view);
-    free(k->texel);
+    mem_free(k->texel);
     if (k->code_bytes)
         relume_pack_drop(r->pack, view);
     *k = (struct kept){.bytes = k->bytes, .changed = true};
@@ -190,14 +190,14 @@ void relume_renderer_destroy(relume_renderer **renderer)
     relume_slab_destroy(&r->slab);
     relume_slab_set_destroy(&r->slabs);
     for (int i = 0; i < SHOWN; i++)
-        free(r->image[i]);
-    free(r->kept);
-    free(r->disparity);
-    free(r->needed);
-    free(r->changed);
-    free(r->lights);
-    free(r->over);
-    free(r);
+        mem_free(r->image[i]);
+    mem_free(r->kept);
+    mem_free(r->disparity);
+    mem_free(r->needed);
+    mem_free(r->changed);
+    mem_free(r->lights);
+    mem_free(r->over);
+    mem_free(r);
 }
 
 relume_pack *relume_renderer_pack(const relume_renderer *r)
@@ -229,7 +229,7 @@ relume_status relume_renderer_set_lights(relume_renderer *r, const struct relume
         return RELUME_ENOMEM;
     if (n)
         memcpy(copy, lights, (size_t)n * sizeof *copy);
-    free(r->lights);
+    mem_free(r->lights);
     r->lights = copy;
     r->light_count = n;
     r->lighting++;

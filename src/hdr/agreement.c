@@ -138,8 +138,8 @@ relume_status agreement(struct relume_exposure_report *report, const struct relu
     for (int j = 0; t && s && report && j < n; j++)
         summarise(&report[j], &t[j], pixels);
     const relume_status status = t && s ? RELUME_OK : RELUME_ENOMEM;
-    free(t);
-    free(s);
+    mem_free(t);
+    mem_free(s);
     return status || resolved ? status
                               : log_fail(params->log, RELUME_EUNFIT,
                                          "no exposure shows anything but black and saturated "

@@ -263,7 +263,7 @@ static relume_status match_all(struct grid *out, const struct pyramid *anchor,
         if (!status)
             match_level(out, count > 1 ? &parent : NULL, anchor, image, root / count == block,
                         threads);
-        free(parent.node);
+        mem_free(parent.node);
         parent = *out;
     }
     return status || grid_median(out) ? status : RELUME_ENOMEM;
@@ -336,11 +336,11 @@ static relume_status match_upright(struct grid *out, const struct pyramid *ancho
         status = match(&grid, anchor, &upright, block, p->threads);
     relume_image_destroy(&upright);
     if (status) {
-        free(grid.node);
+        mem_free(grid.node);
         return status;
     }
     compose(&grid, map);
-    free(out->node);
+    mem_free(out->node);
     *out = grid;
     return RELUME_OK;
 }
@@ -410,14 +410,14 @@ relume_status relume_align_blocks(struct relume_displacements *out,
         status = match_rolled(&grid, &a, anchor, image, block, &p);
     if (!status)
         status = hand_out(out, &grid, anchor->width, anchor->height);
-    free(grid.node);
+    mem_free(grid.node);
     pyramid_free(&a);
     return status;
 }
 
 void relume_displacements_destroy(struct relume_displacements *displacements)
 {
-    free(displacements->d);
+    mem_free(displacements->d);
     *displacements = (struct relume_displacements){0};
 }
 

@@ -266,7 +266,7 @@ static relume_status align_level(double h[9], double *correlation,
         *correlation = climb(&e, threads);
         memcpy(h, e.h, sizeof e.h);
     }
-    free(e.band);
+    mem_free(e.band);
     relume_image_destroy(&structure[0]);
     relume_image_destroy(&structure[1]);
     return status;
@@ -362,7 +362,7 @@ static double likeness_of(const struct relume_image *dark, const struct relume_i
         const struct sums s = sum_all(&e, 1);
         likeness = correlation_of(&s, &e);
     }
-    free(e.band);
+    mem_free(e.band);
     relume_image_destroy(&clipped);
     for (int i = 0; i < 2; i++) {
         relume_image_destroy(&luma[i]);

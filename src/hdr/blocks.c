@@ -140,7 +140,7 @@ bool grid_median(struct grid *grid)
             out[i].d[k] = median(v, 9);
         }
     if (out) {
-        free(grid->node);
+        mem_free(grid->node);
         grid->node = out;
     }
     return out != NULL;

@@ -198,7 +198,7 @@ relume_status relume_ghost_masks(struct relume_image *masks, const struct relume
     }
     for (int i = 0; status && i < n; i++)
         relume_image_destroy(&masks[i]);
-    free(g.rows);
-    free(order);
+    mem_free(g.rows);
+    mem_free(order);
     return status;
 }

@@ -59,7 +59,7 @@ int relume_exif_brackets(int *group, const struct relume_exif *notes, int n, dou
 {
     struct entry *order = mem_array((size_t)n, sizeof *order);
     if (!order || n < 1) {
-        free(order);
+        mem_free(order);
         return 0;
     }
     const bool timed = have_times(notes, n);
@@ -73,6 +73,6 @@ int relume_exif_brackets(int *group, const struct relume_exif *notes, int n, dou
         groups += first == i;
         group[order[i].index] = groups - 1;
     }
-    free(order);
+    mem_free(order);
     return groups;
 }

@@ -221,8 +221,8 @@ relume_status relume_merge(struct relume_image *out, struct relume_exposure_repo
         prepare(&m, codes, exposures, &p);
         thread_for(p.threads, ((size_t)codes->height + BAND - 1) / BAND, merge_band, &m);
     }
-    free(m.exposure);
-    free(m.by_time);
-    free(logs);
+    mem_free(m.exposure);
+    mem_free(m.by_time);
+    mem_free(logs);
     return status;
 }

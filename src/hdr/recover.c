@@ -262,7 +262,7 @@ static relume_status solve(double *g, const struct channel *ch, double smoothnes
                               "exposures that overlap",
                               names[ch->c]);
     }
-    free(e.matrix);
+    mem_free(e.matrix);
     return status;
 }
 
@@ -386,8 +386,8 @@ relume_status relume_response_recover(struct relume_response *out, const struct 
     }
     if (!status)
         normalise(out);
-    free(place);
-    free(log_time);
-    free(z);
+    mem_free(place);
+    mem_free(log_time);
+    mem_free(z);
     return status;
 }

@@ -77,7 +77,7 @@ relume_status tones_match(struct relume_image *out, const struct relume_image *i
     } else {
         relume_image_destroy(out);
     }
-    free(t);
-    free(cdf);
+    mem_free(t);
+    mem_free(cdf);
     return status;
 }

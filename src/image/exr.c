@@ -217,7 +217,7 @@ static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int
     pipeline->encoding_user_data = turn;
     const size_t size = chunk.unpacked_size;
     if (pipeline->packed_alloc_size < size) {
-        free(pipeline->packed_buffer);
+        mem_free_libc(pipeline->packed_buffer);
         pipeline->packed_buffer = malloc(size);
         pipeline->packed_alloc_size = pipeline->packed_buffer ? size : 0;
     }
@@ -258,7 +258,7 @@ static relume_status write_part(struct writing *w, const struct exr_part *part, 
     thread_for(threads, blocks, write_block, w);
     for (int i = 0; i < threads; i++)
         exr_encoding_destroy(w->exr, &w->pipelines[i].exr);
-    free(w->pipelines);
+    mem_free(w->pipelines);
     return w->status;
 }
 
@@ -336,8 +336,8 @@ void exr_close(exr_file **file)
     if ((*file)->exr)
         exr_finish(&(*file)->exr);
     infile_close(&(*file)->in);
-    free((*file)->path);
-    free(*file);
+    mem_free((*file)->path);
+    mem_free(*file);
     *file = NULL;
 }
 
@@ -438,7 +438,7 @@ relume_status exr_open_damaged(exr_file **out, const char *path, const struct re
     *out = NULL;
     exr_file *file = mem_zeroed(1, sizeof *file);
     if (!file || !(file->path = mem_text(infile_name(path)))) {
-        free(file);
+        mem_free(file);
         return RELUME_ENOMEM;
     }
     const relume_status status =
@@ -697,7 +697,7 @@ relume_status exr_read(const exr_file *file, int part, int threads,
     thread_for(threads, (height + rows - 1) / rows, read_block, &r);
     for (int i = 0; i < threads; i++)
         exr_decoding_destroy(file->exr, &r.pipelines[i]);
-    free(r.pipelines);
+    mem_free(r.pipelines);
     const relume_status status = (relume_status)atomic_load(&r.status);
     if (status == RELUME_EDAMAGED)
         return log_fail(log, RELUME_EDAMAGED,
@@ -755,8 +755,8 @@ relume_status exr_find_damage(const exr_file *file, int part, int threads,
     for (int i = 0; f.pipelines && i < threads; i++)
         exr_decoding_destroy(file->exr, &f.pipelines[i]);
     const bool done = f.pipelines && f.damaged && !atomic_load(&f.short_of_memory);
-    free(f.pipelines);
-    free(f.damaged);
+    mem_free(f.pipelines);
+    mem_free(f.damaged);
     return done ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -773,7 +773,7 @@ relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part)
     if (!b)
         return RELUME_ENOMEM;
     if (!find_layout(&b->layout, file, part)) {
-        free(b);
+        mem_free(b);
         return RELUME_EDAMAGED;
     }
     *out = b;
@@ -830,6 +830,6 @@ void exr_blocks_close(exr_blocks **blocks)
     if (!*blocks)
         return;
     exr_decoding_destroy((*blocks)->layout.file->exr, &(*blocks)->pipeline);
-    free(*blocks);
+    mem_free(*blocks);
     *blocks = NULL;
 }

@@ -89,7 +89,7 @@ static relume_status smoothed(struct relume_image *out, const struct relume_imag
     *out = (struct relume_image){flat->width, flat->height, 3, data};
     if (!sum || !data) {
         relume_image_destroy(out);
-        free(sum);
+        mem_free(sum);
         return RELUME_ENOMEM;
     }
     for (size_t c = 0; c < 3; c++) {
@@ -98,7 +98,7 @@ static relume_status smoothed(struct relume_image *out, const struct relume_imag
         for (size_t x = 0; x < width; x++)
             smooth_line(data + 3 * x + c, 3 * width, flat->height, half, sum);
     }
-    free(sum);
+    mem_free(sum);
     return RELUME_OK;
 }
 

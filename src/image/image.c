@@ -29,7 +29,7 @@ relume_status relume_image_create(struct relume_image *out, int width, int heigh
 
 void relume_image_destroy(struct relume_image *image)
 {
-    free(image->data);
+    mem_free(image->data);
     *image = (struct relume_image){0};
 }
 
@@ -104,7 +104,7 @@ relume_status image_stream_open(struct image_stream *stream, picture_reader *rea
 void image_stream_close(struct image_stream *stream)
 {
     picture_close(&stream->reader);
-    free(stream->scratch);
+    mem_free(stream->scratch);
     stream->scratch = NULL;
 }
 
@@ -313,7 +313,7 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
     }
     const relume_status status = picture_write_bytes(path, p->writer, image->width, image->height,
                                                      image->channels, bytes, p->log);
-    free(bytes);
+    mem_free(bytes);
     return status;
 }
 

@@ -122,10 +122,10 @@ static void close(picture_reader *reader)
         jpeg_destroy_decompress(&p->info);
     if (p->file)
         fclose(p->file);
-    free(p->profile);
-    free(p->cmyk);
-    free(p->path);
-    free(p);
+    mem_free(p->profile);
+    mem_free(p->cmyk);
+    mem_free(p->path);
+    mem_free(p);
 }
 
 static const struct picture_format format = {
@@ -173,7 +173,7 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
     struct jpeg_picture_reader *p = mem_zeroed(1, sizeof *p);
     *out = NULL;
     if (!p || !(p->path = mem_text(path))) {
-        free(p);
+        mem_free(p);
         return RELUME_ENOMEM;
     }
     const struct picture_info *info = &p->reader.info;
@@ -283,7 +283,7 @@ relume_status jpeg_decode(struct jpeg_codes *out, const void *bytes, size_t size
     const bool good = read_all(r, bytes, size);
     if (r->info.mem)
         jpeg_destroy_decompress(&r->info);
-    free(r->row);
+    mem_free(r->row);
     relume_status status = RELUME_OK;
     if (!good) {
         jpeg_codes_free(out);
@@ -292,7 +292,7 @@ relume_status jpeg_decode(struct jpeg_codes *out, const void *bytes, size_t size
                                 "%s: not a whole JPEG file of 1 or 3 components; %s", name, r->why)
                      : RELUME_ENOMEM;
     }
-    free(r);
+    mem_free(r);
     return status;
 }
 
@@ -305,13 +305,13 @@ relume_status jpeg_read(struct jpeg_codes *out, const char *path,
     relume_status status = input_load(&bytes, &size, path, UINT64_MAX, "a JPEG file", log);
     if (!status)
         status = jpeg_decode(out, (const uint8_t *)bytes, size, path, limits, log);
-    free(bytes);
+    mem_free(bytes);
     return status;
 }
 
 void jpeg_codes_free(struct jpeg_codes *codes)
 {
-    free(codes->data);
+    mem_free(codes->data);
     *codes = (struct jpeg_codes){0};
 }
 
@@ -473,17 +473,17 @@ relume_status jpeg_encode(uint8_t **out, size_t *size, const struct jpeg_picture
         if (w->info.mem)
             jpeg_destroy_compress(&w->info);
         if (good && (!*out || w->size < *size)) {
-            free(*out);
+            mem_free(*out);
             *out = w->out;
             *size = w->size;
         } else {
-            free(w->out);
+            mem_free(w->out);
         }
     }
-    free(w);
+    mem_free(w);
     if (good)
         return RELUME_OK;
-    free(*out);
+    mem_free(*out);
     *out = NULL;
     return RELUME_ENOMEM;
 }

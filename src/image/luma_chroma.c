@@ -255,10 +255,10 @@ void luma_chroma_close(luma_chroma **picture)
         return;
     exr_blocks_close(&p->light);
     exr_blocks_close(&p->colour);
-    free(p->sparse);
-    free(p->ring);
-    free(p->rgb);
-    free(p->y);
-    free(p);
+    mem_free(p->sparse);
+    mem_free(p->ring);
+    mem_free(p->rgb);
+    mem_free(p->y);
+    mem_free(p);
     *picture = NULL;
 }

@@ -144,7 +144,7 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_exi
         return RELUME_ENOMEM;
     relume_status status = picture_open(&reader, path, NULL, p.limits, p.log);
     if (status) {
-        free(profile);
+        mem_free(profile);
         return status;
     }
     status = picture_need_colour(reader, path, p.log);
@@ -168,6 +168,6 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_exi
         status = turn(out, notes->orientation);
     if (status)
         relume_image_destroy(out);
-    free(profile);
+    mem_free(profile);
     return status;
 }

@@ -95,10 +95,10 @@ static void keep_beside(struct gathering *g, char *path, const char *why)
     if (!g->p->companions || !used)
         leave_out(g, path, why);
     if (used) {
-        free(*place);
+        mem_free(*place);
         *place = path;
     } else {
-        free(path);
+        mem_free(path);
     }
 }
 
@@ -121,7 +121,7 @@ static relume_status add(struct gathering *g, char *path)
 {
     struct relume_photographs *list = g->list;
     if (!path || !mem_grow(&list->path, (size_t)list->count, sizeof *list->path)) {
-        free(path);
+        mem_free(path);
         return RELUME_ENOMEM;
     }
     list->path[list->count++] = path;
@@ -152,7 +152,7 @@ static relume_status add_folder(struct gathering *g, const char *folder)
     relume_status status = RELUME_OK;
     for (int i = 0; i < n; i++) {
         char *path = status ? NULL : mem_format("%s/%s", folder, entry[i]->d_name);
-        free(entry[i]);
+        mem_free_libc(entry[i]);
         if (status)
             continue;
         if (!path || !tree_is_folder(path))
@@ -160,9 +160,9 @@ static relume_status add_folder(struct gathering *g, const char *folder)
         else if (g->p->folders)
             status = add(g, path);
         else
-            free(path);
+            mem_free(path);
     }
-    free(entry);
+    mem_free_libc(entry);
     return status;
 }
 
@@ -203,7 +203,7 @@ static void put_back(struct gathering *g, char **path)
 {
     if (*path && g->p->companions)
         leave_out(g, *path, "");
-    free(*path);
+    mem_free(*path);
     *path = NULL;
 }
 
@@ -235,11 +235,11 @@ static int photographs_in(const char *folder, const struct relume_log *log)
     for (int i = 0; i < n; i++) {
         char *path = mem_format("%s/%s", folder, entry[i]->d_name);
         count += path && !tree_is_folder(path) && !by_product(path) && !why_none(path, log);
-        free(path);
-        free(entry[i]);
+        mem_free(path);
+        mem_free_libc(entry[i]);
     }
     if (n >= 0)
-        free(entry);
+        mem_free_libc(entry);
     return count;
 }
 
@@ -254,17 +254,17 @@ static void look_below(struct below *b, const char *folder, const struct relume_
         if (count && b->folders++ < 3)
             snprintf(b->names + used, sizeof b->names - used, "%s%.40s (%d)", used ? ", " : "",
                      entry[i]->d_name, count);
-        free(entry[i]);
+        mem_free_libc(entry[i]);
         if (count > b->most) {
             b->most = count;
-            free(b->folder);
+            mem_free(b->folder);
             b->folder = path;
         } else {
-            free(path);
+            mem_free(path);
         }
     }
     if (n >= 0)
-        free(entry);
+        mem_free_libc(entry);
 }
 
 // What stands in quotes on a command line.
@@ -300,17 +300,17 @@ static relume_status check_below(const struct gathering *g, const char *folder)
             folder, here, count ? "more" : "some", b.names, more, p->command ? p->command : "give",
             q, b.folder, q, *lights ? " --lights " : "", lights, p->command ? " -o DIR" : "");
     }
-    free(b.folder);
+    mem_free(b.folder);
     return status;
 }
 
 void relume_photographs_free(struct relume_photographs *list)
 {
     for (int i = 0; i < list->count; i++)
-        free(list->path[i]);
-    free(list->path);
-    free(list->mask);
-    free(list->lights);
+        mem_free(list->path[i]);
+    mem_free(list->path);
+    mem_free(list->mask);
+    mem_free(list->lights);
     *list = (struct relume_photographs){0};
 }
 

@@ -300,7 +300,7 @@ static relume_status write_pfm(const char *path, const struct relume_writer *wri
     for (int y = height; y-- > 0; to += row * sizeof *samples)
         memcpy(to, samples + (size_t)y * row, row * sizeof *samples);
     const relume_status status = outfile_save_to(path, writer, bytes, (size_t)(to - bytes), log);
-    free(bytes);
+    mem_free(bytes);
     return status;
 }
 

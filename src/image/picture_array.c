@@ -47,7 +47,7 @@ static const char *error(const picture_reader *reader)
 
 static void close(picture_reader *reader)
 {
-    free(reader);
+    mem_free(reader);
 }
 
 static const struct picture_format format = {

@@ -60,7 +60,7 @@ static void close(picture_reader *reader)
     exr_blocks_close(&p->blocks);
     luma_chroma_close(&p->coarse);
     exr_close(&p->file);
-    free(p);
+    mem_free(p);
 }
 
 static const struct picture_format format = {
@@ -130,7 +130,7 @@ relume_status exr_picture_open(picture_reader **out, const char *path,
     else if (!status && !plain && !p->coarse)
         status = refuse_subsampled(file, path, log);
     if (status || !(p->blocks || p->coarse)) {
-        free(p);
+        mem_free(p);
         exr_close(&file);
         return status;
     }

@@ -154,8 +154,8 @@ static void close_helped(picture_reader *reader)
     helper_end(&h->job);
     if (h->band)
         munmap(h->band, h->band_bytes);
-    free(h->profile);
-    free(h);
+    mem_free(h->profile);
+    mem_free(h);
 }
 
 static const struct picture_format format = {read_floats, read_bytes, notes,

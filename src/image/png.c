@@ -29,7 +29,7 @@ static void on_error(png_structp png, png_const_charp text)
 static png_voidp allocate(png_structp png, png_alloc_size_t size)
 {
     struct trap *trap = png_get_mem_ptr(png);
-    void *memory = malloc(size);
+    void *memory = mem_array(size, 1);
     trap->short_of_memory |= !memory;
     return memory;
 }
@@ -37,7 +37,7 @@ static png_voidp allocate(png_structp png, png_alloc_size_t size)
 static void release(png_structp png, png_voidp memory)
 {
     (void)png;
-    free(memory);
+    mem_free(memory);
 }
 
 static void on_warning(png_structp png, png_const_charp text)
@@ -150,7 +150,7 @@ static void close(picture_reader *reader)
         png_destroy_read_struct(&p->png, &p->info, NULL);
     if (p->file)
         fclose(p->file);
-    free(p);
+    mem_free(p);
 }
 
 static const struct picture_format format = {
@@ -265,6 +265,6 @@ relume_status png_write(const char *path, const struct relume_writer *writer, in
         png_destroy_write_struct(&w->png, &w->info);
     if (w)
         relume_buffer_destroy(&w->out);
-    free(w);
+    mem_free(w);
     return status;
 }

@@ -87,8 +87,8 @@ static relume_status smooth(float *out, const struct relume_image *image,
         thread_for(threads, height, smooth_across, &s);
         thread_for(threads, height, smooth_down, &s);
     }
-    free(s.luma);
-    free(s.rows);
+    mem_free(s.luma);
+    mem_free(s.rows);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -151,7 +151,7 @@ relume_status relume_image_ramps(struct relume_ramps *out, const struct relume_i
         status = smooth(b, reference, p.display, p.threads);
     if (!status)
         measure(out, a, b, image, mask);
-    free(a);
-    free(b);
+    mem_free(a);
+    mem_free(b);
     return status;
 }

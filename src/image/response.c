@@ -116,6 +116,6 @@ relume_status relume_response_save(const struct relume_response *response, const
         n += sprintf(text + n, "%d %.9g %.9g %.9g\n", i, (double)response->exposure[0][i],
                      (double)response->exposure[1][i], (double)response->exposure[2][i]);
     const relume_status status = outfile_save(path, text, (size_t)n, log);
-    free(text);
+    mem_free(text);
     return status;
 }

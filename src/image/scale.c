@@ -105,8 +105,8 @@ static bool create_axis(struct axis *a, const struct side *s, enum relume_filter
 
 static void destroy_axis(struct axis *a)
 {
-    free(a->texel);
-    free(a->weight);
+    mem_free(a->texel);
+    mem_free(a->weight);
 }
 
 // ---------------------------------------------------------------- passes

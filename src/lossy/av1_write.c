@@ -125,7 +125,7 @@ relume_status av1_encode(unsigned char **bytes, size_t *size, const uint16_t *sa
     aom_codec_destroy(&s.codec);
     aom_img_free(s.picture);
     if (status)
-        free(s.bytes);
+        mem_free(s.bytes);
     *bytes = status ? NULL : s.bytes;
     *size = s.size;
     return status;

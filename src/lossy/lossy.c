@@ -191,7 +191,7 @@ static relume_status gather(uint16_t *samples, const struct encoding *e, const s
     }
     for (int p = 0; !status && p < s->planes; p++)
         repeat_edges(samples + (size_t)p * plane, t);
-    free(row);
+    mem_free(row);
     return status;
 }
 
@@ -208,7 +208,7 @@ static void encode_tile(void *context, size_t item, int worker)
                             e->speed, e->log);
     }
     e->status[item] = status;
-    free(samples);
+    mem_free(samples);
 }
 
 static size_t words_for(size_t bytes)
@@ -266,11 +266,11 @@ relume_status lossy_encode(struct lossy_words *out, const relume_coefficients *f
     if (!status)
         status = join(out, &e);
     for (size_t i = 0; e.bytes && i < n; i++)
-        free(e.bytes[i]);
-    free(e.bytes);
-    free(e.size);
-    free(e.status);
-    free(order);
+        mem_free(e.bytes[i]);
+    mem_free(e.bytes);
+    mem_free(e.size);
+    mem_free(e.status);
+    mem_free(order);
     return status;
 }
 
@@ -329,8 +329,8 @@ static void decode_tile(void *context, size_t item, int worker)
         scatter(d, &t, samples);
     }
     d->status[item] = status;
-    free(samples);
-    free(bytes);
+    mem_free(samples);
+    mem_free(bytes);
 }
 
 static relume_status decode_all(struct decoding *d, int threads, const struct lossy_lost *lost)
@@ -368,7 +368,7 @@ relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape, con
                    sizeof *codes);
         status = decode_all(&d, threads, lost);
     }
-    free(d.at);
-    free(d.status);
+    mem_free(d.at);
+    mem_free(d.status);
     return status;
 }

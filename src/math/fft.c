@@ -60,10 +60,10 @@ relume_status fft_line_create(fft_line **out, int n, enum fft_kind kind)
         line->plan = plan_line(n, kind, lines, lines + half);
         pthread_mutex_unlock(&planning);
     }
-    free(lines);
+    mem_free(lines);
     *out = line && line->plan ? line : NULL;
     if (!*out)
-        free(line);
+        mem_free(line);
     return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -74,7 +74,7 @@ void fft_line_destroy(fft_line **line)
         fftwf_destroy_plan((*line)->plan);
         pthread_mutex_unlock(&planning);
     }
-    free(*line);
+    mem_free(*line);
     *line = NULL;
 }
 

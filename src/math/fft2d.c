@@ -67,9 +67,9 @@ void fft2d_destroy(fft2d **f)
     fft_line_destroy(&(*f)->column);
     fft_line_destroy(&(*f)->column_back);
     for (int i = 0; (*f)->work && i < (*f)->threads; i++)
-        free((*f)->work[i]);
-    free((*f)->work);
-    free(*f);
+        mem_free((*f)->work[i]);
+    mem_free((*f)->work);
+    mem_free(*f);
     *f = NULL;
 }
 

@@ -19,9 +19,9 @@ struct line {
 static void close_line(struct line *l)
 {
     kiss_fft_free(l->plan);
-    free(l->in);
-    free(l->out);
-    free(l->turn);
+    mem_free(l->in);
+    mem_free(l->out);
+    mem_free(l->turn);
 }
 
 static bool open_line(struct line *l, int n, bool inverse)
@@ -104,7 +104,7 @@ relume_status fft_line_create(fft_line **out, int n, enum fft_kind kind)
     if (line->plan)
         *out = line;
     else
-        free(line);
+        mem_free(line);
     return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -112,7 +112,7 @@ void fft_line_destroy(fft_line **line)
 {
     if (*line)
         kiss_fft_free((*line)->plan);
-    free(*line);
+    mem_free(*line);
     *line = NULL;
 }
 

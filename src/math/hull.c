@@ -167,9 +167,9 @@ relume_status hull_build(const struct relume_vec3 *points, int n, struct hull_tr
         (*triangles)[f] = (struct hull_triangle){
             {b.faces[f].corner[0], b.faces[f].corner[1], b.faces[f].corner[2]}};
     *count = status ? 0 : b.count;
-    free(b.p);
-    free(b.faces);
-    free(b.horizon);
+    mem_free(b.p);
+    mem_free(b.faces);
+    mem_free(b.horizon);
     return status;
 }
 

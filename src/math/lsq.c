@@ -79,11 +79,11 @@ static bool top_eigenvectors(const double *matrix, int n, int count, double *val
         lsq_multiply_double(count, n, m, turn, rows, vectors);
         memcpy(values, all, (size_t)count * sizeof *values);
     }
-    free(rows);
-    free(next);
-    free(small);
-    free(turn);
-    free(all);
+    mem_free(rows);
+    mem_free(next);
+    mem_free(small);
+    mem_free(turn);
+    mem_free(all);
     return good;
 }
 
@@ -162,10 +162,10 @@ bool lsq_roots(double *matrix, int n, double *root, double *inverse)
             }
         lsq_multiply_double(n, n, n, columns, scaled, side ? inverse : root);
     }
-    free(values);
-    free(vectors);
-    free(scaled);
-    free(columns);
+    mem_free(values);
+    mem_free(vectors);
+    mem_free(scaled);
+    mem_free(columns);
     return good;
 }
 

@@ -7,8 +7,8 @@
 
 void mesh_free(struct mesh *mesh)
 {
-    free(mesh->vertices);
-    free(mesh->triangles);
+    mem_free(mesh->vertices);
+    mem_free(mesh->triangles);
     *mesh = (struct mesh){0};
 }
 

@@ -1,6 +1,8 @@
 // mesh_assimp.c - the one file that knows Assimp; a module of its own, in the helper (mesh_other.h)
 #include "mesh/mesh_bridge.h"
 
+#include "base/memory.h"
+
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
@@ -117,7 +119,7 @@ static struct aiFile *stream_open(struct aiFileIO *io, const char *name, const c
     const struct mesh_source *source = (const struct mesh_source *)(const void *)io->UserData;
     struct stat st;
     const int descriptor = strchr(mode, 'w') ? -1 : source->open(source->context, name);
-    struct stream *s = descriptor < 0 || fstat(descriptor, &st) ? NULL : malloc(sizeof *s);
+    struct stream *s = descriptor < 0 || fstat(descriptor, &st) ? NULL : mem_array(1, sizeof *s);
     if (!s) {
         if (descriptor >= 0)
             close(descriptor);
@@ -138,7 +140,7 @@ static void stream_close(struct aiFileIO *io, struct aiFile *file)
 {
     (void)io;
     close(((const struct stream *)file)->descriptor);
-    free(file);
+    mem_free(file);
 }
 
 // ---------------------------------------------------------------- models

@@ -8,10 +8,10 @@
 void mesh_file_free(struct mesh_file *file)
 {
     mesh_free(&file->mesh);
-    free(file->picture);
+    mem_free(file->picture);
     for (int i = 0; i < file->parts; i++)
-        free(file->part[i]);
-    free(file->part);
+        mem_free(file->part[i]);
+    mem_free(file->part);
     *file = (struct mesh_file){0};
 }
 

@@ -141,7 +141,7 @@ static relume_status read_library(struct obj *o, const char *name)
         return RELUME_ENOMEM;
     if (!o->out->picture)
         o->out->picture = mesh_mtl_picture(path, o->log);
-    free(path);
+    mem_free(path);
     return RELUME_OK;
 }
 
@@ -243,11 +243,11 @@ relume_status mesh_read_obj(struct mesh_file *out, const char *text, size_t size
     out->made_normals = !o.own_normals;
     if (!status && !o.own_normals)
         status = make_normals(&o);
-    free(copy);
-    free(o.v.at);
-    free(o.vt.at);
-    free(o.vn.at);
-    free(o.smooth_of);
+    mem_free(copy);
+    mem_free(o.v.at);
+    mem_free(o.vt.at);
+    mem_free(o.vn.at);
+    mem_free(o.smooth_of);
     return status;
 }
 

@@ -50,7 +50,7 @@ static int open_beside(const char *path, const char *name, const struct relume_l
     int file = -1;
     if (beside && !open_regular(&file, beside, &bytes, NULL))
         input_note(log, beside);
-    free(beside);
+    mem_free(beside);
     return file;
 }
 

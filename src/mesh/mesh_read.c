@@ -19,7 +19,7 @@ static char *picture_beside(const char *path)
         char *name = mem_format("%.*s.%s", (int)(dot - path), path, *e);
         if (!name || !access(name, R_OK))
             return name;
-        free(name);
+        mem_free(name);
     }
     return NULL;
 }
@@ -61,7 +61,7 @@ static relume_status read_own(struct mesh_file *out, const char *path, bool obj,
     if (status)
         return status;
     status = (obj ? mesh_read_obj : mesh_read_ply)(out, text, size, path, log);
-    free(text);
+    mem_free(text);
     return status;
 }
 

@@ -139,7 +139,7 @@ relume_status tangents_make(struct tangents *out, const struct mesh *mesh)
         v->tangent[0] = (float)t.x, v->tangent[1] = (float)t.y, v->tangent[2] = (float)t.z;
         out->flat += flat;
     }
-    free(corner);
-    free(sum);
+    mem_free(corner);
+    mem_free(sum);
     return room ? RELUME_OK : RELUME_ENOMEM;
 }

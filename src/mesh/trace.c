@@ -72,7 +72,7 @@ void trace_destroy(tracer **t)
         rtcReleaseScene((*t)->scene);
     if (*t && (*t)->device)
         rtcReleaseDevice((*t)->device);
-    free(*t);
+    mem_free(*t);
     *t = NULL;
 }
 

@@ -78,7 +78,7 @@ relume_status blend_begin(struct blend *b)
     b->box = mem_zeroed((size_t)b->pictures, sizeof *b->box);
     for (int i = 0; b->box && used && i < b->pictures; i++)
         find_box(&b->box[i], used, b, i);
-    free(used);
+    mem_free(used);
     return b->box && used ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -236,9 +236,9 @@ relume_status blend_add(float *sums, const struct blend *b, int picture, blend_f
     }
     if (fits)
         thread_for(threads, rows, add_rest_row, &a);
-    free(a.fine);
-    free(a.coarse);
-    free(a.lines);
+    mem_free(a.fine);
+    mem_free(a.coarse);
+    mem_free(a.lines);
     return fits ? RELUME_OK : RELUME_ENOMEM;
 }
 

@@ -28,7 +28,7 @@ struct blend {
     struct blend_box *box;  // of each picture: what it shows of the panorama, and what lies around
 };
 
-// Take notice of the owners, all of which must be set. RELUME_ENOMEM. Free `box` with free().
+// Take notice of the owners, all of which must be set. RELUME_ENOMEM. Free `box` with mem_free().
 relume_status blend_begin(struct blend *b);
 
 // Colours of a picture at columns x, x + 1, ... (modulo the width) of row y: red, green, blue and

@@ -48,7 +48,7 @@ static relume_status mean_picture(uint8_t *grey, const struct panorama_job *job,
     }
     for (size_t i = 0; !status && i < n; i++)
         grey[i] = (uint8_t)lrintf(255.0f * sqrtf(fminf(fmaxf(sum[i], 0.0f), 1.0f)));
-    free(sum);
+    mem_free(sum);
     return status;
 }
 
@@ -185,7 +185,7 @@ static relume_status find_gains(struct stitching *s)
     const bool solved = lsq_solve(matrix, s->n, s->gain, 1);
     for (size_t i = 0; i < n; i++)
         s->gain[i] = solved ? exp(s->gain[i]) : 1.0;
-    free(matrix);
+    mem_free(matrix);
     return RELUME_OK;
 }
 
@@ -315,7 +315,7 @@ static relume_status warp_lights(struct stitching *s)
     }
     if (!status)
         say_coverage(s);
-    free(s->blend.box);
+    mem_free(s->blend.box);
     relume_image_destroy(&out);
     return status;
 }

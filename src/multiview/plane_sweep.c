@@ -74,7 +74,7 @@ relume_status plane_sweep_scratch_create(struct plane_sweep_scratch *out, int wi
 
 void plane_sweep_scratch_free(struct plane_sweep_scratch *scratch)
 {
-    free(scratch->one);
+    mem_free(scratch->one);
     *scratch = (struct plane_sweep_scratch){0};
 }
 

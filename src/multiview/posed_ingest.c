@@ -71,14 +71,14 @@ static double distance_of_points(const struct posed *s, vec3 middle)
 {
     double *away = mem_array(s->model.points, sizeof *away);
     if (!away || !s->model.points) {
-        free(away);
+        mem_free(away);
         return 0.0;
     }
     for (size_t i = 0; i < s->model.points; i++)
         away[i] = vec3_dot(vec3_sub(middle, s->model.point[i]), s->axis[2]);
     sort_doubles(away, s->model.points);
     const double median = away[s->model.points / 2];
-    free(away);
+    mem_free(away);
     return median;
 }
 
@@ -298,7 +298,7 @@ static relume_status load_photo(struct relume_image *out, const struct posed *s,
                           out->width, out->height, c->width, c->height);
         relume_image_destroy(out);
     }
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -349,7 +349,7 @@ static relume_status render_views(struct posed *s, struct relume_manifest_view *
         if (!status && !log_progress(s->common->log, "resampling", (i + 1.0) / n))
             status = RELUME_ECANCEL;
     }
-    free(total);
+    mem_free(total);
     relume_image_destroy(&out);
     return status;
 }

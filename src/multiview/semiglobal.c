@@ -117,7 +117,7 @@ relume_status semiglobal_sum(const struct semiglobal *s)
             thread_for(threads, (size_t)(line_count(&d) + LINES_AT_ONCE - 1) / LINES_AT_ONCE,
                        run_lines, &d);
     }
-    free(scratch);
+    mem_free(scratch);
     return RELUME_OK;
 }
 

@@ -138,7 +138,7 @@ static relume_status save_views(struct slab_depth *d, const outdir *dir)
         if (!status && !log_progress(d->p.log, "confirming", (i + 1.0) / d->m->views))
             status = RELUME_ECANCEL;
     }
-    free(plane);
+    mem_free(plane);
     return status;
 }
 
@@ -258,9 +258,9 @@ relume_status relume_slab_depth(struct relume_slab_depth_report *report,
         report_on(report, &d);
     if (d.room)
         scratch_unmap(d.room, d.room_bytes);
-    free(d.picture);
-    free(d.plane);
-    free(d.at);
-    free(d.bins);
+    mem_free(d.picture);
+    mem_free(d.plane);
+    mem_free(d.at);
+    mem_free(d.bins);
     return status;
 }

@@ -179,7 +179,7 @@ static relume_status find_range(double range[2], const struct slab_depth *d)
     }
     voted_range(range, votes, planes, step);
     plane_sweep_scratch_free(&scratch);
-    free(cost);
+    mem_free(cost);
     return status;
 }
 
@@ -275,11 +275,11 @@ static void volume_destroy(struct volume *v, int threads)
 {
     for (int i = 0; v->scratch && i < threads; i++)
         plane_sweep_scratch_free(&v->scratch[i]);
-    free(v->cost);
-    free(v->guide);
-    free(v->sum);
-    free(v->scratch);
-    free(v->row);
+    mem_free(v->cost);
+    mem_free(v->guide);
+    mem_free(v->sum);
+    mem_free(v->scratch);
+    mem_free(v->row);
 }
 
 relume_status slab_depth_view(struct slab_depth *d, int view)

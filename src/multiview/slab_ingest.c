@@ -55,7 +55,7 @@ static relume_status rank_positions(struct slab *s, bool of_u)
             rank += sorted[k] > sorted[k - 1] + near;
         *(of_u ? &s->place[i].column : &s->place[i].row) = rank;
     }
-    free(sorted);
+    mem_free(sorted);
     return RELUME_OK;
 }
 
@@ -164,7 +164,7 @@ static relume_status fill_grid(struct slab *s, const int *rows, const int *colum
                 log_line(log, RELUME_WARNING, "row %d, column %d: missing; filled by %s", rows[r],
                          columns[c], s->set.camera[*at].name);
         }
-    free(found);
+    mem_free(found);
     return status;
 }
 

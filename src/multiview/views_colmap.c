@@ -56,8 +56,8 @@ static void text_close(struct text *t)
 {
     if (t->file)
         fclose(t->file);
-    free(t->path);
-    free(t->buffer);
+    mem_free(t->path);
+    mem_free_libc(t->buffer);
 }
 
 // The next line; comments are passed over, empty lines are not.
@@ -206,7 +206,7 @@ static relume_status read_poses(struct posed_model *m, const char *folder, const
             memcpy(m->camera, all, (size_t)m->count * sizeof *all);
         status = m->camera ? RELUME_OK : RELUME_ENOMEM;
     }
-    free(all);
+    mem_free(all);
     text_close(&t);
     return status;
 }
@@ -243,7 +243,7 @@ relume_status posed_model_read(struct posed_model *out, const char *folder,
         status = read_poses(out, folder, lens, lenses, log);
     if (!status)
         status = read_points(out, folder);
-    free(lens);
+    mem_free(lens);
     if (status)
         posed_model_free(out);
     return status;
@@ -251,7 +251,7 @@ relume_status posed_model_read(struct posed_model *out, const char *folder,
 
 void posed_model_free(struct posed_model *model)
 {
-    free(model->point);
+    mem_free(model->point);
     arena_free(&model->arena);
     *model = (struct posed_model){.count = 0};
 }

@@ -174,8 +174,8 @@ static relume_status plane_sweep_middle(struct findings *f, const struct orders 
     if (!status)
         choose_planes(f, costs, costs + planes * n, n, o->planes);
     plane_sweep_scratch_free(&scratch);
-    free(raw);
-    free(costs);
+    mem_free(raw);
+    mem_free(costs);
     return status;
 }
 
@@ -246,9 +246,9 @@ relume_status grid_order(struct grid_order *out, const struct photo_set *set,
         }
         status = decide(out, &o, f, grid->rows > 1 && grid->columns > 1);
     }
-    free(room);
+    mem_free(room);
     for (int i = 0; i < o.sweep.views; i++)
-        free(o.picture[i]);
+        mem_free(o.picture[i]);
     return status;
 }
 
@@ -290,7 +290,7 @@ static relume_status find_moves(struct moves *m, const struct photo_set *set,
     m->width = o.sweep.width;
     m->height = o.sweep.height;
     for (int i = 0; i < o.sweep.views; i++)
-        free(o.picture[i]);
+        mem_free(o.picture[i]);
     return status;
 }
 
@@ -389,8 +389,8 @@ relume_status grid_spacing(struct grid_spacing *out, const struct photo_set *set
         status = RELUME_ENOMEM;
     if (!status)
         judge(out, told, collect(told, m), m);
-    free(told);
-    free(m[0].plane);
-    free(m[1].plane);
+    mem_free(told);
+    mem_free(m[0].plane);
+    mem_free(m[1].plane);
     return status;
 }

@@ -146,16 +146,16 @@ relume_status photo_load(struct relume_image *out, const struct photo_set *set, 
 // Absolute, without links; of a path that does not exist yet its folder must.
 static char *resolve(const char *path)
 {
-    char *whole = realpath(path, NULL);
+    char *whole = mem_take(realpath(path, NULL));
     if (whole)
         return whole;
     char *copy = mem_text(path), *again = mem_text(path);
-    char *folder = copy && again ? realpath(dirname(copy), NULL) : NULL;
+    char *folder = copy && again ? mem_take(realpath(dirname(copy), NULL)) : NULL;
     if (folder)
         whole = mem_format("%s/%s", strcmp(folder, "/") ? folder : "", basename(again));
-    free(folder);
-    free(copy);
-    free(again);
+    mem_free(folder);
+    mem_free(copy);
+    mem_free(again);
     return whole;
 }
 
@@ -195,9 +195,9 @@ static const char *link_photo(struct arena *arena, const outdir *folder, const c
         if (made || same)
             out = inside;
         more = more && !same;
-        free(path);
+        mem_free(path);
     }
-    free(photos);
+    mem_free(photos);
     return out;
 }
 
@@ -206,8 +206,8 @@ const char *path_from(struct arena *arena, const outdir *folder, const char *dir
     char *from = resolve(dir), *to = resolve(file);
     const char *out = from && to ? relative(arena, from, to) : NULL;
     const char *linked = out && leaves_folder(out) ? link_photo(arena, folder, out) : NULL;
-    free(from);
-    free(to);
+    mem_free(from);
+    mem_free(to);
     return linked ? linked : out;
 }
 
@@ -218,7 +218,7 @@ relume_status save_manifest(const outdir *dir, const struct relume_manifest *m,
 {
     char *path = mem_format("%s/capture.json", outdir_path(dir));
     const relume_status status = path ? relume_manifest_write(m, path, log) : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -229,6 +229,6 @@ relume_status save_inside(const outdir *dir, const char *name, const struct relu
     const relume_status status =
         path ? relume_image_save(image, path, relume_image_params(.log = log, .half = half))
              : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }

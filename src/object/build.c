@@ -84,7 +84,7 @@ static relume_status count_fins(size_t *out, const struct mesh *m)
             ;
         *out += end - i > 2;
     }
-    free(edge);
+    mem_free(edge);
     return RELUME_OK;
 }
 
@@ -130,7 +130,7 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
                         file->part[number]);
     char *name = mem_text(file->part[number]);
     if (!name || !mem_grow(&o->part, (size_t)o->info.parts, sizeof *o->part)) {
-        free(name);
+        mem_free(name);
         return RELUME_ENOMEM;
     }
     o->part[o->info.parts++] = (struct relume_object_part){

@@ -108,7 +108,7 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
     if (!status)
         thread_for(threads, (size_t)lone.height, add_row, s);
     relume_image_destroy(&lone);
-    free(lamps);
+    mem_free(lamps);
     s->lone = NULL;
     s->lamps = NULL;
     return status;
@@ -205,7 +205,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     relume_image_destroy(&scene);
     relume_image_destroy(&places);
     lighting_destroy(&lighting);
-    free(lights);
+    mem_free(lights);
     return status;
 }
 
@@ -216,7 +216,7 @@ relume_status relume_renderer_set_objects(relume_renderer *renderer, const relum
     struct standing_in *copy = objects ? mem_copy(&in, 1, sizeof in) : NULL;
     if (objects && !copy)
         return RELUME_ENOMEM;
-    free(renderer->over);
+    mem_free(renderer->over);
     renderer->over = copy;
     renderer->draw_over = objects ? draw_over : NULL;
     return RELUME_OK;

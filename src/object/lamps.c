@@ -76,7 +76,7 @@ relume_status relume_objects_lights(struct relume_object_light **out, int *n,
         at += (size_t)own;
     }
     if (status)
-        free(lamps);
+        mem_free(lamps);
     else
         *out = lamps, *n = (int)total;
     return status;

@@ -93,10 +93,10 @@ void lighting_destroy(struct lighting *l)
             relume_btf_environment_destroy(&l->sky[i].sky[k]);
             relume_prefiltered_destroy(&l->sky[i].prefilter[k]);
         }
-        free(l->sky[i].prefilter);
-        free(l->sky[i].sky);
+        mem_free(l->sky[i].prefilter);
+        mem_free(l->sky[i].sky);
     }
-    free(l->sky);
-    free(l->lamp);
+    mem_free(l->sky);
+    mem_free(l->lamp);
     *l = (struct lighting){.lamp = NULL};
 }

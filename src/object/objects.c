@@ -21,7 +21,7 @@ static void close_material(struct relume_object_material *m)
     relume_btf_surface_destroy((relume_btf_surface **)&m->surface);
     relume_btf_fitted_destroy(&model);
     relume_btf_destroy((relume_btf **)&m->btf);
-    free((void *)m->name);
+    mem_free((void *)m->name);
 }
 
 void relume_objects_destroy(relume_objects **objects)
@@ -33,17 +33,17 @@ void relume_objects_destroy(relume_objects **objects)
     trace_destroy(&o->tracer);
     mesh_free(&o->mesh);
     for (int i = 0; i < o->info.parts; i++)
-        free((void *)o->part[i].name);
+        mem_free((void *)o->part[i].name);
     for (int i = 0; i < o->info.materials; i++) {
         close_material(&o->material[i]);
-        free(o->folder[i]);
+        mem_free(o->folder[i]);
     }
-    free(o->vertices);
-    free(o->triangles);
-    free(o->part);
-    free(o->material);
-    free(o->folder);
-    free(o);
+    mem_free(o->vertices);
+    mem_free(o->triangles);
+    mem_free(o->part);
+    mem_free(o->material);
+    mem_free(o->folder);
+    mem_free(o);
 }
 
 const struct relume_objects_info *relume_objects_info(const relume_objects *objects)
@@ -67,7 +67,7 @@ static bool holds(const char *folder, const char *name)
     char *file = mem_format("%s/%s", folder, name);
     struct stat s;
     const bool is = file && !stat(file, &s);
-    free(file);
+    mem_free(file);
     return is;
 }
 
@@ -226,7 +226,7 @@ static relume_status read_folder(const struct reader *r, const jvalue *text, int
     char *folder = mesh_beside(r->path, name);
     const relume_status status =
         folder ? objects_material(r->o, folder, number, r->params) : RELUME_ENOMEM;
-    free(folder);
+    mem_free(folder);
     return status;
 }
 
@@ -348,8 +348,8 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
         status = read_coverings(r, object, &s);
     if (!status)
         status = objects_add(r->o, path, &s, r->params);
-    free(s.covering);
-    free(path);
+    mem_free(s.covering);
+    mem_free(path);
     return status;
 }
 

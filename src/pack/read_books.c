@@ -100,8 +100,8 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
         *vectors = out;
         out = NULL;
     }
-    free(numbers);
-    free(out);
+    mem_free(numbers);
+    mem_free(out);
     return status;
 }
 
@@ -169,7 +169,7 @@ relume_status reader_load_indices(relume_pack *p, int view)
 void reader_drop_books(struct read_books *books)
 {
     for (int b = 0; b < RELUME_MOST_BOOKS; b++) {
-        free(books->vectors[b]);
+        mem_free(books->vectors[b]);
         books->vectors[b] = NULL;
     }
 }

@@ -97,8 +97,8 @@ static relume_status load_coded(relume_pack *p, int view)
         status = lossy_decode(p->loaded[view].data, &shape, words.word, count, p->threads, NULL);
     if (status == RELUME_EDAMAGED)
         status = reader_bad(p, "a tile of the picture is damaged", "sound AV1 data");
-    free(words.word);
-    free(order);
+    mem_free(words.word);
+    mem_free(order);
     return status;
 }
 

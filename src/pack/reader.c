@@ -81,8 +81,8 @@ void relume_pack_destroy(relume_pack **pack)
     relume_coder_destroy(&p->coder);
     exr_close(&p->file);
     arena_free(&p->arena);
-    free(p->path);
-    free(p);
+    mem_free(p->path);
+    mem_free(p);
 }
 
 const struct relume_pack_info *relume_pack_info(const relume_pack *pack)
@@ -125,9 +125,9 @@ relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pa
 void relume_pack_drop(relume_pack *pack, int view)
 {
     struct loaded *l = &pack->loaded[view];
-    free(l->plane);
-    free(l->data);
-    free(l->steps);
+    mem_free(l->plane);
+    mem_free(l->data);
+    mem_free(l->steps);
     *l = (struct loaded){0};
     if (pack->books && !pack->info.shared)
         reader_drop_books(&pack->books[view]);

@@ -56,7 +56,7 @@ static relume_status preview_rows(void *context, int row, int rows, void *sample
             for (size_t x = 0; x < width; x++)
                 *out++ =
                     half_from_float(fminf(rgb[3 * (y * width + x) + channel], 65504.0f)) & bits;
-    free(rgb);
+    mem_free(rgb);
     return status;
 }
 

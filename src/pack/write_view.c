@@ -23,7 +23,7 @@ static relume_status code_rows(void *context, int row, int rows, void *samples)
             codes_to_samples(to + (size_t)format_plane(coder, (int)p) * sample, info->storage,
                              codes + p * code, width);
     }
-    free(codes);
+    mem_free(codes);
     return status;
 }
 

@@ -321,8 +321,8 @@ relume_status canvas_resize(struct canvas *canvas, int n, double texel_mm)
 
 void canvas_destroy(struct canvas *canvas)
 {
-    free(canvas->t);
-    free(canvas->fixed);
+    mem_free(canvas->t);
+    mem_free(canvas->fixed);
     *canvas = (struct canvas){0};
 }
 
@@ -409,8 +409,8 @@ relume_status canvas_draw(struct canvas *canvas, const struct relume_aperture *a
     canvas->key = key;
     if (!status)
         draw_moving(d, threads);
-    free(d.differences);
-    free(d.light);
+    mem_free(d.differences);
+    mem_free(d.light);
     return status;
 }
 
@@ -429,6 +429,6 @@ relume_status canvas_discs(struct canvas *canvas, float *t, const struct relume_
     if (!d.differences)
         return RELUME_ENOMEM;
     thread_for(threads, bands(&d), draw_band, &d);
-    free(d.differences);
+    mem_free(d.differences);
     return RELUME_OK;
 }

@@ -97,9 +97,9 @@ void convolver_destroy(convolver **c)
         return;
     fft2d_destroy(&(*c)->fft);
     for (int k = 0; k < 3; k++)
-        free((*c)->kept[k]);
-    free((*c)->spectrum);
-    free(*c);
+        mem_free((*c)->kept[k]);
+    mem_free((*c)->spectrum);
+    mem_free(*c);
     *c = NULL;
 }
 

@@ -171,9 +171,9 @@ void relume_eye_destroy(relume_eye **eye)
     lens_destroy(&(*eye)->lens);
     vitreous_destroy(&(*eye)->vitreous);
     lashes_destroy(&(*eye)->lashes);
-    free((*eye)->disc);
-    free((*eye)->stroke);
-    free(*eye);
+    mem_free((*eye)->disc);
+    mem_free((*eye)->stroke);
+    mem_free(*eye);
     *eye = NULL;
 }
 

@@ -102,8 +102,8 @@ void relume_glare_destroy(relume_glare **glare)
         return;
     convolver_destroy(&(*glare)->convolver);
     veil_destroy(&(*glare)->veil);
-    free((*glare)->clean);
-    free(*glare);
+    mem_free((*glare)->clean);
+    mem_free(*glare);
     *glare = NULL;
 }
 
@@ -133,7 +133,7 @@ static relume_status clean_frame(const float **out, relume_glare *glare,
              "%zu pixel%s not numbers; NaN is treated as black, infinity as the brightest pixel",
              bad, bad == 1 ? " is" : "s are");
     if (glare->clean_size != n) {
-        free(glare->clean);
+        mem_free(glare->clean);
         glare->clean = mem_array(n, sizeof *glare->clean);
         glare->clean_size = glare->clean ? n : 0;
     }

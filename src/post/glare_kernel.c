@@ -50,8 +50,8 @@ static float share(const struct axis *a, int pixel, int texel)
 
 static void axis_destroy(struct axis *a)
 {
-    free(a->first);
-    free(a->weight);
+    mem_free(a->first);
+    mem_free(a->weight);
 }
 
 static relume_status axis_create(struct axis *a, int reach, int half, double pixels)
@@ -175,7 +175,7 @@ static void veil_row(void *context, size_t item, int worker)
 
 void kernel_destroy(struct kernel *kernel)
 {
-    free(kernel->v[0]);
+    mem_free(kernel->v[0]);
     *kernel = (struct kernel){0};
 }
 
@@ -248,7 +248,7 @@ static relume_status add_pattern(struct kernel *out, const relume_psf *psf, doub
     if (!status)
         thread_for(threads, 2 * (size_t)out->reach + 1, resample_row, &r);
     axis_destroy(&r.axis);
-    free(r.work);
+    mem_free(r.work);
     return status;
 }
 

@@ -157,6 +157,6 @@ relume_status veil_add(float *out, struct veil_work *work, const float *in, int 
     }
     kernel_destroy(&whole);
     kernel_destroy(&far);
-    free(memory);
+    mem_free(memory);
     return status;
 }

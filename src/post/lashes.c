@@ -116,12 +116,12 @@ relume_status lashes_load(struct lashes *out, const char *path, const struct rel
     if (!status)
         status = make_pieces(out, row, &image, path, log);
     relume_image_destroy(&image);
-    free(row);
+    mem_free(row);
     return status;
 }
 
 void lashes_destroy(struct lashes *lashes)
 {
-    free(lashes->piece);
+    mem_free(lashes->piece);
     *lashes = (struct lashes){0};
 }

@@ -136,7 +136,7 @@ relume_status lens_create(struct lens *lens, const struct relume_subject *s,
 
 void lens_destroy(struct lens *lens)
 {
-    free(lens->particle);
+    mem_free(lens->particle);
     lens->particle = NULL;
 }
 

@@ -171,16 +171,16 @@ void relume_psf_destroy(relume_psf **psf)
     fft2d_destroy(&p->real);
     fft2d_destroy(&p->complex);
     slices_destroy(&p->slices);
-    free(p->field);
-    free(p->phase);
-    free(p->texel);
-    free(p->mono.v);
-    free(p->smeared.v);
+    mem_free(p->field);
+    mem_free(p->phase);
+    mem_free(p->texel);
+    mem_free(p->mono.v);
+    mem_free(p->smeared.v);
     for (int c = 0; c < 3; c++)
-        free(p->colour[c]);
-    free(p->work);
-    free(p->sums);
-    free(p);
+        mem_free(p->colour[c]);
+    mem_free(p->work);
+    mem_free(p->sums);
+    mem_free(p);
     *psf = NULL;
 }
 
@@ -197,7 +197,7 @@ static relume_status prepare_canvas(relume_psf *psf, const struct relume_apertur
         n = 64 * relume_whole(ceil(wanted / 64.0)) + 128;
     if (psf->canvas.n >= n && psf->canvas.texel_mm == psf->shape.texel_mm && psf->canvas.t)
         return RELUME_OK;
-    free(psf->phase);
+    mem_free(psf->phase);
     psf->phase = mem_array(2 * (size_t)n, sizeof *psf->phase);
     const relume_status status = canvas_resize(&psf->canvas, n, psf->shape.texel_mm);
     return psf->phase ? status : RELUME_ENOMEM;
@@ -311,7 +311,7 @@ static relume_status need_field(relume_psf *psf, const fft2d *fft)
 {
     if (psf->field_size >= fft2d_size(fft))
         return RELUME_OK;
-    free(psf->field);
+    mem_free(psf->field);
     psf->field = mem_array(fft2d_size(fft), sizeof *psf->field);
     psf->field_size = psf->field ? fft2d_size(fft) : 0;
     return psf->field ? RELUME_OK : RELUME_ENOMEM;

@@ -182,9 +182,9 @@ void relume_psf_cycle_destroy(relume_psf_cycle **cycle)
 {
     if (!*cycle)
         return;
-    free((*cycle)->light);
-    free((*cycle)->sum);
-    free((*cycle)->shown);
-    free(*cycle);
+    mem_free((*cycle)->light);
+    mem_free((*cycle)->sum);
+    mem_free((*cycle)->shown);
+    mem_free(*cycle);
     *cycle = NULL;
 }

@@ -28,12 +28,12 @@ void slices_destroy(struct slices **slices)
     if (!s)
         return;
     fft2d_destroy(&s->fft);
-    free(s->wave);
-    free(s->spectrum);
-    free(s->shadow);
-    free(s->disc);
-    free(s->turn);
-    free(s);
+    mem_free(s->wave);
+    mem_free(s->spectrum);
+    mem_free(s->shadow);
+    mem_free(s->disc);
+    mem_free(s->turn);
+    mem_free(s);
     *slices = NULL;
 }
 

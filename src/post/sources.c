@@ -154,7 +154,7 @@ relume_status sources_find(struct sources *out, float *rest, int width, int heig
 
 void sources_destroy(struct sources *sources)
 {
-    free(sources->source);
+    mem_free(sources->source);
     *sources = (struct sources){0};
 }
 
@@ -224,6 +224,6 @@ relume_status sources_splat(float *out, int width, int height, const struct sour
     if (!s.work)
         return RELUME_ENOMEM;
     thread_for(threads, (size_t)height, splat_row, &s);
-    free(s.work);
+    mem_free(s.work);
     return RELUME_OK;
 }

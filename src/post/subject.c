@@ -4,6 +4,7 @@
 #include "base/infile.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "post/eye.h"
 
 #include <stdarg.h>
@@ -158,7 +159,7 @@ static int line_of(const struct reading *r, const char *group, const char *name)
         if (inside && strstr(at, wanted))
             found = line;
     }
-    free(text);
+    mem_free_libc(text);
     if (file)
         fclose(file);
     return found;

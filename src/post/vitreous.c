@@ -38,7 +38,7 @@ relume_status vitreous_create(struct vitreous *body, const struct relume_subject
 
 void vitreous_destroy(struct vitreous *body)
 {
-    free(body->particle);
+    mem_free(body->particle);
     body->particle = NULL;
 }
 

@@ -174,9 +174,9 @@ relume_status cells_create(struct cells *out, const struct cells_params *params)
         status = ask_grid(&s, params->start[i][0], params->start[i][1]);
     if (!status)
         status = search(&s);
-    free(s.queue);
-    free(s.seen);
-    free(s.work);
+    mem_free(s.queue);
+    mem_free(s.seen);
+    mem_free(s.work);
     if (status)
         cells_destroy(out);
     return status;
@@ -184,10 +184,10 @@ relume_status cells_create(struct cells *out, const struct cells_params *params)
 
 void cells_destroy(struct cells *cells)
 {
-    free(cells->tile);
-    free(cells->child);
-    free(cells->of);
-    free(cells->value);
+    mem_free(cells->tile);
+    mem_free(cells->child);
+    mem_free(cells->of);
+    mem_free(cells->value);
     *cells = (struct cells){0};
 }
 

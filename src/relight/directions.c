@@ -170,7 +170,7 @@ static relume_status find_cells(struct relume_weight_grid *g, int threads)
                                     .most = most_tiles(g),
                                     .threads = threads,
                                 });
-    free(start);
+    mem_free(start);
     g->info.tiles = g->cells.count;
     g->info.tile = g->cells.of;
     g->info.child = (const int(*)[4])g->cells.child;
@@ -230,7 +230,7 @@ static relume_status alloc_nodes(struct relume_weight_grid *g)
 
 static void free_turned(struct relume_weight_grid *g)
 {
-    free(g->turned);
+    mem_free(g->turned);
     g->turned = NULL;
 }
 
@@ -276,7 +276,7 @@ static relume_status fill(struct relume_weight_grid *g, const struct relume_weig
         thread_for(p->threads, (size_t)g->info.rows, fill_row, g);
         thread_for(p->threads, (size_t)g->cells.count, fill_tile, g);
     }
-    free(g->cells.value);
+    mem_free(g->cells.value);
     g->cells.value = NULL;
     free_turned(g);
     return status;
@@ -333,11 +333,11 @@ void relume_weight_grid_destroy(relume_weight_grid **grid)
     if (!*grid)
         return;
     relume_weight_grid_destroy(&(*grid)->sums);
-    free((*grid)->turned);
-    free((*grid)->data);
+    mem_free((*grid)->turned);
+    mem_free((*grid)->data);
     triangles_destroy(&(*grid)->triangles);
     cells_destroy(&(*grid)->cells);
-    free(*grid);
+    mem_free(*grid);
     *grid = NULL;
 }
 

@@ -83,7 +83,7 @@ static relume_status shrink(struct relume_image *map)
         }
     for (size_t i = 0; !status && i < (size_t)width * (size_t)height * 3; i++)
         small.data[i] /= count[i / 3];
-    free(count);
+    mem_free(count);
     if (status) {
         relume_image_destroy(&small);
         return status;
@@ -162,8 +162,8 @@ static relume_status make_cells(relume_environment *e)
         memset(row, 0, (size_t)columns * sizeof *row);
         r++;
     }
-    free(azimuth);
-    free(row);
+    mem_free(azimuth);
+    mem_free(row);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -206,8 +206,8 @@ void relume_environment_destroy(relume_environment **environment)
     if (!*environment)
         return;
     relume_image_destroy(&(*environment)->map);
-    free((*environment)->cell);
-    free(*environment);
+    mem_free((*environment)->cell);
+    mem_free(*environment);
     *environment = NULL;
 }
 
@@ -340,6 +340,6 @@ relume_status relume_environment_sample(struct relume_light *out, int n,
         sum[i] = luminance_709(e->cell[i].rgb) + (i ? sum[i - 1] : 0.0);
     draw(out, n, environment, sum, seed);
     match_totals(out, n, environment);
-    free(sum);
+    mem_free(sum);
     return RELUME_OK;
 }

@@ -200,7 +200,7 @@ void relume_gonio_destroy(relume_gonio **gonio)
     if (!*gonio)
         return;
     relume_image_destroy(&(*gonio)->atlas);
-    free(*gonio);
+    mem_free(*gonio);
     *gonio = NULL;
 }
 

@@ -40,10 +40,10 @@ void relume_ies_destroy(relume_ies **ies)
 {
     if (!*ies)
         return;
-    free((*ies)->vertical);
-    free((*ies)->horizontal);
-    free((*ies)->value);
-    free(*ies);
+    mem_free((*ies)->vertical);
+    mem_free((*ies)->horizontal);
+    mem_free((*ies)->value);
+    mem_free(*ies);
     *ies = NULL;
 }
 
@@ -288,7 +288,7 @@ relume_status relume_ies_parse(relume_ies **out, const char *text, size_t size, 
         copy[size] = '\0';
         status = read_all(&(struct reader){copy, name, log}, *out);
     }
-    free(copy);
+    mem_free(copy);
     if (status)
         relume_ies_destroy(out);
     return status;
@@ -302,7 +302,7 @@ relume_status relume_ies_load(relume_ies **out, const char *path, const struct r
     relume_status status = input_load(&text, &size, path, MOST_BYTES, "a photometric file", log);
     if (!status)
         status = relume_ies_parse(out, text, size, path, log);
-    free(text);
+    mem_free(text);
     return status;
 }
 

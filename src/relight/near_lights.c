@@ -50,13 +50,13 @@ relume_status near_lights_create(struct near_lights *near, const struct relume_l
             to->light = &lights[i];
         near->count += side[i] * side[i];
     }
-    free(side);
+    mem_free(side);
     return near->source ? RELUME_OK : RELUME_ENOMEM;
 }
 
 void near_lights_destroy(struct near_lights *near)
 {
-    free(near->source);
+    mem_free(near->source);
     *near = (struct near_lights){0};
 }
 

@@ -39,11 +39,11 @@ struct work {
 void relume_refit_forget(relume_refit *refit)
 {
     for (int p = 0; refit->plane && p < refit->codes.planes; p++)
-        free(refit->plane[p]);
-    free(refit->plane);
-    free(refit->scale);
-    free(refit->offset);
-    free(refit->vectors);
+        mem_free(refit->plane[p]);
+    mem_free(refit->plane);
+    mem_free(refit->scale);
+    mem_free(refit->offset);
+    mem_free(refit->vectors);
     refit->plane = NULL;
     refit->scale = refit->offset = refit->vectors = NULL;
     refit->codes = (struct relume_codes){.coder = refit->coder};
@@ -56,7 +56,7 @@ void relume_refit_destroy(relume_refit **refit)
     relume_refit_forget(*refit);
     relume_weight_grid_destroy(&(*refit)->made);
     relume_coder_destroy(&(*refit)->learned);
-    free(*refit);
+    mem_free(*refit);
     *refit = NULL;
 }
 
@@ -229,8 +229,8 @@ static relume_status encode(relume_refit *refit, const struct work *w,
             store(refit, planes, first, n);
         }
     }
-    free(samples);
-    free(planes);
+    mem_free(samples);
+    mem_free(planes);
     return status;
 }
 
@@ -250,7 +250,7 @@ static relume_status measure(relume_refit *refit, const struct work *w,
         square += d * d;
     }
     refit->loss = sqrt(square / (double)n);
-    free(again);
+    mem_free(again);
     return status;
 }
 
@@ -278,7 +278,7 @@ static relume_status refit_codes(relume_refit *refit, struct work *w,
         shown.index = codes->index;
         status = measure(refit, w, &shown, &samples, step);
     }
-    free(samples.data);
+    mem_free(samples.data);
     return status;
 }
 
@@ -326,7 +326,7 @@ relume_status relume_refit_create(relume_refit **out, const struct relume_codes 
     if (!status)
         log_line(w.params.log, RELUME_NOTE,
                  "converted to linear light for the environment; error %.2g %%", 100 * refit->loss);
-    free(index);
+    mem_free(index);
     if (status)
         relume_refit_destroy(&refit);
     *out = refit;

@@ -152,7 +152,7 @@ static relume_status make_passes(struct job *job, const struct relume_light *lig
     for (int i = 0; good && i < job->count; i++)
         if (!job->codes->books)
             fold_quantiser(&job->passes[i], job->codes);
-    free(one);
+    mem_free(one);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -520,11 +520,11 @@ static void end_passes(struct job *job)
 {
     for (int i = 0; job->passes && i < job->count; i++) {
         for (int b = 0; job->passes[i].book && b < job->codes->books; b++)
-            free(job->passes[i].book[b]);
-        free(job->passes[i].book);
-        free(job->passes[i].weights);
+            mem_free(job->passes[i].book[b]);
+        mem_free(job->passes[i].book);
+        mem_free(job->passes[i].weights);
     }
-    free(job->passes);
+    mem_free(job->passes);
 }
 
 static void end_distant(struct job *job)
@@ -533,7 +533,7 @@ static void end_distant(struct job *job)
         return;
     end_passes(job->distant);
     relume_weight_grid_destroy(&job->distant->made);
-    free(job->distant);
+    mem_free(job->distant);
     job->distant = NULL;
 }
 
@@ -544,9 +544,9 @@ static void end_job(struct job *job)
     near_lights_destroy(&job->near);
     relume_weight_grid_destroy(&job->made);
     relume_refit_destroy(&job->refit);
-    free(job->coder);
-    free(job->words);
-    free(job->room);
+    mem_free(job->coder);
+    mem_free(job->words);
+    mem_free(job->room);
 }
 
 // What the vectors of a single codebook have of the environments joins their table.
@@ -582,7 +582,7 @@ static relume_status begin_distant(struct job *job, const struct relume_light *l
         own.grid = refit_grid(refit);
         status = begin_job(job->distant, relume_refit_codes(refit), environments, count, &own);
     }
-    free(environments);
+    mem_free(environments);
     if (!status && job->codes->books == 1)
         join_single_book(job);
     return status;

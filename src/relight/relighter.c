@@ -33,7 +33,7 @@ struct relume_relighter {
 
 static void empty(struct group *g)
 {
-    free(g->light);
+    mem_free(g->light);
     relume_image_destroy(&g->image);
     *g = (struct group){0};
 }
@@ -42,7 +42,7 @@ static void forget(const relume_relighter *r, struct view *v)
 {
     for (int i = 0; v->group && i < r->params.groups; i++)
         empty(&v->group[i]);
-    free(v->group);
+    mem_free(v->group);
     v->group = NULL;
     relume_image_destroy(&v->sum);
 }
@@ -75,8 +75,8 @@ relume_status relume_relighter_create(relume_relighter **out, int views,
     relume_relighter *r = mem_zeroed(1, sizeof *r);
     struct view *view = mem_zeroed((size_t)views, sizeof *view);
     if (!r || !view) {
-        free(r);
-        free(view);
+        mem_free(r);
+        mem_free(view);
         return RELUME_ENOMEM;
     }
     *r = (relume_relighter){.params = p, .views = views, .view = view};
@@ -95,8 +95,8 @@ void relume_relighter_destroy(relume_relighter **relighter)
     relume_weight_grid_destroy(&r->grid);
     relume_weight_grid_destroy(&r->sums);
     relume_refit_destroy(&r->learned);
-    free(r->view);
-    free(r);
+    mem_free(r->view);
+    mem_free(r);
 }
 
 uint64_t relume_relighter_bytes(const relume_relighter *r, int view)
@@ -197,7 +197,7 @@ static relume_status keep_lights(struct group *g, const struct relume_light *lig
     struct relume_light *copy = mem_copy(lights, (size_t)n, sizeof *copy);
     if (!copy)
         return RELUME_ENOMEM;
-    free(g->light);
+    mem_free(g->light);
     g->light = copy;
     g->lights = n;
     return RELUME_OK;
@@ -258,7 +258,7 @@ static relume_status relight_groups(relume_relighter *r, struct view *v,
         else
             empty(&v->group[i]);
     }
-    free(some);
+    mem_free(some);
     return status;
 }
 

@@ -33,10 +33,10 @@ static void entry_free(struct relume_rig_entry *e)
 {
     if (!e)
         return;
-    free((char *)(uintptr_t)e->name);
-    free((char *)(uintptr_t)e->spec);
-    free((char *)(uintptr_t)e->file);
-    free(e);
+    mem_free((char *)(uintptr_t)e->name);
+    mem_free((char *)(uintptr_t)e->spec);
+    mem_free((char *)(uintptr_t)e->file);
+    mem_free(e);
 }
 
 static void resource_free(struct resource *r)
@@ -47,8 +47,8 @@ static void resource_free(struct resource *r)
     relume_environment_destroy(&r->environment);
     relume_ies_destroy(&r->ies);
     relume_gonio_destroy(&r->gonio);
-    free(r->path);
-    free(r);
+    mem_free(r->path);
+    mem_free(r);
 }
 
 relume_status relume_rig_create(relume_rig **out)
@@ -66,10 +66,10 @@ void relume_rig_destroy(relume_rig **rig)
         entry_free(r->entry[i]);
     for (int i = 0; i < r->resources; i++)
         resource_free(r->resource[i]);
-    free(r->entry);
-    free(r->resource);
-    free(r->shining);
-    free(r);
+    mem_free(r->entry);
+    mem_free(r->resource);
+    mem_free(r->shining);
+    mem_free(r);
     *rig = NULL;
 }
 
@@ -118,7 +118,7 @@ static relume_status find_resource(struct resource **out, relume_rig *rig,
     }
     struct resource *r = mem_zeroed(1, sizeof *r);
     if (!r || !mem_grow(&rig->resource, (size_t)rig->resources, sizeof *rig->resource)) {
-        free(r);
+        mem_free(r);
         return RELUME_ENOMEM;
     }
     r->kind = kind;
@@ -192,7 +192,7 @@ relume_status relume_rig_add(relume_rig *rig, const char *spec, const char *fold
                                                                                 : RELUME_ENOMEM;
     if (!status)
         status = make_entry(e, rig, &parsed, folder, log);
-    free(parsed.file);
+    mem_free(parsed.file);
     if (status)
         entry_free(e);
     else
@@ -278,12 +278,12 @@ relume_status relume_rig_set(relume_rig *rig, int index, const struct relume_rig
     next.name = renamed ? mem_text(entry->name) : old->name;
     next.spec = spec_text(&next.light, next.file);
     if (!next.name || !next.spec) {
-        free((char *)(uintptr_t)(renamed ? next.name : NULL));
-        free((char *)(uintptr_t)next.spec);
+        mem_free((char *)(uintptr_t)(renamed ? next.name : NULL));
+        mem_free((char *)(uintptr_t)next.spec);
         return RELUME_ENOMEM;
     }
-    free((char *)(uintptr_t)(renamed ? old->name : NULL));
-    free((char *)(uintptr_t)old->spec);
+    mem_free((char *)(uintptr_t)(renamed ? old->name : NULL));
+    mem_free((char *)(uintptr_t)old->spec);
     *old = next;
     return RELUME_OK;
 }
@@ -293,7 +293,7 @@ relume_status relume_rig_lights(const struct relume_light **out, int *n, relume_
     bool solo = false;
     *out = NULL;
     *n = 0;
-    free(rig->shining);
+    mem_free(rig->shining);
     rig->shining = mem_array((size_t)rig->count, sizeof *rig->shining);
     if (!rig->shining)
         return RELUME_ENOMEM;

@@ -131,7 +131,7 @@ static relume_status take_lights(relume_rig *rig, const jvalue *root, const char
             {say_about, NULL, &about, context_of(log), false}, log, path, (int)i + 1, NULL};
         status = take_light(rig, jvalue_item(lights, i), folder, &about);
     }
-    free(copy);
+    mem_free(copy);
     return status;
 }
 
@@ -191,10 +191,10 @@ static bool write_light(FILE *to, const struct relume_rig_entry *e, const char *
                 (double)e->light.rgb[2], e->intensity, e->on ? "true" : "false",
                 e->solo ? "true" : "false");
     const bool good = spec && name;
-    free(name);
-    free(spec);
-    free(words);
-    free(file);
+    mem_free(name);
+    mem_free(spec);
+    mem_free(words);
+    mem_free(file);
     return good;
 }
 
@@ -217,7 +217,7 @@ relume_status relume_rig_save(const relume_rig *rig, const char *path, const str
     const relume_status status =
         good ? outfile_save(path, text, size, log)
              : log_fail(log, RELUME_ENOMEM, "%s: out of memory, or a name is not UTF-8", path);
-    free(text);
-    free(copy);
+    mem_free_libc(text);
+    mem_free(copy);
     return status;
 }

@@ -216,7 +216,7 @@ relume_status spec_parse(struct spec *out, const char *text, const struct relume
     if (wrong)
         status = log_fail(log, RELUME_EINVAL, "light '%.200s': %s", text, wrong);
     if (status) {
-        free(out->file);
+        mem_free(out->file);
         *out = (struct spec){0};
     }
     return status;
@@ -232,8 +232,8 @@ struct words {
 static void append(struct words *w, char *more)
 {
     char *both = w->text && more ? mem_format("%s%s", w->text, more) : NULL;
-    free(w->text);
-    free(more);
+    mem_free(w->text);
+    mem_free(more);
     w->text = both;
 }
 

@@ -135,8 +135,8 @@ void triangles_destroy(struct triangles **triangles)
 {
     if (!*triangles)
         return;
-    free((*triangles)->triangle);
-    free(*triangles);
+    mem_free((*triangles)->triangle);
+    mem_free(*triangles);
     *triangles = NULL;
 }
 

@@ -271,8 +271,8 @@ static relume_status photograph(const struct goniometer *g, relume_btf *btf)
     }
     for (int l = 0; held && l < g->p.lights; l++)
         relume_image_destroy(&held[l]);
-    free(held);
-    free(texels);
+    mem_free(held);
+    mem_free(texels);
     return status;
 }
 
@@ -337,7 +337,7 @@ relume_status relume_btf_synth(relume_btf **out, const struct relume_btf_materia
     relume_scene_destroy(&g.scene);
     relume_image_destroy(&g.relief);
     relume_image_destroy(&g.normals);
-    free(g.height);
-    free(g.layer);
+    mem_free(g.height);
+    mem_free(g.layer);
     return status;
 }

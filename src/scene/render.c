@@ -133,7 +133,7 @@ static bool sort_places(struct scratch *s, const struct bounds *bounds)
 {
     const size_t n = s->places.count;
     if (n > s->key_room) {
-        free(s->keys);
+        mem_free(s->keys);
         s->keys = mem_array(2 * n, sizeof *s->keys);
         s->key_room = s->keys ? 2 * n : 0;
         if (!s->keys)
@@ -249,9 +249,9 @@ relume_status render_lights(const struct render_job *job, struct relume_image *o
     }
     for (int i = 0; i < threads; i++) {
         places_destroy(&r.scratch[i].places);
-        free(r.scratch[i].keys);
+        mem_free(r.scratch[i].keys);
     }
-    free(r.scratch);
+    mem_free(r.scratch);
     return status;
 }
 

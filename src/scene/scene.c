@@ -68,5 +68,5 @@ void relume_scene_destroy(relume_scene **scene)
     mesh_free(&s->stage.mesh);
     for (int i = 0; i < s->stage.picture_count; i++)
         relume_image_destroy(&s->stage.pictures[i]);
-    free(s);
+    mem_free(s);
 }

@@ -256,7 +256,7 @@ static relume_status save(const struct synth *s, const struct relume_image *imag
         return RELUME_ENOMEM;
     const relume_status status =
         relume_image_save(image, path, relume_image_params(.log = log, .half = half));
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -288,7 +288,7 @@ static relume_status save_lights(struct synth *s, const struct relume_image *ima
     for (int i = 0; i < count && !status; i++)
         if (each[i])
             status = save(s, &images[i], names[i], true, s->p.log);
-    free(each);
+    mem_free(each);
     return status;
 }
 
@@ -350,7 +350,7 @@ static relume_status make_view_folder(const struct synth *s)
     relume_status status = path ? RELUME_OK : RELUME_ENOMEM;
     if (path && mkdir(path, 0777))
         status = log_fail(s->p.log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -395,7 +395,7 @@ static relume_status write_manifest(const struct synth *s)
         .view = s->view,
     };
     const relume_status status = relume_manifest_write(&manifest, path, s->p.log);
-    free(path);
+    mem_free(path);
     return status;
 }
 

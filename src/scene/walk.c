@@ -19,7 +19,7 @@ struct step {
 
 void places_destroy(struct places *places)
 {
-    free(places->at);
+    mem_free(places->at);
     *places = (struct places){0};
 }
 

@@ -156,8 +156,8 @@ static relume_status judge(struct job *job)
             break;
     }
     captured_destroy(&j.captured);
-    free(j.planes);
-    free(j.error);
+    mem_free(j.planes);
+    mem_free(j.error);
     return status;
 }
 
@@ -195,8 +195,8 @@ static relume_status judge_unseen(struct job *job)
         for (size_t i = 0; i < lights; i++)
             job->unseen += decibel(j.left_out[i]) / (double)lights;
     }
-    free(b);
-    free(j.left_out);
+    mem_free(b);
+    mem_free(j.left_out);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -374,7 +374,7 @@ static relume_status find_ranges(struct storing *s)
     }
     for (size_t p = 0; !status && p < planes; p++)
         s->range[p] = range_settle(s->range[p]);
-    free(values);
+    mem_free(values);
     return status;
 }
 
@@ -520,10 +520,10 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out)
                 *out = even[i];
     }
     captured_destroy(&s.captured);
-    free(s.before);
-    free(s.after);
-    free(s.range);
-    free(s.step);
+    mem_free(s.before);
+    mem_free(s.after);
+    mem_free(s.range);
+    mem_free(s.step);
     return status;
 }
 
@@ -544,7 +544,7 @@ static void finish(struct job *job)
     relume_samples_destroy(&job->all);
     relume_samples_destroy(&job->some);
     relume_coder_destroy(&job->coder);
-    free(job->display);
+    mem_free(job->display);
 }
 
 relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision,

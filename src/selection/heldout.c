@@ -146,21 +146,21 @@ static relume_status make_coder(struct fold *f, const struct relume_basis *basis
     if (!status)
         status = find_unseen(f, directions + f->learned);
     relume_samples_destroy(&samples);
-    free(directions);
+    mem_free(directions);
     return status;
 }
 
 static void drop_room(struct fold *f)
 {
-    free(f->value);
-    free(f->band);
-    free(f->kept);
-    free(f->scale);
-    free(f->offset);
-    free(f->work);
-    free(f->luma);
-    free(f->part);
-    free(f->scratch);
+    mem_free(f->value);
+    mem_free(f->band);
+    mem_free(f->kept);
+    mem_free(f->scale);
+    mem_free(f->offset);
+    mem_free(f->work);
+    mem_free(f->luma);
+    mem_free(f->part);
+    mem_free(f->scratch);
 }
 
 static size_t count_bands(const relume_heldout *h)
@@ -258,7 +258,7 @@ static relume_status choose_steps(struct fold *f)
         find_ranges(f, k, total);
         coefficients_choose_steps(&k->as, total, h->masked[view], f->store->step);
     }
-    free(total);
+    mem_free(total);
     return total ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -389,7 +389,7 @@ static relume_status add_structure(const struct fold *f, struct sums *image)
         s->ssim.sum += t.sum[i].sum;
         s->ssim.windows += t.sum[i].windows;
     }
-    free(t.sum);
+    mem_free(t.sum);
     return RELUME_OK;
 }
 
@@ -445,7 +445,7 @@ static relume_status judge(struct fold *f, struct total *total)
     for (size_t i = 0; !status && i < images; i++)
         add_image(total, &image[i]);
     fold_books_drop(&f->books);
-    free(image);
+    mem_free(image);
     return status;
 }
 
@@ -474,7 +474,7 @@ static relume_status measure_fold(struct fold *f, int number, const struct reque
     }
     relume_coder_destroy(&f->coder);
     captured_destroy(&f->unseen);
-    free(f->share);
+    mem_free(f->share);
     f->share = NULL;
     return status;
 }
@@ -546,9 +546,9 @@ relume_status relume_heldout_measure(relume_heldout *heldout, const struct relum
         *before = quality_of(&r.total[0]);
     for (int i = 0; !status && i < n; i++)
         after[i] = quality_of(&r.total[i + 1]);
-    free(stores);
-    free(r.total);
-    free(r.display);
+    mem_free(stores);
+    mem_free(r.total);
+    mem_free(r.display);
     return status;
 }
 
@@ -561,16 +561,16 @@ void relume_heldout_destroy(relume_heldout **heldout)
     if (!h)
         return;
     relume_samples_destroy(&h->learning);
-    free(h->directions);
-    free(h->light_at);
-    free(h->samples);
-    free(h->codes);
-    free(h->luma);
-    free(h->mask);
-    free(h->masked);
-    free(h->strip);
-    free(h->chunk);
-    free(h);
+    mem_free(h->directions);
+    mem_free(h->light_at);
+    mem_free(h->samples);
+    mem_free(h->codes);
+    mem_free(h->luma);
+    mem_free(h->mask);
+    mem_free(h->masked);
+    mem_free(h->strip);
+    mem_free(h->chunk);
+    mem_free(h);
 }
 
 static relume_status check_test(const relume_heldout *h)

@@ -12,11 +12,11 @@ void fold_books_drop(struct fold_books *b)
         if (b->books)
             relume_books_destroy(&b->books[v]);
         for (int i = 0; b->index && i < RELUME_MOST_BOOKS; i++)
-            free(b->index[v * RELUME_MOST_BOOKS + i]);
+            mem_free(b->index[v * RELUME_MOST_BOOKS + i]);
     }
-    free(b->books);
-    free(b->index);
-    free(b->first);
+    mem_free(b->books);
+    mem_free(b->index);
+    mem_free(b->first);
     *b = (struct fold_books){0};
 }
 
@@ -66,7 +66,7 @@ static relume_status keep_view(relume_coefficients **out, const relume_heldout *
             relume_encode_params(.log = h->params.log, .storage = store->storage));
     for (int row = 0; !status && row < rows; row += BAND_ROWS)
         status = keep_band(*out, row, value + *first + (size_t)row * width, h->pixels, packed);
-    free(packed);
+    mem_free(packed);
     return status;
 }
 
@@ -116,7 +116,7 @@ relume_status fold_books_make(struct fold_books *out, const relume_heldout *h,
         status = learn(out, kept, &p);
     for (int v = 0; kept && v < h->views; v++)
         relume_coefficients_destroy(&kept[v]);
-    free(kept);
+    mem_free(kept);
     return status;
 }
 

@@ -158,7 +158,7 @@ static relume_status read_capture(relume_heldout *h, const relume_capture *captu
     relume_status status = r.rows ? RELUME_OK : RELUME_ENOMEM;
     for (r.view = 0; !status && r.view < h->views; r.view++)
         status = read_view(&r);
-    free(r.rows);
+    mem_free(r.rows);
     return status;
 }
 
@@ -201,7 +201,7 @@ static relume_status round_references(relume_heldout *h)
     r->h = h;
     encoder_init(&r->display, h->display);
     thread_for(h->params.threads, (size_t)h->all, round_light, r);
-    free(r);
+    mem_free(r);
     return RELUME_OK;
 }
 

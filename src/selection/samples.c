@@ -113,8 +113,8 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
         choose(&s, all);
     for (int v = 0; !status && v < m->views; v++)
         status = sample_view(&s, capture, v, display, &p);
-    free(s.chosen);
-    free(s.place);
+    mem_free(s.chosen);
+    mem_free(s.place);
     if (status)
         relume_samples_destroy(out);
     else
@@ -124,7 +124,7 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
 
 void relume_samples_destroy(struct relume_samples *samples)
 {
-    free(samples->data);
+    mem_free(samples->data);
     *samples = (struct relume_samples){0};
 }
 

@@ -105,11 +105,11 @@ static bool alloc(struct grid *g)
 static void release(struct grid *g)
 {
     for (int way = 0; way < WAYS; way++)
-        free(g->rest[way]);
-    free(g->level);
-    free(g->queue);
-    free(g->path);
-    free(g->way);
+        mem_free(g->rest[way]);
+    mem_free(g->level);
+    mem_free(g->queue);
+    mem_free(g->path);
+    mem_free(g->way);
 }
 
 static void fill(struct grid *g, const int *right, const int *down)

@@ -56,8 +56,8 @@ static bool find_components(const struct work *w, double *vectors)
         lsq_add_gram(gram, VALUES, rows, (int)n);
     }
     good = good && lsq_eigenvectors(gram, VALUES, FEATURES, values, vectors);
-    free(gram);
-    free(rows);
+    mem_free(gram);
+    mem_free(rows);
     return good;
 }
 
@@ -87,8 +87,8 @@ relume_status features_make(struct features *out, const relume_btf_fitted *sampl
     }
     if (good)
         project(&w, vectors, out);
-    free(vectors);
-    free(w.values);
+    mem_free(vectors);
+    mem_free(w.values);
     if (!good)
         features_free(out);
     return good ? RELUME_OK : RELUME_ENOMEM;
@@ -96,6 +96,6 @@ relume_status features_make(struct features *out, const relume_btf_fitted *sampl
 
 void features_free(struct features *f)
 {
-    free(f->texel);
+    mem_free(f->texel);
     f->texel = NULL;
 }

@@ -76,10 +76,10 @@ relume_status relume_btf_map_create(relume_btf_map **out, const struct relume_bt
 void relume_btf_map_destroy(relume_btf_map **map)
 {
     if (*map) {
-        free((*map)->texel);
-        free((*map)->matrix);
+        mem_free((*map)->texel);
+        mem_free((*map)->matrix);
     }
-    free(*map);
+    mem_free(*map);
     *map = NULL;
 }
 

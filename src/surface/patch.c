@@ -102,7 +102,7 @@ static bool cut(const struct canvas *c, struct trial *t)
     int *wrong = mem_array(3 * n, sizeof *wrong);
     t->side = mem_array(n, sizeof *t->side);
     if (!wrong || !t->side) {
-        free(wrong);
+        mem_free(wrong);
         return false;
     }
     int *right = wrong + n, *down = right + n;
@@ -116,7 +116,7 @@ static bool cut(const struct canvas *c, struct trial *t)
     }
     const bool good = !cut_grid(t->side, size, size, right, down);
     t->cost = good ? total_cost(t, right, down) : INFINITY;
-    free(wrong);
+    mem_free(wrong);
     return good;
 }
 
@@ -237,7 +237,7 @@ static bool try_best(struct search *s, struct canvas *c, size_t places)
         best = trial[i].cost < trial[best].cost ? i : best;
     const bool good = !s->failed && apply(c, &trial[best]);
     for (size_t i = 0; i < n; i++)
-        free(trial[i].side);
+        mem_free(trial[i].side);
     return good;
 }
 
@@ -251,6 +251,6 @@ relume_status patch_paste(struct canvas *c, struct patch *patch, uint64_t seed)
     thread_for(c->threads, (size_t)rows, compare_row, &s);
     qsort(s.list, places, sizeof *s.list, by_wrong);
     const bool good = try_best(&s, c, places);
-    free(s.list);
+    mem_free(s.list);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

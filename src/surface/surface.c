@@ -137,7 +137,7 @@ void relume_btf_surface_destroy(relume_btf_surface **surface)
     for (int i = 0; i < s->levels; i++)
         relume_btf_map_destroy(&s->level[i].own);
     relume_btf_fitted_destroy(&s->own);
-    free(s);
+    mem_free(s);
 }
 
 struct relume_btf_surface_info relume_btf_surface_info(const relume_btf_surface *s)

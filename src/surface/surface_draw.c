@@ -199,8 +199,8 @@ static void free_ambients(struct drawing *d)
         relume_btf_oriented_light_destroy(&d->ambient[i]);
         relume_prefiltered_destroy(&d->prefilter[i]);
     }
-    free(d->ambient);
-    free(d->prefilter);
+    mem_free(d->ambient);
+    mem_free(d->prefilter);
 }
 
 relume_status relume_btf_draw(struct relume_image *image, const relume_btf_surface *surface,

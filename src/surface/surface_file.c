@@ -20,7 +20,7 @@ static relume_status save_array(const struct npy *npy, const void *data, const c
 {
     char *path = mem_format("%s/%s.npy", folder, name);
     const relume_status status = path ? npy_save(npy, data, path, log) : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -39,7 +39,7 @@ static relume_status save_texels(const struct relume_btf_map_info *m, const char
     for (size_t i = 0; i < map_texels(m); i++)
         texel[i] = (uint16_t)m->texel[i];
     const relume_status status = save_array(&npy, texel, folder, "texel", log);
-    free(texel);
+    mem_free(texel);
     return status;
 }
 
@@ -53,8 +53,8 @@ static relume_status save_json(const struct relume_btf_map_info *m, const char *
                             VERSION, m->tiles, m->width, m->height, m->columns, m->rows);
     const relume_status status =
         path && text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
-    free(path);
-    free(text);
+    mem_free(path);
+    mem_free(text);
     return status;
 }
 
@@ -67,7 +67,7 @@ static relume_status save_model(const relume_btf_fitted *model, const char *fold
         status = log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
     if (!status)
         status = model_save_into(model, path, log);
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -156,7 +156,7 @@ static relume_status read_array(const char *name, const struct npy *want, void *
     for (size_t i = 0; !status && file.npy.kind != want->kind && i < count; i++)
         ((uint32_t *)out)[i] = ((const uint16_t *)file.data)[i];
     npy_close(&file);
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -184,7 +184,7 @@ static relume_status open_model(relume_btf_fitted **out, const char *folder,
 {
     char *path = mem_format("%s/%s", folder, MODEL_FOLDER);
     const relume_status status = path ? relume_btf_fitted_open(out, path, params) : RELUME_ENOMEM;
-    free(path);
+    mem_free(path);
     return status;
 }
 
@@ -214,6 +214,6 @@ relume_status relume_btf_surface_open(relume_btf_surface **out, const char *path
         (*out)->own = model;
     }
     jvalue_free(&root);
-    free(r.json);
+    mem_free(r.json);
     return status;
 }

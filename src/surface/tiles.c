@@ -168,7 +168,7 @@ relume_status relume_btf_map_tiles(relume_btf_map **out, const relume_btf_fitted
         struct canvas c = {
             .f = &f, .side = p.side, .threads = p.threads, .unit = fmaxf(mean_step(&f), 1e-12f)};
         status = make_tiles(*out, &c, &p);
-        free(c.used);
+        mem_free(c.used);
     }
     if (!status)
         fill_matrix(*out, p.seed);

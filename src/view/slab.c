@@ -144,7 +144,7 @@ relume_status slab_create(relume_slab **out, const struct relume_geometry *geome
         if (!slab_of || slab_of[i] == which)
             view[cameras.count++] = i;
     const relume_status status = create(out, geometry, &cameras, views);
-    free(view);
+    mem_free(view);
     return status;
 }
 
@@ -158,10 +158,10 @@ void relume_slab_destroy(relume_slab **slab)
 {
     if (!*slab)
         return;
-    free((*slab)->u);
-    free((*slab)->v);
-    free((*slab)->view);
-    free(*slab);
+    mem_free((*slab)->u);
+    mem_free((*slab)->v);
+    mem_free((*slab)->view);
+    mem_free(*slab);
     *slab = NULL;
 }
 

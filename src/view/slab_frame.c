@@ -142,8 +142,8 @@ static relume_status draw_linear(const struct slab_frame *f, bool constant)
         prepare_taps(&frame, constant);
         thread_for(f->params.threads, (size_t)f->out->height, draw_row, &frame);
     }
-    free(frame.across);
-    free(frame.down);
+    mem_free(frame.across);
+    mem_free(frame.down);
     return status;
 }
 
@@ -212,7 +212,7 @@ relume_status relume_slab_frame(struct relume_image *out, const relume_slab *sla
     if (relume_slab_needs(needed, slab, eye, params) &&
         slab_views_fit(&frame.width, &frame.height, needed, views, NULL, slab->views))
         status = draw(&frame);
-    free(needed);
+    mem_free(needed);
     return status;
 }
 
@@ -237,6 +237,6 @@ relume_status relume_slab_value(float rgb[3], const relume_slab *slab, struct re
     frame.needed = needed;
     if (slab_views_fit(&frame.width, &frame.height, needed, views, NULL, slab->views))
         status = slab_value_depth(rgb, &frame, st);
-    free(needed);
+    mem_free(needed);
     return status;
 }

@@ -122,6 +122,6 @@ relume_status slab_frame_lens(const struct slab_frame *f)
         return RELUME_ENOMEM;
     find_cameras(&frame);
     slab_draw(f, shade_ray, &frame);
-    free(frame.camera);
+    mem_free(frame.camera);
     return RELUME_OK;
 }

@@ -40,7 +40,7 @@ void relume_slab_set_destroy(relume_slab_set **slabs)
         return;
     for (int i = 0; i < (*slabs)->count; i++)
         relume_slab_destroy(&(*slabs)->slab[i]);
-    free(*slabs);
+    mem_free(*slabs);
     *slabs = NULL;
 }
 

@@ -471,8 +471,8 @@ static relume_status begin(struct job *job, const relume_slab_set *slabs,
 
 static void end(struct job *job)
 {
-    free(job->needed);
-    free(job->picture.seen);
+    mem_free(job->needed);
+    mem_free(job->picture.seen);
 }
 
 relume_status relume_slab_set_frame(struct relume_image *out, const relume_slab_set *slabs,

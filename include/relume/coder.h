@@ -381,13 +381,17 @@ struct relume_codes {
 RELUME_API void relume_codes_plane(const struct relume_codes *codes, int plane, size_t first,
                                    size_t n, float *out);
 
-// Every `step`-th pixel from `first` on, `n` of them, as codes of one row of pixels. Planes, or
-// indices, are copied; the rest is borrowed from `codes`. Destroy also what RELUME_ENOMEM left.
+// Some of the pixels. Planes with their scales and offsets, or indices, are copied; the rest is
+// borrowed from the codes that they are taken from.
 struct relume_codes_part {
     struct relume_codes codes;
-    void *memory;  // owned: what is copied
+    void *memory;  // owned: what is copied; NULL: nothing is there
 };
-// Picks them. RELUME_ENOMEM.
+// Those of a rectangle, which lies within `codes`. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_codes_crop(struct relume_codes_part *out,
+                                              const struct relume_codes *codes,
+                                              const struct relume_rect *rect);
+// Every `step`-th pixel from `first` on, `n` of them, as one row. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_codes_pick(struct relume_codes_part *out,
                                               const struct relume_codes *codes, size_t first,
                                               size_t step, size_t n);

@@ -36,10 +36,6 @@ struct relume_camera {
     int width, height;
 };
 
-// Where a picture lies in a frame, pixels.
-struct relume_rect {
-    int left, top, width, height;
-};
 // In the middle, as large as a picture of width x height pixels can be without being stretched;
 // black is beside it. All of the frame where that leaves less than a pixel.
 RELUME_API struct relume_rect relume_rect_fit(int width, int height, int frame_width,

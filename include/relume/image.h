@@ -22,6 +22,11 @@ RELUME_RESULT relume_status relume_image_create(struct relume_image *out, int wi
                                                 int channels);
 RELUME_API void relume_image_destroy(struct relume_image *image);
 
+// Where a picture lies in a frame, or a part in a picture, pixels.
+struct relume_rect {
+    int left, top, width, height;
+};
+
 // How code values in a file relate to linear light.
 enum relume_curve {
     RELUME_CURVE_AUTO = 0,  // float files linear, integer files sRGB unless they say otherwise

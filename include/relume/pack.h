@@ -168,6 +168,11 @@ RELUME_API const struct relume_geometry *relume_pack_geometry(const relume_pack 
 // The codes of one view; they belong to the pack and stay valid until relume_pack_drop or destroy.
 RELUME_RESULT relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack,
                                               int view);
+// Those of a rectangle of it alone, of which no more is read than the rows of the file that hold
+// it, or tiles. They belong to the caller, but for codebooks, which stay until the pack's are
+// dropped. RELUME_EINVAL where the rectangle does not lie within the view.
+RELUME_RESULT relume_status relume_pack_codes_part(struct relume_codes_part *out, relume_pack *pack,
+                                                   int view, const struct relume_rect *rect);
 // Forget the codes of one view to save memory.
 RELUME_API void relume_pack_drop(relume_pack *pack, int view);
 // Depth or mask of a view, one channel; empty when it has none. The caller destroys it.

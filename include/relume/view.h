@@ -36,6 +36,11 @@ struct relume_view_params {
     // aperture are averaged in linear light, whatever `interpolation` says. Default: a pinhole, the
     // st plane in focus.
     double aperture, focus;
+    // Where images (and disparities, whose `range` is then given) are parts of their views: which,
+    // by view number, of width x height. Only of relume_slab_frame without an aperture or a focus.
+    // Default: they are whole.
+    const struct relume_rect *part;
+    int size[2];    // width and height of the views that `part` lies in
     float nothing;  // what pixels of a frame hold that no view sees; default: black
     // Called before texels of a view are read, for images that are made where they are looked at:
     // columns x and x + 1, rows y and y + 1, each clamped to the view. For single rays, along which
@@ -128,6 +133,14 @@ RELUME_API double relume_slab_lens_weight(const struct relume_slab_lens *camera,
 // Mark in needed[views] the views that a frame from `eye` can touch (seed Fig 8-13); returns how
 // many, 0 when the eye sees nothing of the slab.
 RELUME_API int relume_slab_needs(bool *needed, const relume_slab *slab, struct relume_vec3 eye,
+                                 const struct relume_view_params *params);
+
+// Of each view that such a frame of frame[0] x frame[1] pixels can touch, the part that it reads,
+// of params->size; nothing of the others. By depth params->range is looked at, for the views that
+// relume_slab_needs marks; NULL: no disparities. Returns as relume_slab_needs; -1 when memory is
+// short.
+RELUME_API int relume_slab_parts(struct relume_rect *part, const relume_slab *slab,
+                                 struct relume_vec3 eye, const int frame[2],
                                  const struct relume_view_params *params);
 
 // The window st_min..st_max as seen from `eye`. `views` are the relit images by view number, read

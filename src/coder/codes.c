@@ -165,33 +165,79 @@ void relume_codes_part_destroy(struct relume_codes_part *part)
     *part = (struct relume_codes_part){.memory = NULL};
 }
 
-relume_status relume_codes_pick(struct relume_codes_part *out, const struct relume_codes *codes,
-                                size_t first, size_t step, size_t n)
+static size_t code_bytes(const struct relume_codes *codes)
 {
-    const bool books = codes->books;
-    const size_t size = books ? sizeof(uint16_t) : relume_storage_bytes(codes->storage);
-    const size_t rows = (size_t)(books ? codes->books : codes->planes);
-    const size_t row = (n * size + 3) / 4 * 4;  // rows of floats are aligned
-    char *memory = mem_array(rows, sizeof(void *) + row);
-    *out = (struct relume_codes_part){*codes, memory};
-    out->codes.width = (int)n;
-    out->codes.height = 1;
+    return codes->books ? sizeof(uint16_t) : relume_storage_bytes(codes->storage);
+}
+
+relume_status codes_part_create(struct relume_codes_part *out, void **data,
+                                const struct relume_codes *like, int width, int height)
+{
+    const size_t arrays = (size_t)(like->books ? like->books : like->planes);
+    const size_t bytes = (size_t)width * (size_t)height * code_bytes(like);
+    char *memory = mem_array(arrays, sizeof(void *) + 2 * sizeof(float) + bytes);
+    *out = (struct relume_codes_part){.memory = NULL};
     if (!memory)
         return RELUME_ENOMEM;
     const void **plane = (const void **)(void *)memory;
-    for (size_t r = 0; r < rows; r++) {
-        char *to = memory + rows * sizeof *plane + r * row;
-        const char *from = books ? (const char *)codes->index[r] : codes->plane[r];
-        from += first * size;
+    float *steps = (float *)(void *)(memory + arrays * sizeof *plane);
+    *data = steps + 2 * arrays;
+    for (size_t i = 0; i < arrays; i++)
+        plane[i] = (const char *)*data + i * bytes;
+    *out = (struct relume_codes_part){*like, memory};
+    out->codes.width = width;
+    out->codes.height = height;
+    if (like->books) {
+        out->codes.index = (const uint16_t *const *)(void *)memory;
+        return RELUME_OK;
+    }
+    if (like->scale) {
+        memcpy(steps, like->scale, arrays * sizeof *steps);
+        memcpy(steps + arrays, like->offset, arrays * sizeof *steps);
+    }
+    out->codes.plane = plane;
+    out->codes.scale = steps;
+    out->codes.offset = steps + arrays;
+    return RELUME_OK;
+}
+
+static const char *array_of(const struct relume_codes *codes, size_t i)
+{
+    return codes->books ? (const char *)codes->index[i] : codes->plane[i];
+}
+
+relume_status relume_codes_crop(struct relume_codes_part *out, const struct relume_codes *codes,
+                                const struct relume_rect *rect)
+{
+    const size_t size = code_bytes(codes),
+                 arrays = (size_t)(codes->books ? codes->books : codes->planes);
+    const size_t row = size * (size_t)rect->width, stride = size * (size_t)codes->width;
+    void *data;
+    const relume_status status = codes_part_create(out, &data, codes, rect->width, rect->height);
+    char *to = status ? NULL : data;
+    for (size_t i = 0; to && i < arrays; i++)
+        for (size_t y = 0; y < (size_t)rect->height; y++, to += row)
+            memcpy(to,
+                   array_of(codes, i) + ((size_t)rect->top + y) * stride +
+                       (size_t)rect->left * size,
+                   row);
+    return status;
+}
+
+relume_status relume_codes_pick(struct relume_codes_part *out, const struct relume_codes *codes,
+                                size_t first, size_t step, size_t n)
+{
+    const size_t size = code_bytes(codes),
+                 arrays = (size_t)(codes->books ? codes->books : codes->planes);
+    void *data;
+    const relume_status status = codes_part_create(out, &data, codes, (int)n, 1);
+    char *to = status ? NULL : data;
+    for (size_t r = 0; to && r < arrays; r++, to += n * size) {
+        const char *from = array_of(codes, r) + first * size;
         if (step == 1)
             memcpy(to, from, n * size);
         for (size_t i = 0; step != 1 && i < n; i++)
             memcpy(to + i * size, from + i * step * size, size);
-        plane[r] = to;
     }
-    if (books)
-        out->codes.index = (const uint16_t *const *)(void *)memory;
-    else
-        out->codes.plane = plane;
-    return RELUME_OK;
+    return status;
 }

@@ -17,6 +17,11 @@ bool codes_keep(void *codes, enum relume_storage storage, size_t first, const fl
 void codes_to_samples(void *samples, enum relume_storage storage, const void *codes, size_t n);
 bool codes_from_samples(void *codes, enum relume_storage storage, const void *samples, size_t n);
 
+// A part of width x height pixels that is `like` other codes, to be filled: its planes (indices),
+// one behind the other, begin at *data. RELUME_ENOMEM.
+relume_status codes_part_create(struct relume_codes_part *out, void **data,
+                                const struct relume_codes *like, int width, int height);
+
 // code * scale + offset of the `n` codes from `first` on.
 void codes_restore(float *out, enum relume_storage storage, const void *codes, size_t first,
                    size_t n, float scale, float offset);

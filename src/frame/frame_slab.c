@@ -1,5 +1,6 @@
 // frame_slab.c - a frame of a single slab: its window from an eye
 #include "base/log.h"
+#include "frame/parts.h"
 #include "frame/renderer.h"
 
 // Not of a free eye, whose plane in focus is its own.
@@ -28,22 +29,35 @@ static void say_beside(relume_renderer *r, vec3 eye, bool by_depth)
         by_depth ? "the surface there" : "it, without parallax; a file with depth moves it");
 }
 
+// Whether parts of views do for the frame: one eye, not a lens, and light.
+static bool takes_parts(const relume_renderer *r)
+{
+    return r->shown == SHOWN_LIGHT && renderer_goes_by_texels(r) && r->view.aperture == 0.0 &&
+           r->view.focus == 0.0;
+}
+
 static relume_status draw(relume_renderer *r, const struct relume_camera *camera,
                           struct relume_image *out)
 {
     const vec3 eye =
         camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slab_middle(r->slab);
     const bool by_depth = renderer_takes_depth(r);
+    const int frame[2] = {camera->width, camera->height};
+    bool whole = !takes_parts(r);
     if (relume_slab_needs(r->needed, r->slab, eye, &r->view) == 0)
         return log_fail(r->params.log, RELUME_EUNFIT,
                         "the eye (%g, %g, %g) sees nothing of the slab; move it so that it looks "
                         "at the object through the camera grid",
                         eye.x, eye.y, eye.z);
-    relume_status status = renderer_need_all(r, by_depth);
+    relume_status status = whole ? RELUME_OK : frame_parts(&whole, r, eye, frame, by_depth);
+    if (!status && whole)
+        status = renderer_need_all(r, by_depth);
     if (!status)
         status = relume_image_create(out, camera->width, camera->height, 3);
+    const struct relume_view_params params = whole ? r->view : frame_parts_params(r, by_depth);
     if (!status)
-        status = relume_slab_frame(out, r->slab, eye, r->image[r->shown], &r->view);
+        status = relume_slab_frame(out, r->slab, eye, whole ? r->image[r->shown] : r->parts->image,
+                                   &params);
     if (!status)
         say_beside(r, eye, by_depth);
     return status;

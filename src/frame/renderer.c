@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "frame/parts.h"
 #include "frame/passes.h"
 #include "image/image.h"
 
@@ -15,13 +16,6 @@ static const uint64_t DEFAULT_MEMORY = (uint64_t)1 << 30;
 
 // ---------------------------------------------------------------- what is kept
 
-static uint64_t codes_bytes(const struct relume_codes *codes)
-{
-    const size_t size = codes->books ? 2 : relume_storage_bytes(codes->storage);
-    return (uint64_t)codes->width * (uint64_t)codes->height * size *
-           (uint64_t)(codes->books ? codes->books : codes->planes);
-}
-
 static uint64_t view_bytes(const relume_renderer *r, int view)
 {
     const struct kept *k = &r->kept[view];
@@ -31,7 +25,7 @@ static uint64_t view_bytes(const relume_renderer *r, int view)
         bytes += image_bytes(&r->image[i][view]);
     if (k->texel)
         bytes += sizeof *k->texel * (uint64_t)r->info->width * (uint64_t)r->info->height;
-    return bytes + k->code_bytes;
+    return bytes + k->code_bytes + parts_bytes(r->parts, view);
 }
 
 uint64_t relume_renderer_bytes(const relume_renderer *r)
@@ -61,7 +55,7 @@ static void settle(relume_renderer *r)
     }
 }
 
-static void use(relume_renderer *r, int view)
+void renderer_use(relume_renderer *r, int view)
 {
     r->kept[view].used = r->frame;
     change(r, view);
@@ -71,8 +65,17 @@ static void use(relume_renderer *r, int view)
 static void forget_places(relume_renderer *r, int view)
 {
     change(r, view);
+    parts_forget(r->parts, view);
     relume_image_destroy(&r->kept[view].surface);
     relume_image_destroy(&r->image[SHOWN_PLACES][view]);
+}
+
+static void drop_codes(relume_renderer *r, int view)
+{
+    parts_drop_codes(r->parts, view);
+    if (r->kept[view].code_bytes)
+        relume_pack_drop(r->pack, view);
+    r->kept[view].code_bytes = 0;
 }
 
 static void forget(relume_renderer *r, int view)
@@ -83,8 +86,7 @@ static void forget(relume_renderer *r, int view)
     relume_image_destroy(&r->disparity[view]);
     relume_relighter_drop(r->relighter, view);
     mem_free(k->texel);
-    if (k->code_bytes)
-        relume_pack_drop(r->pack, view);
+    drop_codes(r, view);
     *k = (struct kept){.bytes = k->bytes, .changed = true};
 }
 
@@ -94,12 +96,28 @@ void relume_renderer_forget(relume_renderer *r)
         forget(r, i);
 }
 
+uint64_t renderer_memory(const relume_renderer *r)
+{
+    return r->params.memory ? r->params.memory : DEFAULT_MEMORY;
+}
+
+void renderer_save_memory(relume_renderer *r, int view)
+{
+    settle(r);
+    for (int i = 0; i < r->info->views && r->bytes > renderer_memory(r); i++) {
+        if (i == view || !r->kept[i].used)
+            continue;
+        change(r, i);
+        drop_codes(r, i);
+        settle(r);
+    }
+}
+
 // Leave out the oldest until the rest fits. What the last frame used stays for the next one.
 static void trim(relume_renderer *r)
 {
-    const uint64_t most = r->params.memory ? r->params.memory : DEFAULT_MEMORY;
     settle(r);
-    while (r->bytes > most) {
+    while (r->bytes > renderer_memory(r)) {
         int oldest = -1;
         for (int i = 0; i < r->info->views; i++)
             if (r->kept[i].used && r->kept[i].used < r->frame &&
@@ -186,6 +204,7 @@ void relume_renderer_destroy(relume_renderer **renderer)
         r->kept[i].code_bytes = 0;  // the pack keeps its codes for others
         forget(r, i);
     }
+    parts_destroy(&r->parts);
     relume_relighter_destroy(&r->relighter);
     relume_slab_destroy(&r->slab);
     relume_slab_set_destroy(&r->slabs);
@@ -356,19 +375,18 @@ static relume_status need_places(relume_renderer *r, int view)
                : find_positions(r, view, true, out, "objects need to know how far the scene is");
 }
 
-static relume_status need_surface(relume_renderer *r, int view)
+relume_status renderer_surface(struct relume_image *out, relume_renderer *r, int view)
 {
-    struct kept *k = &r->kept[view];
     const struct relume_light *near = NULL;
     for (int i = 0; i < r->light_count && !near; i++)
         if (relume_light_is_near(r->lights[i].kind))
             near = &r->lights[i];
-    if (!near || k->surface.data)
+    if (!near || out->data)
         return RELUME_OK;
     char asks[80];
     (void)snprintf(asks, sizeof asks, "a near light (%s) needs to know how far the surface is",
                    relume_light_kind_name(near->kind));
-    return find_positions(r, view, false, &k->surface, asks);
+    return find_positions(r, view, false, out, asks);
 }
 
 relume_status renderer_need_disparity(relume_renderer *r, int view)
@@ -400,12 +418,13 @@ relume_status renderer_relit(struct relume_relit *relit, relume_renderer *r, int
                                    .lights = r->lights,
                                    .count = r->light_count,
                                    .log = r->said ? NULL : r->params.log};
-    use(r, view);
+    renderer_save_memory(r, view);
+    renderer_use(r, view);
     const relume_status status = relume_pack_codes(&relit->codes, r->pack, view);
     if (status)
         return status;
-    k->code_bytes = codes_bytes(relit->codes);
-    return need_surface(r, view);
+    k->code_bytes = parts_codes_bytes(relit->codes);
+    return renderer_surface(&k->surface, r, view);
 }
 
 relume_status renderer_relight(relume_renderer *r, int view, struct relume_image *out)
@@ -427,7 +446,7 @@ relume_status renderer_relight(relume_renderer *r, int view, struct relume_image
 relume_status renderer_need(relume_renderer *r, int view)
 {
     struct kept *k = &r->kept[view];
-    use(r, view);
+    renderer_use(r, view);
     if (r->shown == SHOWN_PLACES)
         return need_places(r, view);
     if (k->lit == r->lighting)
@@ -438,7 +457,7 @@ relume_status renderer_need(relume_renderer *r, int view)
 }
 
 // Passes look around a texel, refits at all of them.
-static bool goes_by_texels(const relume_renderer *r)
+bool renderer_goes_by_texels(const relume_renderer *r)
 {
     bool environment = false;
     for (int i = 0; i < r->light_count; i++)
@@ -452,9 +471,9 @@ relume_status renderer_need_partly(relume_renderer *r, int view)
     struct kept *k = &r->kept[view];
     const size_t texels = (size_t)r->info->width * (size_t)r->info->height;
     struct relume_image *image = &r->image[SHOWN_LIGHT][view];
-    if (!goes_by_texels(r))
+    if (!renderer_goes_by_texels(r))
         return renderer_need(r, view);
-    use(r, view);
+    renderer_use(r, view);
     if (k->lit == r->lighting || k->partly == r->lighting)
         return RELUME_OK;
     k->lit = k->partly = 0;

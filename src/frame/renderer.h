@@ -45,6 +45,7 @@ struct relume_renderer {
     struct relume_image *image[SHOWN];  // [views]
     struct relume_image *disparity;     // [views]
     bool *needed;                       // [views]: by the present frame
+    struct parts *parts;                // parts.h; NULL: not needed yet
     relume_status texels;               // of renderer_texels
     relume_slab *slab;                  // of a single slab, ...
     relume_slab_set *slabs;             // ... of several; NULL: not needed yet
@@ -57,6 +58,17 @@ struct relume_renderer {
 __attribute__((format(printf, 3, 4))) void renderer_note(relume_renderer *r, enum note note,
                                                          const char *format, ...);
 
+// Bytes that are kept between frames, at most.
+uint64_t renderer_memory(const relume_renderer *r);
+// The present frame needs `view`: its bytes may change.
+void renderer_use(relume_renderer *r, int view);
+// Lets go of codes of other views than `view` while more than that is kept: what they were read for
+// is relit.
+void renderer_save_memory(relume_renderer *r, int view);
+// Where the pixels of a view lie, if near lights ask for it and `out` is empty.
+relume_status renderer_surface(struct relume_image *out, relume_renderer *r, int view);
+// Whether the lights can be shown of some texels without the others.
+bool renderer_goes_by_texels(const relume_renderer *r);
 // Begin a frame that shows light or places: trims what is kept.
 void renderer_begin(relume_renderer *r, enum shown shown);
 // The image of `view` as the frame shows it, in r->image[r->shown][view], ...
@@ -97,6 +109,12 @@ relume_status frame_eye(relume_renderer *r, const struct relume_camera *camera,
                         struct relume_image *out);
 relume_status frame_around(relume_renderer *r, const struct relume_camera *camera,
                            struct relume_image *out);
+
+// The parts of views that a frame of a slab from `eye` reads, relit, in r->parts; true in *whole,
+// and no parts, where they are most of the views. Draw with frame_parts_params then.
+relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int frame[2],
+                          bool by_depth);
+struct relume_view_params frame_parts_params(const relume_renderer *r, bool by_depth);
 
 // ---------------------------------------------------------------- one ray
 // Bilinear in linear light with the border clamped; pixel centres are at +0.5.

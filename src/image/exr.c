@@ -665,6 +665,7 @@ struct reading {
     struct layout layout;
     void (*sink)(void *, int, int, const void *);
     void *context;
+    size_t first;                      // block
     exr_decode_pipeline_t *pipelines;  // one a worker
     atomic_int status;                 // the last failure of any block
 };
@@ -675,16 +676,16 @@ static void read_block(void *context, size_t item, int worker)
     struct block block = {0};
     if (atomic_load(&r->status))
         return;
-    const relume_status status = decode(&block, &r->layout, &r->pipelines[worker], item);
+    const relume_status status = decode(&block, &r->layout, &r->pipelines[worker], r->first + item);
     if (status)
         atomic_store(&r->status, (int)status);
     else
         r->sink(r->context, block.row, block.rows, block.samples);
 }
 
-relume_status exr_read(const exr_file *file, int part, int threads,
-                       void (*sink)(void *, int, int, const void *), void *context,
-                       const struct relume_log *log)
+relume_status exr_read_rows(const exr_file *file, int part, int row, int rows, int threads,
+                            void (*sink)(void *, int, int, const void *), void *context,
+                            const struct relume_log *log)
 {
     threads = thread_count(threads);
     struct reading r = {.sink = sink, .context = context};
@@ -693,8 +694,9 @@ relume_status exr_read(const exr_file *file, int part, int threads,
     r.pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines);
     if (!r.pipelines)
         return RELUME_ENOMEM;
-    const size_t height = (size_t)r.layout.height, rows = (size_t)r.layout.block_rows;
-    thread_for(threads, (height + rows - 1) / rows, read_block, &r);
+    const int block = r.layout.block_rows;
+    r.first = (size_t)(row / block);
+    thread_for(threads, (size_t)((row + rows - 1) / block + 1) - r.first, read_block, &r);
     for (int i = 0; i < threads; i++)
         exr_decoding_destroy(file->exr, &r.pipelines[i]);
     mem_free(r.pipelines);
@@ -704,6 +706,14 @@ relume_status exr_read(const exr_file *file, int part, int threads,
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
                         exr_part_info(file, part).name, r.layout.height);
     return status;
+}
+
+relume_status exr_read(const exr_file *file, int part, int threads,
+                       void (*sink)(void *, int, int, const void *), void *context,
+                       const struct relume_log *log)
+{
+    return exr_read_rows(file, part, 0, exr_part_info(file, part).height, threads, sink, context,
+                         log);
 }
 
 struct finding {

@@ -87,6 +87,10 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
 relume_status exr_read(const exr_file *file, int part, int threads,
                        void (*sink)(void *context, int row, int rows, const void *samples),
                        void *context, const struct relume_log *log);
+// The same of those blocks that hold any of `rows` rows from `row` on; others are not looked at.
+relume_status exr_read_rows(const exr_file *file, int part, int row, int rows, int threads,
+                            void (*sink)(void *context, int row, int rows, const void *samples),
+                            void *context, const struct relume_log *log);
 
 // Decode every block of a part and call `found` for each run of rows that cannot be, from the top
 // down. RELUME_ENOMEM, RELUME_ECANCEL.

@@ -26,18 +26,25 @@ struct bilinear {
     double across, down;  // [0, 1)
 };
 
-static inline struct bilinear bilinear_at(double x, double y, int width, int height,
-                                          enum edge columns)
+// Of a grid that begins at texel (first, top).
+static inline struct bilinear bilinear_within(double x, double y, int first, int top, int width,
+                                              int height, enum edge columns)
 {
-    const double left = floor(x), top = floor(y);
-    struct bilinear b = {.across = x - left, .down = y - top};
+    const double left = floor(x), above = floor(y);
+    struct bilinear b = {.across = x - left, .down = y - above};
     for (int k = 0; k < 4; k++) {
-        const int i = relume_whole(left) + k % 2, j = relume_whole(top) + k / 2;
+        const int i = relume_whole(left) - first + k % 2, j = relume_whole(above) - top + k / 2;
         const int column =
             columns == EDGE_WRAPPED ? index_wrapped(i, width) : index_clamped(i, width);
         b.at[k] = (size_t)index_clamped(j, height) * (size_t)width + (size_t)column;
     }
     return b;
+}
+
+static inline struct bilinear bilinear_at(double x, double y, int width, int height,
+                                          enum edge columns)
+{
+    return bilinear_within(x, y, 0, 0, width, height, columns);
 }
 
 // `weight` times the share of texel k.

@@ -93,7 +93,8 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
         if (format_plane(coder, d) < b->first || format_plane(coder, d) >= b->last)
             status = reader_bad(p, "a codebook", "whole coefficients");
     if (!status)
-        status = reader_load(p, part, numbers, b->dim, of_planes ? b->first : -1);
+        status = reader_load(p, part, &(struct relume_rect){0, 0, b->codes, 1}, numbers, b->dim,
+                             of_planes ? b->first : -1);
     if (!status) {
         book.numbers = numbers;
         relume_book_expand(out, &book, coder->planes);
@@ -107,60 +108,73 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
 
 struct index_sink {
     const struct relume_book *book;  // [books]
-    uint16_t *index;                 // [books][height][width]
-    size_t books, width, height;
+    uint16_t *index;                 // [books] of the rectangle
+    size_t books, width;             // of the part
+    struct relume_rect rect;
     atomic_bool wrong;
 };
+
+static bool take_indices(uint16_t *to, const uint32_t *from, size_t n, uint32_t codes)
+{
+    unsigned wrong = 0;
+    for (size_t x = 0; x < n; x++) {
+        wrong |= from[x] >= codes;
+        to[x] = (uint16_t)from[x];
+    }
+    return !wrong;
+}
 
 static void index_rows(void *context, int row, int rows, const void *samples)
 {
     struct index_sink *s = context;
-    const uint32_t *from = samples;
-    for (size_t y = 0; y < (size_t)rows; y++)
-        for (size_t b = 0; b < s->books; b++) {
-            uint16_t *to = s->index + (b * s->height + (size_t)row + y) * s->width;
-            unsigned wrong = 0;
-            for (size_t x = 0; x < s->width; x++, from++) {
-                wrong |= *from >= (uint32_t)s->book[b].codes;
-                to[x] = (uint16_t)*from;
-            }
-            if (wrong)
+    const struct relume_rect *r = &s->rect;
+    const size_t n = (size_t)r->width;
+    const uint32_t *from = (const uint32_t *)samples + r->left;
+    for (int y = row; y < row + rows; y++)
+        for (size_t b = 0; b < s->books; b++, from += s->width) {
+            if (y < r->top || y >= r->top + r->height)
+                continue;
+            uint16_t *to = s->index + (b * (size_t)r->height + (size_t)(y - r->top)) * n;
+            if (!take_indices(to, from, n, (uint32_t)s->book[b].codes))
                 atomic_store(&s->wrong, true);
         }
 }
 
-relume_status reader_load_indices(relume_pack *p, int view)
+static relume_status load_books(relume_pack *p, struct read_books *set)
 {
-    struct loaded *to = &p->loaded[view];
-    struct read_books *set = &p->books[p->info.shared ? 0 : view];
-    const size_t books = (size_t)p->info.books;
     relume_status status = RELUME_OK;
-    for (size_t b = 0; !status && b < books; b++)
-        if (!set->vectors[b])
-            status = load_book(p, set->part[b], &set->book[b], &set->vectors[b]);
+    for (int b = 0; !status && b < p->info.books; b++) {
+        if (set->vectors[b])
+            continue;
+        status = load_book(p, set->part[b], &set->book[b], &set->vectors[b]);
+        if (!status && b == 0)
+            add_mean(p, set->vectors[0], (size_t)set->book[0].codes);
+        set->codes[b] = set->book[b].codes + reader_has_nothing(p, set->book[b].codes);
+    }
+    return status;
+}
+
+relume_status reader_load_indices(struct relume_codes_part *to, relume_pack *p, int view,
+                                  const struct relume_rect *rect, const struct relume_codes *like)
+{
+    struct read_books *set = &p->books[p->info.shared ? 0 : view];
+    struct index_sink sink = {.book = set->book,
+                              .books = (size_t)p->info.books,
+                              .width = (size_t)p->info.width,
+                              .rect = *rect};
+    void *data;
+    relume_status status = load_books(p, set);
+    if (!status)
+        status = codes_part_create(to, &data, like, rect->width, rect->height);
     if (status)
         return status;
-    add_mean(p, set->vectors[0], (size_t)set->book[0].codes);
-    struct index_sink sink = {.book = set->book,
-                              .books = books,
-                              .width = (size_t)p->info.width,
-                              .height = (size_t)p->info.height};
-    const size_t pixels = sink.width * sink.height;
-    to->plane = mem_array(books, sizeof *to->plane);
-    to->data = sink.index = mem_array(books * pixels, sizeof *sink.index);
-    if (!to->plane || !to->data)
-        return RELUME_ENOMEM;
-    status = exr_read(p->file, p->parts[view].codes, p->threads, index_rows, &sink, p->log);
+    sink.index = data;
+    status = exr_read_rows(p->file, p->parts[view].codes, rect->top, rect->height, p->threads,
+                           index_rows, &sink, p->log);
     if (!status && atomic_load(&sink.wrong))
         return reader_bad(p, "an index", "indices below the number of code vectors");
     if (!status && p->info.has_mask)
-        status = reader_mask_indices(p, view, sink.index);
-    for (size_t b = 0; b < books; b++) {
-        to->plane[b] = sink.index + b * pixels;
-        set->codes[b] = set->book[b].codes + reader_has_nothing(p, set->book[b].codes);
-    }
-    to->codes.books = p->info.books;
-    to->codes.index = (const uint16_t *const *)(const void *)to->plane;
+        status = reader_mask_indices(p, view, rect, sink.index);
     to->codes.vectors = (const float *const *)set->vectors;
     to->codes.book_codes = set->codes;
     return status;

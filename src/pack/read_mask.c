@@ -9,11 +9,12 @@
 
 #include <math.h>
 
-relume_status reader_mask_plane(relume_pack *p, int view, void *plane)
+relume_status reader_mask_plane(relume_pack *p, int view, const struct relume_rect *rect,
+                                void *plane)
 {
-    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    const size_t pixels = (size_t)rect->width * (size_t)rect->height;
     struct relume_image mask;
-    const relume_status status = relume_pack_mask(&mask, p, view);
+    const relume_status status = reader_load_plane(&mask, p, p->parts[view].mask, rect);
     for (size_t i = 0; !status && i < pixels; i++) {
         const float inside = !mask.data || mask.data[i] > 0.5f;
         (void)codes_keep(plane, p->info.storage, i, &inside, 1);
@@ -22,14 +23,14 @@ relume_status reader_mask_plane(relume_pack *p, int view, void *plane)
     return status;
 }
 
-relume_status reader_mask_codes(relume_pack *p, int view)
+relume_status reader_mask_codes(relume_pack *p, int view, const struct relume_codes *codes,
+                                uint16_t *data)
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
-    const struct relume_codes *codes = &p->loaded[view].codes;
     struct relume_image mask;
     const relume_status status = relume_pack_mask(&mask, p, view);
     for (int k = 0; !status && mask.data && k < p->info.planes; k++) {
-        uint16_t *plane = (uint16_t *)p->loaded[view].data + (size_t)k * pixels;
+        uint16_t *plane = data + (size_t)k * pixels;
         const long zero = lrintf(-codes->offset[k] / codes->scale[k]);
         for (size_t i = 0; i < pixels; i++)
             if (mask.data[i] <= 0.5f)
@@ -45,12 +46,13 @@ bool reader_has_nothing(const relume_pack *p, int codes)
     return p->info.has_mask && codes < 65536;
 }
 
-relume_status reader_mask_indices(relume_pack *p, int view, uint16_t *index)
+relume_status reader_mask_indices(relume_pack *p, int view, const struct relume_rect *rect,
+                                  uint16_t *index)
 {
     const struct read_books *set = &p->books[p->info.shared ? 0 : view];
-    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    const size_t pixels = (size_t)rect->width * (size_t)rect->height;
     struct relume_image mask;
-    const relume_status status = relume_pack_mask(&mask, p, view);
+    const relume_status status = reader_load_plane(&mask, p, p->parts[view].mask, rect);
     for (int b = 0; !status && mask.data && b < p->info.books; b++)
         for (size_t i = 0; reader_has_nothing(p, set->book[b].codes) && i < pixels; i++)
             if (mask.data[i] <= 0.5f)

@@ -96,39 +96,72 @@ const struct relume_geometry *relume_pack_geometry(const relume_pack *pack, int 
     return info->slabs ? &info->slab[info->slab_of[view]] : &info->geometry;
 }
 
+static bool is_whole(const relume_pack *p, const struct relume_rect *rect)
+{
+    return rect->width == p->info.width && rect->height == p->info.height;
+}
+
+// From the file; of coded planes the tiles are decoded whole.
+static relume_status load(struct relume_codes_part *to, relume_pack *p, int view,
+                          const struct relume_rect *rect)
+{
+    const struct relume_codes like = {
+        .coder = p->coder,
+        .domain = p->info.domain,
+        .display = p->info.display,
+        .planes = relume_coder_info(p->coder)->planes,
+        .books = p->info.books,
+        .storage = p->info.books ? 0 : p->info.storage,
+    };
+    relume_status status;
+    if (p->coded && !is_whole(p, rect)) {
+        const struct relume_rect all = reader_whole(p);
+        struct relume_codes_part whole;
+        status = load(&whole, p, view, &all);
+        if (!status)
+            status = relume_codes_crop(to, &whole.codes, rect);
+        relume_codes_part_destroy(&whole);
+    } else {
+        status =
+            (p->info.books ? reader_load_indices : reader_load_planes)(to, p, view, rect, &like);
+    }
+    if (status)
+        relume_codes_part_destroy(to);
+    return status;
+}
+
 relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack, int view)
 {
     *out = NULL;
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
-    struct loaded *to = &pack->loaded[view];
-    if (!to->data) {
-        to->codes = (struct relume_codes){
-            .coder = pack->coder,
-            .domain = pack->info.domain,
-            .display = pack->info.display,
-            .width = pack->info.width,
-            .height = pack->info.height,
-            .planes = relume_coder_info(pack->coder)->planes,
-        };
-        const relume_status status =
-            pack->info.books ? reader_load_indices(pack, view) : reader_load_planes(pack, view);
-        if (status) {
-            relume_pack_drop(pack, view);
-            return status;
-        }
+    struct relume_codes_part *to = &pack->loaded[view];
+    const struct relume_rect all = reader_whole(pack);
+    const relume_status status = to->memory ? RELUME_OK : load(to, pack, view, &all);
+    if (status) {
+        relume_pack_drop(pack, view);
+        return status;
     }
     *out = &to->codes;
     return RELUME_OK;
 }
 
+relume_status relume_pack_codes_part(struct relume_codes_part *out, relume_pack *pack, int view,
+                                     const struct relume_rect *rect)
+{
+    *out = (struct relume_codes_part){.memory = NULL};
+    if (view < 0 || view >= pack->info.views || rect->left < 0 || rect->top < 0 ||
+        rect->width < 1 || rect->height < 1 || rect->width > pack->info.width - rect->left ||
+        rect->height > pack->info.height - rect->top)
+        return RELUME_EINVAL;
+    const struct relume_codes_part *whole = &pack->loaded[view];
+    return whole->memory ? relume_codes_crop(out, &whole->codes, rect)
+                         : load(out, pack, view, rect);
+}
+
 void relume_pack_drop(relume_pack *pack, int view)
 {
-    struct loaded *l = &pack->loaded[view];
-    mem_free(l->plane);
-    mem_free(l->data);
-    mem_free(l->steps);
-    *l = (struct loaded){0};
+    relume_codes_part_destroy(&pack->loaded[view]);
     if (pack->books && !pack->info.shared)
         reader_drop_books(&pack->books[view]);
 }

@@ -8,13 +8,6 @@
 #include <relume/codebook.h>
 #include <relume/pack.h>
 
-struct loaded {
-    struct relume_codes codes;
-    const void **plane;  // [planes], or [books]
-    void *data;          // [planes][height][width], with codebooks uint16_t [books][height][width]
-    float *steps;        // scale and offset of each plane
-};
-
 struct view_parts {
     int codes, depth, mask;  // part numbers, -1 when absent
 };
@@ -33,10 +26,10 @@ struct relume_pack {
     exr_file *file;
     char *path;
     relume_coder *coder;
-    struct view_parts *parts;  // [views]
-    struct loaded *loaded;     // [views]
-    struct read_books *books;  // [views]; shared ones in the first
-    bool coded;                // planes with loss
+    struct view_parts *parts;          // [views]
+    struct relume_codes_part *loaded;  // [views]
+    struct read_books *books;          // [views]; shared ones in the first
+    bool coded;                        // planes with loss
     int threads;
     const struct relume_log *log;
     struct relume_limits limits;
@@ -48,25 +41,42 @@ relume_status reader_bad(const relume_pack *p, const char *what, const char *exp
 const float *reader_any_floats(const relume_pack *p, int part, const char *name, int *count);
 const float *reader_floats(const relume_pack *p, int part, const char *name, int count);
 
+// All of a view.
+static inline struct relume_rect reader_whole(const relume_pack *p)
+{
+    return (struct relume_rect){0, 0, p->info.width, p->info.height};
+}
+
 // Everything of the first part, into the info and the coder (read_header.c); then which part is
 // which (read_parts.c).
 relume_status reader_read_header(relume_pack *p);
 relume_status reader_find_parts(relume_pack *p);
 
-// Numbers of the file's storage: data[planes][height][width], checked. They are the planes from
-// `first` on, in the order in which the file sorts them, or in that of `data` where it is negative
-// (read_view.c).
-relume_status reader_load(relume_pack *p, int part, void *data, int planes, int first);
-relume_status reader_load_planes(relume_pack *p, int view);
+// Numbers of the file's storage: data[planes][rows][columns] of a rectangle of the part, checked.
+// They are the planes from `first` on, in the order in which the file sorts them, or in that of
+// `data` where it is negative (read_view.c).
+relume_status reader_load(relume_pack *p, int part, const struct relume_rect *rect, void *data,
+                          int planes, int first);
+// The codes of a rectangle of a view, from the file; `like` is what is known of them.
+relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, int view,
+                                 const struct relume_rect *rect, const struct relume_codes *like);
+relume_status reader_load_indices(struct relume_codes_part *to, relume_pack *p, int view,
+                                  const struct relume_rect *rect, const struct relume_codes *like);
+// Of depth or of a mask; empty where there is no such part.
+relume_status reader_load_plane(struct relume_image *out, relume_pack *p, int part,
+                                const struct relume_rect *rect);
 
 // What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
 // mean, 1 inside and 0 outside; and the code vectors of nothing.
-relume_status reader_mask_plane(relume_pack *p, int view, void *plane);
+relume_status reader_mask_plane(relume_pack *p, int view, const struct relume_rect *rect,
+                                void *plane);
 // Codes of coefficients that are 0 where the mask leaves out, into planes that were coded with
 // loss.
-relume_status reader_mask_codes(relume_pack *p, int view);
+relume_status reader_mask_codes(relume_pack *p, int view, const struct relume_codes *codes,
+                                uint16_t *data);
 bool reader_has_nothing(const relume_pack *p, int codes);
-relume_status reader_mask_indices(relume_pack *p, int view, uint16_t *index);
+relume_status reader_mask_indices(relume_pack *p, int view, const struct relume_rect *rect,
+                                  uint16_t *index);
 
 // Into info.geometry and info.slab; and, once parts are known, which slab each view is of.
 relume_status reader_read_slabs(relume_pack *p);
@@ -75,7 +85,6 @@ relume_status reader_read_members(relume_pack *p);
 // The codebooks that begin at *part, which moves behind them: those of `view`, or of all (-1),
 // which may be absent.
 relume_status reader_find_books(relume_pack *p, int view, int *part);
-relume_status reader_load_indices(relume_pack *p, int view);
 void reader_drop_books(struct read_books *books);
 
 #endif

@@ -44,12 +44,13 @@ relume_status relume_slab_disparity(struct relume_image *out, const relume_slab 
         return RELUME_EINVAL;
     const relume_status status = relume_image_create(out, depth->width, depth->height, 1);
     const double extent[2] = {g->st_max[0] - g->st_min[0], g->st_max[1] - g->st_min[1]};
-    for (int row = 0; !status && row < depth->height; row++)
+    for (int row = 0; !status && row < depth->height; row++) {
+        const double t = g->st_max[1] - (row + 0.5) / depth->height * extent[1] - uv[1];
+        const double ahead = g->uv_z - g->st_z, beside = t * t + ahead * ahead;
         for (int column = 0; column < depth->width; column++) {
             const size_t i = (size_t)row * (size_t)depth->width + (size_t)column;
-            const double s = g->st_min[0] + (column + 0.5) / depth->width * extent[0];
-            const double t = g->st_max[1] - (row + 0.5) / depth->height * extent[1];
-            const double whole = hypot(hypot(s - uv[0], t - uv[1]), g->uv_z - g->st_z);
+            const double s = g->st_min[0] + (column + 0.5) / depth->width * extent[0] - uv[0];
+            const double whole = sqrt(s * s + beside);
             const double d = (double)depth->data[i];
             const double m = 1.0 - d / whole;  // height above the st plane, cameras at 1
             if (isfinite(d))
@@ -57,6 +58,7 @@ relume_status relume_slab_disparity(struct relume_image *out, const relume_slab 
             else
                 out->data[i] = beside_surface(depth, column, row) ? fringe : RELUME_SLAB_BACKGROUND;
         }
+    }
     return status;
 }
 

@@ -47,11 +47,6 @@ struct neighbours slab_rows_at(const relume_slab *slab, bool constant, double v)
 // returns how many.
 int slab_mark(bool *needed, const relume_slab *slab, struct relume_vec3 eye, const double st_min[2],
               const double st_max[2], const struct relume_view_params *params);
-// Whether needed[n] views are there, of three channels and of one size, which is set; and so their
-// disparities when there are any.
-bool slab_views_fit(int *width, int *height, const bool *needed, const struct relume_image *views,
-                    const struct relume_image *disparity, int n);
-
 // One frame of one slab, as the ways to draw it share it.
 struct slab_frame {
     const relume_slab *slab;
@@ -63,6 +58,14 @@ struct slab_frame {
     struct relume_view_params params;
     const bool *needed;  // [views]
 };
+// What a view's image holds of it.
+static inline struct relume_rect slab_part(const struct slab_frame *f, int view)
+{
+    return f->params.part ? f->params.part[view] : (struct relume_rect){0, 0, f->width, f->height};
+}
+// Whether the views that are needed are there, of three channels and of one size, which is set
+// unless it is known; and so their disparities when there are any.
+bool slab_views_fit(struct slab_frame *frame, const struct relume_image *disparity);
 relume_status slab_frame_depth(const struct slab_frame *frame);
 relume_status slab_frame_lens(const struct slab_frame *frame);
 // What slab_frame_depth gives a pixel that looks at (s, t).

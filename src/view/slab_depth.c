@@ -24,8 +24,9 @@ static const double guessed = 1e-3;
 // One of the cameras around a ray.
 struct camera {
     int view;
-    const float *rgb;        // [height][width][3]
-    const float *disparity;  // [height][width]
+    struct relume_rect part;  // of the view, that is there:
+    const float *rgb;         // [height][width][3]
+    const float *disparity;   // [height][width]
     double weight;
     double shift[2];  // texels per unit of disparity
     double speed;     // length of shift, as far as it tells one disparity from another
@@ -67,10 +68,9 @@ static double disparity_at(const struct around *a, const struct camera *c, doubl
     place_at(at, a, c, q);
     if (!within(a, at))
         return (double)RELUME_SLAB_BACKGROUND;
-    const int width = a->frame->width, height = a->frame->height;
-    const int x = index_clamped(relume_whole(at[0]), width);
-    const int y = index_clamped(relume_whole(at[1]), height);
-    return (double)c->disparity[(size_t)y * (size_t)width + (size_t)x];
+    const int x = index_clamped(relume_whole(at[0]) - c->part.left, c->part.width);
+    const int y = index_clamped(relume_whole(at[1]) - c->part.top, c->part.height);
+    return (double)c->disparity[(size_t)y * (size_t)c->part.width + (size_t)x];
 }
 
 // 1 while taking one disparity for the other is wrong by a texel, 0 from two texels on.
@@ -90,8 +90,8 @@ static void gather(double sum[5], const struct around *a, const struct camera *c
         return;
     slab_need(a->frame, c->view, relume_whole(floor(at[0] - 0.5)),
               relume_whole(floor(at[1] - 0.5)));
-    const struct bilinear b =
-        bilinear_at(at[0] - 0.5, at[1] - 0.5, a->frame->width, a->frame->height, EDGE_CLAMPED);
+    const struct bilinear b = bilinear_within(at[0] - 0.5, at[1] - 0.5, c->part.left, c->part.top,
+                                              c->part.width, c->part.height, EDGE_CLAMPED);
     for (int k = 0; k < 4; k++) {
         const double found = (double)c->disparity[b.at[k]];
         const double w = bilinear_share(&b, k, c->weight) * agreement(c->speed, surface, found);
@@ -211,6 +211,7 @@ static void find_cameras(struct around *a, const struct slab_frame *f, const str
                 continue;
             struct camera *c = &a->camera[a->count++];
             c->view = view;
+            c->part = slab_part(f, view);
             c->rgb = f->views[view].data;
             c->disparity = f->params.disparity[view].data;
             c->weight = across.weight[i] * down.weight[j];
@@ -356,9 +357,8 @@ static void shade_ray(double sum[4], const void *context, const struct slab_ray 
 
 static bool usable(const struct slab_frame *f)
 {
-    int width = f->width, height = f->height;
-    return slab_views_fit(&width, &height, f->needed, f->views, f->params.disparity,
-                          f->slab->views);
+    struct slab_frame copy = *f;
+    return slab_views_fit(&copy, f->params.disparity);
 }
 
 void slab_depth_extent(double range[2], const struct slab_frame *f)

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 
 // One factor of a ray's weights: up to two camera lines times up to two texels of the view.
 struct taps {
@@ -59,8 +60,10 @@ static const float *texel(const struct slab_frame *f, const struct taps *across,
     const int view =
         f->slab->view[(size_t)down->line[j] * (size_t)columns + (size_t)across->line[i]];
     const struct relume_image *image = &f->views[view];
-    return image->data +
-           3 * ((size_t)down->texel[j] * (size_t)image->width + (size_t)across->texel[i]);
+    const struct relume_rect part = slab_part(f, view);
+    const int x = index_clamped(across->texel[i] - part.left, image->width);
+    const int y = index_clamped(down->texel[j] - part.top, image->height);
+    return image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
 }
 
 static void add_ray(float *rgb, const struct slab_frame *f, const struct taps *across,
@@ -160,7 +163,7 @@ static relume_status draw(const struct slab_frame *f)
 {
     const struct relume_view_params *p = &f->params;
     if (slab_is_lens(p))
-        return slab_frame_lens(f);
+        return p->part ? RELUME_EINVAL : slab_frame_lens(f);
     switch (p->interpolation) {
     case RELUME_INTERPOLATE_CONSTANT: return draw_linear(f, true);
     case RELUME_INTERPOLATE_LINEAR: return draw_linear(f, false);
@@ -178,21 +181,34 @@ static bool is_image(const struct relume_image *image, int width, int height, in
            image->height == height;
 }
 
-bool slab_views_fit(int *width, int *height, const bool *needed, const struct relume_image *views,
-                    const struct relume_image *disparity, int n)
+static bool lies_within(struct relume_rect part, int width, int height)
 {
-    for (int i = 0; i < n; i++) {
-        if (!needed[i])
+    return part.left >= 0 && part.top >= 0 && part.width <= width - part.left &&
+           part.height <= height - part.top;
+}
+
+bool slab_views_fit(struct slab_frame *f, const struct relume_image *disparity)
+{
+    if (f->params.part) {
+        f->width = f->params.size[0];
+        f->height = f->params.size[1];
+    }
+    for (int i = 0; i < f->slab->views; i++) {
+        if (!f->needed[i])
             continue;
-        if (*width == 0) {
-            *width = views[i].width;
-            *height = views[i].height;
+        if (f->width == 0) {
+            f->width = f->views[i].width;
+            f->height = f->views[i].height;
         }
-        if (!is_image(&views[i], *width, *height, 3) ||
-            (disparity && !is_image(&disparity[i], *width, *height, 1)))
+        const struct relume_rect part = slab_part(f, i);
+        if (f->params.part && part.width == 0)
+            continue;
+        if (!lies_within(part, f->width, f->height) ||
+            !is_image(&f->views[i], part.width, part.height, 3) ||
+            (disparity && !is_image(&disparity[i], part.width, part.height, 1)))
             return false;
     }
-    return *width > 0;
+    return f->width > 0;
 }
 
 relume_status relume_slab_frame(struct relume_image *out, const relume_slab *slab,
@@ -209,8 +225,7 @@ relume_status relume_slab_frame(struct relume_image *out, const relume_slab *sla
         return RELUME_ENOMEM;
     relume_status status = RELUME_EINVAL;
     frame.needed = needed;
-    if (relume_slab_needs(needed, slab, eye, params) &&
-        slab_views_fit(&frame.width, &frame.height, needed, views, NULL, slab->views))
+    if (relume_slab_needs(needed, slab, eye, params) && slab_views_fit(&frame, NULL))
         status = draw(&frame);
     mem_free(needed);
     return status;
@@ -235,7 +250,7 @@ relume_status relume_slab_value(float rgb[3], const relume_slab *slab, struct re
     relume_status status = RELUME_EINVAL;
     frame.params = *params;
     frame.needed = needed;
-    if (slab_views_fit(&frame.width, &frame.height, needed, views, NULL, slab->views))
+    if (slab_views_fit(&frame, NULL))
         status = slab_value_depth(rgb, &frame, st);
     mem_free(needed);
     return status;

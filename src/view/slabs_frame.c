@@ -439,8 +439,9 @@ static relume_status prepare(struct job *job, const struct relume_window *window
             p->seen[k * slabs + i] = see(p->slabs->slab[i], &from);
         n += mark_all(job->needed, &p->seen[k * slabs], slabs, &job->params, p->fill);
     }
-    if (n == 0 || !slab_views_fit(&common.width, &common.height, job->needed, views,
-                                  p->by_depth ? job->params.disparity : NULL, p->slabs->views))
+    common.slab = p->slabs->slab[0];
+    if (n == 0 || job->params.part ||
+        !slab_views_fit(&common, p->by_depth ? job->params.disparity : NULL))
         return RELUME_EINVAL;
     for (int i = 0; i < slabs; i++)
         prepare_slab(job, i, &common);

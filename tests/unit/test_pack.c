@@ -4,6 +4,7 @@
 #include "capture_fixture.h"
 #include "image/exr.h"
 #include "image/half.h"
+#include "pack_parts.h"
 
 static char folder[64], path[96];
 
@@ -105,6 +106,7 @@ static void test_round_trips(void **state)
                         CHECK_NEAR(info->uv[v][0], v, 0.0);
                     check_planes(pack, f, v);
                     check_values(pack, f, v);
+                    check_parts(pack, v);
                     relume_pack_drop(pack, v);
                 }
                 const struct relume_codes *codes;

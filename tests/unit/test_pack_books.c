@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "capture_fixture.h"
+#include "pack_parts.h"
 
 static char folder[64], path[96], other[96];
 
@@ -174,6 +175,7 @@ static void test_share(void **state)
                 relume_image_destroy(&plane);
             }
             assert_true((codes[0]->vectors == codes[2]->vectors) == share);
+            check_parts(pack, 2);
             relume_pack_drop(pack, 1);
             CHECK_OK(relume_pack_codes(&codes[1], pack, 1));
             relume_pack_destroy(&pack);

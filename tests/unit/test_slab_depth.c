@@ -297,6 +297,93 @@ static void captured_eyes_give_their_view_bit_by_bit(void **state)
     release(&c);
 }
 
+static struct relume_image cropped(const struct relume_image *image, const struct relume_rect *at)
+{
+    struct relume_image out;
+    CHECK_OK(relume_image_create(&out, at->width, at->height, image->channels));
+    for (int y = 0; y < at->height; y++)
+        memcpy(out.data + y * at->width * image->channels,
+               image->data + ((at->top + y) * image->width + at->left) * image->channels,
+               sizeof(float) * (size_t)(at->width * image->channels));
+    return out;
+}
+
+// Returns the texels that a frame reads, after drawing it from these alone.
+static int draw_from_parts(struct relume_image *out, const struct captured *c,
+                           struct relume_vec3 eye, struct relume_view_params params)
+{
+    struct relume_rect part[VIEWS];
+    struct relume_image views[VIEWS] = {{0}}, disparity[VIEWS] = {{0}};
+    const int frame[2] = {out->width, out->height};
+    int texels = 0;
+    params.size[0] = W;
+    params.size[1] = H;
+    assert_true(relume_slab_parts(part, c->slab, eye, frame, &params) > 0);
+    params.part = part;
+    for (int i = 0; i < VIEWS; i++) {
+        if (part[i].width == 0)
+            continue;
+        views[i] = cropped(&c->views[i], &part[i]);
+        disparity[i] = cropped(&c->disparity[i], &part[i]);
+        texels += part[i].width * part[i].height;
+    }
+    params.disparity = params.disparity ? disparity : NULL;
+    CHECK_OK(relume_slab_frame(out, c->slab, eye, views, &params));
+    for (int i = 0; i < VIEWS; i++) {
+        relume_image_destroy(&views[i]);
+        relume_image_destroy(&disparity[i]);
+    }
+    return texels;
+}
+
+// What a frame reads of its views is all in the parts that it is said to read, bit by bit, and that
+// is little of them for an eye that looks through the cameras.
+static void parts_of_views_make_the_frame(void **state)
+{
+    (void)state;
+    static const struct relume_vec3 near[] = {{0.05, -0.03, 1.8}, {0.02, 0.03, 0.9},
+                                              {-0.1, 0.05, 2.7},  {0.1, 0.2, 3},
+                                              {0.02, 0.03, 4.5},  {0.4, -0.3, 2}};
+    static const int sizes[][2] = {{W, H}, {77, 95}, {20, 15}, {3, 2}};
+    static const struct sheet sheets[] = {{1.0, {0.2, 0.15}, paint_red},
+                                          {-0.5, {0.9, 9}, paint_stripes}};
+    const struct scene scene = {sheets, 2};
+    struct captured c;
+    double range[VIEWS][2];
+    capture(&c, &scene);
+    for (int i = 0; i < VIEWS; i++)
+        assert_true(relume_slab_range(range[i], &c.disparity[i]));
+    for (int e = 0; e < 6; e++)
+        for (int s = 0; s < 4; s++)
+            for (int i = RELUME_INTERPOLATE_CONSTANT; i <= RELUME_INTERPOLATE_DEPTH; i++) {
+                const bool by_depth = i == RELUME_INTERPOLATE_DEPTH;
+                const struct relume_view_params params = {
+                    .interpolation = (enum relume_interpolation)i,
+                    .disparity = by_depth ? c.disparity : NULL,
+                    .range = by_depth ? (const double(*)[2])range : NULL,
+                };
+                struct relume_image want, got;
+                CHECK_OK(relume_image_create(&want, sizes[s][0], sizes[s][1], 3));
+                CHECK_OK(relume_image_create(&got, sizes[s][0], sizes[s][1], 3));
+                CHECK_OK(relume_slab_frame(&want, c.slab, near[e], c.views, &params));
+                const int texels = draw_from_parts(&got, &c, near[e], params);
+                assert_memory_equal(got.data, want.data,
+                                    sizeof(float) * 3 * (size_t)(got.width * got.height));
+                // sixteen views, of which an eye between the planes sees about four's worth
+                assert_true(texels <= VIEWS * W * H && (e > 0 || 2 * texels < VIEWS * W * H));
+                relume_image_destroy(&want);
+                relume_image_destroy(&got);
+            }
+    struct relume_rect outside[VIEWS] = {{W - 3, 0, 4, 4}};
+    struct relume_image out;
+    CHECK_OK(relume_image_create(&out, W, H, 3));
+    assert_int_equal(relume_slab_frame(&out, c.slab, near[0], c.views,
+                                       relume_view_params(.part = outside, .size = {W, H})),
+                     RELUME_EINVAL);
+    relume_image_destroy(&out);
+    release(&c);
+}
+
 // One ray is the pixel of the frame that looks along it.
 static void a_ray_is_its_pixel(void **state)
 {
@@ -555,6 +642,7 @@ int main(void)
         cmocka_unit_test(a_sheet_at_any_height_is_met),
         cmocka_unit_test(silhouettes_are_sharp),
         cmocka_unit_test(captured_eyes_give_their_view_bit_by_bit),
+        cmocka_unit_test(parts_of_views_make_the_frame),
         cmocka_unit_test(a_ray_is_its_pixel),
         cmocka_unit_test(background_is_on_the_st_plane),
         cmocka_unit_test(threads_do_not_matter),

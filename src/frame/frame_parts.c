@@ -1,0 +1,183 @@
+// frame_parts.c - what a frame reads of many views, where it reads little of each
+//
+// An eye near a slab looks through many cells of the camera grid and sees a small rectangle of the
+// window through each: only these are read, relit and kept, so that a frame costs about what it
+// shows, however many views it touches.
+#include "base/log.h"
+#include "base/memory.h"
+#include "frame/parts.h"
+#include "frame/renderer.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---------------------------------------------------------------- rectangles
+
+static int64_t area(struct relume_rect r)
+{
+    return (int64_t)r.width * r.height;
+}
+
+static struct relume_rect around(struct relume_rect a, struct relume_rect b)
+{
+    const int left = a.left < b.left ? a.left : b.left, top = a.top < b.top ? a.top : b.top;
+    const int right = a.left + a.width > b.left + b.width ? a.left + a.width : b.left + b.width;
+    const int bottom = a.top + a.height > b.top + b.height ? a.top + a.height : b.top + b.height;
+    return (struct relume_rect){left, top, right - left, bottom - top};
+}
+
+// What is kept holds `wanted`; an eye that moves a little goes on with what it has.
+static void hold(relume_renderer *r, int view, struct relume_rect wanted)
+{
+    struct relume_rect *at = &r->parts->at[view];
+    const struct relume_rect both = area(*at) ? around(*at, wanted) : wanted;
+    if (area(*at) && area(both) == area(*at))
+        return;
+    parts_forget(r->parts, view);
+    *at = area(both) <= 2 * area(wanted) ? both : wanted;
+}
+
+static relume_status crop(struct relume_image *out, const struct relume_image *image,
+                          const struct relume_rect *at)
+{
+    const size_t channels = (size_t)image->channels, row = channels * (size_t)at->width;
+    const relume_status status = relume_image_create(out, at->width, at->height, image->channels);
+    for (size_t y = 0; !status && y < (size_t)at->height; y++)
+        memcpy(out->data + y * row,
+               image->data +
+                   channels * (((size_t)at->top + y) * (size_t)image->width + (size_t)at->left),
+               row * sizeof *out->data);
+    return status;
+}
+
+// ---------------------------------------------------------------- what a view is asked for
+
+// How near its surfaces are, which says how far a ray walks over its disparities. These are kept
+// whole only while all that the frame needs are a small share of the memory.
+static relume_status need_range(relume_renderer *r, int view, bool keep)
+{
+    double *range = r->parts->range[view];
+    if (!isnan(range[0]))
+        return RELUME_OK;
+    const relume_status status = renderer_need_disparity(r, view);
+    if (!status)
+        (void)relume_slab_range(range, &r->disparity[view]);
+    if (!keep)
+        relume_image_destroy(&r->disparity[view]);
+    return status;
+}
+
+static relume_status need_disparity(relume_renderer *r, int view)
+{
+    struct relume_image *out = &r->parts->disparity[view];
+    if (out->data)
+        return RELUME_OK;
+    relume_status status = renderer_need_disparity(r, view);
+    if (!status)
+        status = crop(out, &r->disparity[view], &r->parts->at[view]);
+    relume_image_destroy(&r->disparity[view]);
+    return status;
+}
+
+static relume_status need_surface(relume_renderer *r, int view)
+{
+    struct part *p = &r->parts->part[view];
+    struct relume_image whole = {0};
+    relume_status status = p->surface.data ? RELUME_OK : renderer_surface(&whole, r, view);
+    if (!status && whole.data)
+        status = crop(&p->surface, &whole, &r->parts->at[view]);
+    relume_image_destroy(&whole);
+    return status;
+}
+
+static relume_status need_light(relume_renderer *r, int view)
+{
+    struct part *p = &r->parts->part[view];
+    if (p->lit == r->lighting)
+        return RELUME_OK;
+    renderer_save_memory(r, view);
+    renderer_use(r, view);
+    relume_status status =
+        p->codes.memory ? RELUME_OK
+                        : relume_pack_codes_part(&p->codes, r->pack, view, &r->parts->at[view]);
+    if (!status)
+        status = need_surface(r, view);
+    const struct relume_relit relit = {.view = view,
+                                       .codes = &p->codes.codes,
+                                       .surface = &p->surface,
+                                       .lights = r->lights,
+                                       .count = r->light_count,
+                                       .log = r->said ? NULL : r->params.log};
+    if (!status)
+        status = relume_relighter_relight(&r->parts->image[view], r->relighter, &relit);
+    r->said |= !status;
+    p->lit = status ? 0 : r->lighting;
+    return status;
+}
+
+static relume_status need_part(relume_renderer *r, int view, struct relume_rect wanted,
+                               bool by_depth)
+{
+    renderer_use(r, view);
+    hold(r, view, wanted);
+    const relume_status status = by_depth ? need_disparity(r, view) : RELUME_OK;
+    return status ? status : need_light(r, view);
+}
+
+// ---------------------------------------------------------------- a frame
+
+struct relume_view_params frame_parts_params(const relume_renderer *r, bool by_depth)
+{
+    struct relume_view_params params = r->view;
+    params.part = r->parts->at;
+    params.size[0] = r->info->width;
+    params.size[1] = r->info->height;
+    params.disparity = by_depth ? r->parts->disparity : NULL;
+    params.range = by_depth ? (const double(*)[2])r->parts->range : NULL;
+    return params;
+}
+
+static relume_status need_ranges(relume_renderer *r)
+{
+    const size_t pixels = (size_t)r->info->width * (size_t)r->info->height;
+    uint64_t bytes = 0;
+    relume_status status = RELUME_OK;
+    for (int v = 0; v < r->info->views; v++)
+        bytes += r->needed[v] ? pixels * sizeof(float) : 0;
+    for (int v = 0; !status && v < r->info->views; v++)
+        if (r->needed[v])
+            status = need_range(r, v, bytes <= renderer_memory(r) / 8);
+    return status;
+}
+
+relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int frame[2],
+                          bool by_depth)
+{
+    relume_status status = r->parts ? RELUME_OK : parts_create(&r->parts, r->info->views);
+    if (!status && by_depth)
+        status = need_ranges(r);
+    if (status)
+        return status;
+    struct relume_rect *wanted = mem_array((size_t)r->info->views, sizeof *wanted);
+    const struct relume_view_params params = frame_parts_params(r, by_depth);
+    int64_t texels = 0, all = 0;
+    if (!wanted || relume_slab_parts(wanted, r->slab, eye, frame, &params) < 0) {
+        mem_free(wanted);
+        return RELUME_ENOMEM;
+    }
+    for (int v = 0; v < r->info->views; v++) {
+        texels += area(wanted[v]);
+        all += r->needed[v] ? (int64_t)r->info->width * r->info->height : 0;
+    }
+    *whole = 2 * texels > all;
+    for (int v = 0; !status && !*whole && v < r->info->views; v++) {
+        if (area(wanted[v]))
+            status = need_part(r, v, wanted[v], by_depth);
+        else
+            parts_forget(r->parts, v);
+        if (!status && !log_progress(r->params.log, "relighting", 1.0))
+            status = RELUME_ECANCEL;
+    }
+    mem_free(wanted);
+    return status;
+}

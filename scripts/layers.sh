@@ -102,6 +102,15 @@ found=$(grep -rlE '(^|[^a-z_>.:])(fopen|open|openat|creat|rename|mkstemp|mkostem
     exit 1
 }
 
+# All memory of the library comes from one place, which an application may replace (context.h); the
+# programs are its callers.
+found=$(grep -rlE '(^|[^a-z_>.])(malloc|calloc|realloc|reallocarray|free|strdup|strndup|v?asprintf|aligned_alloc|posix_memalign)\(' src --include='*.[ch]' --include='*.cpp' |
+    grep -v -e '^src/base/memory.c$' -e '^src/cli/' -e '^src/program/' || true)
+[ -z "$found" ] || {
+    echo "layers: allocates or frees itself; expected mem_array, mem_free (base/memory.h):" $found >&2
+    exit 1
+}
+
 grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.h' --include='*.cpp' |
     awk -F : -v rules="$rules" -v external="$external" '
     function complain(what) {

@@ -62,6 +62,10 @@ static inline bool relume_status_is_input(relume_status status)
     return status >= RELUME_ENOTFOUND && status <= RELUME_EUNFIT;
 }
 
+// Free what a call has returned as the caller's own array; NULL is fine. It is free() unless the
+// application has set an allocator (context.h).
+RELUME_API void relume_free(void *memory);
+
 // How much a sentence of the log matters.
 enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 

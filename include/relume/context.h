@@ -7,8 +7,8 @@
 //     relume_open(&pack, "coin.ptm", relume_open_params(.log = &log));
 //
 // It goes with the log, which every params struct takes. A log without one, and no log, have the
-// defaults. Memory is not a context's: all of it comes from the process's malloc, so that a program
-// which wants another allocator links one; what callers are to free they give to free().
+// defaults. Memory is not a context's but the process's (relume_set_allocator): buffers pass from
+// one object to another, and one that was opened with this context may be freed after another.
 #ifndef RELUME_CONTEXT_H
 #define RELUME_CONTEXT_H
 
@@ -56,6 +56,27 @@ RELUME_RESULT relume_status relume_context_create(relume_context **out,
                                                   const struct relume_context_params *params);
 // `*context` becomes NULL, and may have been NULL.
 RELUME_API void relume_context_destroy(relume_context **context);
+
+// Where all memory of the library comes from, in place of malloc, realloc and free, whose contracts
+// these have: aligned for every type; NULL when memory is short, which ends the call with
+// RELUME_ENOMEM. `bytes` is never 0, `memory` never NULL.
+// All three, or none for the C library's. Not through them goes what other libraries allocate for
+// themselves: the C library's files and threads, JSON, JPEG, AV1, meshes, models in the helper.
+// Thread-safety: all are called from any number of threads at once, and must not call the library.
+struct relume_allocator_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    void *(*allocate)(void *user, size_t bytes);
+    void *(*resize)(void *user, void *memory, size_t bytes);
+    void (*release)(void *user, void *memory);
+    void *user;  // of all three; it must live as long as the process uses the library
+};
+#define relume_allocator_params(...)                                                               \
+    (&(const struct relume_allocator_params){RELUME_SIZED(relume_allocator_params), __VA_ARGS__})
+
+// Of the whole process, before anything else of the library is used: RELUME_EINVAL once it has
+// allocated anything, and for two of three functions. The struct is copied.
+// Thread-safety: not while another thread is in the library.
+RELUME_RESULT relume_status relume_set_allocator(const struct relume_allocator_params *params);
 
 // With `keep_inputs`: note a file or a folder before it is opened; by device and number, so that
 // links and other spellings do not matter. What does not exist is passed over.

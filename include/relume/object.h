@@ -115,8 +115,8 @@ struct relume_object_light {
 enum { RELUME_OBJECT_LIGHTS_MOST = 64 };  // of one light
 // The lights in lamps, `*n` of them: areas in as many facets as the objects' distance asks for, at
 // most 36; environments in RELUME_OBJECT_LIGHTS_MOST directional lights
-// (relume_environment_sample). `*out` is to be freed. RELUME_ENOMEM; RELUME_EINVAL for a light that
-// relume_light_check refuses.
+// (relume_environment_sample). `*out` is to be freed with relume_free(). RELUME_ENOMEM;
+// RELUME_EINVAL for a light that relume_light_check refuses.
 RELUME_RESULT relume_status relume_objects_lights(struct relume_object_light **out, int *n,
                                                   const relume_objects *objects,
                                                   const struct relume_light *lights, int count);

@@ -91,7 +91,7 @@ char *acquire_light_sphere(const struct relume_acquisition *out)
         put_light(f, out, i);
     fputs("</svg>\n", f);
     if (!fclose(f))
-        return text;
+        return mem_take(text);
     mem_free_libc(text);
     return NULL;
 }

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 
 #include "base/context.h"
+#include "base/params.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -14,6 +15,21 @@
 
 static atomic_long countdown;  // test hook only; 0 is off
 
+// The application's allocator, constant from the first allocation on; without one `release` is
+// NULL. The only state of the process besides: whether that first allocation has been.
+static struct relume_allocator_params application;
+static atomic_bool used;
+
+relume_status relume_set_allocator(const struct relume_allocator_params *params)
+{
+    const struct relume_allocator_params p = PARAMS(relume_allocator_params, params);
+    const int given = (p.allocate != NULL) + (p.resize != NULL) + (p.release != NULL);
+    if ((given != 0 && given != 3) || atomic_load(&used))
+        return RELUME_EINVAL;
+    application = p;
+    return RELUME_OK;
+}
+
 void mem_fail_after(long n)
 {
     atomic_store(&countdown, n);
@@ -24,9 +40,17 @@ bool mem_fail_pending(void)
     return atomic_load(&countdown) > 0;
 }
 
+// From now on the allocator stays. Only read, once it is true: the threads share its cache line.
+static void note_use(void)
+{
+    if (!atomic_load_explicit(&used, memory_order_relaxed))
+        atomic_store(&used, true);
+}
+
 // As malloc does, it says why in errno.
 static bool refuse(void)
 {
+    note_use();
     const bool refused = atomic_load_explicit(&countdown, memory_order_relaxed) > 0 &&
                          atomic_fetch_sub(&countdown, 1) == 1;
     if (refused)
@@ -34,17 +58,23 @@ static bool refuse(void)
     return refused;
 }
 
-void *mem_array(size_t count, size_t size)
+// Never none: there is an address for every size.
+static void *allocate(void *old, size_t bytes)
 {
-    size_t bytes;
-    if (__builtin_mul_overflow(count, size, &bytes) || refuse())
-        return NULL;
-    return malloc(bytes ? bytes : 1);
+    bytes = bytes ? bytes : 1;
+    if (!application.release)
+        return old ? realloc(old, bytes) : malloc(bytes);
+    void *memory = old ? application.resize(application.user, old, bytes)
+                       : application.allocate(application.user, bytes);
+    if (!memory)
+        errno = ENOMEM;
+    return memory;
 }
 
-void *mem_zeroed(size_t count, size_t size)
+void *mem_lend(size_t bytes)
 {
-    return refuse() ? NULL : calloc(count ? count : 1, size ? size : 1);
+    note_use();
+    return allocate(NULL, bytes);
 }
 
 void *mem_resize(void *old, size_t count, size_t size)
@@ -52,7 +82,20 @@ void *mem_resize(void *old, size_t count, size_t size)
     size_t bytes;
     if (__builtin_mul_overflow(count, size, &bytes) || refuse())
         return NULL;
-    return realloc(old, bytes ? bytes : 1);
+    return allocate(old, bytes);
+}
+
+void *mem_array(size_t count, size_t size)
+{
+    return mem_resize(NULL, count, size);
+}
+
+void *mem_zeroed(size_t count, size_t size)
+{
+    if (!application.release)
+        return refuse() ? NULL : calloc(count ? count : 1, size ? size : 1);
+    void *memory = mem_array(count, size);
+    return memory ? memset(memory, 0, count * size) : NULL;
 }
 
 bool mem_grow(void *array, size_t count, size_t size)
@@ -83,7 +126,7 @@ void *mem_large(size_t bytes)
 {
     enum { LARGE_PAGE = 2 << 20 };
     void *memory = NULL;
-    if (bytes < LARGE_PAGE)
+    if (application.release || bytes < LARGE_PAGE)
         return mem_array(bytes, 1);
     if (refuse() || posix_memalign(&memory, LARGE_PAGE, bytes))
         return NULL;
@@ -93,7 +136,15 @@ void *mem_large(size_t bytes)
 
 void mem_free(void *memory)
 {
-    free(memory);
+    if (!application.release)
+        free(memory);
+    else if (memory)
+        application.release(application.user, memory);
+}
+
+void relume_free(void *memory)
+{
+    mem_free(memory);
 }
 
 void mem_free_libc(void *memory)

@@ -19,6 +19,8 @@ void *mem_copy(const void *from, size_t count, size_t size);
 char *mem_text(const char *text);
 // Memory of its own pages, large ones where the system has them: far fewer faults.
 void *mem_large(size_t bytes);
+// For a library that takes an allocator and may go on without: no test lets this fail.
+void *mem_lend(size_t bytes);
 // All memory of the above, and NULL.
 void mem_free(void *memory);
 // What the C library or a library of others allocated: getline, open_memstream, scandir, realpath.

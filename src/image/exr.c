@@ -69,6 +69,16 @@ static void ignore_error(exr_const_context_t context, exr_result_t code, const c
     (void)context, (void)code, (void)message;
 }
 
+static exr_context_initializer_t initial(void *user)
+{
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = ignore_error;
+    init.alloc_fn = mem_lend;
+    init.free_fn = mem_free;
+    init.user_data = user;
+    return init;
+}
+
 // ---------------------------------------------------------------- writing
 
 struct pipeline {
@@ -217,8 +227,8 @@ static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int
     pipeline->encoding_user_data = turn;
     const size_t size = chunk.unpacked_size;
     if (pipeline->packed_alloc_size < size) {
-        mem_free_libc(pipeline->packed_buffer);
-        pipeline->packed_buffer = malloc(size);
+        mem_free(pipeline->packed_buffer);
+        pipeline->packed_buffer = mem_lend(size);
         pipeline->packed_alloc_size = pipeline->packed_buffer ? size : 0;
     }
     return pipeline->packed_buffer ? RELUME_OK : RELUME_ENOMEM;
@@ -272,9 +282,7 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
     if (status)
         return status;
 
-    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = ignore_error;
-    init.user_data = &w;
+    exr_context_initializer_t init = initial(&w);
     init.write_fn = write_stream;
     path = infile_name(path);
     exr_result_t r = exr_start_write(&w.exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
@@ -417,9 +425,7 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
 static relume_status start_read(exr_file *file, const struct relume_limits *limits,
                                 const struct relume_log *log)
 {
-    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = ignore_error;
-    init.user_data = file;
+    exr_context_initializer_t init = initial(file);
     init.read_fn = read_stream;
     init.size_fn = stream_size;
     const exr_result_t r = exr_start_read(&file->exr, file->path, &init);

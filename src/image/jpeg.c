@@ -122,7 +122,7 @@ static void close(picture_reader *reader)
         jpeg_destroy_decompress(&p->info);
     if (p->file)
         fclose(p->file);
-    mem_free(p->profile);
+    mem_free_libc(p->profile);  // of libjpeg's own malloc
     mem_free(p->cmyk);
     mem_free(p->path);
     mem_free(p);

@@ -86,6 +86,10 @@ cp tree/src/cli/commands/cmd_info.c before
 echo 'void f(void) { fopen("x", "w"); }' >>tree/src/cli/commands/cmd_info.c
 check "a file that opens files itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "itself; expected base/inputs.h.*src/cli/commands/cmd_info.c" layers.txt'
 cp before tree/src/cli/commands/cmd_info.c
+cp tree/src/math/sh.c before
+echo 'void f(void *p) { free(p); }' >>tree/src/math/sh.c
+check "a file that frees by itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "frees itself; expected mem_array.*src/math/sh.c" layers.txt'
+cp before tree/src/math/sh.c
 "$TOP/scripts/metrics.sh" >metrics.txt
 check "no folder has more than 45 files" awk '$1 == "largest_folder" && $2 <= 45 { found = 1 } END { exit !found }' metrics.txt
 cat >>tree/src/math/sh.c <<'END'

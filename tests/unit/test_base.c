@@ -118,7 +118,7 @@ static void test_growing_array(void **state)
     before = items;
     assert_false(mem_grow(&items, (size_t)1 << 62, sizeof *items));
     assert_ptr_equal(items, before);
-    free(items);
+    relume_free(items);
 }
 
 int main(void)

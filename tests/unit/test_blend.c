@@ -35,7 +35,7 @@ static void blend_all(struct panorama *p, int threads)
     memset(p->sums, 0, sizeof p->sums);
     for (int i = 0; i < PICTURES; i++)
         CHECK_OK(blend_add(p->sums, &p->blend, i, fetch, p, threads));
-    free(p->blend.box);
+    relume_free(p->blend.box);
 }
 
 static void end(struct panorama *p)

@@ -251,7 +251,7 @@ static const char *save_jpegs(const struct jpegs *j, const char *format)
 static void free_jpegs(struct jpegs *j)
 {
     for (int i = 0; i < j->n; i++)
-        free(j->bytes[i]);
+        relume_free(j->bytes[i]);
 }
 
 static void jpeg_planes_are_read(void **state)

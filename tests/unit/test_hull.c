@@ -50,7 +50,7 @@ static void test_octahedron(void **state)
     assert_int_equal(count, 8);
     CHECK_NEAR(volume(p, t, count), 4.0 / 3.0, 1e-12);
     check_cover(p, t, count);
-    free(t);
+    relume_free(t);
 }
 
 static void test_cube(void **state)
@@ -69,7 +69,7 @@ static void test_cube(void **state)
         for (int c = 0; c < 3; c++)
             assert_int_not_equal(t[i].corner[c], 8);
     check_cover(p, t, count);
-    free(t);
+    relume_free(t);
 }
 
 static void test_grids(void **state)
@@ -90,7 +90,7 @@ static void test_grids(void **state)
     CHECK_OK(hull_build(p, n, &t, &count));
     assert_int_equal(count, 2 * n - 4);  // Euler
     check_cover(p, t, count);
-    free(t);
+    relume_free(t);
 }
 
 static void test_random_points(void **state)
@@ -107,8 +107,8 @@ static void test_random_points(void **state)
     check_cover(p, t, count);
     CHECK_OK(hull_build(p, 200, &again, &second));
     assert_memory_equal(t, again, (size_t)count * sizeof *t);
-    free(t);
-    free(again);
+    relume_free(t);
+    relume_free(again);
 }
 
 static void test_flat(void **state)

@@ -51,7 +51,7 @@ static void planes_come_back(void **state)
             for (int i = 0; i < W * H; i++)
                 CHECK_NEAR(codes.data[c * W * H + i], 128.0 + (double)m.plane[c][i], 2.0);
         jpeg_codes_free(&codes);
-        free(m.bytes);
+        relume_free(m.bytes);
     }
 }
 
@@ -70,11 +70,11 @@ static void planes_carry_no_colour(void **state)
     assert_int_equal(adobe[11], 0);  // transform: none
     assert_false(has(&m, "JFIF"));
     assert_false(has(&m, "ICC_PROFILE"));
-    free(m.bytes);
+    relume_free(m.bytes);
     make(&m, 3, JPEG_YCBCR, 8, 0.1);
     assert_true(has(&m, "JFIF"));
     assert_false(has(&m, "Adobe"));
-    free(m.bytes);
+    relume_free(m.bytes);
 }
 
 static void broken_files_are_errors(void **state)
@@ -101,7 +101,7 @@ static void broken_files_are_errors(void **state)
     test_log_init(&log);
     assert_int_equal(jpeg_read(&codes, "/nowhere/x.jpg", NULL, &log.log), RELUME_ENOTFOUND);
     assert_non_null(strstr(log.text, "/nowhere/x.jpg: cannot be opened"));
-    free(m.bytes);
+    relume_free(m.bytes);
 }
 
 // ---------------------------------------------------------------- quantisation
@@ -174,7 +174,7 @@ static void bits_are_those_of_the_file(void **state)
     CHECK_OK(jpeg_encode(&bytes, &size, &p));
     assert_true((double)size < 1.06 * r.bits / 8.0 + 400.0);
     assert_true((double)size > 0.9 * r.bits / 8.0);
-    free(bytes);
+    relume_free(bytes);
 }
 
 int main(void)

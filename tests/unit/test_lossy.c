@@ -67,7 +67,7 @@ static void drop(struct made *m)
     relume_coefficients_destroy(&m->coefficients);
     relume_coder_destroy(&m->coder);
     free(m->codes);
-    free(m->order);
+    relume_free(m->order);
 }
 
 static double rms(const uint16_t *a, const uint16_t *b, size_t n)
@@ -105,8 +105,8 @@ static void test_planes_come_back(void **state)
                          RELUME_OK);
         assert_true(rms(back, m.codes, n) < 320.0);  // a fifth of what the planes vary by
         assert_true(coarse.count <= fine.count);
-        free(fine.word);
-        free(coarse.word);
+        relume_free(fine.word);
+        relume_free(coarse.word);
         free(back);
         drop(&m);
     }
@@ -120,8 +120,8 @@ static void test_threads_change_nothing(void **state)
     const struct lossy_words one = encoded(&m, 122, 1), four = encoded(&m, 122, 4);
     assert_int_equal(one.count, four.count);
     assert_memory_equal(one.word, four.word, one.count * sizeof *one.word);
-    free(one.word);
-    free(four.word);
+    relume_free(one.word);
+    relume_free(four.word);
     drop(&m);
 }
 
@@ -156,7 +156,7 @@ static void test_a_damaged_tile_is_lost_alone(void **state)
         assert_int_equal(part[i], i % 600 < 512 ? whole[i] : 0);
     free(whole);
     free(part);
-    free(w.word);
+    relume_free(w.word);
     drop(&m);
 }
 
@@ -179,7 +179,7 @@ static void test_words_are_not_believed(void **state)
     assert_int_equal(lossy_decode(wide, &other, w.word, w.count, 1, NULL), RELUME_EDAMAGED);
     free(wide);
     free(back);
-    free(w.word);
+    relume_free(w.word);
     drop(&m);
 }
 

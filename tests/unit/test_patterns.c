@@ -176,7 +176,7 @@ static void directions_are_read_and_normalised(void **state)
         assert_int_equal(n, 2);
         check_near(v[1].x, 0.6, 1e-6);
         check_near(v[1].z, 0.8, 1e-6);
-        free(v);
+        relume_free(v);
     }
 }
 

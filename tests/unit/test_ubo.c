@@ -542,7 +542,7 @@ static void test_other_lights(void **state)
     struct test_log log;
     test_log_init(&log);
     write_bytes(copy);
-    free(copy.data);
+    relume_free(copy.data);
     relume_btf *btf;
     CHECK_OK(relume_btf_open(&btf, path, relume_btf_params(.fill = true, .log = &log.log)));
     assert_non_null(strstr(log.text, "the lights of view 0 are used for all"));

@@ -197,7 +197,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
     t->gl->DeleteBuffers(1, &t->indices);
     free(t->program);
     free(t->material);
-    free(t->lamp);
+    relume_free(t->lamp);
     free(t->light);
     *t = (struct objects_drawer){0};
 }
@@ -294,7 +294,7 @@ relume_status objects_drawer_light(struct objects_drawer *t, const struct relume
     memcpy(light, lights, (size_t)n * sizeof *light);
     t->light = light;
     t->lights = n;
-    free(t->lamp);
+    relume_free(t->lamp);
     return relume_objects_lights(&t->lamp, &t->lamps, t->objects, lights, n);
 }
 

@@ -143,7 +143,7 @@ static relume_status run(const struct args *args)
     relume_status status = ingest_params(&p, &lights, args, &o->views);
     if (!status)
         status = o->colmap ? posed(o, o->args.input[0], &p) : slab(o, &p);
-    free(lights);
+    relume_free(lights);
     if (!status)
         say_next(args, o->views.output, "a light slab");
     return status;

@@ -51,7 +51,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = relume_panorama_ingest(o->views.output, args->input, args->inputs, source,
                                         &panorama, &p);
-    free(lights);
+    relume_free(lights);
     if (!status)
         say_next(args, o->views.output, "a panorama");
     return status;

@@ -54,7 +54,8 @@ static relume_status draw(relume_renderer *r, const struct relume_camera *camera
         status = renderer_need_all(r, by_depth);
     if (!status)
         status = relume_image_create(out, camera->width, camera->height, 3);
-    const struct relume_view_params params = whole ? r->view : frame_parts_params(r, by_depth);
+    const struct relume_view_params params =
+        status || whole ? r->view : frame_parts_params(r, by_depth);
     if (!status)
         status = relume_slab_frame(out, r->slab, eye, whole ? r->image[r->shown] : r->parts->image,
                                    &params);

@@ -85,7 +85,10 @@ TOOLS_C  := $(wildcard tests/tools/*.c)
 # minimal.c, memory.c, batch.c and viewer.c are built against the installed library instead (tests/cli/test_install.sh)
 SAMPLES_C := samples/sphere.c samples/figures.c samples/mirrorball.c
 
-LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/src/math/lsq_eigen.o $B/obj/src/math/lsq_eigen_avx2.o
+# Instruction sets beyond the baseline; what is written for another processor compiles to nothing.
+AVX2     := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),-mavx2 -mfma -mf16c)
+AVX512   := $(if $(AVX2),$(AVX2) -mavx512f -mavx512bw -mavx512dq -mavx512vl)
+LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(addprefix $B/obj/src/kernel/lsq_eigen,.o $(if $(AVX2),_avx2.o _avx512.o))
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
 MESHES   := $B/librelume-assimp.so.$(MAJOR)
 STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
@@ -131,12 +134,14 @@ $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
 $B/obj/src/multiview/stitch.o: own_flags = -isystem $(OPENCV)
 $B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
-$B/obj/src/%_avx2.o: own_flags = -mavx2 -mfma -mf16c
-# One source, two objects: see its head. Without optimising Eigen is a hundred times slower, and its
-# debug symbols are ten times the rest of the library.
-eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) -O2 -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=16384 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
-$B/obj/src/math/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
-$B/obj/src/math/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) -mavx2 -mfma
+$B/obj/src/%_avx2.o: own_flags = $(AVX2)
+$B/obj/src/%_avx512.o: own_flags = $(AVX512)
+# One source, three objects: see its head. Without optimising Eigen is a hundred times slower, and its
+# debug symbols are ten times the rest of the library. gcc 12 warns of its own headers (PR 105593).
+eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) -O2 -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=24576 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
+$B/obj/src/kernel/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
+$B/obj/src/kernel/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) $(AVX2)
+$B/obj/src/kernel/lsq_eigen_avx512.o: own_flags = $(call eigen_flags,avx512) $(AVX512) -Wno-uninitialized -Wno-maybe-uninitialized
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli -Isrc
@@ -158,7 +163,7 @@ $B/obj/%.o: %.cpp | $(DEPS)
 	$(call say,CXX)
 	$(Q)$(CXX) $(CXX17) -Iinclude $(own_include) $(own_flags) $(CXXFLAGS) -c -o $@ $<
 
-$B/obj/src/math/lsq_eigen_avx2.o: src/math/lsq_eigen.cpp | $(DEPS)
+$B/obj/src/kernel/lsq_eigen_%.o: src/kernel/lsq_eigen.cpp | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CXX)
 	$(Q)$(CXX) $(CXX17) -Iinclude -Isrc $(own_flags) $(CXXFLAGS) -c -o $@ $<
@@ -301,7 +306,7 @@ lint:
 	    --cppcheck-build-dir=$B/lint -Iinclude -Isrc -Isrc/cli -Iviewer $(LINTED)
 
 format:
-	clang-format -i $(LIB_C) $(MODULE_CXX) src/math/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(MODULE_CXX) src/kernel/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h src/cli/*/*.h viewer/*/*.h tests/*.h tests/fuzz/*.h samples/*.c)
 
 bench: all $(BENCH)

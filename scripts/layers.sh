@@ -9,26 +9,27 @@ cd "$(dirname "$0")/.."
 
 # folder: private folders it may include | public headers it may include (* = all)
 rules="base::base io context
-math:base:base vec
+kernel:base:base
+math:base kernel:base vec
 geometry:base math:base capture
-image:base math:base io image photograph response
+image:base math kernel:base io image photograph response
 compare:base math image:base image
 capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 acquire:base math image capture multiview:base image directions capture ball photometric acquire photograph align
-coder:base math image:base image capture coder
-codebook:base math image coder:base coder codebook
+coder:base math kernel image:base image capture coder
+codebook:base math kernel image coder:base coder codebook
 selection:base math image coder compare:base image capture coder codebook heldout
 lossy:base:base coder
 encode:base coder codebook lossy:base image capture codebook coder light relight pack
 pack:base image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange
-relight:base math image:base image coder light relight rig relighter
+relight:base math kernel image:base image coder light relight rig relighter
 analysis:base math:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture
-post:base math image:base image tone eye psf glare
+post:base math kernel image:base image tone eye psf glare
 frame:base math image:base image capture coder pack light relight view slab_set frame viewport evaluate normals enhance renderer relighter rig
 btf:base math image:base image directions capture btf
 btf_model:base math image btf:base image light directions btf btf_environment
@@ -69,7 +70,7 @@ dlfcn:src/base/module.c tests/tools/preload/faults.c
 opencv:src/multiview/stitch.cpp
 embree:src/mesh/trace.c
 assimp:src/mesh/mesh_assimp.c
-Eigen:src/math/lsq_eigen.cpp
+Eigen:src/kernel/lsq_eigen.cpp
 fftw3:src/math/fft.c
 kissfft:src/math/fft_kiss.c
 jansson:src/base/json.c
@@ -85,7 +86,8 @@ imgui:viewer/panel/panel_parts.h viewer/panel/panel.cpp viewer/panel/panel_font.
 panel/panel_parts:$(echo viewer/panel/panel*.cpp)
 GL/osmesa:viewer/window/context_osmesa.c
 EGL/:viewer/window/context_egl.c
-immintrin:$(echo src/*/*_avx2.c)"
+immintrin:$(echo src/kernel/*_avx*.c)
+arm_neon:src/kernel/kernels_neon.c"
 
 # Files are opened by base alone, which notes what is read (inputs.h) and replaces nothing else
 # (outfile.h, outdir.h). Elsewhere: what base has noted before, what no output could replace, and the

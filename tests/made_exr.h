@@ -2,7 +2,7 @@
 #ifndef TESTS_MADE_EXR_H
 #define TESTS_MADE_EXR_H
 
-#include "image/half.h"
+#include "base/half.h"
 
 #include <stdint.h>
 #include <stdio.h>

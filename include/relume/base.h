@@ -114,12 +114,19 @@ RELUME_RESULT relume_status relume_size_parse(uint64_t *out, const char *text);
 
 // Features of the processor that kernels are chosen by: bits.
 enum relume_cpu {
-    RELUME_CPU_AVX2 = 1 << 0,  // AVX2, FMA and F16C together
+    RELUME_CPU_AVX2 = 1 << 0,    // AVX2, FMA and F16C together
+    RELUME_CPU_AVX512 = 1 << 1,  // AVX-512 F, BW, DQ and VL together
+    RELUME_CPU_NEON = 1 << 2,    // of 64-bit ARM
 };
 
-// The features this CPU has, as RELUME_CPU_* bits; none where the environment has RELUME_CPU=plain,
-// so that every kernel of the process is the portable one.
+// The features this CPU has, as RELUME_CPU_* bits, or as many as the environment allows: with
+// RELUME_CPU=plain none, so that every kernel of the process is the portable one; else avx2, avx512
+// or neon.
 RELUME_API unsigned relume_cpu_features(void);
+
+// Whether RELUME_CPU names a set of instructions that this CPU has, where it is there at all.
+// RELUME_EINVAL with a sentence; programs ask, the library takes all it finds.
+RELUME_API RELUME_RESULT relume_status relume_cpu_check(const struct relume_log *log);
 
 // The number of cores that this process may use, at least 1.
 RELUME_API int relume_cpu_count(void);

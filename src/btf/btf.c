@@ -4,7 +4,7 @@
 #include "base/scratch.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <errno.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "btf/btf.h"
-#include "image/half.h"
+#include "base/half.h"
 
 int btf_half_side(int side)
 {

@@ -5,7 +5,7 @@
 #include "base/thread.h"
 #include "base/tree.h"
 #include "btf/btf.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "btf_model/ambient.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "math/lsq.h"
 #include "math/luminance.h"
 

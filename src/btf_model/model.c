@@ -4,7 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
 #define BTF_MODEL_MODEL_H
 
 #include "btf/btf.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
 // turned light is times that light's own cosine, not that of the plane.
 #include "base/memory.h"
 #include "btf_model/model.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "math/lsq.h"
 
 #include <string.h>

@@ -11,7 +11,7 @@
 // Ang, Ahmad (2001) do: shadows are zeros.
 #include "base/memory.h"
 #include "btf_model/reduce.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <string.h>
 

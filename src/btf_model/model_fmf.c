@@ -2,7 +2,7 @@
 // value decomposition of the matrix of texels by pairs of directions and colours
 //     BTF(x, v, l) ~ sum_k weight_k(x) pattern_k(v, l)
 #include "btf_model/reduce.h"
-#include "image/half.h"
+#include "base/half.h"
 
 enum { WEIGHT, PATTERN };
 

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "btf_model/ambient.h"
 #include "btf_model/lobes.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "math/lsq.h"
 #include "math/luminance.h"
 #include "math/sort.h"

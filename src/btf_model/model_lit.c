@@ -2,7 +2,7 @@
 //     BTF(x, v, l) ~ texture(x) n.l
 // The texture is the least squares of all pairs.
 #include "btf_model/ambient.h"
-#include "image/half.h"
+#include "base/half.h"
 
 enum { TEXTURE };
 

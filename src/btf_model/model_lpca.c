@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "btf_model/reduce.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "math/lsq.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 //     BTF(x, v, l) ~ a0 lx^2 + a1 ly^2 + a2 lx ly + a3 lx + a4 ly + a5
 #include "base/memory.h"
 #include "btf_model/model.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "math/lsq.h"
 
 #include <string.h>

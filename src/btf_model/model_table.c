@@ -1,6 +1,6 @@
 // model_table.c - the measured values themselves as a model: what takes models takes BTFs
 #include "btf_model/model.h"
-#include "image/half.h"
+#include "base/half.h"
 
 static void layout(relume_btf_fitted *m)
 {

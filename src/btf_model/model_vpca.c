@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "btf_model/model.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "math/lsq.h"
 
 #include <string.h>

@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "math/lsq.h"
 #include "math/random.h"
 

@@ -20,7 +20,7 @@ relume_status nearest_create(struct nearest *out, int codes, int dim, unsigned c
     const int tiles = (codes + TILE - 1) / TILE;
     const size_t lanes = (size_t)tiles * TILE;
     *out = (struct nearest){
-        .kernels = nearest_kernels_choose(cpu_off),
+        .kernels = kernels_choose(cpu_off)->nearest,
         .codes = codes,
         .dim = dim,
         .tiles = tiles,

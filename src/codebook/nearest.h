@@ -2,7 +2,7 @@
 #ifndef CODEBOOK_NEAREST_H
 #define CODEBOOK_NEAREST_H
 
-#include "codebook/kernels.h"
+#include "kernel/kernels.h"
 
 // Code vectors packed for the search. Thread-safety: searching is safe.
 struct nearest {

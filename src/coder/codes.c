@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "coder/codes.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,8 +6,8 @@
 #include "base/params.h"
 #include "base/scratch.h"
 #include "coder/codes.h"
-#include "image/half.h"
-#include "image/unpack.h"
+#include "base/half.h"
+#include "kernel/kernels.h"
 
 #include <errno.h>
 #include <float.h>
@@ -240,7 +240,7 @@ void coefficients_quantise(const relume_coefficients *c, int plane, int row, con
     else if (c->info.storage == RELUME_STORE_HALF)
         rescale_halves(from, n, coefficients_half_scale(r) / c->scale[plane], to);
     else if (c->info.storage == RELUME_STORE_8)
-        unpack_choose(0)->codes(from, n, a, b, to);
+        kernels_choose(0)->unpack->codes(from, n, a, b, to);
     else
         for (size_t x = 0; x < n; x++)
             words[x] = (uint16_t)(int)clamp((float)waiting[x] * a + b, top);

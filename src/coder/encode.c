@@ -14,7 +14,7 @@
 #include "coder/coefficients.h"
 #include "coder/near_fit.h"
 #include "image/encoder.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <errno.h>
 #include <float.h>

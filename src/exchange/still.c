@@ -3,7 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <math.h>
 #include <relume/photograph.h>

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "base/thread.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <errno.h>
 #include <openexr.h>

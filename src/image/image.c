@@ -7,7 +7,7 @@
 #include "base/params.h"
 #include "base/tree.h"
 #include "image/exr.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "image/picture_kind.h"
 
 #include <math.h>
@@ -97,7 +97,7 @@ relume_status image_stream_open(struct image_stream *stream, picture_reader *rea
         for (int v = 0; v < 256; v++)
             stream->table[c][v] = recode(stream, c, (float)v / 255.0f);
     stream->plain = is_plain(stream, info);
-    stream->unpack = unpack_choose(0);
+    stream->unpack = kernels_choose(0)->unpack;
     return RELUME_OK;
 }
 

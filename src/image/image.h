@@ -3,7 +3,7 @@
 #define IMAGE_IMAGE_H
 
 #include "image/picture.h"
-#include "image/unpack.h"
+#include "kernel/kernels.h"
 
 #include <relume/image.h>
 

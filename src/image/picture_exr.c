@@ -3,7 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/exr.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "image/luma_chroma.h"
 #include "image/picture.h"
 #include "image/picture_format.h"

@@ -2,7 +2,8 @@
 #include "math/lsq.h"
 
 #include "base/memory.h"
-#include "math/lsq_kernels.h"
+#include "kernel/kernels.h"
+#include "kernel/lsq_kernels.h"
 #include "math/random.h"
 
 #include <math.h>
@@ -10,7 +11,7 @@
 
 static const struct lsq_kernels *kernels(void)
 {
-    return relume_cpu_features() & RELUME_CPU_AVX2 ? &lsq_kernels_avx2 : &lsq_kernels_plain;
+    return kernels_choose(0)->lsq;
 }
 
 bool lsq_eigenvalues(double *matrix, int n, double *values)

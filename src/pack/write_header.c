@@ -1,6 +1,6 @@
 // write_header.c - the first part of a relume file: the preview, and what all of the file is
 #include "base/memory.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "pack/format.h"
 #include "pack/writer.h"
 

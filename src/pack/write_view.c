@@ -1,7 +1,7 @@
 // write_view.c - the parts of one view: its coefficients, depth and mask
 #include "base/memory.h"
 #include "coder/codes.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "pack/format.h"
 #include "pack/writer.h"
 

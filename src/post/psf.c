@@ -154,7 +154,7 @@ relume_status relume_psf_create(relume_psf **out, const struct relume_psf_params
     psf->sums = mem_array((size_t)psf->shape.field, sizeof *psf->sums);
     if (!status && (!psf->work || !psf->sums))
         status = RELUME_ENOMEM;
-    psf->kernels = psf_kernels_choose(psf->params.cpu_off);
+    psf->kernels = kernels_choose(psf->params.cpu_off)->psf;
     psf->light = 1.0;
     *out = psf;
     if (status)

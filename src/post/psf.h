@@ -2,6 +2,8 @@
 #ifndef POST_PSF_H
 #define POST_PSF_H
 
+#include "kernel/kernels.h"
+
 #include <relume/psf.h>
 
 #define PSF_NM 575.0  // the wavelength that is computed; the others are scaled copies (8.4.3)
@@ -15,22 +17,6 @@ struct plane {
     size_t stride;
     float *v;
 };
-
-// The inner loops of the chromatic sum, one struct of functions per instruction set.
-struct psf_kernels {
-    const char *name;
-    // out[i] = a[i] + t (b[i] - a[i])
-    void (*mix)(float *out, const float *a, const float *b, float t, int n);
-    // out[c][i] += rgb[c] * line(at + i * scale), linear between texels; at >= 0, scale in
-    // (0.5, 1.6], and line can be read up to 16 texels beyond the last one that counts.
-    void (*spread)(float *const out[3], int n, const float *line, float at, float scale,
-                   const float rgb[3]);
-    // The same with one channel.
-    void (*spread_one)(float *out, int n, const float *line, float at, float scale, float weight);
-};
-extern const struct psf_kernels psf_kernels_c;
-extern const struct psf_kernels psf_kernels_avx2;
-const struct psf_kernels *psf_kernels_choose(unsigned cpu_off);
 
 // The fine smear: out = sum_j in(fine_j x) fine_j^2 / fines, as far as `in` goes.
 void chromatic_smear(struct plane *out, const struct plane *in,

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "post/psf.h"
 
 #include <math.h>

@@ -307,7 +307,7 @@ static relume_status split_option(struct command_line *l, int *i, int argc, char
 
 relume_status command_line_parse(struct command_line *l, int argc, char **argv)
 {
-    relume_status status = RELUME_OK;
+    relume_status status = relume_cpu_check(l->log);
     bool only_inputs = false;
     l->given_count = l->input_count = l->listed = l->pointed = 0;
     for (int i = 0; !status && i < argc; i++) {

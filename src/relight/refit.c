@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "relight/grid.h"
 
 #include <math.h>

@@ -10,12 +10,12 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "image/curve.h"
+#include "kernel/kernels.h"
 #include "math/luminance.h"
 #include "math/vec.h"
 #include "relight/books.h"
 #include "image/rgba8.h"
 #include "relight/grid.h"
-#include "relight/kernels.h"
 #include "relight/near_lights.h"
 
 #include <stdio.h>
@@ -217,13 +217,13 @@ static void dot_group(const struct job *job, float *out, size_t n, float bias,
 {
     const void *p = planes;
     if (job->codes->storage == RELUME_STORE_8)
-        job->kernels->dot_bytes(out, n, bias, p, weights, count);
+        job->kernels->dot->bytes(out, n, bias, p, weights, count);
     else if (job->codes->storage == RELUME_STORE_HALF)
-        job->kernels->dot_halves(out, n, bias, p, weights, count);
+        job->kernels->dot->halves(out, n, bias, p, weights, count);
     else if (job->codes->storage == RELUME_STORE_FLOAT)
-        job->kernels->dot_floats(out, n, bias, p, weights, count);
+        job->kernels->dot->floats(out, n, bias, p, weights, count);
     else
-        job->kernels->dot_words(out, n, bias, p, weights, count);
+        job->kernels->dot->words(out, n, bias, p, weights, count);
 }
 
 // out *= the pixels' colour

@@ -15,7 +15,7 @@
 #include "coder/coefficients.h"
 #include "coder/interpolant.h"
 #include "image/encoder.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "selection/samples.h"
 
 #include <float.h>

@@ -3,7 +3,7 @@
 #include "bench.h"
 
 #include "base/thread.h"
-#include "relight/kernels.h"
+#include "kernel/kernels.h"
 
 enum { SIDE = 1024, K = 25, PLANES = 3 * K, RUNS = 15 };
 

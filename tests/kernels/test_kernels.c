@@ -1,8 +1,7 @@
 // test_kernels.c - every instruction set against plain C; `--bench` prints nanoseconds a code
-#include "test.h"
+#include "sets.h"
 
-#include "image/half.h"
-#include "relight/kernels.h"
+#include "base/half.h"
 
 #include <time.h>
 
@@ -58,13 +57,13 @@ static void run(const struct kernels *kernels, int kind, size_t offset, size_t n
         w[k] = (kind == 1 ? words[k] : halves[k]) + offset;
     }
     if (kind == 0)
-        kernels->dot_bytes(out, n, bias, b, weights, count);
+        kernels->dot->bytes(out, n, bias, b, weights, count);
     else if (kind == 1)
-        kernels->dot_words(out, n, bias, w, weights, count);
+        kernels->dot->words(out, n, bias, w, weights, count);
     else if (kind == 2)
-        kernels->dot_halves(out, n, bias, w, weights, count);
+        kernels->dot->halves(out, n, bias, w, weights, count);
     else
-        kernels->dot_floats(out, n, bias, f, weights, count);
+        kernels->dot->floats(out, n, bias, f, weights, count);
 }
 
 // Both against double precision: each of the `count` additions rounds once, at most 2^-24 of the
@@ -92,26 +91,12 @@ static void check(const struct kernels *kernels, const struct pattern *p, int ki
     }
 }
 
-static const struct kernels *sets[3];
-
-static int find_sets(void **state)
-{
-    (void)state;
-    sets[0] = &kernels_c;
-    sets[1] = kernels_choose(0);
-    if (sets[1] == sets[0]) {
-        print_message("no AVX2 here: only plain C is tested\n");
-        sets[1] = NULL;
-    }
-    return 0;
-}
-
 static void test_tails(void **state)
 {
     (void)state;
     for (int s = 0; sets[s]; s++)
         for (int kind = 0; kind < KINDS; kind++)
-            for (size_t n = 0; n <= 40; n++)
+            for (size_t n = 0; n <= 150; n += n < 40 ? 1 : 13)
                 for (int count = 0; count <= PLANES; count += 3)
                     check(sets[s], &patterns[0], kind, n % 5, n, count);
 }
@@ -155,8 +140,35 @@ static void test_look_up(void **state)
 static void test_choice(void **state)
 {
     (void)state;
-    assert_ptr_equal(kernels_choose(~0u), &kernels_c);
-    assert_ptr_equal(kernels_choose(RELUME_CPU_AVX2), &kernels_c);
+    assert_ptr_equal(kernels_choose(~0u)->dot, &dot_c);
+    assert_ptr_equal(kernels_choose(RELUME_CPU_AVX2 | RELUME_CPU_NEON)->dot, &dot_c);
+    assert_string_equal(kernels_choose(~0u)->name, "plain");
+    for (int s = 0; sets[s]; s++) {
+        setenv("RELUME_CPU", sets[s]->name, 1);
+        assert_ptr_equal(kernels_choose(0), sets[s]);
+    }
+    unsetenv("RELUME_CPU");
+}
+
+// All sets but plain C fuse each product with its sum: equal bits.
+static void test_equal_bits(void **state)
+{
+    (void)state;
+    static float want[MOST], got[MOST];
+    float weights[PLANES];
+    for (size_t p = 0; p < sizeof patterns / sizeof *patterns; p++)
+        for (int kind = 0; kind < KINDS; kind++) {
+            fill(&patterns[p], weights);
+            for (size_t i = 0; i < 333; i++) {
+                want[i] = patterns[p].bias;
+                for (int k = 0; k < PLANES; k++)
+                    want[i] = fmaf(weights[k], (float)code(kind, k, i), want[i]);
+            }
+            for (int s = 1; sets[s]; s++) {
+                run(sets[s], kind, 0, 333, patterns[p].bias, weights, PLANES, got);
+                assert_memory_equal(got, want, 333 * sizeof *got);
+            }
+        }
 }
 
 // A pixel's bits must not depend on where the run of pixels begins or ends.
@@ -169,8 +181,8 @@ static void test_chunks(void **state)
     for (int s = 0; sets[s]; s++)
         for (int kind = 0; kind < KINDS; kind++) {
             run(sets[s], kind, 0, 500, 0.25f, weights, PLANES, whole);
-            for (size_t from = 0; from < 20; from++)
-                for (size_t n = 1; n < 40; n += 3) {
+            for (size_t from = 0; from < 70; from += 3)
+                for (size_t n = 1; n < 150; n += 7) {
                     run(sets[s], kind, from, n, 0.25f, weights, PLANES, part);
                     assert_memory_equal(part, whole + from, n * sizeof *part);
                 }
@@ -206,7 +218,7 @@ static void bench(void)
                 ns[i] = (now_ns() - start) / N / PLANES;
             }
             qsort(ns, RUNS, sizeof *ns, by_value);
-            printf("%-5s %-7s %.4f ns a code (quartiles %.4f to %.4f)\n", sets[s]->name,
+            printf("%-6s %-7s %.4f ns a code (quartiles %.4f to %.4f)\n", sets[s]->name,
                    kinds[kind], ns[RUNS / 2], ns[RUNS / 4], ns[3 * RUNS / 4]);
         }
 }
@@ -221,7 +233,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tails),   cmocka_unit_test(test_patterns),
         cmocka_unit_test(test_look_up), cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_chunks),
+        cmocka_unit_test(test_chunks),  cmocka_unit_test(test_equal_bits),
     };
     return cmocka_run_group_tests(tests, find_sets, NULL);
 }

@@ -1,24 +1,8 @@
 // test_unpack.c - bytes to planes and waiting numbers to codes: every instruction set gives the
 // bits of plain C, which divides and rounds as IEEE says
-#include "test.h"
-
-#include "image/unpack.h"
+#include "sets.h"
 
 enum { MOST = 600 };
-
-static const struct unpack_kernels *sets[3];
-
-static int find_sets(void **state)
-{
-    (void)state;
-    sets[0] = &unpack_kernels_c;
-    sets[1] = unpack_choose(0);
-    if (sets[1] == sets[0]) {
-        print_message("no AVX2 here: only plain C is tested\n");
-        sets[1] = NULL;
-    }
-    return 0;
-}
 
 static void test_thirds(void **state)
 {
@@ -31,7 +15,7 @@ static void test_thirds(void **state)
         for (size_t n = 0; n <= MOST; n += n < 40 ? 1 : 280) {
             for (int c = 0; c < 3; c++)
                 out[c][n] = 42.0f;
-            sets[s]->thirds(in + 1, n, out[0], out[1], out[2]);
+            sets[s]->unpack->thirds(in + 1, n, out[0], out[1], out[2]);
             for (int c = 0; c < 3; c++) {
                 for (size_t i = 0; i < n; i++)
                     assert_true(out[c][i] == (float)in[1 + 3 * i + (size_t)c] / 255.0f);
@@ -54,7 +38,7 @@ static void test_codes(void **state)
         for (size_t p = 0; p < sizeof pairs / sizeof *pairs; p++)
             for (size_t n = 0; n <= MOST; n += n < 70 ? 1 : 265) {
                 out[n] = 42;
-                sets[s]->codes(in + 1, n, pairs[p][0], pairs[p][1], out);
+                sets[s]->unpack->codes(in + 1, n, pairs[p][0], pairs[p][1], out);
                 for (size_t i = 0; i < n; i++) {
                     const volatile float product = (float)in[i + 1] * pairs[p][0];
                     const float v = product + pairs[p][1];

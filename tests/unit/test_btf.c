@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "btf/btf.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <relume/capture.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
 #include "made_btf.h"
 
 #include "btf_model/model.h"
-#include "image/half.h"
+#include "base/half.h"
 
 enum { WIDTH = 7, HEIGHT = 4 };
 

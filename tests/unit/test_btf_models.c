@@ -6,7 +6,7 @@
 #include "btf_model/lobes.h"
 #include "btf_model/reduce.h"
 #include "btf_model/scalar.h"
-#include "image/half.h"
+#include "base/half.h"
 
 #include <relume/scene.h>
 

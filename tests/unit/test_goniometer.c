@@ -1,7 +1,7 @@
 // The virtual gonioreflectometer: a flat matte sample in closed form, reciprocity, ground truth.
 #include "test.h"
 
-#include "image/half.h"
+#include "base/half.h"
 #include "math/vec.h"
 
 #include <relume/scene.h>

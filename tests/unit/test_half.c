@@ -2,7 +2,7 @@
 // integer code that compilers vectorise
 #include "test.h"
 
-#include "image/half.h"
+#include "base/half.h"
 
 static void test_every_half_round_trips(void **state)
 {

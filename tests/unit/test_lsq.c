@@ -2,7 +2,8 @@
 #include "test.h"
 
 #include "math/lsq.h"
-#include "math/lsq_kernels.h"
+#include "kernel/kernels.h"
+#include "kernel/lsq_kernels.h"
 
 enum { N = 24 };
 
@@ -235,9 +236,9 @@ static void check_products(const struct lsq_kernels *k)
 static void test_tables(void **state)
 {
     (void)state;
-    check_products(&lsq_kernels_plain);
-    if (relume_cpu_features() & RELUME_CPU_AVX2)
-        check_products(&lsq_kernels_avx2);
+    check_products(kernels_choose(~0u)->lsq);
+    check_products(kernels_choose(RELUME_CPU_AVX512)->lsq);
+    check_products(kernels_choose(0)->lsq);
 }
 
 // RELUME_CPU=plain turns every kernel off.
@@ -247,6 +248,10 @@ static void test_plain_cpu(void **state)
     const unsigned before = relume_cpu_features();
     setenv("RELUME_CPU", "plain", 1);
     assert_int_equal(relume_cpu_features(), 0);
+    CHECK_OK(relume_cpu_check(NULL));
+    setenv("RELUME_CPU", "sse9", 1);
+    assert_int_equal(relume_cpu_features(), before);
+    assert_int_equal(relume_cpu_check(NULL), RELUME_EINVAL);
     unsetenv("RELUME_CPU");
     assert_int_equal(relume_cpu_features(), before);
 }

@@ -2,8 +2,8 @@
 #include "test.h"
 
 #include "capture_fixture.h"
+#include "base/half.h"
 #include "image/exr.h"
-#include "image/half.h"
 #include "pack_parts.h"
 
 static char folder[64], path[96];

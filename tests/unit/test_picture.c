@@ -5,7 +5,7 @@
 #include "base/module.h"
 #include "base/outfile.h"
 #include "image/exr.h"
-#include "image/half.h"
+#include "base/half.h"
 #include "image/picture.h"
 #include "image/picture_format.h"
 

@@ -1,5 +1,5 @@
-// kernels_c.c - plain C, the reference for every other set
-#include "codebook/kernels.h"
+// nearest_c.c - the nearest code in plain C, the reference for every other set
+#include "kernel/kernels.h"
 
 #include <math.h>
 
@@ -47,10 +47,4 @@ static void measure(double distance[TILE], const float *point, const float *tile
         distance[l] = sum[l];
 }
 
-const struct nearest_kernels nearest_kernels_c = {"c", scan, measure};
-
-const struct nearest_kernels *nearest_kernels_choose(unsigned cpu_off)
-{
-    const unsigned features = relume_cpu_features() & ~cpu_off;
-    return features & RELUME_CPU_AVX2 ? &nearest_kernels_avx2 : &nearest_kernels_c;
-}
+const struct nearest_kernels nearest_c = {scan, measure};

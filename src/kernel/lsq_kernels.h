@@ -1,8 +1,8 @@
 // lsq_kernels.h - what lsq.c asks of Eigen, one table for each kind of CPU
 //
 // Matrices are row by row. Nothing here throws: what needs memory says false when there is none.
-#ifndef MATH_LSQ_KERNELS_H
-#define MATH_LSQ_KERNELS_H
+#ifndef KERNEL_LSQ_KERNELS_H
+#define KERNEL_LSQ_KERNELS_H
 
 #include <stdbool.h>
 
@@ -33,7 +33,7 @@ struct lsq_kernels {
     bool (*invert)(double *matrix, int n, bool *singular);
 };
 
-extern const struct lsq_kernels lsq_kernels_plain, lsq_kernels_avx2;
+extern const struct lsq_kernels lsq_kernels_plain, lsq_kernels_avx2, lsq_kernels_avx512;
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,9 @@
 // lsq_eigen.cpp - the one file that knows Eigen
 //
-// It is compiled twice, as the baseline of the CPU and with AVX2 and FMA; LSQ_KERNELS names the
-// table. Each object renames Eigen's namespace (Makefile), or the linker would take one of two
+// It is compiled for the baseline of the CPU, for AVX2 and for AVX-512; LSQ_KERNELS names the
+// table. Each object renames Eigen's namespace (Makefile), or the linker would take one of the
 // versions of each template for both. Products that find no memory for packing do without it.
-#include "math/lsq_kernels.h"
+#include "kernel/lsq_kernels.h"
 
 #define EIGEN_DONT_PARALLELIZE
 #define EIGEN_MPL2_ONLY

@@ -1,6 +1,6 @@
 // half.h - IEEE 754 binary16, rounding to nearest even; plain integer code that compilers vectorise
-#ifndef IMAGE_HALF_H
-#define IMAGE_HALF_H
+#ifndef BASE_HALF_H
+#define BASE_HALF_H
 
 #include <stdint.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // unpack_c.c - plain C, the reference for every other set
-#include "image/unpack.h"
+#include "kernel/kernels.h"
 
 static void thirds(const uint8_t *in, size_t n, float *r, float *g, float *b)
 {
@@ -18,10 +18,4 @@ static void codes(const uint16_t *in, size_t n, float a, float b, uint8_t *out)
     }
 }
 
-const struct unpack_kernels unpack_kernels_c = {"c", thirds, codes};
-
-const struct unpack_kernels *unpack_choose(unsigned cpu_off)
-{
-    const unsigned features = relume_cpu_features() & ~cpu_off;
-    return features & RELUME_CPU_AVX2 ? &unpack_kernels_avx2 : &unpack_kernels_c;
-}
+const struct unpack_kernels unpack_c = {thirds, codes};

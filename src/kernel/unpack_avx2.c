@@ -1,7 +1,7 @@
 // unpack_avx2.c - AVX2: eight pixels at a time, picked out of two loads that overlap
-#include "image/unpack.h"
+#include "kernel/kernels.h"
 
-#if defined(__AVX2__)
+#if defined(__x86_64__)
 #include <immintrin.h>
 
 // Where the bytes of a channel lie among bytes 0 to 15, and 8 to 23, of eight pixels.
@@ -33,7 +33,7 @@ static void thirds(const uint8_t *in, size_t n, float *r, float *g, float *b)
         _mm256_storeu_ps(g + i, third(low, high, 1));
         _mm256_storeu_ps(b + i, third(low, high, 2));
     }
-    unpack_kernels_c.thirds(in, n - i, r + i, g + i, b + i);
+    unpack_c.thirds(in, n - i, r + i, g + i, b + i);
 }
 
 static inline __m256i eight(const uint16_t *in, __m256 a, __m256 b)
@@ -57,10 +57,8 @@ static void codes(const uint16_t *in, size_t n, float a, float b, uint8_t *out)
         const __m256i bytes = _mm256_permutevar8x32_epi32(_mm256_packus_epi16(p, q), order);
         _mm256_storeu_si256((__m256i *)(out + i), bytes);
     }
-    unpack_kernels_c.codes(in + i, n - i, a, b, out + i);
+    unpack_c.codes(in + i, n - i, a, b, out + i);
 }
 
-const struct unpack_kernels unpack_kernels_avx2 = {"avx2", thirds, codes};
-#else
-const struct unpack_kernels unpack_kernels_avx2;  // never chosen
+const struct unpack_kernels unpack_avx2 = {thirds, codes};
 #endif

@@ -1,5 +1,5 @@
-// kernels_c.c - the chromatic sum's inner loops in plain C: the reference
-#include "post/psf.h"
+// psf_c.c - the chromatic sum's inner loops in plain C: the reference
+#include "kernel/kernels.h"
 
 static void mix(float *out, const float *a, const float *b, float t, int n)
 {
@@ -30,10 +30,4 @@ static void spread_one(float *out, int n, const float *line, float at, float sca
         out[i] += weight * lookup(line, at, scale, i);
 }
 
-const struct psf_kernels psf_kernels_c = {"c", mix, spread, spread_one};
-
-const struct psf_kernels *psf_kernels_choose(unsigned cpu_off)
-{
-    const bool avx2 = relume_cpu_features() & ~cpu_off & RELUME_CPU_AVX2;
-    return avx2 && psf_kernels_avx2.spread ? &psf_kernels_avx2 : &psf_kernels_c;
-}
+const struct psf_kernels psf_c = {mix, spread, spread_one};

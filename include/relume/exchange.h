@@ -56,6 +56,7 @@ struct relume_open_params {
     const struct relume_reader *reader;  // as relume_import_params. A relume file is read as long
                                          // as the pack lives; a capture.json or .lp names pictures
                                          // in the folder of `path`
+    bool keep_going;                     // of relume files, as relume_pack_params
 };
 #define relume_open_params(...)                                                                    \
     (&(const struct relume_open_params){RELUME_SIZED(relume_open_params), __VA_ARGS__})

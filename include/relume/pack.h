@@ -76,6 +76,8 @@ struct relume_pack_params {
                                           // name then, or NULL. It is copied: what it reads from
                                           // must outlive the pack
     const struct relume_writer *writer;   // writing: likewise
+    bool keep_going;                      // reading: tiles of coded planes that are damaged hold no
+                                          // light and are a warning, not an error
 };
 #define relume_pack_params(...)                                                                    \
     (&(const struct relume_pack_params){RELUME_SIZED(relume_pack_params), __VA_ARGS__})
@@ -192,6 +194,8 @@ struct relume_pack_check_params {
     int threads;
     void (*found)(void *user, const char *part, int row, int rows);  // or NULL
     void *user;
+    // Likewise, of coded planes: a tile, by column and row of tiles, and what it covers; or NULL.
+    void (*tile)(void *user, const char *part, int column, int row, const struct relume_rect *at);
     const struct relume_reader *reader;  // as relume_pack_params
 };
 #define relume_pack_check_params(...)                                                              \

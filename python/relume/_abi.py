@@ -65,7 +65,7 @@ struct relume_encode_params { size_t struct_size; void *log; int domain; int sto
     void *scratch; };
 struct relume_decision { int domain; int storage; double psnr_db; double unseen_db; };
 struct relume_pack_params { size_t struct_size; void *log; void *limits; int compression; int threads; void *reader;
-    void *writer; };
+    void *writer; bool keep_going; };
 struct relume_pack_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int compression;
     int threads; void *books; bool share; bool no_depth; double psnr_db, bytes_per_pixel; void *writer; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
@@ -86,7 +86,7 @@ struct relume_pan_tilt { double pan_deg, tilt_deg, zoom; bool stereographic; };
 struct relume_camera { int framing; int view; struct relume_vec3 eye; struct relume_look_at aim;
     int through; struct relume_pan_tilt look; int width, height; };
 struct relume_open_params { size_t struct_size; void *log; void *limits; bool allow_outside; bool sphere;
-    int threads; void *reader; };
+    int threads; void *reader; bool keep_going; };
 struct relume_export_params { size_t struct_size; void *log; int view; int type; bool ycc;
     int coefficients; int resolution; double bytes_per_pixel; double psnr_db; int quality; bool force;
     int threads; void *writer; };

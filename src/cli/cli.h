@@ -15,6 +15,11 @@
     FLAG("--allow-outside", allow_outside,                                                         \
          "files that the capture names may lie outside its folder")
 
+// Of every command that relights files.
+#define KEEP_GOING_OPTION                                                                          \
+    FLAG("--keep-going", keep_going,                                                               \
+         "leave out damaged tiles of a file coded with loss, and say which")
+
 // What every command gets; the options of its own follow in its struct, whose first member it is.
 struct args {
     const struct relume_log *log;  // messages and progress to stderr

@@ -212,6 +212,7 @@ relume_status relume_open(relume_pack **out, const char *path,
     return kind == RELUME_KIND_RELUME
                ? relume_pack_open(out, path,
                                   relume_pack_params(.log = log, .limits = p.limits,
-                                                     .threads = p.threads, .reader = p.reader))
+                                                     .threads = p.threads, .reader = p.reader,
+                                                     .keep_going = p.keep_going))
                : open_converted(out, kind, path, &p, log);
 }

@@ -1,8 +1,6 @@
 // check.c - what of a relume file is damaged, and where: first every block of the container, then
 // what the blocks say
-#include "image/exr.h"
-
-#include <relume/pack.h>
+#include "pack/reader.h"
 
 struct check {
     const struct relume_pack_check_params *p;
@@ -47,17 +45,35 @@ static relume_status check_view(relume_pack *pack, int view)
     return status;
 }
 
+struct tiles {
+    const struct relume_pack_check_params *p;
+    int count;
+};
+
+static void note_tile(void *user, const char *part, int column, int row,
+                      const struct relume_rect *at)
+{
+    struct tiles *t = user;
+    t->count++;
+    if (t->p->tile)
+        t->p->tile(t->p->user, part, column, row, at);
+}
+
 static relume_status check_values(const struct relume_pack_check_params *p, const char *path)
 {
     relume_pack *pack;
-    relume_status status =
-        relume_pack_open(&pack, path,
-                         relume_pack_params(.log = p->log, .limits = p->limits,
-                                            .threads = p->threads, .reader = p->reader));
+    struct tiles tiles = {p, 0};
+    const struct relume_pack_check_params noting = {.tile = note_tile, .user = &tiles};
+    relume_status status = relume_pack_open(
+        &pack, path,
+        relume_pack_params(.log = p->log, .limits = p->limits, .threads = p->threads,
+                           .reader = p->reader, .keep_going = true));
+    if (!status)
+        pack->check = &noting;
     for (int i = 0; !status && i < relume_pack_info(pack)->views; i++)
         status = check_view(pack, i);
     relume_pack_destroy(&pack);
-    return status;
+    return !status && tiles.count ? RELUME_EDAMAGED : status;
 }
 
 relume_status relume_pack_check(const char *path, const struct relume_pack_check_params *params)

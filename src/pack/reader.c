@@ -43,6 +43,7 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
         return RELUME_ENOMEM;
     p->log = params_.log;
     p->threads = params_.threads;
+    p->keep_going = params_.keep_going;
     p->limits = limits_or_default(limits_of(params_.limits, params_.log));
     p->path = mem_text(infile_name(path));
     relume_status status = p->path ? RELUME_OK : RELUME_ENOMEM;

@@ -26,10 +26,12 @@ struct relume_pack {
     exr_file *file;
     char *path;
     relume_coder *coder;
-    struct view_parts *parts;          // [views]
-    struct relume_codes_part *loaded;  // [views]
-    struct read_books *books;          // [views]; shared ones in the first
-    bool coded;                        // planes with loss
+    struct view_parts *parts;                      // [views]
+    struct relume_codes_part *loaded;              // [views]
+    struct read_books *books;                      // [views]; shared ones in the first
+    bool coded;                                    // planes with loss, ...
+    bool keep_going;                               // ... of which tiles may be damaged;
+    const struct relume_pack_check_params *check;  // who is told of them; NULL: a warning
     int threads;
     const struct relume_log *log;
     struct relume_limits limits;

@@ -34,6 +34,25 @@ static void print_damage(void *user, const char *part, int row, int rows)
     f->count++;
 }
 
+static void print_tile(void *user, const char *part, int column, int row,
+                       const struct relume_rect *at)
+{
+    struct findings *f = user;
+    struct shown path, name;
+    if (f->json) {
+        printf("%s{\"part\": ", f->count ? ", " : "");
+        json_text(stdout, part);
+        printf(
+            ", \"column\": %d, \"row\": %d, \"x\": %d, \"y\": %d, \"width\": %d, \"height\": %d}",
+            column, row, at->left, at->top, at->width, at->height);
+    } else {
+        printf("%s: part '%s', tile in column %d, row %d (pixels %d,%d to %d,%d): damaged\n",
+               shown(&path, f->path), shown(&name, part), column, row, at->left, at->top,
+               at->left + at->width - 1, at->top + at->height - 1);
+    }
+    f->count++;
+}
+
 static relume_status check_file(const struct check_options *o, const char *path)
 {
     struct findings f = {.path = path, .json = o->json};
@@ -45,7 +64,7 @@ static relume_status check_file(const struct check_options *o, const char *path)
     }
     const relume_status status = relume_pack_check(
         path, relume_pack_check_params(.log = o->args.log, .threads = o->args.threads,
-                                       .found = print_damage, .user = &f));
+                                       .found = print_damage, .tile = print_tile, .user = &f));
     if (f.json)
         printf("], \"whole\": %s}", status ? "false" : "true");
     else if (!status)

@@ -12,7 +12,7 @@ struct export_options {
     enum { RGB, YCC, MYCC } colorspace;
     int coefficients, quality, resolution, view;
     double bytes_per_pixel, psnr;
-    bool force, allow_outside;
+    bool force, allow_outside, keep_going;
 };
 #define OPTIONS struct export_options
 #define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom"
@@ -46,6 +46,7 @@ static const struct option options[] = {
     GROUP("input"),
     INT("--view", view, "N", "which view of a slab; default: 0", 0, 65535),
     ALLOW_OUTSIDE_OPTION,
+    KEEP_GOING_OPTION,
     {0},
 };
 
@@ -160,9 +161,10 @@ static relume_status run(const struct args *args)
         return status;
     relume_pack *pack;
     struct relume_export_report report;
-    status = relume_open(
-        &pack, o->args.input[0],
-        relume_open_params(.log = p.log, .threads = p.threads, .allow_outside = o->allow_outside));
+    status = relume_open(&pack, o->args.input[0],
+                         relume_open_params(.log = p.log, .threads = p.threads,
+                                            .allow_outside = o->allow_outside,
+                                            .keep_going = o->keep_going));
     if (!status)
         status = relume_export(pack, o->output, to, &report, &p);
     relume_pack_destroy(&pack);

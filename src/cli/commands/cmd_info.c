@@ -6,16 +6,14 @@
 struct info_options {
     struct args args;
     bool json;
-    bool allow_outside;
+    bool allow_outside, keep_going;
 };
 #define OPTIONS struct info_options
 
 static const struct option options[] = {
-    GROUP("output"),
-    FLAG("--json", json, "one JSON object"),
-    GROUP("input"),
-    ALLOW_OUTSIDE_OPTION,
-    {0},
+    GROUP("output"),   FLAG("--json", json, "one JSON object"),
+    GROUP("input"),    ALLOW_OUTSIDE_OPTION,
+    KEEP_GOING_OPTION, {0},
 };
 
 static double bits_per_pixel(const struct relume_pack_info *i)
@@ -111,8 +109,10 @@ static relume_status run(const struct args *args)
     const struct info_options *o = (const void *)args;
     const char *path = o->args.input[0];
     relume_pack *pack;
-    const relume_status status = relume_open(
-        &pack, path, relume_open_params(.log = o->args.log, .allow_outside = o->allow_outside));
+    const relume_status status =
+        relume_open(&pack, path,
+                    relume_open_params(.log = o->args.log, .allow_outside = o->allow_outside,
+                                       .keep_going = o->keep_going));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);

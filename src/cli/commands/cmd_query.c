@@ -10,7 +10,7 @@ struct query_options {
     struct args args;
     struct relume_ray ray;
     const char *rays;
-    bool json, nearest, allow_outside;
+    bool json, nearest, allow_outside, keep_going;
     enum relume_interpolation interpolation;
     struct light_options lighting;
     int cpu_mask;
@@ -32,6 +32,7 @@ static const struct option options[] = {
     FLAG("--json", json, "one JSON object"),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
+    KEEP_GOING_OPTION,
     {0},
 };
 
@@ -88,10 +89,10 @@ static relume_status query(const struct query_options *o, const struct relume_ra
     float(*rgb)[3] = malloc((size_t)(n ? n : 1) * sizeof *rgb);
     if (!rgb)
         return RELUME_ENOMEM;
-    relume_status status =
-        relume_open(&pack, o->args.input[0],
-                    relume_open_params(.log = o->args.log, .threads = o->args.threads,
-                                       .allow_outside = o->allow_outside));
+    relume_status status = relume_open(
+        &pack, o->args.input[0],
+        relume_open_params(.log = o->args.log, .threads = o->args.threads,
+                           .allow_outside = o->allow_outside, .keep_going = o->keep_going));
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);
     params.interpolation = o->nearest ? RELUME_INTERPOLATE_CONSTANT : o->interpolation;
     if (!status)

@@ -20,7 +20,7 @@ struct relight_options {
     enum relume_filter filter;
     enum relume_interpolation interpolation;
     unsigned pass;
-    bool nearest, alpha, allow_outside;
+    bool nearest, alpha, allow_outside, keep_going;
     struct light_options lighting;
     struct develop_options develop;
     struct eye_options glare;
@@ -101,6 +101,7 @@ static const struct option options[] = {
     INT("--samples", samples, "N", "--objects: N x N rays a pixel; default 3", 1, 16),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
+    KEEP_GOING_OPTION,
     GROUP("machine"),
     CPU_OPTION,
     {0},
@@ -301,11 +302,11 @@ static relume_status render(const struct relight_options *o, const struct relume
     struct prefix_log about;
     struct relume_image frame = {0};
     const bool lens = given(o, &o->aperture) || given(o, &o->focus);
-    relume_status status =
-        relume_open(&pack, o->args.input[0],
-                    relume_open_params(.log = o->args.log, .threads = o->args.threads,
-                                       .allow_outside = o->allow_outside,
-                                       .sphere = camera->framing == RELUME_FRAME_LOOK));
+    relume_status status = relume_open(
+        &pack, o->args.input[0],
+        relume_open_params(.log = o->args.log, .threads = o->args.threads,
+                           .allow_outside = o->allow_outside, .keep_going = o->keep_going,
+                           .sphere = camera->framing == RELUME_FRAME_LOOK));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);

@@ -181,6 +181,13 @@ RELUME_API bool relume_capture_pole_y(const relume_capture *capture);
 // No light lies below -0.1 along the pole.
 RELUME_API bool relume_capture_hemispherical(const relume_capture *capture);
 
+enum { RELUME_DIGEST = 17 };
+// A text that tells captures apart: of the lights, the geometry and the transfer, and of every image
+// its size and some bytes from its middle; not of names and dates. An input status, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_capture_digest(char text[RELUME_DIGEST],
+                                                  const relume_capture *capture,
+                                                  const struct relume_log *log);
+
 // The largest value that images under `light` can hold, linear, intensity divided out: there they
 // clip. Infinite for floating-point files.
 RELUME_API void relume_capture_white(const relume_capture *capture, int light, float rgb[3]);
@@ -238,6 +245,9 @@ RELUME_API void relume_table_directions(const relume_table *table, double x, dou
 enum { RELUME_TABLE_ROWS = 16 };
 // An input status when an image is broken, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_table_fetch(relume_table *table, int rows);
+// Leave out the next `rows` rows, which takes less time than reading them where the format allows.
+// As relume_table_fetch.
+RELUME_RESULT relume_status relume_table_skip(relume_table *table, int rows);
 // `count` pixels from `first` on of the rows fetched last, under one light:
 // out[channel * stride + pixel]. Thread-safety: any number of threads between fetches.
 RELUME_API void relume_table_planes(const relume_table *table, int light, size_t first,

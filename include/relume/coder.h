@@ -342,6 +342,8 @@ struct relume_encode_report {
 // A copy.
 RELUME_API struct relume_encode_report relume_coefficients_report(
     const relume_coefficients *coefficients);
+// Whether the steps of the codes are too coarse beside what is typical: half floats do better.
+RELUME_API bool relume_encode_is_coarse(const struct relume_encode_report *report);
 
 // What coefficients are; pointers belong to them.
 struct relume_coefficients_info {

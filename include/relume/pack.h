@@ -41,6 +41,16 @@ struct relume_pack_view {
     const uint32_t *coded;
     size_t coded_words;  // how many
 };
+// Which part of a file is written, where several machines share the work; relume_pack_join makes
+// one file of all parts. Borrowed.
+struct relume_pack_share {
+    int part, parts;                // 1 .. parts
+    int first, views;               // those that it holds
+    const char *capture, *options;  // what must be the same in all parts; texts
+    bool free_storage;              // nobody asked for the storage: join refuses coarse steps
+    const struct relume_encode_report *measured;  // [views] of it
+};
+
 // What is written. Everything is borrowed while relume_pack_write runs.
 struct relume_pack_contents {
     const relume_coder *coder;
@@ -56,7 +66,8 @@ struct relume_pack_contents {
     // rgb[rows][width][3] from `row` on, and return what failed. Called from several threads. NULL:
     // black. relume_pack_preview makes one.
     relume_status (*preview)(void *user, int row, int rows, float *rgb);
-    void *preview_user;  // of `preview`
+    void *preview_user;                     // of `preview`
+    const struct relume_pack_share *share;  // NULL: all of it
 };
 
 // The middle view relit from the front, panoramas from above: hand it in as `preview`, the contents
@@ -109,6 +120,12 @@ struct relume_pack_encode_params {
     double psnr_db, bytes_per_pixel;
     const struct relume_writer *writer;  // write here in place of the file, as
                                          // relume_pack_params; temporary data in $TMPDIR
+    // Only one of several parts of the work, 1 .. parts, for relume_pack_join. Not with loss, not
+    // with `share`. Default: all of it.
+    int part, parts;
+    const char *options;  // what parts say they were asked for; those that say otherwise are not
+                          // joined
+    bool free_storage;    // nobody asked for `storage`: coarse steps are refused when joined
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \
@@ -127,6 +144,28 @@ RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
 RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,
                                                const struct relume_coder_params *coder,
                                                const struct relume_pack_encode_params *encode);
+
+// What a part is. Plain data.
+struct relume_pack_part {
+    int part, parts;   // 1 .. parts
+    int first, views;  // that it holds, of
+    int all_views;     // of the whole
+    char creator[64];    // "relume 0.1.0"
+    char options[4096];  // as they were given to relume_pack_encode
+    uint64_t file_bytes;
+};
+// An input status with a sentence when `path` is no part. Of `params` log, limits and reader are
+// used.
+RELUME_RESULT relume_status relume_pack_part_read(struct relume_pack_part *out, const char *path,
+                                                  const struct relume_pack_params *params);
+
+// One file of all parts: what relume_pack_encode would have written in one go, byte for byte.
+// RELUME_EUNFIT with a sentence when a part is missing or doubled or does not belong to the others;
+// an input status when one is damaged; RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. `report` may be
+// NULL. Of `params` log, limits, threads and writer are used.
+RELUME_RESULT relume_status relume_pack_join(const char *const *parts, int count, const char *path,
+                                             struct relume_encode_report *report,
+                                             const struct relume_pack_params *params);
 
 // An open relume file. Views are read when first asked for and stay until dropped.
 // Thread-safety: one thread at a time.
@@ -183,7 +222,7 @@ RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_p
 // Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 
-// Read all of a file and call `found` for each run of rows of a part that is missing or cannot be
+// Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing or cannot be
 // decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; an input status
 // when it is not, with a sentence where it is more than those rows: a header, a value out of range.
 // What PIZ and no compression decode in spite of damage to single bits is not noticed.

@@ -321,6 +321,25 @@ relume_status relume_table_fetch(relume_table *table, int rows)
     return check_lights(table);
 }
 
+static void skip_light(void *context, size_t item, int worker)
+{
+    (void)worker;
+    relume_table *t = context;
+    t->status[item] = image_stream_skip(&t->stream[item], t->row, t->rows);
+}
+
+relume_status relume_table_skip(relume_table *table, int rows)
+{
+    if (rows < 0 || rows > table->capture->height - table->row)
+        return RELUME_EINVAL;
+    if (rows == 0)
+        return RELUME_OK;
+    table->rows = rows;
+    thread_for(table->threads, (size_t)table->capture->draft.m.lights, skip_light, table);
+    table->row += rows;
+    return check_lights(table);
+}
+
 void relume_table_planes(const relume_table *table, int light, size_t first, size_t count,
                          float *out, size_t stride)
 {

@@ -29,6 +29,7 @@ struct args {
     bool quiet, help;
     struct relume_limits limits;
     const struct command_line *line;
+    const char *program;  // as it was called
 };
 
 // One command, one cmd_*.c file, one entry in commands[] (main.c). Help is made from it.
@@ -79,6 +80,9 @@ const char *judgement(double psnr_db);
 
 // The file that `relume encode CAPTURE -o OUTPUT` makes, and what it says.
 relume_status encode_as_usual(const struct args *args, const char *capture, const char *output);
+
+// Whether a file is one part of several ('relume join').
+bool is_part(struct relume_pack_part *out, const char *path);
 
 // A name or note as a line for people may hold it; the text lives in `out`.
 struct shown {

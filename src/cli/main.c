@@ -16,13 +16,16 @@
 extern const struct command command_synth, command_lights, command_hdr, command_lightfield,
     command_panorama, command_encode, command_info, command_relight, command_query, command_eval,
     command_compare, command_sweep, command_import, command_export, command_capture, command_btf,
-    command_glare, command_tonemap, command_check;
+    command_glare, command_tonemap, command_check, command_join;
 
 const struct command *const commands[] = {
-    &command_synth,  &command_capture, &command_hdr,     &command_lightfield, &command_panorama,
-    &command_lights, &command_encode,  &command_info,    &command_check,      &command_relight,
-    &command_query,  &command_eval,    &command_compare, &command_sweep,      &command_import,
-    &command_export, &command_btf,     &command_glare,   &command_tonemap,    NULL,
+    &command_synth,      &command_capture,  &command_hdr,
+    &command_lightfield, &command_panorama, &command_lights,
+    &command_encode,     &command_join,     &command_info,
+    &command_check,      &command_relight,  &command_query,
+    &command_eval,       &command_compare,  &command_sweep,
+    &command_import,     &command_export,   &command_btf,
+    &command_glare,      &command_tonemap,  NULL,
 };
 
 #define OPTIONS struct args
@@ -47,6 +50,7 @@ struct parsed {
     struct command_line line;
     struct relume_log log;
     struct relume_limits limits;  // before --max-memory and --max-pixels
+    const char *program;
 };
 
 // What `capture` did until it became four commands.
@@ -161,6 +165,7 @@ static relume_status fill_options(struct parsed *p, int argc, char **argv)
     if (c->defaults)
         memcpy(p->args, c->defaults, c->size);
     p->args->limits = p->limits;
+    p->args->program = p->program;
     p->args->log = p->line.log = &p->log;
     p->log.user = p->args;
     p->line.name = c->name;
@@ -366,6 +371,7 @@ int main(int argc, char **argv)
         return exit_code(RELUME_ENOMEM);
     put_command_first(argc, argv);
     p->log = (struct relume_log){.message = on_message, .progress = on_progress};
+    p->program = argv[0];
     p->command = find_command(commands, argv[1]);
     relume_status status = p->command ? run_command(p, argc - 2, argv + 2)
                                       : unknown_command(&p->log, "command", commands, argv[1]);

@@ -60,6 +60,9 @@ void coefficients_restore(const relume_coefficients *c, int plane, int row, cons
 // RELUME_EIO.
 relume_status coefficients_values(const relume_coefficients *c, int row, void *waiting, float *out);
 
+// Of all views: root mean squares, means, sums. `steps_rms` of each is set.
+struct relume_encode_report encode_report_mean(const struct relume_encode_report *view, int views);
+
 // Coefficients in place of a view's own: planes[plane * stride + x] of a row.
 struct encode_values {
     void (*row)(const void *user, int row, float *planes, size_t stride);

@@ -513,6 +513,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         coefficients_choose_steps(c, e.total, e.mask.data != NULL, p.step);
         if (relume_storage_top(c->info.storage))
             status = measure_storage(c, &e);
+        c->report.steps_rms = c->report.store_rms;
         c->report.psnr_db = shown_psnr(&e);
     }
     free_encoder(&e);

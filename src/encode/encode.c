@@ -1,6 +1,7 @@
 // encode.c - from a capture to a file in one call
 #include <relume/pack.h>
 
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
 #include "codebook/books.h"
@@ -12,11 +13,13 @@
 struct material {
     struct relume_pack_view *view;
     relume_coefficients **coefficients;
-    struct relume_image *depth, *mask;  // [views]
-    relume_books **books;               // [views], or the first for all
-    uint16_t **index;                   // [views][RELUME_MOST_BOOKS]
-    struct lossy_words *words;          // [views]
+    struct relume_image *depth, *mask;    // [views]
+    relume_books **books;                 // [views], or the first for all
+    uint16_t **index;                     // [views][RELUME_MOST_BOOKS]
+    struct lossy_words *words;            // [views]
+    struct relume_encode_report *report;  // [views]
     int views;
+    int first, end;  // those that are encoded
 };
 
 static void destroy(struct material *m)
@@ -37,6 +40,7 @@ static void destroy(struct material *m)
     }
     mem_free(m->books);
     mem_free(m->words);
+    mem_free(m->report);
     mem_free(m->index);
     mem_free(m->view);
     mem_free(m->coefficients);
@@ -44,10 +48,22 @@ static void destroy(struct material *m)
     mem_free(m->mask);
 }
 
-static bool create(struct material *m, int views)
+// Where the views are is known of all of them.
+static void place_views(struct material *m, const struct relume_manifest *manifest)
+{
+    for (int i = 0; i < m->views; i++) {
+        m->view[i].uv[0] = manifest->view[i].uv[0];
+        m->view[i].uv[1] = manifest->view[i].uv[1];
+        m->view[i].slab = manifest->view[i].slab;
+    }
+}
+
+static bool create(struct material *m, int views, const struct relume_pack_encode_params *p)
 {
     const size_t n = (size_t)views;
     m->views = views;
+    m->first = p->parts ? (int)((int64_t)views * (p->part - 1) / p->parts) : 0;
+    m->end = p->parts ? (int)((int64_t)views * p->part / p->parts) : views;
     m->view = mem_zeroed(n, sizeof *m->view);
     m->coefficients = mem_zeroed(n, sizeof *m->coefficients);
     m->depth = mem_zeroed(n, sizeof *m->depth);
@@ -55,80 +71,50 @@ static bool create(struct material *m, int views)
     m->books = mem_zeroed(n, sizeof *m->books);
     m->index = mem_zeroed(n * RELUME_MOST_BOOKS, sizeof *m->index);
     m->words = mem_zeroed(n, sizeof *m->words);
-    return m->words && m->view && m->coefficients && m->depth && m->mask && m->books && m->index;
+    m->report = mem_zeroed(n, sizeof *m->report);
+    return m->report && m->words && m->view && m->coefficients && m->depth && m->mask && m->books &&
+           m->index;
 }
 
 static relume_status encode_view(struct material *m, int i, const relume_coder *coder,
                                  const relume_capture *capture, bool with_depth,
                                  const struct relume_encode_params *p)
 {
-    const struct relume_manifest *manifest = relume_capture_manifest(capture);
     relume_status status = relume_encode(&m->coefficients[i], coder, capture, i, p);
+    if (!status)
+        m->report[i] = relume_coefficients_report(m->coefficients[i]);
     if (!status && with_depth)
         status = relume_capture_depth(&m->depth[i], capture, i, p->log);
     if (!status)
         status = relume_capture_mask(&m->mask[i], capture, i, p->log);
-    m->view[i] = (struct relume_pack_view){
-        .coefficients = m->coefficients[i],
-        .uv = {manifest->view[i].uv[0], manifest->view[i].uv[1]},
-        .slab = manifest->view[i].slab,
-        .depth = m->depth[i].data ? &m->depth[i] : NULL,
-        .mask = m->mask[i].data ? &m->mask[i] : NULL,
-    };
+    m->view[i].coefficients = m->coefficients[i];
+    m->view[i].depth = m->depth[i].data ? &m->depth[i] : NULL;
+    m->view[i].mask = m->mask[i].data ? &m->mask[i] : NULL;
     return status;
 }
 
-static void add_census(struct relume_encode_census *sum, const struct relume_encode_census *c)
-{
-    sum->pixels += c->pixels;
-    sum->black += c->black;
-    sum->clipped += c->clipped;
-    sum->always_clipped += c->always_clipped;
-    sum->repaired += c->repaired;
-    sum->black_images += c->black_images;
-}
-
-// Root mean square over views, and all their pixels.
-static struct relume_encode_report mean_report(const struct material *m)
-{
-    struct relume_encode_report sum = {0};
-    for (int i = 0; i < m->views; i++) {
-        const struct relume_encode_report r = relume_coefficients_report(m->coefficients[i]);
-        sum.fit_rms += r.fit_rms * r.fit_rms / m->views;
-        sum.store_rms += r.store_rms * r.store_rms / m->views;
-        sum.typical += r.typical / m->views;
-        sum.psnr_db += r.psnr_db / m->views;
-        add_census(&sum.census, &r.census);
-    }
-    sum.fit_rms = sqrt(sum.fit_rms);
-    sum.store_rms = sum.steps_rms = sqrt(sum.store_rms);
-    return sum;
-}
-
-// Indices into the books of view `set`; what they cost joins `square`.
+// Indices into the books of view `set`.
 static relume_status assign_view(struct material *m, int i, int set,
-                                 const struct relume_books_params *p, double *square)
+                                 const struct relume_books_params *p)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(m->coefficients[i]);
     uint16_t **index = m->index + i * RELUME_MOST_BOOKS;
-    double store_rms = 0.0;
     for (int b = 0; b < relume_books_info(m->books[set])->books; b++)
         if (!(index[b] = mem_array((size_t)info->width * (size_t)info->height, sizeof **index)))
             return RELUME_ENOMEM;
     const relume_status status =
-        relume_books_assign(index, &store_rms, m->books[set], m->coefficients[i], p);
+        relume_books_assign(index, &m->report[i].store_rms, m->books[set], m->coefficients[i], p);
     m->view[i].books = m->books[set];
     m->view[i].index = (const uint16_t *const *)index;
-    *square += store_rms * store_rms / m->views;
     return status;
 }
 
 // A reader points masked pixels to one more vector, of nothing (read_mask.c), and indices have 16
 // bits: one vector less is learnt.
-static int most_codes(const struct material *m)
+static int most_codes(const struct relume_manifest *m)
 {
     for (int i = 0; i < m->views; i++)
-        if (m->mask[i].data)
+        if (m->view[i].mask)
             return 65535;
     return 65536;
 }
@@ -146,44 +132,38 @@ static void shelf_row(const void *user, int row, float *planes, size_t stride)
 }
 
 // What relighting reproduces, which was measured before there were books.
-static relume_status judge_books(const struct material *m, double *psnr_db,
-                                 const relume_capture *capture,
+static relume_status judge_books(const struct material *m, const relume_capture *capture,
                                  const struct relume_encode_params *p)
 {
     relume_status status = RELUME_OK;
-    double sum = 0.0;
-    for (int i = 0; !status && i < m->views; i++) {
+    for (int i = m->first; !status && i < m->end; i++) {
         struct encode_judgement judgement;
         const struct shelf shelf = {m->view[i].books, m->index + i * RELUME_MOST_BOOKS,
                                     (size_t)relume_capture_width(capture)};
         status = encode_judge(&judgement, m->coefficients[i], capture, i, false,
                               &(const struct encode_values){shelf_row, &shelf}, p);
-        if (!status)
-            sum += judgement.psnr_db / m->views;
+        m->report[i].psnr_db = judgement.psnr_db;
     }
-    *psnr_db = sum;
     return status;
 }
 
-static relume_status make_books(struct material *m, const struct relume_pack_encode_params *p,
-                                double *store_rms)
+static relume_status make_books(struct material *m, const struct relume_manifest *manifest,
+                                const struct relume_pack_encode_params *p)
 {
     struct relume_books_params books = *p->books;
     if (books.codes == 65536)
-        books.codes = most_codes(m);
+        books.codes = most_codes(manifest);
     relume_status status = RELUME_OK;
-    double square = 0.0;
     books.threads = p->threads;
-    for (int i = 0; !status && i < m->views; i++) {
+    for (int i = m->first; !status && i < m->end; i++) {
         const int set = p->share ? 0 : i;
         if (set == i)
             status = relume_books_train(&m->books[i],
                                         (const relume_coefficients *const *)m->coefficients + i,
                                         p->share ? m->views : 1, &books);
         if (!status)
-            status = assign_view(m, i, set, &books, &square);
+            status = assign_view(m, i, set, &books);
     }
-    *store_rms = sqrt(square);
     return status;
 }
 
@@ -206,6 +186,26 @@ static relume_status write_material(const struct material *m, const relume_captu
         .preview = relume_pack_preview,
         .preview_user = &contents,
     };
+    char digest[RELUME_DIGEST];
+    const struct relume_pack_share share = {
+        .part = p->part,
+        .parts = p->parts,
+        .first = m->first,
+        .views = m->end - m->first,
+        .capture = digest,
+        .options = p->options ? p->options : "",
+        .free_storage = p->free_storage,
+        .measured = m->report + m->first,
+    };
+    if (p->parts) {
+        const relume_status status = relume_capture_digest(digest, capture, p->log);
+        if (status)
+            return status;
+        contents.share = &share;
+        contents.report = (struct relume_encode_report){0};
+        contents.preview =
+            m->first <= m->views / 2 && m->views / 2 < m->end ? contents.preview : NULL;
+    }
     return relume_pack_write(&contents, path,
                              relume_pack_params(.log = p->log, .compression = p->compression,
                                                 .threads = p->threads, .writer = p->writer));
@@ -262,6 +262,20 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
     return RELUME_OK;
 }
 
+static relume_status check_share(const struct relume_pack_encode_params *p, int views)
+{
+    if (!p->parts)
+        return RELUME_OK;
+    if (p->part < 1 || p->part > p->parts || p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 ||
+        (p->books && p->share))
+        return RELUME_EINVAL;
+    if (p->parts > views)
+        return log_fail(p->log, RELUME_EUNFIT,
+                        "%d views cannot be shared by %d parts; expected at most %d", views,
+                        p->parts, views);
+    return RELUME_OK;
+}
+
 relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,
                                  const char *path, struct relume_encode_report *report,
                                  const struct relume_pack_encode_params *params)
@@ -280,18 +294,20 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         return RELUME_EINVAL;
     const struct relume_manifest *manifest = relume_capture_manifest(capture);
     struct material m = {0};
-    relume_status status = create(&m, manifest->views) ? RELUME_OK : RELUME_ENOMEM;
-    for (int i = 0; !status && i < manifest->views; i++)
-        status = encode_view(&m, i, coder, capture, !p.no_depth, &encode);
-    struct relume_encode_report total = {0};
+    relume_status status = check_share(&p, manifest->views);
+    if (!status && !create(&m, manifest->views, &p))
+        status = RELUME_ENOMEM;
     if (!status)
-        total = mean_report(&m);
+        place_views(&m, manifest);
+    for (int i = m.first; !status && i < m.end; i++)
+        status = encode_view(&m, i, coder, capture, !p.no_depth, &encode);
+    if (!status && !coded && p.books)
+        status = make_books(&m, manifest, &p);
+    if (!status && !coded && p.books && report)
+        status = judge_books(&m, capture, &encode);
+    struct relume_encode_report total = encode_report_mean(m.report + m.first, m.end - m.first);
     if (!status && coded)
         status = code_planes(&m, capture, coder, &p, &total, &encode);
-    if (!status && !coded && p.books)
-        status = make_books(&m, &p, &total.store_rms);
-    if (!status && !coded && p.books && report)
-        status = judge_books(&m, &total.psnr_db, capture, &encode);
     if (!status && report)
         *report = total;
     if (!status)

@@ -253,9 +253,30 @@ static void write_block(void *context, size_t item, int worker)
     end_turn(w, (int)item, status);
 }
 
-static relume_status write_part(struct writing *w, const struct exr_part *part, int index,
-                                int threads)
+static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int row,
+                                 void **packed, size_t *room, const struct relume_log *log);
+
+// Blocks go from file to file as they are.
+static relume_status copy_part(struct writing *w, const struct exr_part *part, int index,
+                               const struct relume_log *log)
 {
+    void *packed = NULL;
+    size_t room = 0;
+    for (int row = 0; !w->status && row < part->height; row += codecs[part->codec].rows) {
+        exr_chunk_info_t chunk;
+        w->status = read_packed(part->from, part->from_part, &chunk, row, &packed, &room, log);
+        if (!w->status && exr_write_scanline_chunk(w->exr, index, row, packed, chunk.packed_size))
+            w->status = w->io ? w->io : RELUME_ENOMEM;
+    }
+    mem_free(packed);
+    return w->status;
+}
+
+static relume_status write_part(struct writing *w, const struct exr_part *part, int index,
+                                int threads, const struct relume_log *log)
+{
+    if (part->from)
+        return copy_part(w, part, index, log);
     w->part = part;
     w->index = index;
     w->block_rows = codecs[part->codec].rows;
@@ -296,7 +317,7 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
                                               : log_fail(log, RELUME_EIO, "%s: header refused; %s",
                                                          path, exr_get_default_error_message(r));
     for (int i = 0; !status && i < count; i++) {
-        status = write_part(&w, &parts[i], i, threads);
+        status = write_part(&w, &parts[i], i, threads, log);
         if (!status && !log_progress(log, "writing", (i + 1.0) / count))
             status = RELUME_ECANCEL;
     }
@@ -530,7 +551,8 @@ int exr_channel_step(const exr_file *file, int part, int channel)
     return e->x_sampling == e->y_sampling ? e->x_sampling : 0;
 }
 
-bool exr_is_plain(const exr_file *file, int part)
+// Whether EXR itself asks for an attribute.
+static bool is_required(const char *name)
 {
     static const char *const known[] = {"channels",
                                         "chunkCount",
@@ -544,17 +566,97 @@ bool exr_is_plain(const exr_file *file, int part)
                                         "pixelAspectRatio",
                                         "screenWindowCenter",
                                         "screenWindowWidth"};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (!strcmp(name, known[k]))
+            return true;
+    return false;
+}
+
+bool exr_is_plain(const exr_file *file, int part)
+{
     int32_t count;
     bool plain = !exr_get_attribute_count(file->exr, part, &count);
     for (int32_t i = 0; plain && i < count; i++) {
         const exr_attribute_t *a;
-        plain = !exr_get_attribute_by_index(file->exr, part, EXR_ATTR_LIST_FILE_ORDER, i, &a);
-        bool found = false;
-        for (size_t k = 0; plain && k < sizeof known / sizeof *known; k++)
-            found |= !strcmp(a->name, known[k]);
-        plain = plain && found;
+        plain = !exr_get_attribute_by_index(file->exr, part, EXR_ATTR_LIST_FILE_ORDER, i, &a) &&
+                is_required(a->name);
     }
     return plain;
+}
+
+// False for kinds that exr_write does not make.
+static bool attribute_again(struct exr_attribute *out, const exr_attribute_t *a)
+{
+    *out = (struct exr_attribute){.name = a->name};
+    switch (a->type) {
+    case EXR_ATTR_INT:
+        out->kind = EXR_INT;
+        out->integer = a->i;
+        return true;
+    case EXR_ATTR_STRING:
+        out->kind = EXR_TEXT;
+        out->text = a->string->str;
+        return true;
+    case EXR_ATTR_FLOAT_VECTOR:
+        out->kind = EXR_FLOATS;
+        out->floats = a->floatvector->arr;
+        out->count = a->floatvector->length;
+        return true;
+    default: return false;
+    }
+}
+
+static relume_status attributes_again(struct exr_part *out, const exr_file *file, int part,
+                                      struct arena *arena)
+{
+    int32_t count;
+    if (exr_get_attribute_count(file->exr, part, &count))
+        return RELUME_EDAMAGED;
+    struct exr_attribute *own = arena_array(arena, (size_t)count, sizeof *own);
+    if (!own)
+        return RELUME_ENOMEM;
+    out->attribute = own;
+    for (int32_t i = 0; i < count; i++) {
+        const exr_attribute_t *a;
+        if (exr_get_attribute_by_index(file->exr, part, EXR_ATTR_LIST_FILE_ORDER, i, &a))
+            return RELUME_EDAMAGED;
+        out->attributes += !is_required(a->name) && attribute_again(&own[out->attributes], a);
+    }
+    return RELUME_OK;
+}
+
+static bool codec_again(enum exr_codec *out, const char *name)
+{
+    for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++)
+        if (!strcmp(codecs[i].name, name)) {
+            *out = (enum exr_codec)i;
+            return true;
+        }
+    return false;
+}
+
+relume_status exr_part_again(struct exr_part *out, const exr_file *file, int part,
+                             struct arena *arena)
+{
+    const struct exr_part_info info = exr_part_info(file, part);
+    const char **channel = arena_array(arena, (size_t)info.channels, sizeof *channel);
+    *out = (struct exr_part){
+        .name = info.name,
+        .width = info.width,
+        .height = info.height,
+        .sample = info.sample,
+        .channels = info.channels,
+        .channel = channel,
+        .from = file,
+        .from_part = part,
+    };
+    if (!channel)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < info.channels; i++)
+        channel[i] = exr_channel_name(file, part, i);
+    if (!codec_again(&out->codec, info.codec) || !info.uniform || info.x || info.y)
+        return RELUME_EDAMAGED;
+    return attributes_again(out, file, part, arena);
 }
 
 bool exr_get_int(const exr_file *file, int part, const char *name, int *value)
@@ -595,6 +697,26 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
         return NULL;
     *count = n;
     return floats;
+}
+
+// The block that begins at `row`, as it is packed, into *packed, which grows.
+static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int row,
+                                 void **packed, size_t *room, const struct relume_log *log)
+{
+    const bool found = !exr_read_scanline_chunk_info(file->exr, part, row, chunk) &&
+                       chunk->packed_size <= chunk->unpacked_size;
+    if (found && chunk->packed_size > *room) {
+        mem_free(*packed);
+        *room = 0;
+        *packed = mem_array(chunk->packed_size, 1);
+        if (!*packed)
+            return RELUME_ENOMEM;
+        *room = chunk->packed_size;
+    }
+    if (found && !exr_read_chunk(file->exr, part, chunk, *packed))
+        return RELUME_OK;
+    return log_fail(log, RELUME_EDAMAGED, "%s: truncated or damaged in part '%s', row %d",
+                    file->path, exr_part_info(file, part).name, row);
 }
 
 // A block of rows, decoded.

@@ -5,7 +5,12 @@
 #ifndef IMAGE_EXR_H
 #define IMAGE_EXR_H
 
+#include "base/arena.h"
+
 #include <relume/io.h>
+
+// An open file. Thread-safety: reading is safe.
+typedef struct exr_file exr_file;
 
 enum exr_sample { EXR_SAMPLE_UINT, EXR_SAMPLE_HALF, EXR_SAMPLE_FLOAT };  // as in the format
 enum exr_codec { EXR_CODEC_NONE, EXR_CODEC_RLE, EXR_CODEC_ZIP, EXR_CODEC_PIZ };
@@ -36,6 +41,9 @@ struct exr_part {
     // Fill samples[row][channel][x] for `rows` rows from `row` on. Called from several threads.
     relume_status (*rows)(void *context, int row, int rows, void *samples);
     void *context;
+    // In place of `rows`: the blocks of a part of another file, packed as they are there.
+    const exr_file *from;
+    int from_part;
 };
 
 // Write all parts into `path`, or `writer` (outfile.h), whole or not at all. RELUME_EIO,
@@ -43,9 +51,6 @@ struct exr_part {
 relume_status exr_write(const char *path, const struct relume_writer *writer,
                         const struct exr_part *parts, int count, int threads,
                         const struct relume_log *log);
-
-// An open file. Thread-safety: reading is safe.
-typedef struct exr_file exr_file;
 
 // The file `path`, or what `from` reads (infile.h). An input status with a sentence when it is not
 // a readable scanline EXR within the limits.
@@ -81,6 +86,12 @@ const char *exr_get_text(const exr_file *file, int part, const char *name);
 // x and y of red, green, blue and white; false when they are absent or make no colours.
 bool exr_get_chromaticities(const exr_file *file, int part, float xy[8]);
 const float *exr_get_floats(const exr_file *file, int part, const char *name, int *count);
+
+// A part as it would be written once more, its blocks copied; its arrays lie in `arena`. Of its
+// attributes those that EXR itself asks for and those of other kinds are left out. RELUME_EDAMAGED
+// without a sentence when it is not of the kind that exr_write makes, RELUME_ENOMEM.
+relume_status exr_part_again(struct exr_part *out, const exr_file *file, int part,
+                             struct arena *arena);
 
 // Hand every block of rows of a part to `sink` (from several threads, any order).
 // An input status when the file is truncated or broken.

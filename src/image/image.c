@@ -200,6 +200,21 @@ relume_status image_stream_read(struct image_stream *stream, int row, int rows, 
     return RELUME_OK;
 }
 
+relume_status image_stream_skip(struct image_stream *stream, int row, int rows)
+{
+    const struct picture_info *info = picture_info_of(stream->reader);
+    relume_status status = RELUME_OK;
+    const uint8_t *bytes;
+    if (stream->kept || (info->jumps && !stream->keep))
+        return RELUME_OK;
+    for (int end = row + rows, n; !status && row < end; row += n) {
+        n = end - row < IMAGE_STREAM_ROWS ? end - row : IMAGE_STREAM_ROWS;
+        status = info->bytes ? image_stream_fetch(stream, row, n, &bytes)
+                             : picture_read_floats(stream->reader, row, n, stream->scratch);
+    }
+    return status;
+}
+
 bool image_stream_is_broken(const struct image_stream *stream)
 {
     return !*picture_error(stream->reader);

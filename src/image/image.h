@@ -43,6 +43,8 @@ relume_status image_stream_open(struct image_stream *stream, picture_reader *rea
                                 const float gain[3]);
 // out[row][x][channel]; rows must be asked for from the top on. An input status: the error tells.
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);
+// The same rows are not wanted: they are decoded only where those below need it, or are kept.
+relume_status image_stream_skip(struct image_stream *stream, int row, int rows);
 // 8-bit files: the same rows, at most IMAGE_STREAM_ROWS, as they are in the file, until the next
 // call.
 relume_status image_stream_fetch(struct image_stream *stream, int row, int rows,

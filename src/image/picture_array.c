@@ -69,6 +69,7 @@ relume_status array_picture_open(picture_reader **out, const struct picture_arra
                                           .rgb = {0, last / 2, last},
                                           .bytes = array->bytes == 1,
                                           .floats = floats,
-                                          .linear = floats}};
+                                          .linear = floats,
+                                          .jumps = true}};
     return RELUME_OK;
 }

@@ -89,7 +89,8 @@ static bool is_plain(struct picture_info *out, const exr_file *file)
                                  .y = info.y,
                                  .channels = info.channels,
                                  .floats = true,
-                                 .linear = true};
+                                 .linear = true,
+                                 .jumps = true};
     return exr_part_count(file) == 1 && info.uniform && info.sample != EXR_SAMPLE_UINT &&
            strcmp(info.codec, "other") && exr_is_plain(file, 0) && find_colour(out, file);
 }
@@ -136,6 +137,7 @@ relume_status exr_picture_open(picture_reader **out, const char *path,
     }
     p->reader = (picture_reader){.format = p->coarse ? &coarse_format : &format, .info = info};
     if (p->coarse) {
+        p->reader.info.jumps = false;
         p->reader.info.channels = 3;
         for (int c = 0; c < 3; c++)
             p->reader.info.rgb[c] = c;

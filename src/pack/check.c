@@ -1,11 +1,15 @@
 // check.c - what of a relume file is damaged, and where: first every block of the container, then
 // what the blocks say
+#include "pack/format.h"
+#include "pack/part.h"
 #include "pack/reader.h"
+
+#include <string.h>
 
 struct check {
     const struct relume_pack_check_params *p;
     const char *part;
-    bool damaged;
+    bool damaged, one_of_several;
 };
 
 static void note(void *context, int row, int rows)
@@ -20,6 +24,8 @@ static relume_status check_blocks(struct check *c, const char *path)
 {
     exr_file *file;
     relume_status status = exr_open_damaged(&file, path, c->p->reader, c->p->limits, c->p->log);
+    const char *format = status ? NULL : exr_get_text(file, 0, ATTR_FORMAT);
+    c->one_of_several = format && !strcmp(format, FORMAT_PART);
     for (int i = 0; !status && i < exr_part_count(file); i++) {
         c->part = exr_part_info(file, i).name;
         status = exr_find_damage(file, i, c->p->threads, note, c, c->p->log);
@@ -76,6 +82,14 @@ static relume_status check_values(const struct relume_pack_check_params *p, cons
     return !status && tiles.count ? RELUME_EDAMAGED : status;
 }
 
+static relume_status check_part(const struct relume_pack_check_params *p, const char *path)
+{
+    struct part_file part;
+    const relume_status status = part_open(&part, path, p->reader, p->limits, p->log);
+    part_close(&part);
+    return status;
+}
+
 relume_status relume_pack_check(const char *path, const struct relume_pack_check_params *params)
 {
     const struct relume_pack_check_params none = {0};
@@ -85,5 +99,7 @@ relume_status relume_pack_check(const char *path, const struct relume_pack_check
     const relume_status status = check_blocks(&c, path);
     if (status)
         return status;
-    return c.damaged ? RELUME_EDAMAGED : check_values(c.p, path);
+    if (c.damaged)
+        return RELUME_EDAMAGED;
+    return (c.one_of_several ? check_part : check_values)(c.p, path);
 }

@@ -40,6 +40,18 @@ enum { FORMAT_VERSION = 4, FORMAT_CODED = 4, FORMAT_DISCS = 3, FORMAT_SLABS = 2,
 #define ATTR_BOOKS         "relume.books"
 #define ATTR_CODING        "relume.coding"
 
+// A part of the work (docs/format.md, "Parts"): format and attributes of the first part beside
+// those of the whole, and of a view's
+#define FORMAT_PART   "relume part"
+#define ATTR_PART     "relume.part"
+#define ATTR_CAPTURE  "relume.part.capture"
+#define ATTR_OPTIONS  "relume.part.options"
+#define ATTR_MEASURED "relume.part.measured"
+
+// A report, its figures as hexadecimal floats: fit, store, steps, PSNR, typical, the census
+#define FORMAT_MEASURED "%a %a %a %a %a %zu %zu %zu %zu %zu %d"
+#define SCAN_MEASURED   "%la %la %la %la %la %zu %zu %zu %zu %zu %d"
+
 // Attributes of a view's part
 #define ATTR_VIEW   "relume.view"
 #define ATTR_SCALE  "relume.scale"

@@ -18,6 +18,12 @@ static bool optional_floats(const relume_pack *p, const char *name, long long co
 static relume_status check_format(relume_pack *p)
 {
     const char *format = exr_get_text(p->file, 0, ATTR_FORMAT);
+    if (format && !strcmp(format, FORMAT_PART))
+        return log_fail(
+            p->log, RELUME_EFORMAT,
+            "%s: a part of a relume file; expected the file that 'relume join' makes of "
+            "all parts",
+            p->path);
     if (!format || strcmp(format, FORMAT_NAME))
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: an OpenEXR file, but not a relume file; expected one made by 'relume "

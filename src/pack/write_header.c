@@ -35,22 +35,28 @@ static void gather_coarse(float *rgb, size_t width, size_t rows)
             }
 }
 
+// The first of the views that are written.
+static const struct relume_pack_view *first_view(const struct relume_pack_contents *c)
+{
+    return c->view + (c->share ? c->share->first : 0);
+}
+
 // B, G, R as halves, none of which is infinite.
 static relume_status preview_rows(void *context, int row, int rows, void *samples)
 {
     const struct relume_pack_contents *c = context;
-    const size_t width = (size_t)relume_coefficients_info(c->view[0].coefficients)->width;
+    const size_t width = (size_t)relume_coefficients_info(first_view(c)->coefficients)->width;
     float *rgb = mem_zeroed((size_t)rows * width, 3 * sizeof *rgb);
     uint16_t *out = samples;
     if (!rgb)
         return RELUME_ENOMEM;
     const relume_status status =
         c->preview ? c->preview(c->preview_user, row, rows, rgb) : RELUME_OK;
-    if (!status && c->view->coded) {
+    if (!status && first_view(c)->coded) {
         gather_coarse(rgb, width, (size_t)rows);
         make_coarse(rgb, width, (size_t)rows);
     }
-    const uint16_t bits = c->view->coded ? COARSE_BITS : 0xffff;
+    const uint16_t bits = first_view(c)->coded ? COARSE_BITS : 0xffff;
     for (size_t y = 0; !status && y < (size_t)rows; y++)
         for (size_t channel = 3; channel-- > 0;)
             for (size_t x = 0; x < width; x++)
@@ -137,23 +143,38 @@ static void describe_coder(struct writer *w, struct exr_part *part)
     }
 }
 
+static void describe_share(struct writer *w, struct exr_part *part)
+{
+    const struct relume_pack_share *s = w->contents->share;
+    float *place = arena_array(&w->arena, 5, sizeof *place);
+    if (place) {
+        const int numbers[] = {s->part, s->parts, s->first, s->views, s->free_storage};
+        for (int i = 0; i < 5; i++)
+            place[i] = (float)numbers[i];
+    }
+    writer_floats(w, part, ATTR_PART, place, 5);
+    writer_text(part, ATTR_CAPTURE, s->capture);
+    writer_text(part, ATTR_OPTIONS, s->options);
+}
+
 void writer_add_header(struct writer *w)
 {
     static const char *const channels[] = {"B", "G", "R"};
     const struct relume_pack_contents *c = w->contents;
-    const struct relume_coefficients_info *info = relume_coefficients_info(c->view->coefficients);
+    const struct relume_pack_view *view = first_view(c);
+    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
     const double report[] = {c->report.fit_rms, c->report.store_rms};
     struct exr_part *part = writer_part(w, "preview", info->width, info->height);
-    part->codec = c->view->coded ? EXR_CODEC_ZIP : w->codec;
+    part->codec = view->coded ? EXR_CODEC_ZIP : w->codec;
     part->sample = EXR_SAMPLE_HALF;
     part->channels = 3;
     part->channel = channels;
     part->rows = preview_rows;
     part->context = (void *)(uintptr_t)c;
     relume_transfer_text(c->display, w->display, sizeof w->display);
-    writer_text(part, ATTR_FORMAT, FORMAT_NAME);
+    writer_text(part, ATTR_FORMAT, c->share ? FORMAT_PART : FORMAT_NAME);
     writer_int(part, ATTR_VERSION,
-               c->view->coded     ? FORMAT_CODED
+               view->coded        ? FORMAT_CODED
                : c->slabs         ? FORMAT_SLABS
                : c->geometry.disc ? FORMAT_DISCS
                                   : FORMAT_PLAIN);
@@ -164,10 +185,12 @@ void writer_add_header(struct writer *w)
     writer_int(part, ATTR_VIEWS, c->views);
     if (isfinite(report[0]) && isfinite(report[1]))
         writer_doubles(w, part, ATTR_REPORT, report, 2);
-    if (c->view->coded)
+    if (view->coded)
         writer_text(part, ATTR_CODING, CODING_AV1);
-    if (c->view->books)
-        writer_int(part, ATTR_BOOKS, relume_books_info(c->view->books)->books);
+    if (view->books)
+        writer_int(part, ATTR_BOOKS, relume_books_info(view->books)->books);
     describe_coder(w, part);
     describe_geometry(w, part);
+    if (c->share)
+        describe_share(w, part);
 }

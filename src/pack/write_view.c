@@ -114,6 +114,19 @@ static void fill_with_words(struct writer *w, struct exr_part *part,
     writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
 }
 
+// Numbers that join needs as they are.
+static const char *measured_text(struct writer *w, int index)
+{
+    const struct relume_pack_share *share = w->contents->share;
+    const struct relume_encode_report *r = &share->measured[index - share->first];
+    const struct relume_encode_census *c = &r->census;
+    const char *text = arena_format(&w->arena, FORMAT_MEASURED, r->fit_rms, r->store_rms,
+                                    r->steps_rms, r->psnr_db, r->typical, c->pixels, c->black,
+                                    c->clipped, c->always_clipped, c->repaired, c->black_images);
+    w->failed |= !text;
+    return text;
+}
+
 void writer_add_view(struct writer *w, int index, bool shared)
 {
     static const char *const depth_channel[] = {"Z"}, *const mask_channel[] = {"A"};
@@ -124,6 +137,8 @@ void writer_add_view(struct writer *w, int index, bool shared)
     writer_int(part, ATTR_VIEW, index);
     if (w->contents->slabs)
         writer_int(part, ATTR_MEMBER, view->slab);
+    if (w->contents->share)
+        writer_text(part, ATTR_MEASURED, measured_text(w, index));
     if (view->books)
         writer_fill_indices(part, view);
     else if (view->coded)

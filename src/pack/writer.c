@@ -5,7 +5,7 @@
 #include "base/params.h"
 #include "pack/format.h"
 
-enum { MOST_ATTRIBUTES = 24 };
+enum { MOST_ATTRIBUTES = 32 };
 
 static const char *const compressions[] = {[RELUME_COMPRESS_NONE] = "none",
                                            [RELUME_COMPRESS_RLE] = "rle",
@@ -99,11 +99,12 @@ static bool shares_books(const struct relume_pack_contents *c)
 static void add_parts(struct writer *w)
 {
     const struct relume_pack_contents *c = w->contents;
-    const bool shared = shares_books(c);
+    const bool shared = !c->share && shares_books(c);
+    const int first = c->share ? c->share->first : 0;
     writer_add_header(w);
     if (shared)
         writer_add_books(w, c->view[0].books, -1);
-    for (int i = 0; i < c->views; i++)
+    for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
         writer_add_view(w, i, shared);
 }
 

@@ -44,7 +44,7 @@ relume_status floats_name(const struct relume_log *log, const char *option, cons
 relume_status relume_name(const struct relume_log *log, const char *option, const char *path)
 {
     const char *ending = name_ending(path);
-    if (!*ending || !strcasecmp(ending, ".exr"))
+    if (!*ending || !strcasecmp(ending, ".exr") || !strcasecmp(ending, ".part"))
         return RELUME_OK;
     return say(log, RELUME_EINVAL,
                "%s: %s: a relume file is an OpenEXR file; expected a name that ends in "

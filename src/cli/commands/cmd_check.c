@@ -56,6 +56,7 @@ static void print_tile(void *user, const char *part, int column, int row,
 static relume_status check_file(const struct check_options *o, const char *path)
 {
     struct findings f = {.path = path, .json = o->json};
+    struct relume_pack_part part;
     struct shown name;
     if (f.json) {
         printf("{\"file\": ");
@@ -67,6 +68,8 @@ static relume_status check_file(const struct check_options *o, const char *path)
                                        .found = print_damage, .tile = print_tile, .user = &f));
     if (f.json)
         printf("], \"whole\": %s}", status ? "false" : "true");
+    else if (!status && is_part(&part, path))
+        printf("%s: whole; part %d of %d\n", shown(&name, path), part.part, part.parts);
     else if (!status)
         printf("%s: whole\n", shown(&name, path));
     else if (f.count && relume_status_is_input(status))

@@ -1,6 +1,7 @@
 // cmd_encode.c - relume encode: a capture into a relume file
 #include "book_options.h"
 #include "cli.h"
+#include "encode_parts.h"
 
 #include <sys/stat.h>
 
@@ -19,6 +20,8 @@ struct encode_options {
     unsigned luminance;
     bool robust, force, no_depth, skip_missing, repair, allow_outside;
     struct book_options books;
+    struct which_part part;
+    int commands;
 };
 #define OPTIONS struct encode_options
 
@@ -71,6 +74,11 @@ static const struct option options[] = {
          "replace pixels that are NaN or infinite by those under the nearest lights"),
     GROUP("codebooks"),
     BOOK_OPTIONS,
+    GROUP("many machines"),
+    OWN("--part", part, "I/N", "encode only part I of N, for 'relume join'", take_part),
+    INT("--commands", commands, "N",
+        "encode nothing: print a line for the shell for each of N parts, and one that joins them",
+        1, MOST_ARGUMENTS),
     GROUP("lights"),
     NUMBER("--assume-depth", assume_depth, "D",
            "near lights, capture without depth: assume the surface this far from the eye", 1e-6,
@@ -89,6 +97,7 @@ struct request {
     bool decide;     // the capture decides what the options leave open
     double quality;  // 0: the usual
     double unseen;   // dB; 0: not known
+    struct options_text options;
 };
 
 static bool is_coded(const struct request *r)
@@ -124,6 +133,14 @@ static void say_result(const struct args *args, const relume_capture *capture,
                        const struct request *r)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);
+    if (r->pack.parts) {
+        announce(args, RELUME_NOTE,
+                 "%s: part %d of %d: reproduces your photographs at %.1f dB PSNR (differences %s); "
+                 "'relume join' makes one file of all parts",
+                 r->output, r->pack.part, r->pack.parts, report->psnr_db,
+                 judgement(report->psnr_db));
+        return;
+    }
     char bytes[48], unseen[64] = "", more[96] = "";
     const bool one = info->lights == 1, short_of = r->decide && r->quality > report->psnr_db + 0.5;
     bytes_words(bytes, capture, r->output);
@@ -141,15 +158,6 @@ static void say_result(const struct args *args, const relume_capture *capture,
              r->output, one ? "" : "s", report->psnr_db, judgement(report->psnr_db),
              info->coefficients, relume_plural(info->coefficients), info->joint ? "" : " a colour",
              is_coded(r) ? "coded with loss" : storage_words(r->pack.storage), bytes, unseen, more);
-}
-
-// Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
-// rest few of them.
-static bool is_coarse(const struct relume_encode_report *report)
-{
-    static const double COARSE = 0.05;  // photographs of 8 bits lose a hundredth of this
-    const double lost = report->typical > 0.0 ? report->steps_rms / report->typical : 0.0;
-    return lost >= COARSE && report->steps_rms >= report->fit_rms;
 }
 
 // What in the capture says little: black and clipped pixels, black images.
@@ -206,7 +214,7 @@ static relume_status write_file(const relume_capture *capture, const relume_code
                                 struct request *r, struct relume_encode_report *report)
 {
     relume_status status = relume_pack_encode(capture, coder, r->output, report, &r->pack);
-    if (status || r->bits || is_coded(r) || !is_coarse(report))
+    if (status || r->bits || is_coded(r) || r->pack.parts || !relume_encode_is_coarse(report))
         return status;
     r->pack.storage = RELUME_STORE_HALF;
     return relume_pack_encode(capture, coder, r->output, report, &r->pack);
@@ -233,7 +241,7 @@ static relume_status encode(const struct args *args, struct request *r)
     if (!status) {
         say_census(args, r, &report.census, relume_capture_hemispherical(capture));
         say_result(args, capture, coder, &report, r);
-        if (r->bits && is_coarse(&report))
+        if ((r->bits || r->pack.parts) && relume_encode_is_coarse(&report))
             announce(args, RELUME_WARNING,
                      "%s: very bright highlights: %s will ruin the picture; use --bits half",
                      r->output, storage_words(r->pack.storage));
@@ -243,8 +251,25 @@ static relume_status encode(const struct args *args, struct request *r)
     return status;
 }
 
+// What needs all views at once cannot be shared.
+static relume_status check_parts(const struct encode_options *o, const struct request *r)
+{
+    if (!o->part.parts && !o->commands)
+        return RELUME_OK;
+    if (o->part.parts && o->commands)
+        return usage_error("--commands prints the lines with --part; expected one of the two");
+    if (is_coded(r))
+        return usage_error("--psnr and --bytes-per-pixel try steps on all views; expected without "
+                           "--part and --commands: encode in one go");
+    if (r->pack.books && r->pack.share)
+        return usage_error("--share learns one set of codebooks from all views; expected without "
+                           "--part and --commands: leave it out, or encode in one go");
+    return RELUME_OK;
+}
+
 static relume_status run(const struct args *args)
 {
+    static const char *const not_kept[] = {"-o", "--part", "--commands", NULL};
     const struct encode_options *o = (const void *)args;
     const bool books = o->books.codes > 0;
     const bool choose = given(o, &o->interpolant) ? !o->interpolant : !o->basis;
@@ -276,6 +301,9 @@ static relume_status run(const struct args *args)
                  .psnr_db = o->psnr,
                  .bytes_per_pixel = o->bytes_per_pixel,
                  .share = o->books.share,
+                 .part = o->part.part,
+                 .parts = o->part.parts,
+                 .free_storage = !o->bits,
                  .threads = args->threads},
         .decide = !o->basis && !books && !o->robust && !o->luminance,
         .quality = o->quality,
@@ -289,9 +317,16 @@ static relume_status run(const struct args *args)
             "--psnr and --bytes-per-pixel choose bits, step and compression; expected "
             "one of the two, without --bits, --step, --compression, --quality and "
             "--codebook");
-    const relume_status status = parse_books(args, &o->books, books, &r.books);
+    relume_status status = parse_books(args, &o->books, books, &r.books);
     r.pack.books = books ? &r.books : NULL;
-    return status ? status : encode(args, &r);
+    r.pack.options = r.options.text;
+    if (!status)
+        status = check_parts(o, &r);
+    if (!status)
+        status = options_text(&r.options, args, options, not_kept);
+    if (!status && o->commands)
+        print_commands_of_parts(args, o->output, o->commands);
+    return status || o->commands ? status : encode(args, &r);
 }
 
 relume_status encode_as_usual(const struct args *args, const char *capture, const char *output)

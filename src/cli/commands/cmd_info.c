@@ -104,10 +104,33 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
            (unsigned long long)i->file_bytes, bits_per_pixel(i));
 }
 
+static void print_part(const struct relume_pack_part *p, bool json)
+{
+    struct shown text;
+    if (json) {
+        printf("{\"format\": \"relume part\", \"part\": %d, \"parts\": %d, \"first_view\": %d, "
+               "\"views\": %d, \"all_views\": %d, \"options\": ",
+               p->part, p->parts, p->first, p->views, p->all_views);
+        json_text(stdout, p->options);
+        printf(", \"file_bytes\": %llu}\n", (unsigned long long)p->file_bytes);
+        return;
+    }
+    printf("part          %d of %d; 'relume join' makes one file of all parts\n", p->part,
+           p->parts);
+    printf("views         %d to %d of %d\n", p->first, p->first + p->views - 1, p->all_views);
+    printf("options       %s\n", p->options[0] ? shown(&text, p->options) : "none");
+    printf("file          %llu bytes\n", (unsigned long long)p->file_bytes);
+}
+
 static relume_status run(const struct args *args)
 {
     const struct info_options *o = (const void *)args;
     const char *path = o->args.input[0];
+    struct relume_pack_part part;
+    if (is_part(&part, path)) {
+        print_part(&part, o->json);
+        return RELUME_OK;
+    }
     relume_pack *pack;
     const relume_status status =
         relume_open(&pack, path,

@@ -1,0 +1,267 @@
+// join.c - the parts of a relume file become the file: blocks of rows are copied as they are
+// packed, so that the bytes are those of a file that was written in one go
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/params.h"
+#include "coder/coefficients.h"
+#include "pack/format.h"
+#include "pack/part.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct joining {
+    struct arena arena;
+    struct part_file *part;  // [count], as they were named
+    int count;
+    const struct part_file **order;  // [parts], by their numbers
+    struct exr_part *exr;
+    int exrs;
+    struct relume_encode_report *measured;  // [views]
+    const struct relume_log *log;
+};
+
+// ---------------------------------------------------------------- do they belong together
+
+static bool is_same(const struct exr_attribute *a, const struct exr_attribute *b)
+{
+    if (strcmp(a->name, b->name) || a->kind != b->kind)
+        return false;
+    switch (a->kind) {
+    case EXR_INT: return a->integer == b->integer;
+    case EXR_TEXT: return !strcmp(a->text, b->text);
+    case EXR_FLOATS:
+        return a->count == b->count &&
+               !memcmp(a->floats, b->floats, (size_t)a->count * sizeof *a->floats);
+    }
+    return false;
+}
+
+// The first attribute of the header that differs, but for the place of the part; NULL: none.
+static const char *difference(const struct exr_part *a, const struct exr_part *b)
+{
+    if (a->attributes != b->attributes || a->width != b->width || a->height != b->height ||
+        a->codec != b->codec)
+        return ATTR_VIEWS;
+    for (int i = 0; i < a->attributes; i++)
+        if (strcmp(a->attribute[i].name, ATTR_PART) != 0 &&
+            !is_same(&a->attribute[i], &b->attribute[i]))
+            return a->attribute[i].name;
+    return NULL;
+}
+
+// What people call what the header's attributes say comes first.
+static relume_status refuse_other(const struct part_file *p, const struct part_file *first,
+                                  const char *what, const struct relume_log *log)
+{
+    const struct relume_pack_part *a = &p->info, *b = &first->info;
+    if (strcmp(a->creator, b->creator))
+        return log_fail(log, RELUME_EUNFIT,
+                        "%s: made by %s; expected %s as in %s; run this part again", p->path,
+                        a->creator, b->creator, first->path);
+    if (strcmp(exr_get_text(p->file, 0, ATTR_CAPTURE), exr_get_text(first->file, 0, ATTR_CAPTURE)))
+        return log_fail(log, RELUME_EUNFIT,
+                        "%s: a part of another capture than %s, or its photographs have changed; "
+                        "run this part again",
+                        p->path, first->path);
+    if (strcmp(a->options, b->options))
+        return log_fail(log, RELUME_EUNFIT,
+                        "%s: made with other options than %s; expected '%s'; found '%s'", p->path,
+                        first->path, b->options, a->options);
+    if (a->parts != b->parts)
+        return log_fail(log, RELUME_EUNFIT, "%s: part %d of %d; expected one of %d, as %s", p->path,
+                        a->part, a->parts, b->parts, first->path);
+    return log_fail(log, RELUME_EUNFIT,
+                    "%s: differs from %s in %s, as between processors of different kinds; run the "
+                    "parts again with RELUME_CPU=plain in the environment",
+                    p->path, first->path, what);
+}
+
+static relume_status compare_headers(struct joining *j, const struct exr_part *first, int i)
+{
+    struct exr_part header;
+    const struct part_file *p = &j->part[i];
+    const relume_status status = exr_part_again(&header, p->file, 0, &j->arena);
+    if (status)
+        return status == RELUME_ENOMEM
+                   ? status
+                   : log_fail(j->log, status, "%s: damaged header; run this part again", p->path);
+    const char *what = difference(&header, first);
+    if (what || p->info.parts != j->part->info.parts)
+        return refuse_other(p, j->part, what, j->log);
+    return RELUME_OK;
+}
+
+static relume_status refuse_missing(const struct joining *j)
+{
+    char list[256] = "";
+    int missing = 0;
+    for (int i = 0, n = 0, parts = j->part->info.parts; i < parts; i++) {
+        missing += !j->order[i];
+        if (!j->order[i] && n < 200)
+            n += snprintf(list + n, sizeof list - (size_t)n, "%s%d", n ? ", " : " ", i + 1);
+    }
+    return log_fail(j->log, RELUME_EUNFIT, "%s: part%s%s%s of %d %s missing; expected all of them",
+                    j->part->path, missing == 1 ? "" : "s", list, strlen(list) < 200 ? "" : ", ...",
+                    j->part->info.parts, missing == 1 ? "is" : "are");
+}
+
+static relume_status put_in_order(struct joining *j)
+{
+    const int parts = j->part->info.parts;
+    j->order = arena_array(&j->arena, (size_t)parts, sizeof *j->order);
+    if (!j->order)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < j->count; i++) {
+        const struct part_file *p = &j->part[i], **place = &j->order[p->info.part - 1];
+        if (*place)
+            return log_fail(j->log, RELUME_EUNFIT,
+                            "%s: part %d of %d, as %s is; expected each part once", p->path,
+                            p->info.part, parts, (*place)->path);
+        *place = p;
+    }
+    return j->count < parts ? refuse_missing(j) : RELUME_OK;
+}
+
+// ---------------------------------------------------------------- the file
+
+// Attributes of the whole: those of a part alone go, and what is no attribute of ours.
+static void keep_attributes(struct exr_part *part)
+{
+    struct exr_attribute *a = (struct exr_attribute *)(uintptr_t)part->attribute;
+    int kept = 0;
+    for (int i = 0; i < part->attributes; i++)
+        if (!strncmp(a[i].name, "relume.", 7) &&
+            strncmp(a[i].name, ATTR_PART, sizeof ATTR_PART - 1))
+            a[kept++] = a[i];
+    part->attributes = kept;
+}
+
+static struct exr_attribute *find_attribute(const struct exr_part *part, const char *name)
+{
+    struct exr_attribute *a = (struct exr_attribute *)(uintptr_t)part->attribute;
+    for (int i = 0; i < part->attributes; i++)
+        if (!strcmp(a[i].name, name))
+            return &a[i];
+    return NULL;
+}
+
+static relume_status damaged(const struct joining *j, const struct part_file *p)
+{
+    return log_fail(j->log, RELUME_EDAMAGED, "%s: damaged; run this part again", p->path);
+}
+
+static relume_status add_again(struct joining *j, const struct part_file *p, int exr)
+{
+    struct exr_part *to = &j->exr[j->exrs++];
+    const relume_status status = exr_part_again(to, p->file, exr, &j->arena);
+    keep_attributes(to);
+    return status == RELUME_EDAMAGED ? damaged(j, p) : status;
+}
+
+static relume_status add_views(struct joining *j, const struct part_file *p)
+{
+    relume_status status = RELUME_OK;
+    int view = p->info.first;
+    for (int k = 1; !status && k < exr_part_count(p->file); k++) {
+        if (!strchr(exr_part_info(p->file, k).name, '.'))
+            (void)!part_measured(&j->measured[view++], p,
+                                 k);  // it has been when the part was opened
+        status = add_again(j, p, k);
+    }
+    return status;
+}
+
+// The part that holds the middle view made the preview.
+static const struct part_file *with_preview(const struct joining *j)
+{
+    const int middle = j->part->info.all_views / 2;
+    int i = 0;
+    while (j->order[i]->info.first + j->order[i]->info.views <= middle)
+        i++;
+    return j->order[i];
+}
+
+static relume_status add_header(struct joining *j)
+{
+    const relume_status status = add_again(j, with_preview(j), 0);
+    struct exr_attribute *format = status ? NULL : find_attribute(j->exr, ATTR_FORMAT);
+    if (format)
+        format->text = FORMAT_NAME;
+    return status;
+}
+
+static relume_status set_report(struct joining *j, struct relume_encode_report *report)
+{
+    const struct relume_encode_report all =
+        encode_report_mean(j->measured, j->part->info.all_views);
+    struct exr_attribute *a = find_attribute(j->exr, ATTR_REPORT);
+    float *v = arena_array(&j->arena, 2, sizeof *v);
+    if (!v)
+        return RELUME_ENOMEM;
+    v[0] = (float)all.fit_rms;
+    v[1] = (float)all.store_rms;
+    if (!a || a->kind != EXR_FLOATS || a->count != 2)
+        return damaged(j, j->part);
+    a->floats = v;
+    if (report)
+        *report = all;
+    if (j->part->free_storage && relume_encode_is_coarse(&all))
+        return log_fail(j->log, RELUME_EUNFIT,
+                        "%s: very bright highlights: these bits will ruin the picture; run all "
+                        "parts again with --bits half",
+                        j->part->path);
+    return RELUME_OK;
+}
+
+static relume_status gather(struct joining *j, struct relume_encode_report *report)
+{
+    size_t exrs = 0;
+    for (int i = 0; i < j->count; i++)
+        exrs += (size_t)exr_part_count(j->part[i].file);
+    j->exr = arena_array(&j->arena, exrs, sizeof *j->exr);
+    j->measured = arena_array(&j->arena, (size_t)j->part->info.all_views, sizeof *j->measured);
+    relume_status status = j->exr && j->measured ? add_header(j) : RELUME_ENOMEM;
+    for (int i = 0; !status && i < j->count; i++)
+        status = add_views(j, j->order[i]);
+    return status ? status : set_report(j, report);
+}
+
+static relume_status check_parts(struct joining *j)
+{
+    struct exr_part first;
+    relume_status status = exr_part_again(&first, j->part->file, 0, &j->arena);
+    if (status == RELUME_EDAMAGED)
+        return damaged(j, j->part);
+    for (int i = 1; !status && i < j->count; i++)
+        status = compare_headers(j, &first, i);
+    return status ? status : put_in_order(j);
+}
+
+relume_status relume_pack_join(const char *const *parts, int count, const char *path,
+                               struct relume_encode_report *report,
+                               const struct relume_pack_params *params)
+{
+    const struct relume_pack_params p = PARAMS_WORK(relume_pack_params, params);
+    struct joining j = {.log = p.log};
+    int open = 0;
+    if (count < 1 || (!path && !p.writer))
+        return RELUME_EINVAL;
+    j.part = arena_array(&j.arena, (size_t)count, sizeof *j.part);
+    relume_status status = j.part ? RELUME_OK : RELUME_ENOMEM;
+    while (!status && open < count) {
+        status = part_open(&j.part[open], parts[open], NULL, p.limits, p.log);
+        open += !status;
+    }
+    j.count = open;
+    if (!status)
+        status = check_parts(&j);
+    if (!status)
+        status = gather(&j, report);
+    if (!status)
+        status = exr_write(path, p.writer, j.exr, j.exrs, p.threads, p.log);
+    for (int i = 0; i < open; i++)
+        part_close(&j.part[i]);
+    arena_free(&j.arena);
+    return status;
+}

@@ -1,0 +1,151 @@
+// part.c - a part of a relume file, of which nothing is believed before it has been checked
+#include "pack/part.h"
+
+#include "base/infile.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/params.h"
+#include "pack/format.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static relume_status check_format(const struct part_file *p, const struct relume_log *log)
+{
+    const char *format = exr_get_text(p->file, 0, ATTR_FORMAT);
+    int version;
+    if (format && !strcmp(format, FORMAT_NAME))
+        return log_fail(log, RELUME_EFORMAT,
+                        "%s: a whole relume file; expected a part of one, made by 'relume encode "
+                        "--part'",
+                        p->path);
+    if (!format || strcmp(format, FORMAT_PART))
+        return log_fail(log, RELUME_EFORMAT,
+                        "%s: an OpenEXR file, but not a part of a relume file; expected one made "
+                        "by 'relume encode --part'",
+                        p->path);
+    if (!exr_get_int(p->file, 0, ATTR_VERSION, &version) || version < 1 || version > FORMAT_VERSION)
+        return log_fail(log, RELUME_EUNSUPPORTED,
+                        "%s: made by another version of relume; run this part again", p->path);
+    return RELUME_OK;
+}
+
+static relume_status bad(const struct part_file *p, const char *what, const struct relume_log *log)
+{
+    return log_fail(log, RELUME_EDAMAGED, "%s: damaged %s; run this part again", p->path, what);
+}
+
+static bool copy_text(char *to, size_t size, const char *from)
+{
+    return from && (size_t)snprintf(to, size, "%s", from) < size;
+}
+
+// Whether its numbers are those with which views are shared (src/encode).
+static bool is_share(const struct relume_pack_part *i)
+{
+    const int64_t all = i->all_views;
+    return i->part >= 1 && i->part <= i->parts && i->parts <= all && i->views >= 1 &&
+           i->first == all * (i->part - 1) / i->parts &&
+           i->first + i->views == all * i->part / i->parts;
+}
+
+static relume_status read_place(struct part_file *p, const struct relume_limits *limits,
+                                const struct relume_log *log)
+{
+    struct relume_pack_part *i = &p->info;
+    int count = 0, place[5];
+    const float *v = exr_get_floats(p->file, 0, ATTR_PART, &count);
+    for (int k = 0; k < 5; k++) {
+        if (!v || count != 5 || !(v[k] >= 0.0f && v[k] < 0x1p24f && v[k] == floorf(v[k])))
+            return bad(p, "number", log);
+        place[k] = (int)v[k];
+    }
+    i->part = place[0];
+    i->parts = place[1];
+    i->first = place[2];
+    i->views = place[3];
+    p->free_storage = place[4] != 0;
+    if (!exr_get_int(p->file, 0, ATTR_VIEWS, &i->all_views) || i->all_views < 1 ||
+        i->all_views > limits->max_views || !is_share(i))
+        return bad(p, "number of views", log);
+    return RELUME_OK;
+}
+
+bool part_measured(struct relume_encode_report *out, const struct part_file *part, int exr)
+{
+    struct relume_encode_census *c = &out->census;
+    const char *text = exr_get_text(part->file, exr, ATTR_MEASURED);
+    return text &&
+           sscanf(text, SCAN_MEASURED, &out->fit_rms, &out->store_rms, &out->steps_rms,
+                  &out->psnr_db, &out->typical, &c->pixels, &c->black, &c->clipped,
+                  &c->always_clipped, &c->repaired, &c->black_images) == 11 &&
+           isfinite(out->fit_rms) && isfinite(out->store_rms) && isfinite(out->steps_rms) &&
+           isfinite(out->psnr_db) && isfinite(out->typical);
+}
+
+// "view0007" and what belongs to it, "view0007.depth", in the order of their names.
+static relume_status check_names(const struct part_file *p, const struct relume_log *log)
+{
+    const char *before = "preview";
+    char view[32] = "";
+    int next = p->info.first;
+    for (int k = 1; k < exr_part_count(p->file); k++) {
+        const char *name = exr_part_info(p->file, k).name;
+        const size_t length = strlen(view);
+        if (length && !strncmp(name, view, length) && name[length] == '.' &&
+            strcmp(before, name) < 0 && strlen(name) < 48) {
+            before = name;
+            continue;
+        }
+        struct relume_encode_report measured;
+        snprintf(view, sizeof view, "view%04d", next++);
+        if (strcmp(name, view) || !part_measured(&measured, p, k))
+            return bad(p, "list of views", log);
+        before = name;
+    }
+    return next == p->info.first + p->info.views ? RELUME_OK : bad(p, "list of views", log);
+}
+
+relume_status part_open(struct part_file *out, const char *path, const struct relume_reader *from,
+                        const struct relume_limits *limits, const struct relume_log *log)
+{
+    const struct relume_limits most = limits_or_default(limits_of(limits, log));
+    struct relume_pack_part *i = &out->info;
+    *out = (struct part_file){.path = infile_name(path)};
+    relume_status status = exr_open(&out->file, path, from, &most, log);
+    if (!status)
+        status = check_format(out, log);
+    if (!status)
+        status = read_place(out, &most, log);
+    if (!status &&
+        (!copy_text(i->creator, sizeof i->creator, exr_get_text(out->file, 0, ATTR_CREATOR)) ||
+         !copy_text(i->options, sizeof i->options, exr_get_text(out->file, 0, ATTR_OPTIONS)) ||
+         !exr_get_text(out->file, 0, ATTR_CAPTURE)))
+        status = bad(out, "header", log);
+    if (!status)
+        status = check_names(out, log);
+    if (status)
+        part_close(out);
+    else
+        i->file_bytes = exr_bytes(out->file);
+    return status;
+}
+
+void part_close(struct part_file *part)
+{
+    exr_close(&part->file);
+}
+
+relume_status relume_pack_part_read(struct relume_pack_part *out, const char *path,
+                                    const struct relume_pack_params *params)
+{
+    const struct relume_pack_params p = PARAMS_WORK(relume_pack_params, params);
+    struct part_file part;
+    if (!path && !p.reader)
+        return RELUME_EINVAL;
+    const relume_status status = part_open(&part, path, p.reader, p.limits, p.log);
+    *out = part.info;
+    part_close(&part);
+    return status;
+}

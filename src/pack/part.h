@@ -1,0 +1,24 @@
+// part.h - an open part of a relume file whose work was shared
+#ifndef PACK_PART_H
+#define PACK_PART_H
+
+#include "image/exr.h"
+
+#include <relume/pack.h>
+
+struct part_file {
+    exr_file *file;
+    const char *path;
+    struct relume_pack_part info;
+    bool free_storage;
+};
+
+// The file `path`, which must outlive it, or what `from` reads. An input status with a sentence
+// when it is no part, RELUME_ENOMEM.
+relume_status part_open(struct part_file *out, const char *path, const struct relume_reader *from,
+                        const struct relume_limits *limits, const struct relume_log *log);
+// What was measured of the view whose rows are part `exr` of the file.
+bool part_measured(struct relume_encode_report *out, const struct part_file *part, int exr);
+void part_close(struct part_file *part);
+
+#endif

@@ -1,0 +1,109 @@
+#!/bin/sh
+# Encoding shared by machines: all parts joined are the file of one machine byte for byte, whatever the
+# order, the storage and the extras; a part that does not belong to the others is one line.
+. "$(dirname "$0")/lib.sh"
+
+"$RELUME" synth teapot -o slab --size 40 --views 3x3 --lights 8 --samples 1 -q
+"$sphere" masked --size 24 --lights 12 --views 5 --mask --format png || exit 1
+
+encode_parts() { # capture parts options...: into 1.part, 2.part, ...
+    capture=$1 parts=$2
+    shift 2
+    rm -f ./*.part
+    for i in $(seq "$parts"); do
+        relume encode "$capture" "$@" --part "$i/$parts" -o "$i.part" || return
+    done
+}
+joined() { # name capture parts options...: the parts, backwards, are the file of one machine
+    name=$1 capture=$2 parts=$3
+    shift 3
+    rm -f whole.exr joined.exr
+    relume encode "$capture" "$@" -o whole.exr
+    encode_parts "$capture" "$parts" "$@"
+    relume join $(ls -r ./*.part) -o joined.exr
+    same "$name" whole.exr joined.exr
+}
+
+joined 'by itself' slab 4
+joined 'one part' slab 1
+joined 'a part for each view' slab 9 --basis sh --coefficients 4
+joined 'half floats, zip, without depth' slab 2 --basis pca --bits half --compression zip --no-depth
+joined 'masks' masked 3
+joined 'floats, rle' masked 2 --basis sh --coefficients 4 --bits float --compression rle
+joined 'a codebook for each view' masked 3 --basis sh --coefficients 4 --codebook 7
+joined 'one step' masked 2 --basis pca --step common --bits 12
+check 'the joined file is whole' relume check joined.exr
+
+# ---- threads, and a part that is made again
+encode_parts slab 2 --basis pca
+cp 2.part before.part
+relume encode slab --basis pca --part 2/2 -o 2.part --threads 1
+same 'a part made again, by one thread' 2.part before.part
+rm before.part
+
+# ---- the lines for the shell
+mkdir 'two words'
+"$RELUME" encode slab --basis 'pca' -o "two words/it's.exr" --commands 3 >lines.txt 2>err.txt
+below 'a line for each part, and one that joins' "$(wc -l <lines.txt)" 4
+sh lines.txt 2>err.txt
+relume encode slab --basis pca -o whole.exr
+same 'the lines make the file' whole.exr "two words/it's.exr"
+
+# ---- what a part is
+"$RELUME" info 1.part >info.txt
+check 'info says which part' grep -q '^part          1 of 2; ' info.txt
+check 'info says what was asked for' grep -q '^options       --basis pca$' info.txt
+"$RELUME" info 1.part --json >info.json
+[ "$python" ] && check 'info --json' "$python" -c 'import json; d = json.load(open("info.json")); assert (d["part"], d["parts"], d["views"], d["all_views"]) == (1, 2, 4, 9)'
+"$RELUME" check 1.part >check.txt
+check 'check says which part' grep -q '^1.part: whole; part 1 of 2$' check.txt
+
+# ---- parts that do not belong together: one line, status 1, no output
+not_joined() { # name pattern part...
+    name=$1 pattern=$2
+    shift 2
+    expect_fail "$name" 1 "$pattern" out.exr "$RELUME" join "$@" -o out.exr
+}
+not_joined 'a part missing' '1.part: part 2 of 2 is missing' 1.part
+not_joined 'a part doubled' '2.part: part 2 of 2, as 2.part is' 1.part 2.part 2.part
+relume encode slab --basis pca --bits 8 --part 2/2 -o options.part
+not_joined 'other options' "options.part: made with other options than 1.part; expected '--basis pca'; found '--basis pca --bits 8'" 1.part options.part
+relume encode slab --basis pca --part 3/3 -o of3.part
+not_joined 'of another number' 'of3.part: part 3 of 3; expected one of 2' 1.part of3.part
+fresh slab other
+"$RELUME" synth teapot -o bright --size 40 --views 3x3 --lights 8 --samples 2 -q
+cp bright/view04/light0003.exr other/view04/light0003.exr
+relume encode other --basis pca --part 2/2 -o other.part
+not_joined 'another capture' 'other.part: a part of another capture than 1.part' 1.part other.part
+sed 's/relume 0\./relume 9./' 2.part >version.part
+not_joined 'another version' 'version.part: made by relume 9' 1.part version.part
+not_joined 'a whole file' 'whole.exr: a whole relume file; expected a part' 1.part whole.exr
+not_joined 'a picture' 'light0000.exr: an OpenEXR file, but not a part' slab/view00/light0000.exr
+not_joined 'no file' 'none.part: ' 1.part none.part
+head -c 3000 2.part >short.part
+not_joined 'truncated' 'short.part: ' 1.part short.part
+expect_fail 'a part is no relume file' 1 "1.part: a part of a relume file; expected the file that 'relume join' makes" x.png "$RELUME" relight 1.part -o x.png
+
+# ---- what cannot be shared
+cannot() { # name status pattern options...
+    name=$1 want=$2 pattern=$3
+    shift 3
+    expect_fail "$name" "$want" "$pattern" out.part "$RELUME" encode slab -o out.part "$@"
+}
+cannot 'more parts than views' 1 '9 views cannot be shared by 10 parts' --part 1/10 --basis sh
+cannot 'with loss' 2 '--psnr and --bytes-per-pixel try steps on all views' --part 1/2 --psnr 30
+cannot 'one codebook for all' 2 '--share learns one set of codebooks from all views' --part 1/2 --codebook 4 --share
+cannot 'part 0' 2 '--part: expected which of how many parts' --part 0/2
+cannot 'part 3 of 2' 2 '--part: expected which of how many parts' --part 3/2
+cannot 'a part in words' 2 '--part: expected which of how many parts' --part one
+cannot 'both' 2 'expected one of the two' --part 1/2 --commands 2
+
+# ---- very bright highlights: one machine would have taken halves, a part cannot know
+"$sphere" lamp --size 32 --lights 1 --views 3 --hemisphere
+for view in lamp/view0?; do
+    "$mkimage" poke "$view/light0000.exr" lit.exr 16 16 1000 && mv lit.exr "$view/light0000.exr"
+done
+encode_parts lamp 2 --basis table
+not_joined 'steps that are too coarse' 'very bright highlights: .*; run all parts again with --bits half' 1.part 2.part
+joined 'halves, as asked for' lamp 2 --basis table --bits half
+finish

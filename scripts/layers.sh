@@ -38,9 +38,10 @@ mesh:base math geometry:base object
 scene:base math image geometry mesh:base image directions capture btf scene
 object:base math mesh frame:base image capture light relight view slab_set pack frame viewport btf btf_environment surface object renderer
 helper:base image mesh:base
-program::base image
+measure:base math kernel image:*
+program:base:base image
 cli:program:*
-cli/commands:commands program:*
+cli/commands:commands program measure:*
 viewer/common::base vec
 viewer/app:common program:*
 viewer/gl:common program:base image

@@ -2,6 +2,7 @@
 #include "base/helper.h"
 
 #include "base/channel.h"
+#include "base/clock.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -253,13 +254,6 @@ relume_status helper_start(struct helper_job *job, enum helper_kind kind, const 
         return relume_input_fail(log, path, "cannot be read", error);
     return log_fail(log, RELUME_ESYSTEM, "%s: the module for %s cannot be loaded; %s", path,
                     what[kind], reply.why);
-}
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 // Where processor time is limited (ulimit -t), patience is too.

@@ -136,19 +136,62 @@ static void add_up(float *to, const struct axis *a, int i, const float *from, si
     }
 }
 
-static void scale_row(void *context, size_t row, int worker)
+// Cubics are held within the range of their texels.
+static void scale_held(const struct pass *p, size_t row, float *to, size_t channels)
 {
-    const struct pass *p = context;
-    const size_t channels = (size_t)p->to->channels;
     const size_t stride = (size_t)p->from->width * channels;
-    float *to = p->to->data + row * (size_t)p->to->width * channels;
-    (void)worker;
     for (int x = 0; x < p->to->width; x++, to += channels)
         if (p->down)
             add_up(to, &p->axis, (int)row, p->from->data + (size_t)x * channels, stride,
                    p->to->channels);
         else
             add_up(to, &p->axis, x, p->from->data + row * stride, channels, p->to->channels);
+}
+
+// A row as the sum of whole rows; 0 x infinite is nothing.
+static void scale_down(const struct pass *p, size_t row, float *to, size_t channels)
+{
+    const size_t n = (size_t)p->to->width * channels, first = row * (size_t)p->axis.taps;
+    memset(to, 0, n * sizeof *to);
+    for (size_t k = first; k < first + (size_t)p->axis.taps; k++) {
+        const float weight = p->axis.weight[k];
+        const float *from = p->from->data + (size_t)p->axis.texel[k] * n;
+        for (size_t i = 0; weight != 0.0f && i < n; i++)
+            to[i] += weight * from[i];
+    }
+}
+
+// `channels` is a constant at each call.
+static inline __attribute__((always_inline)) void scale_across(const struct axis *a,
+                                                               const float *from, int width,
+                                                               float *to, size_t channels)
+{
+    const int *texel = a->texel;
+    const float *weight = a->weight;
+    for (int x = 0; x < width; x++, to += channels, texel += a->taps, weight += a->taps) {
+        float sum[4] = {0.0f};
+        for (int k = 0; k < a->taps; k++)
+            for (size_t c = 0; weight[k] != 0.0f && c < channels; c++)
+                sum[c] += weight[k] * from[(size_t)texel[k] * channels + c];
+        memcpy(to, sum, channels * sizeof *to);
+    }
+}
+
+static void scale_row(void *context, size_t row, int worker)
+{
+    const struct pass *p = context;
+    const size_t channels = (size_t)p->to->channels;
+    const float *from = p->from->data + row * (size_t)p->from->width * channels;
+    float *to = p->to->data + row * (size_t)p->to->width * channels;
+    (void)worker;
+    if (p->axis.held || channels > 4)
+        scale_held(p, row, to, channels);
+    else if (p->down)
+        scale_down(p, row, to, channels);
+    else if (channels == 3)
+        scale_across(&p->axis, from, p->to->width, to, 3);
+    else
+        scale_across(&p->axis, from, p->to->width, to, channels);
 }
 
 static relume_status run(struct pass *p, const struct side *side, int threads,

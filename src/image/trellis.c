@@ -90,10 +90,7 @@ struct costs {
 
 static int size_of(int v)
 {
-    int size = 0;
-    for (int a = v < 0 ? -v : v; a; a >>= 1)
-        size++;
-    return size;
+    return v ? 32 - __builtin_clz((unsigned)(v < 0 ? -v : v)) : 0;
 }
 
 static void count_end_run(struct counts *n, size_t *run)

@@ -4,6 +4,7 @@
 // the angle -lambda f, so coefficient k of the transform is stored at -k.
 #include <relume/psf.h>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -15,7 +16,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 static const double default_width_mm = 9.0;
 static const double field_nm = 400.0;    // the shortest wavelength that matters; fields are its
@@ -372,13 +372,6 @@ static void colour(relume_psf *psf)
 }
 
 // ---------------------------------------------------------------- update
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 relume_status psf_update_aperture(relume_psf *psf, const struct relume_aperture *aperture,
                                   double dioptres)

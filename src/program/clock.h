@@ -1,14 +1,7 @@
-// clock.h - seconds of a clock that only goes on
+// clock.h - the clock, for the programs
 #ifndef PROGRAM_CLOCK_H
 #define PROGRAM_CLOCK_H
 
-#include <time.h>
-
-static inline double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+#include "base/clock.h"
 
 #endif

@@ -2,6 +2,8 @@
 #ifndef BENCH_H
 #define BENCH_H
 
+#include "measure/times.h"
+
 #include <relume/relume.h>
 
 #include <math.h>
@@ -12,37 +14,10 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { BENCH_MOST_RUNS = 64 };
-
-struct bench {
-    double s[BENCH_MOST_RUNS];
-    int runs;
-};
-
-static inline double bench_now_s(void)
+static inline void bench_print(const char *what, const struct times *b)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static inline void bench_add(struct bench *b, double seconds)
-{
-    int i = b->runs++;
-    for (; i > 0 && b->s[i - 1] > seconds; i--)
-        b->s[i] = b->s[i - 1];
-    b->s[i] = seconds;
-}
-
-static inline double bench_median(const struct bench *b)
-{
-    return b->s[b->runs / 2];
-}
-
-static inline void bench_print(const char *what, const struct bench *b)
-{
-    printf("  %-44s %8.2f ms  (%.2f to %.2f, %d runs)\n", what, 1e3 * bench_median(b), 1e3 * b->s[0],
-           1e3 * b->s[b->runs - 1], b->runs);
+    printf("  %-44s %8.2f ms  (%.2f to %.2f, %d runs)\n", what, 1e3 * times_median(b),
+           1e3 * b->s[0], 1e3 * b->s[b->n - 1], b->n);
 }
 
 static inline void bench_check(relume_status status)

@@ -72,10 +72,10 @@ static int train_file(char **a)
     const bool split = a[6] && !strcmp(a[6], "split");
     size_t floats, start_floats;
     float *vectors = load(a[0], &floats), *start = load(a[2], &start_floats);
-    const double begin = bench_now_s();
+    const double begin = now_s();
     relume_codebook *book = train(vectors, floats / (size_t)dim, dim, split ? NULL : start,
                                   split ? RELUME_START_SPLIT : RELUME_START_RANDOM, codes, rounds);
-    printf("%.6f\n", bench_now_s() - begin);
+    printf("%.6f\n", now_s() - begin);
     save(a[5], relume_codebook_info(book)->vectors, (size_t)codes * (size_t)dim);
     relume_codebook_destroy(&book);
     free(vectors);
@@ -86,14 +86,14 @@ static int train_file(char **a)
 static void time_training(size_t n, int dim, int codes, int rounds, int runs)
 {
     float *vectors = make_vectors(n, dim);
-    struct bench random = {.runs = 0}, split = {.runs = 0};
+    struct times random = {.n = 0}, split = {.n = 0};
     double errors[2] = {0.0, 0.0};
     for (int i = 0; i < runs; i++)
         for (int kind = 0; kind < 2; kind++) {
-            const double t = bench_now_s();
+            const double t = now_s();
             relume_codebook *book =
                 train(vectors, n, dim, NULL, (enum relume_codebook_start)kind, codes, rounds);
-            bench_add(kind ? &split : &random, bench_now_s() - t);
+            times_add(kind ? &split : &random, now_s() - t);
             errors[kind] = relume_codebook_info(book)->squared_error;
             relume_codebook_destroy(&book);
         }

@@ -133,21 +133,21 @@ int main(int argc, char **argv)
            relume_cpu_count());
     for (int k = SETTINGS - 2; k < SETTINGS; k++)
         printf("  %s: peak memory %ld MB\n", settings[k].name, peak_mb(folder, &settings[k]));
-    struct bench read = {.runs = 0}, write[SETTINGS] = {{.runs = 0}};
+    struct times read = {.n = 0}, write[SETTINGS] = {{.n = 0}};
     for (int run = 0; run < RUNS; run++) {
-        double t = bench_now_s();
+        double t = now_s();
         decode(folder);
-        bench_add(&read, bench_now_s() - t);
+        times_add(&read, now_s() - t);
         for (int k = 0; k < SETTINGS; k++) {
-            t = bench_now_s();
+            t = now_s();
             encode(folder, &settings[k]);
-            bench_add(&write[k], bench_now_s() - t);
+            times_add(&write[k], now_s() - t);
         }
     }
     bench_print("decode only", &read);
     for (int k = 0; k < SETTINGS; k++) {
         bench_print(settings[k].name, &write[k]);
-        printf("    encode / decode: %.2f\n", bench_median(&write[k]) / bench_median(&read));
+        printf("    encode / decode: %.2f\n", times_median(&write[k]) / times_median(&read));
     }
     char command[300];
     snprintf(command, sizeof command, "rm -rf %s", folder);

@@ -19,25 +19,25 @@ static double stages(const char *name, const struct relume_psf_params *params,
 {
     relume_eye *eye;
     relume_psf *psf;
-    struct bench stage[4] = {{.runs = 0}};
+    struct times stage[4] = {{.n = 0}};
     bench_check(relume_eye_create(&eye, subject, luminance));
     bench_check(relume_psf_create(&psf, params));
     bench_check(relume_psf_update(psf, eye));
     for (int i = 0; i < RUNS; i++) {
         bench_check(relume_eye_advance(eye, frame_s, luminance));
-        const double start = bench_now_s();
+        const double start = now_s();
         bench_check(relume_psf_update(psf, eye));
-        bench_add(&stage[3], bench_now_s() - start);
+        times_add(&stage[3], now_s() - start);
         const struct relume_psf_times t = relume_psf_times(psf);
-        bench_add(&stage[0], t.aperture_s);
-        bench_add(&stage[1], t.diffraction_s);
-        bench_add(&stage[2], t.chromatic_s);
+        times_add(&stage[0], t.aperture_s);
+        times_add(&stage[1], t.diffraction_s);
+        times_add(&stage[2], t.chromatic_s);
     }
     printf("  %-26s", name);
     for (int k = 0; k < 4; k++)
-        printf(" %7.2f (%.2f-%.2f)", 1e3 * bench_median(&stage[k]), 1e3 * stage[k].s[0],
+        printf(" %7.2f (%.2f-%.2f)", 1e3 * times_median(&stage[k]), 1e3 * stage[k].s[0],
                1e3 * stage[k].s[RUNS - 1]);
-    const double ms = 1e3 * bench_median(&stage[3]);
+    const double ms = 1e3 * times_median(&stage[3]);
     print_target(ms, target_ms);
     relume_psf_destroy(&psf);
     relume_eye_destroy(&eye);
@@ -51,14 +51,14 @@ static void playback(int size)
     relume_eye *eye;
     relume_psf *psf;
     relume_psf_cycle *cycle;
-    struct bench b = {.runs = 0};
+    struct times b = {.n = 0};
     bench_check(relume_eye_create(&eye, NULL, luminance));
     bench_check(relume_psf_create(&psf, relume_psf_params(.size = size)));
     bench_check(relume_psf_cycle_create(&cycle, psf, eye, relume_psf_cycle_params(.seconds = 0.5)));
     for (int i = 0; i < RUNS; i++) {
-        const double start = bench_now_s();
+        const double start = now_s();
         bench_check(relume_psf_cycle_show(psf, cycle, i * 0.017));
-        bench_add(&b, bench_now_s() - start);
+        times_add(&b, now_s() - start);
     }
     snprintf(name, sizeof name, "%d, from a loop", size);
     bench_print(name, &b);
@@ -110,18 +110,18 @@ static void make_frame(struct relume_image *frame, int width, int height)
 static void apply(const char *name, const struct relume_image *frame, const relume_psf *psf,
                   bool same, const struct relume_glare_params *params, double target_ms)
 {
-    struct bench b = {.runs = 0};
+    struct times b = {.n = 0};
     relume_glare *glare;
     bench_check(relume_glare_create(&glare));
     for (int i = 0; i <= RUNS; i++) {
         struct relume_image out;
-        const double start = bench_now_s();
+        const double start = now_s();
         bench_check(relume_glare_apply(&out, glare, frame, same && i, psf, params));
         if (i)
-            bench_add(&b, bench_now_s() - start);
+            times_add(&b, now_s() - start);
         relume_image_destroy(&out);
     }
-    const double ms = 1e3 * bench_median(&b);
+    const double ms = 1e3 * times_median(&b);
     printf("  %-44s %8.2f ms  (%.2f to %.2f)", name, ms, 1e3 * b.s[0], 1e3 * b.s[RUNS - 1]);
     print_target(ms, target_ms);
     relume_glare_destroy(&glare);

@@ -77,22 +77,22 @@ static void measure(struct objects_drawer *t, int width, int height)
     if (!sight_of_window(&sight, &window, all, width, height, info->min, info->max))
         exit(1);
     for (int m = 0; m < info->materials; m++) {
-        struct bench b = {.runs = 0};
-        const double end = bench_now_s() + 2;
-        for (int i = -1; i < FRAMES && (b.runs < 2 || bench_now_s() < end); i++) {
-            const double start = bench_now_s();
+        struct times b = {.n = 0};
+        const double end = now_s() + 2;
+        for (int i = -1; i < FRAMES && (b.n < 2 || now_s() < end); i++) {
+            const double start = now_s();
             need(objects_drawer_shade(t, &sight, width, height, m));
             gl->Finish();
             if (i >= 0)
-                bench_add(&b, bench_now_s() - start);
+                times_add(&b, now_s() - start);
         }
         const struct relume_object_material *material = &info->material[m];
         const struct relume_btf_cost c = material->fitted ? relume_btf_fitted_cost(material->fitted)
                                                           : (struct relume_btf_cost){0, 0, 9, 9};
         printf(
             "%-9s %8.1f ms (%.1f to %.1f), %6.1f frames/s, %4d operations, %4d fetches, %7.3f MB\n",
-            info->material[m].model, 1e3 * bench_median(&b), 1e3 * b.s[0], 1e3 * b.s[b.runs - 1],
-            1 / bench_median(&b), c.ops + c.light_ops, c.fetches + c.light_fetches,
+            info->material[m].model, 1e3 * times_median(&b), 1e3 * b.s[0], 1e3 * b.s[b.n - 1],
+            1 / times_median(&b), c.ops + c.light_ops, c.fetches + c.light_fetches,
             (double)objects_drawer_bytes(t, m) * 1e-6);
     }
     gl->DeleteVertexArrays(1, &array);

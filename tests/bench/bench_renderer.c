@@ -23,7 +23,7 @@ static void compare(relume_pack *pack)
     struct relume_image image = image_like(info);
     uint8_t *rgba8 = malloc(4 * (size_t)info->width * (size_t)info->height);
     const struct relume_codes *codes;
-    struct bench kernel = {.runs = 0}, drawn = kernel, kernel8 = kernel, drawn8 = kernel,
+    struct times kernel = {.n = 0}, drawn = kernel, kernel8 = kernel, drawn8 = kernel,
                  frame = kernel;
     struct relume_target floats = {
         .data = image.data, .width = info->width, .height = info->height};
@@ -36,23 +36,23 @@ static void compare(relume_pack *pack)
     for (int i = 0; i < RUNS; i++) {
         const struct relume_light light = light_of(i);
         struct relume_image fresh;
-        double t = bench_now_s();
+        double t = now_s();
         bench_check(relume_relight(&image, codes, &light, 1, NULL));
-        bench_add(&kernel, bench_now_s() - t);
-        t = bench_now_s();
+        times_add(&kernel, now_s() - t);
+        t = now_s();
         bench_check(relume_renderer_set_lights(r, &light, 1));
         bench_check(relume_renderer_draw(r, &view, &floats));
-        bench_add(&drawn, bench_now_s() - t);
-        t = bench_now_s();
+        times_add(&drawn, now_s() - t);
+        t = now_s();
         bench_check(relume_relight_rgba8(rgba8, codes, &light, 1, NULL));
-        bench_add(&kernel8, bench_now_s() - t);
-        t = bench_now_s();
+        times_add(&kernel8, now_s() - t);
+        t = now_s();
         bench_check(relume_renderer_set_lights(r, &light, 1));
         bench_check(relume_renderer_draw(r, &view, &bytes));
-        bench_add(&drawn8, bench_now_s() - t);
-        t = bench_now_s();
+        times_add(&drawn8, now_s() - t);
+        t = now_s();
         bench_check(relume_frame(&fresh, pack, &view, &light, 1, NULL));
-        bench_add(&frame, bench_now_s() - t);
+        times_add(&frame, now_s() - t);
         relume_image_destroy(&fresh);
     }
     printf("%d x %d, another light each time\n", info->width, info->height);
@@ -62,8 +62,8 @@ static void compare(relume_pack *pack)
     bench_print("renderer, RGBA8", &drawn8);
     bench_print("relume_frame", &frame);
     printf("  renderer / bare kernel: RGB %.3f, RGBA8 %.3f (target 1.1)\n",
-           bench_median(&drawn) / bench_median(&kernel),
-           bench_median(&drawn8) / bench_median(&kernel8));
+           times_median(&drawn) / times_median(&kernel),
+           times_median(&drawn8) / times_median(&kernel8));
     relume_renderer_destroy(&r);
     relume_image_destroy(&image);
     free(rgba8);

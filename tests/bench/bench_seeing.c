@@ -29,14 +29,14 @@ static void fill(struct relume_image *frame)
 static double since(double *then)
 {
     gl.Finish();
-    const double now = bench_now_s(), s = now - *then;
+    const double now = now_s(), s = now - *then;
     *then = now;
     return s;
 }
 
 static const struct relume_glare_params view = {.fov_deg = 45};
 
-static void run_passes(struct bench bench[STAGES], relume_eye *eye,
+static void run_passes(struct times bench[STAGES], relume_eye *eye,
                        const struct relume_image *frame)
 {
     const struct relume_psf_params params = {.size = size, .half_field_deg = field_deg};
@@ -50,7 +50,7 @@ static void run_passes(struct bench bench[STAGES], relume_eye *eye,
         struct gl_glare_facts facts = {.greatest = 1e5};
         bool fits = true;
         bench_check(relume_eye_advance(eye, 0.04, 100));
-        double then = bench_now_s();
+        double then = now_s();
         gl_aperture_draw(&card.psf.aperture, &gl, relume_eye_aperture(eye));
         const double drawn = since(&then);
         bench_check(gl_glare_update(&card, &gl, eye, NULL));
@@ -64,14 +64,14 @@ static void run_passes(struct bench bench[STAGES], relume_eye *eye,
             fprintf(stderr, "bench: the card has no room for this frame\n");
         const double s[STAGES] = {drawn, updated - drawn, fresh, same, updated + same};
         for (int i = 0; run >= 0 && i < STAGES; i++)
-            bench_add(&bench[i], s[i]);
+            times_add(&bench[i], s[i]);
     }
     gl_glare_destroy(&card, &gl);
     target_destroy(&from, &gl);
     target_destroy(&seen, &gl);
 }
 
-static void run_library(struct bench bench[STAGES], relume_eye *eye,
+static void run_library(struct times bench[STAGES], relume_eye *eye,
                         const struct relume_image *frame, enum relume_glare_mode mode)
 {
     struct relume_glare_params params = view;
@@ -86,7 +86,7 @@ static void run_library(struct bench bench[STAGES], relume_eye *eye,
         bench_check(relume_eye_advance(eye, 0.04, 100));
         bench_check(relume_psf_update(psf, eye));
         const struct relume_psf_times t = relume_psf_times(psf);
-        double then = bench_now_s();
+        double then = now_s();
         bench_check(relume_glare_apply(&out, work, frame, false, psf, &params));
         const double fresh = since(&then);
         relume_image_destroy(&out);
@@ -97,7 +97,7 @@ static void run_library(struct bench bench[STAGES], relume_eye *eye,
         const double s[STAGES] = {t.aperture_s, pattern, fresh, same,
                                   t.aperture_s + pattern + same};
         for (int i = 0; run >= 0 && i < STAGES; i++)
-            bench_add(&bench[i], s[i]);
+            times_add(&bench[i], s[i]);
     }
     relume_glare_destroy(&work);
     relume_psf_destroy(&psf);
@@ -105,7 +105,7 @@ static void run_library(struct bench bench[STAGES], relume_eye *eye,
 
 int main(int argc, char **argv)
 {
-    static struct bench passes[STAGES], library[2][STAGES];
+    static struct times passes[STAGES], library[2][STAGES];
     const struct context_backend *backend = context_offscreen("auto");
     struct relume_image frame;
     relume_eye *eye;
@@ -131,17 +131,17 @@ int main(int argc, char **argv)
     run_library(library[1], eye, &frame, RELUME_GLARE_HYBRID);
     const struct {
         const char *what;
-        const struct bench *bench;
+        const struct times *bench;
     } rows[] = {
         {"compute passes", passes}, {"library, FFT", library[0]}, {"library, hybrid", library[1]}};
     for (int r = 0; r < 3; r++) {
         printf("%s\n", rows[r].what);
-        for (int i = 0; rows[r].bench->runs && i < STAGES; i++)
+        for (int i = 0; rows[r].bench->n && i < STAGES; i++)
             bench_print(names[i], &rows[r].bench[i]);
     }
-    for (int i = 0; passes->runs && i < STAGES; i++)
+    for (int i = 0; passes->n && i < STAGES; i++)
         printf("  %-44s %8.2f passes / library\n", names[i],
-               bench_median(&passes[i]) / bench_median(&library[0][i]));
+               times_median(&passes[i]) / times_median(&library[0][i]));
     relume_image_destroy(&frame);
     relume_eye_destroy(&eye);
     backend->close(context);

@@ -135,21 +135,21 @@ static double draw_frame(struct scene *s, const struct relume_light *lights, int
     const struct relume_geometry g = relume_geometry_default(RELUME_SPHERICAL, width, height);
     const struct place place = {.width = width, .height = height, .exposure = 1.0f};
     const struct target *view;
-    const double start = bench_now_s();
+    const double start = now_s();
     bench_check(relighter_begin(&s->relighter, lights, n));
     bench_check(relighter_view(&view, &s->relighter, 0));
     gl.BindVertexArray(s->relighter.vertices);
     target_begin(&s->frame, &gl);
     draw_panorama(&s->panorama, &gl, &place, &g, (struct relume_pan_tilt){.zoom = 1.0}, view);
     gl.Finish();
-    return bench_now_s() - start;
+    return now_s() - start;
 }
 
 static double measure(struct scene *s, const char *what, int n, enum relume_light_kind kind,
                       const struct relume_light *environment)
 {
     static struct relume_light lights[LIGHTS + 1];
-    struct bench b = {.runs = 0};
+    struct times b = {.n = 0};
     const int all = n + (environment != NULL);
     for (int run = -1; run < RUNS; run++) {  // the first uploads
         move_lights(lights, n, kind, run);
@@ -157,10 +157,10 @@ static double measure(struct scene *s, const char *what, int n, enum relume_ligh
             lights[n] = *environment;
         const double t = draw_frame(s, lights, all);
         if (run >= 0)
-            bench_add(&b, t);
+            times_add(&b, t);
     }
     bench_print(what, &b);
-    return bench_median(&b);
+    return times_median(&b);
 }
 
 static void open_scene(struct scene *s, struct file *f)
@@ -241,12 +241,12 @@ static int bench_opening(const struct context_backend *backend, const char *path
     static const struct relume_log log = {.message = say_so};
     static const char *const what[] = {"open the file", "make OpenGL ready", "first frame",
                                        "light moved, next frame"};
-    struct bench bench[4] = {{.runs = 0}};
+    struct times bench[4] = {{.n = 0}};
     for (int run = 0; run < RUNS; run++) {
         struct session s = {.log = &log, .vram_bytes = (size_t)1 << 30};
         struct app_state start = {.lights = 0};
         relume_rig *rig = NULL;
-        double then = bench_now_s();
+        double then = now_s();
         bench_check(session_take_rig(&s, &rig, &start));
         for (int step = 0; step < 4; step++) {
             if (step == 0)
@@ -257,9 +257,9 @@ static int bench_opening(const struct context_backend *backend, const char *path
                 bench_check(session_draw(&s));
             if (step)
                 s.gl.Finish();
-            bench_add(&bench[step], bench_now_s() - then);
+            times_add(&bench[step], now_s() - then);
             app_turn_light(&s.app, 10, 0);
-            then = bench_now_s();
+            then = now_s();
         }
         session_close(&s);
     }

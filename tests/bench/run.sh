@@ -3,6 +3,8 @@
 set -eu
 uname -sm
 grep -m1 'model name' /proc/cpuinfo || true
+"$1/relume" bench
+RELUME_CPU=plain "$1/relume" bench
 for b in "$1"/tests/bench/bench_*; do
     [ -x "$b" ] && [ -f "$b" ] && "$b"
 done

@@ -64,10 +64,10 @@ RELUME_API void relume_context_destroy(relume_context **context);
 // themselves: the C library's files and threads, JSON, JPEG, AV1, meshes, models in the helper.
 // Thread-safety: all are called from any number of threads at once, and must not call the library.
 struct relume_allocator_params {
-    size_t struct_size;  // filled by the macro (base.h)
-    void *(*allocate)(void *user, size_t bytes);
-    void *(*resize)(void *user, void *memory, size_t bytes);
-    void (*release)(void *user, void *memory);
+    size_t struct_size;                                       // filled by the macro (base.h)
+    void *(*allocate)(void *user, size_t bytes);              // as malloc
+    void *(*resize)(void *user, void *memory, size_t bytes);  // as realloc
+    void (*release)(void *user, void *memory);                // as free
     void *user;  // of all three; it must live as long as the process uses the library
 };
 #define relume_allocator_params(...)                                                               \

@@ -69,6 +69,7 @@ struct relume_frame_params {
                       // need more
     // How strong `pass` is; pictures, range and threads in it are not looked at. Default: NULL.
     const struct relume_pass_params *strength;
+    bool once;  // a renderer draws one frame, as relume_relighter_params; relume_frame does
 };
 #define relume_frame_params(...)                                                                   \
     (&(const struct relume_frame_params){RELUME_SIZED(relume_frame_params), __VA_ARGS__})

@@ -146,8 +146,8 @@ struct relume_relight_params {
     const struct relume_image *surface;
     const relume_weight_grid *grid;  // of the codes' coder, for near lights and environments, or of
                                      // the refit's, for environments; default: made for the call
-    const relume_refit *refit;       // of display-domain codes, for environments; default: made
-                                     // for the call
+    const relume_refit *refit;       // of display-domain codes, for environments; default: these
+                                     // are summed over the captured lights, at a cost for each
     float exposure_ev;               // relume_relight_rgba8: multiply by 2^EV before coding
 };
 #define relume_relight_params(...)                                                                 \

@@ -29,6 +29,8 @@ struct relume_relighter_params {
                  // as they go: one that moves is relit alone. Their sum is rounded otherwise
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
+    bool once;  // environments on codes of the display domain are summed over the captured lights,
+                // in place of a refit, which pays from the second picture of a view on
 };
 #define relume_relighter_params(...)                                                               \
     (&(const struct relume_relighter_params){RELUME_SIZED(relume_relighter_params), __VA_ARGS__})

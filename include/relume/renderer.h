@@ -31,7 +31,7 @@ RELUME_API void relume_renderer_destroy(relume_renderer **renderer);
 RELUME_API relume_pack *relume_renderer_pack(const relume_renderer *renderer);
 
 // How frames are made from now on. What still holds is kept: another lens relights nothing.
-// Threads, cpu_off and log stay those of relume_renderer_create.
+// Threads, cpu_off, once and log stay those of relume_renderer_create.
 RELUME_API void relume_renderer_set(relume_renderer *renderer,
                                     const struct relume_frame_params *params);
 

@@ -1,5 +1,6 @@
 // frame.c - what a camera sees of the views: whole, scaled, looked at, from an eye
 #include "base/log.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "frame/renderer.h"
 #include "image/rgba8.h"
@@ -168,9 +169,12 @@ relume_status relume_frame(struct relume_image *out, relume_pack *pack,
                            const struct relume_camera *camera, const struct relume_light *lights,
                            int n, const struct relume_frame_params *params)
 {
+    struct relume_frame_params once = PARAMS(relume_frame_params, params);
     relume_renderer *r;
     *out = (struct relume_image){0};
-    relume_status status = relume_renderer_create(&r, pack, params);
+    once.struct_size = sizeof once;
+    once.once = true;
+    relume_status status = relume_renderer_create(&r, pack, &once);
     if (!status)
         status = relume_renderer_set_lights(r, lights, n);
     if (!status)

@@ -186,9 +186,10 @@ relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
     r->lighting = 1;
     relume_status status = create_arrays(r) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)  // last: who is there has the arrays
-        status = relume_relighter_create(
-            &r->relighter, r->info->views,
-            relume_relighter_params(.cpu_off = r->params.cpu_off, .threads = r->params.threads));
+        status = relume_relighter_create(&r->relighter, r->info->views,
+                                         relume_relighter_params(.cpu_off = r->params.cpu_off,
+                                                                 .threads = r->params.threads,
+                                                                 .once = r->params.once));
     if (status)
         relume_renderer_destroy(out);
     return status;
@@ -231,6 +232,7 @@ void relume_renderer_set(relume_renderer *r, const struct relume_frame_params *p
     r->params.log = old.log;
     r->params.threads = old.threads;
     r->params.cpu_off = old.cpu_off;
+    r->params.once = old.once;
     const bool moved = r->params.assume_depth != old.assume_depth;
     for (int i = 0; moved && i < r->info->views; i++)
         forget_places(r, i);
@@ -463,7 +465,7 @@ bool renderer_goes_by_texels(const relume_renderer *r)
     for (int i = 0; i < r->light_count; i++)
         environment |= r->lights[i].kind == RELUME_LIGHT_ENVIRONMENT;
     return r->params.pass == RELUME_PASS_COLOUR &&
-           !(environment && r->info->domain == RELUME_DOMAIN_DISPLAY);
+           !(environment && r->info->domain == RELUME_DOMAIN_DISPLAY && !r->params.once);
 }
 
 relume_status renderer_need_partly(relume_renderer *r, int view)

@@ -271,6 +271,40 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
     }
 }
 
+relume_status environment_on_lights(struct relume_light *out, int *count, const relume_coder *coder,
+                                    const struct relume_light *light, int threads)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    struct relume_coder_params p = {.hemispherical = info->hemispherical,
+                                    .pole_y = info->pole_y,
+                                    .interpolant = info->interpolant
+                                                       ? info->interpolant
+                                                       : relume_interpolant_find("chord")};
+    const size_t n = (size_t)info->lights;
+    relume_coder *table = NULL;
+    relume_weight_grid *grid = NULL;
+    float *weights = mem_zeroed(3 * n, sizeof *weights), constant[3] = {0};
+    memcpy(p.parameter, info->parameter, sizeof p.parameter);
+    relume_status status = weights ? relume_coder_create(&table, &relume_basis_table,
+                                                         info->directions, info->lights, &p)
+                                   : RELUME_ENOMEM;
+    if (!status)
+        status = relume_weight_grid_create(
+            &grid, table, relume_weight_grid_params(.sums = true, .threads = threads));
+    if (!status)
+        relume_environment_weights(weights, constant, grid, light);
+    for (size_t i = 0; !status && i < n; i++)
+        if (weights[i] != 0.0f || weights[n + i] != 0.0f || weights[2 * n + i] != 0.0f)
+            out[(*count)++] =
+                (struct relume_light){.kind = RELUME_LIGHT_DIRECTIONAL,
+                                      .direction = info->directions[i],
+                                      .rgb = {weights[i], weights[n + i], weights[2 * n + i]}};
+    relume_weight_grid_destroy(&grid);
+    relume_coder_destroy(&table);
+    mem_free(weights);
+    return status;
+}
+
 // ---------------------------------------------------------------- sampling
 
 static const double golden = 0.6180339887498949;

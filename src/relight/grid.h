@@ -14,4 +14,9 @@ const relume_weight_grid *grid_for_sums(const relume_weight_grid *grid);
 // That of a refit's coder; belongs to the refit, or to the one it is like.
 const relume_weight_grid *refit_grid(const relume_refit *refit);
 
+// An environment as the captured lights of a coder that it shines by, those of no light left out:
+// appended to `out`, where *count are. RELUME_ENOMEM.
+relume_status environment_on_lights(struct relume_light *out, int *count, const relume_coder *coder,
+                                    const struct relume_light *light, int threads);
+
 #endif

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "base/thread.h"
 #include "base/half.h"
 #include "relight/grid.h"
 
@@ -211,27 +212,53 @@ static void keep_black(const relume_refit *refit, const struct work *w, const fl
     }
 }
 
-// Band by band, `codes` being pixels or a book's vectors.
-static relume_status encode(relume_refit *refit, const struct work *w,
-                            const struct relume_codes *codes)
+// Bands of pixels (or of a book's vectors), each by one worker.
+struct bands {
+    relume_refit *refit;
+    const struct work *work;
+    const struct relume_codes *codes;
+    _Atomic int status;  // of any that failed
+};
+
+static relume_status encode_band(const struct bands *b, size_t first, size_t n)
 {
-    const size_t most = w->pixels < BAND ? w->pixels : BAND;
-    float *samples = mem_array(most * (size_t)w->info->lights, 3 * sizeof *samples);
-    float *planes = mem_array(most, (size_t)refit->codes.planes * sizeof *planes);
+    const struct work *w = b->work;
+    float *samples = mem_array(n * (size_t)w->info->lights, 3 * sizeof *samples);
+    float *planes = mem_array(n, (size_t)b->refit->codes.planes * sizeof *planes);
     relume_status status = samples && planes ? RELUME_OK : RELUME_ENOMEM;
-    for (size_t first = 0; !status && first < w->pixels; first += most) {
-        const size_t n = w->pixels - first < most ? w->pixels - first : most;
-        status = decode(w, codes, first, 1, n, samples);
-        if (!status)
-            status = relume_coder_apply(refit->coder, samples, 3 * n, n, planes, n);
-        if (!status) {
-            keep_black(refit, w, samples, planes, n);
-            store(refit, planes, first, n);
-        }
+    if (!status)
+        status = decode(w, b->codes, first, 1, n, samples);
+    if (!status)
+        status = relume_coder_apply(b->refit->coder, samples, 3 * n, n, planes, n);
+    if (!status) {
+        keep_black(b->refit, w, samples, planes, n);
+        store(b->refit, planes, first, n);
     }
     mem_free(samples);
     mem_free(planes);
     return status;
+}
+
+static void encode_item(void *context, size_t item, int worker)
+{
+    struct bands *b = context;
+    const size_t first = item * BAND, left = b->work->pixels - first;
+    (void)worker;
+    const relume_status status =
+        b->status ? RELUME_OK : encode_band(b, first, left < BAND ? left : BAND);
+    if (status)
+        b->status = (int)status;
+}
+
+// `codes` being pixels or a book's vectors.
+static relume_status encode(relume_refit *refit, const struct work *w,
+                            const struct relume_codes *codes)
+{
+    struct work alone = *w;
+    struct bands bands = {refit, &alone, codes, RELUME_OK};
+    alone.params.threads = 1;
+    thread_for(w->params.threads, (w->pixels + BAND - 1) / BAND, encode_item, &bands);
+    return (relume_status)bands.status;
 }
 
 // Against the samples that were learned from: out of pixels that the book or the planes show.

@@ -61,9 +61,9 @@ struct job {
     struct near_lights near;
     char *room;  // [workers] of room_size
     size_t room_size;
-    // Display domain: environments are relit from linear codes of their own.
+    // Display domain: environments are relit from linear codes of their own, ...
     struct job *distant;
-    relume_refit *refit;
+    struct relume_light *lights;  // or, without those, every environment by the captured lights
 };
 
 static void fold_quantiser(struct pass *pass, const struct relume_codes *codes)
@@ -543,7 +543,7 @@ static void end_job(struct job *job)
     end_passes(job);
     near_lights_destroy(&job->near);
     relume_weight_grid_destroy(&job->made);
-    relume_refit_destroy(&job->refit);
+    mem_free(job->lights);
     mem_free(job->coder);
     mem_free(job->words);
     mem_free(job->room);
@@ -565,22 +565,15 @@ static relume_status begin_distant(struct job *job, const struct relume_light *l
     if (!count)
         return RELUME_OK;
     struct relume_relight_params own = {.cpu_off = p->cpu_off, .threads = p->threads};
-    const relume_refit *refit = p->refit;
     struct relume_light *environments = mem_array((size_t)count, sizeof *environments);
     job->distant = mem_zeroed(1, sizeof *job->distant);
     relume_status status = environments && job->distant ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0, next = 0; !status && i < n; i++)
         if (lights[i].kind == RELUME_LIGHT_ENVIRONMENT)
             environments[next++] = lights[i];
-    if (!status && !refit) {
-        status = relume_refit_create(
-            &job->refit, job->codes,
-            relume_refit_params(.log = p->log, .cpu_off = p->cpu_off, .threads = p->threads));
-        refit = job->refit;
-    }
     if (!status) {
-        own.grid = refit_grid(refit);
-        status = begin_job(job->distant, relume_refit_codes(refit), environments, count, &own);
+        own.grid = refit_grid(p->refit);
+        status = begin_job(job->distant, relume_refit_codes(p->refit), environments, count, &own);
     }
     mem_free(environments);
     if (!status && job->codes->books == 1)
@@ -588,11 +581,40 @@ static relume_status begin_distant(struct job *job, const struct relume_light *l
     return status;
 }
 
+// Display domain without a refit: the lights, each environment as the lights of the capture, which
+// see it as they would a table of photographs.
+static relume_status spread_environments(struct relume_light **out, int *count,
+                                         const struct relume_codes *codes,
+                                         const struct relume_light *lights, int n, int threads)
+{
+    const int captured = relume_coder_info(codes->coder)->lights;
+    const int maps = count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT);
+    struct relume_light *all = mem_array((size_t)n + (size_t)maps * (size_t)captured, sizeof *all);
+    relume_status status = all ? RELUME_OK : RELUME_ENOMEM;
+    *out = all;
+    *count = 0;
+    for (int i = 0; !status && i < n; i++)
+        if (lights[i].kind != RELUME_LIGHT_ENVIRONMENT)
+            all[(*count)++] = lights[i];
+        else
+            status = environment_on_lights(all, count, codes->coder, &lights[i], threads);
+    return status;
+}
+
 static relume_status begin_all(struct job *job, const struct relume_codes *codes,
                                const struct relume_light *lights, int n,
                                const struct relume_relight_params *p)
 {
-    const relume_status status = begin_job(job, codes, lights, n, p);
+    struct relume_light *spread = NULL;
+    relume_status status = RELUME_OK;
+    if (codes->domain == RELUME_DOMAIN_DISPLAY && !p->refit &&
+        count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT)) {
+        status = spread_environments(&spread, &n, codes, lights, n, p->threads);
+        lights = spread;
+    }
+    if (!status)
+        status = begin_job(job, codes, lights, n, p);
+    job->lights = spread;  // near lights go on looking at them
     return status ? status : begin_distant(job, lights, n, p);
 }
 

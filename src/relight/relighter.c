@@ -150,14 +150,16 @@ static relume_status prepare(struct relume_relight_params *p, relume_relighter *
         near |= relume_light_is_near(relit->lights[i].kind);
         environment |= relit->lights[i].kind == RELUME_LIGHT_ENVIRONMENT;
     }
-    const bool refits = environment && relit->codes->domain == RELUME_DOMAIN_DISPLAY;
+    const bool refits =
+        environment && relit->codes->domain == RELUME_DOMAIN_DISPLAY && !r->params.once;
     relume_status status = refits ? need_refit(r, relit) : RELUME_OK;
     *p = (struct relume_relight_params){.log = relit->log,
                                         .cpu_off = r->params.cpu_off,
                                         .threads = r->params.threads,
                                         .surface = near ? relit->surface : NULL,
                                         .refit = r->view[relit->view].refit};
-    if (!status && (near || (environment && !refits)))
+    const bool sums = environment && relit->codes->domain == RELUME_DOMAIN_LINEAR;
+    if (!status && (near || sums))
         status = need_grid(&p->grid, r, relit->codes->coder, !near);
     return status;
 }

@@ -312,6 +312,7 @@ static relume_status render(const struct relight_options *o, const struct relume
     const struct relume_pack_info *info = relume_pack_info(pack);
     const bool free_eye = info->slabs || relume_look_at_given(&camera->aim);
     const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
+    params.once = true;
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);
     params.focus = given(o, &o->focus) ? o->focus - plane_z : 0.0;
     if (!free_eye && lens)

@@ -77,6 +77,13 @@ RELUME_RESULT relume_status relume_renderer_frame(struct relume_image *out,
                                                   relume_renderer *renderer,
                                                   const struct relume_camera *camera);
 
+// A rectangle of a captured view, in its own size, under the renderer's lights: `*out` is created.
+// Without a pass no more of the file is read than the rows that hold it, however large the view.
+// RELUME_EINVAL where the view has no such part, errors of relume_frame.
+RELUME_RESULT relume_status relume_renderer_part(struct relume_image *out,
+                                                 relume_renderer *renderer, int view,
+                                                 const struct relume_rect *rect);
+
 // Where the surface is instead of light, `*out` created likewise: world positions, background far
 // along its ray, NaN where no view sees. Lights and pass are not looked at.
 RELUME_RESULT relume_status relume_renderer_places(struct relume_image *out,

@@ -181,3 +181,47 @@ relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int f
     mem_free(wanted);
     return status;
 }
+
+// ---------------------------------------------------------------- a part of a view
+
+static relume_status check_part(const relume_renderer *r, int view, const struct relume_rect *rect)
+{
+    const int width = r->info->width, height = r->info->height;
+    if (view < 0 || view >= r->info->views)
+        return log_fail(r->params.log, RELUME_EINVAL, "view %d does not exist; expected 0 to %d",
+                        view, r->info->views - 1);
+    if (rect->left >= 0 && rect->top >= 0 && rect->width > 0 && rect->height > 0 &&
+        rect->width <= width - rect->left && rect->height <= height - rect->top)
+        return RELUME_OK;
+    return log_fail(r->params.log, RELUME_EINVAL,
+                    "no part %d x %d at %d,%d; expected one within the %d x %d pixels of the view",
+                    rect->width, rect->height, rect->left, rect->top, width, height);
+}
+
+static relume_status part_by_itself(struct relume_image *out, relume_renderer *r, int view,
+                                    const struct relume_rect *rect)
+{
+    relume_status status = r->parts ? RELUME_OK : parts_create(&r->parts, r->info->views);
+    if (status)
+        return status;
+    hold(r, view, *rect);
+    status = need_light(r, view);
+    struct relume_rect at = *rect;
+    at.left -= r->parts->at[view].left;
+    at.top -= r->parts->at[view].top;
+    return status ? status : crop(out, &r->parts->image[view], &at);
+}
+
+relume_status relume_renderer_part(struct relume_image *out, relume_renderer *r, int view,
+                                   const struct relume_rect *rect)
+{
+    *out = (struct relume_image){0};
+    relume_status status = check_part(r, view, rect);
+    if (status)
+        return status;
+    renderer_begin(r, SHOWN_LIGHT);
+    if (renderer_goes_by_texels(r))
+        return part_by_itself(out, r, view, rect);
+    status = renderer_need(r, view);
+    return status ? status : crop(out, &r->image[SHOWN_LIGHT][view], rect);
+}

@@ -161,6 +161,21 @@ relume relight pano.exr -o planet.exr --projection planet --size 60x60
 relume relight pano.exr -o down.exr --projection stereographic --tilt -90 --zoom 0.5 --size 60x60
 same 'a planet is a stereographic look down' planet.exr down.exr
 
+# ---- a part of a view
+relume relight pano.exr -o whole.png
+relume relight pano.exr -o part.png --crop 5,3,20,11
+if [ "$("$mkimage" size part.png)" = '20 11' ]; then ok 'a part has its own size'; else not_ok 'a part has its own size' "$("$mkimage" size part.png)"; fi
+for at in '0 0' '19 10' '7 4'; do
+    x=${at% *} y=${at#* }
+    if [ "$("$mkimage" read part.png $x $y)" = "$("$mkimage" read whole.png $((x + 5)) $((y + 3)))" ]; then ok "pixel $at of the part"; else not_ok "pixel $at of the part" 'differs from the whole'; fi
+done
+expect_fail 'a part beyond the view' 2 'expected one within the' x.png \
+    "$RELUME" relight pano.exr -o x.png --crop 5,3,20000,11
+expect_fail 'a part of a look' 2 'expected a captured view' x.png \
+    "$RELUME" relight pano.exr -o x.png --crop 5,3,2,1 --pan 10
+expect_fail 'parts of pixels' 2 'four whole numbers' x.png \
+    "$RELUME" relight pano.exr -o x.png --crop 5,3.5,2,1
+
 # ---- refusals
 expect_fail 'interpolation by depth without depth' 1 'interpolation by depth needs a file with depth' x.png \
     "$RELUME" relight bare.exr -o x.png --interpolate depth

@@ -306,6 +306,46 @@ static void near_eyes_cost_what_they_see(void **state)
     relume_pack_destroy(&pack);
 }
 
+// A part of a view is that of the whole, bit by bit, by whatever light and pass, whatever was
+// drawn before.
+static void a_part_is_that_of_the_view(void **state)
+{
+    (void)state;
+    static const struct relume_rect parts[] = {
+        {3, 2, 10, 7}, {5, 4, 8, 9}, {0, 0, W, H}, {W - 1, H - 1, 1, 1}};
+    static const struct relume_rect wrong[] = {
+        {-1, 0, 1, 1}, {0, 0, W + 1, 1}, {0, H, 1, 1}, {0, 0, 0, 1}};
+    static const struct relume_light near = {
+        .kind = RELUME_LIGHT_POINT, .position = {0.5, 1, 2}, .rgb = {1, 2, 3}};
+    struct relume_image out;
+    for (int k = 0; k < 3; k++) {
+        const struct relume_frame_params *params =
+            relume_frame_params(.pass = k == 2 ? RELUME_PASS_UNSHARP : RELUME_PASS_COLOUR);
+        relume_renderer *r;
+        struct relume_image whole;
+        CHECK_OK(relume_renderer_create(&r, slab, params));
+        CHECK_OK(relume_renderer_set_lights(r, k == 1 ? &near : lights, k == 1 ? 1 : 2));
+        CHECK_OK(relume_frame(&whole, slab, &cameras[0], k == 1 ? &near : lights, k == 1 ? 1 : 2,
+                              params));
+        relume_pack_drop(slab, 1);
+        for (int i = 0; i < 4; i++) {
+            const struct relume_rect *at = &parts[i];
+            CHECK_OK(relume_renderer_part(&out, r, 1, at));
+            assert_true(out.width == at->width && out.height == at->height);
+            for (int y = 0; y < at->height; y++)
+                assert_memory_equal(out.data + 3 * y * at->width,
+                                    whole.data + 3 * ((at->top + y) * W + at->left),
+                                    sizeof(float) * 3 * (size_t)at->width);
+            relume_image_destroy(&out);
+            assert_int_equal(relume_renderer_part(&out, r, 1, &wrong[i]), RELUME_EINVAL);
+            assert_null(out.data);
+        }
+        assert_int_equal(relume_renderer_part(&out, r, 2, &parts[0]), RELUME_EINVAL);
+        relume_image_destroy(&whole);
+        relume_renderer_destroy(&r);
+    }
+}
+
 // The sum of what is kept is carried from frame to frame: whatever came before, a frame adds what
 // it adds to an empty renderer, and without what is kept there is nothing.
 static void bytes_do_not_drift(void **state)
@@ -470,6 +510,7 @@ int main(void)
         cmocka_unit_test(lights_alone_relight),
         cmocka_unit_test(memory_is_bounded),
         cmocka_unit_test(near_eyes_cost_what_they_see),
+        cmocka_unit_test(a_part_is_that_of_the_view),
         cmocka_unit_test(bytes_do_not_drift),
         cmocka_unit_test(a_pixel_is_that_of_the_frame),
         cmocka_unit_test(places_are_where_depth_says),

@@ -13,6 +13,7 @@ enum { GLARE_PASS = RELUME_PASSES };  // of the frame, not of its views
 struct relight_options {
     struct args args;
     const char *output, *objects, *capture;
+    double crop[4];
     int size[2], view, samples, radius, cpu_mask;
     struct relume_vec3 eye, look_at, up;
     double fov, pan, tilt, zoom, aperture, focus, gain, highlight, exponent, range[2];
@@ -35,6 +36,10 @@ static const struct option options[] = {
     LIGHT_OPTIONS,
     GROUP("camera"),
     INT("--view", view, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535),
+    NUMBERS("--crop", crop, "x,y,w,h",
+            "of a captured view only the w x h pixels from column x, row y on; reads no more of "
+            "the file",
+            4),
     POINT("--eye", eye, "x,y,z",
           "slab: look at the window from this point; default: the middle of the cameras"),
     POINT("--look-at", look_at, "x,y,z",
@@ -128,6 +133,10 @@ static relume_status parse_camera(const struct relight_options *o, struct relume
     if (view + eye + look > 1)
         return usage_error(
             "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
+    if (given(o, o->crop) && (eye || look || o->size[0] || o->size[1] || o->alpha || o->objects ||
+                              o->pass == GLARE_PASS))
+        return usage_error("--crop: expected a captured view at its own size (--view N) without "
+                           "--size, --alpha, --objects and --pass glare");
     if (!eye &&
         (given(o, &o->look_at) || given(o, &o->up) || (given(o, &o->fov) && o->pass != GLARE_PASS)))
         return usage_error("relight: --look-at, --up and --fov need --eye");
@@ -291,6 +300,22 @@ static relume_status add_alpha(struct relume_image *frame, relume_pack *pack,
     return RELUME_OK;
 }
 
+static relume_status draw(struct relume_image *out, relume_renderer *renderer,
+                          const struct relight_options *o, const struct relume_camera *camera)
+{
+    if (!given(o, o->crop))
+        return relume_renderer_frame(out, renderer, camera);
+    int at[4];
+    for (int i = 0; i < 4; i++) {
+        at[i] = (int)fmin(fmax(o->crop[i], -1.0), 1e6);
+        if (at[i] != o->crop[i])
+            return usage_error("--crop: expected four whole numbers, x,y,w,h; found %g",
+                               o->crop[i]);
+    }
+    const struct relume_rect rect = {at[0], at[1], at[2], at[3]};
+    return relume_renderer_part(out, renderer, camera->view, &rect);
+}
+
 static relume_status render(const struct relight_options *o, const struct relume_camera *camera,
                             struct relume_frame_params params, const struct relume_light *lights,
                             int count)
@@ -329,7 +354,7 @@ static relume_status render(const struct relight_options *o, const struct relume
     if (!status)
         status = set_objects(&objects, renderer, o);
     if (!status)
-        status = relume_renderer_frame(&frame, renderer, camera);
+        status = draw(&frame, renderer, o, camera);
     if (!status && o->pass == GLARE_PASS)
         status = add_glare(&frame, renderer, o, camera);
     if (!status && o->pass == RELUME_PASS_NORMALS)

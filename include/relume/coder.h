@@ -294,7 +294,8 @@ RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct 
 // What the capture itself asks for: `pca` and an interpolant as in `coder` (default: chosen), with
 // as many coefficients and in the domain in which samples of the captured lights are reproduced at
 // `quality_db` (PSNR of display values as `relume eval` measures it; default 38), and the least
-// storage that adds nothing visible; one light is kept as `table`. What the params fix -
+// storage that adds nothing visible; `table` of one light, and where the pictures take fewer bytes
+// than so many components. What the params fix -
 // coefficients, domain, storage - stays. Errors of relume_coder_learn.
 #define RELUME_USUAL_DB 38.0
 // What relume_coder_decide chose. Plain data.

@@ -5,8 +5,9 @@
 // is asked for: `pca` of 27 in the capture's own domain. Else hard shadows or highlights are at
 // work. Linear captures then try the display domain, where equal errors are equally visible: errors
 // of dark pixels count, and not so much those of lamps. Then components are added, as many as the
-// quality takes; at last, where the lights could not be met for smoothing, the smoothing goes.
-// Unseen lights are watched by leaving each captured one out (choose.c).
+// quality takes; where the lights could not be met for smoothing, the smoothing goes. Unseen lights
+// are watched by leaving each captured one out (choose.c). So many components may take more bytes
+// than the pictures themselves, which also keep the colours of small things: then it is `table`.
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -393,6 +394,28 @@ static void quantise(const struct storing *s, enum relume_storage storage)
         coefficients_restore(&c, (int)p, 0, s->before + p * n, n, s->after + p * n);
 }
 
+// Bits of a pixel's codes, those of each plane by their frequency (Shannon 1948): what lossless
+// packing makes of them is smaller, but about alike for any planes of one scene.
+static double bits_of(const struct storing *s, enum relume_storage storage)
+{
+    const size_t n = s->job->some.pixels, planes = (size_t)s->coder->info.planes;
+    const int top = relume_storage_top(storage);
+    uint16_t count[65536];
+    double bits = 0.0;
+    quantise(s, storage);
+    for (size_t p = 0; p < planes; p++) {
+        memset(count, 0, ((size_t)top + 1) * sizeof *count);
+        for (size_t x = 0; x < n; x++) {
+            const float code = (s->after[p * n + x] - s->step[planes + p]) / s->step[p];
+            count[(int)(fminf(fmaxf(code, 0.0f), (float)top) + 0.5f)]++;
+        }
+        for (int c = 0; c <= top; c++)
+            if (count[c])
+                bits -= count[c] * log2((double)count[c] / (double)n) / (double)n;
+    }
+    return bits;
+}
+
 static void predict(const struct storing *s, int light, int channel, const float *planes,
                     float *out)
 {
@@ -495,7 +518,8 @@ static void choose_exposures(struct storing *s, bool hdr)
 
 // Codes of whole numbers are even steps, and how bright the brightest pixel is no sample knows: for
 // high dynamic range in linear light it is halves, or floats where these have not range enough.
-static relume_status choose_storage(struct job *job, enum relume_storage *out)
+// `*bits` are those of a pixel's codes, or 0 where they are no whole numbers.
+static relume_status choose_storage(struct job *job, enum relume_storage *out, double *bits)
 {
     static const enum relume_storage even[] = {RELUME_STORE_8, RELUME_STORE_10, RELUME_STORE_12,
                                                RELUME_STORE_16, RELUME_STORE_HALF};
@@ -511,7 +535,7 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out)
     if (!status)
         status = captured_create(&s.captured, job->coder, job->manifest->directions,
                                  job->manifest->lights);
-    if (!status) {
+    if (!status && !*out) {
         choose_exposures(&s, hdr);
         *out = RELUME_STORE_FLOAT;
         for (size_t i = hdr && job->domain == RELUME_DOMAIN_LINEAR ? 4 : 0;
@@ -519,6 +543,7 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out)
             if (is_enough(&s, even[i]))
                 *out = even[i];
     }
+    *bits = !status && relume_storage_top(*out) ? bits_of(&s, *out) : 0.0;
     captured_destroy(&s.captured);
     mem_free(s.before);
     mem_free(s.after);
@@ -537,6 +562,56 @@ static relume_status keep_picture(struct job *job)
     relume_status status = relume_coder_create(&job->coder, &relume_basis_table,
                                                job->manifest->directions, 1, &job->params);
     return status ? status : judge(job);
+}
+
+// More components than usual are a matter of hard shadows; of many lights a look is enough.
+static bool may_be_pictures(const struct job *job)
+{
+    return !job->params.coefficients && job->manifest->lights > 1 &&
+           job->coder->info.coefficients > USUAL && job->manifest->lights <= MOST_LIGHTS;
+}
+
+static relume_status make_pictures(struct job *job, enum relume_storage *storage, double *bits)
+{
+    struct relume_coder_params p = job->params;
+    p.coefficients = 0;
+    p.parameter[2] = 0.0;  // nothing smooths between them
+    *storage = job->encode.storage;
+    relume_coder_destroy(&job->coder);
+    relume_status status = relume_coder_create(
+        &job->coder, &relume_basis_table, job->manifest->directions, job->manifest->lights, &p);
+    if (!status)
+        status = judge(job);
+    if (!status)
+        status = judge_unseen(job);
+    return status ? status : choose_storage(job, storage, bits);
+}
+
+// The pictures, where they take fewer bytes than the components that reproduce them worse; those of
+// linear light as such, since light is lost where the display coding of lit and of dark is mixed.
+static relume_status consider_pictures(struct job *job, enum relume_storage *storage, double bits)
+{
+    relume_coder *components = job->coder;
+    enum relume_storage other;
+    const double own = job->own, unseen = job->unseen;
+    double theirs = 0.0;
+    job->coder = NULL;
+    relume_status status = make_pictures(job, &other, &theirs);
+    if (!status && (theirs <= 0.0 || theirs >= bits || job->own < own ||
+                    job->unseen < job->usual_unseen - 0.2)) {
+        relume_coder_destroy(&job->coder);
+        job->coder = components;
+        job->own = own;
+        job->unseen = unseen;
+        return RELUME_OK;
+    }
+    relume_coder_destroy(&components);
+    if (!status && job->domain != relume_encode_domain(job->capture, job->encode.domain)) {
+        move_samples(job, RELUME_DOMAIN_LINEAR);
+        status = make_pictures(job, &other, &theirs);
+    }
+    *storage = other;
+    return status;
 }
 
 static void finish(struct job *job)
@@ -580,14 +655,14 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
         status = keep_picture(&job);
     else if (!status)
         status = choose_coder(&job, quality_db > 0.0);
-    *decision = (struct relume_decision){
-        .domain = job.domain,
-        .storage = job.encode.storage,
-        .psnr_db = job.own,
-        .unseen_db = job.unseen,
-    };
-    if (!status && !job.encode.storage)
-        status = choose_storage(&job, &decision->storage);
+    enum relume_storage storage = job.encode.storage;
+    double bits = 0.0;
+    if (!status)
+        status = choose_storage(&job, &storage, &bits);
+    if (!status && bits > 0.0 && may_be_pictures(&job))
+        status = consider_pictures(&job, &storage, bits);
+    if (decision)
+        *decision = (struct relume_decision){job.domain, storage, job.own, job.unseen};
     if (!status) {
         *out = job.coder;
         job.coder = NULL;

@@ -30,6 +30,34 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static int control = -1;
 static pid_t program;
 
+// ---------------------------------------------------------------- patience
+
+// Where processor time is limited (ulimit -t), patience is too.
+static double patience_s(double processor_s)
+{
+    struct rlimit l;
+    if (!getrlimit(RLIMIT_CPU, &l) && l.rlim_cur < processor_s)
+        processor_s = (double)l.rlim_cur;
+    return 10 * processor_s;
+}
+
+// By the clock, in steps: time in which this process was stopped counts as one of them.
+static bool answer_comes(int channel, double processor_s, double *waited_s)
+{
+    static const double step_s = 1;
+    struct pollfd answer = {.fd = channel, .events = POLLIN};
+    while (*waited_s < patience_s(processor_s)) {
+        const double start = now_s();
+        if (poll(&answer, 1, (int)(1e3 * step_s)) > 0)
+            return true;
+        const double step = now_s() - start;
+        *waited_s += step < step_s ? step : step_s;
+    }
+    return false;
+}
+
+// ---------------------------------------------------------------- the program
+
 // This process' environment, with libraries of mathematics told to start no threads.
 static char **quiet_environment(void)
 {
@@ -100,28 +128,34 @@ static bool addresses_are_limited(void)
 
 // Where addresses are limited (ulimit -v), the program or what it loads does not fit, and the
 // linker and libraries end it in their own ways.
-static void drop_program(struct helper_reply *reply)
+static void drop_program(struct helper_reply *reply, bool late)
 {
     close(control);
     control = -1;
     kill(program, SIGKILL);
     while (waitpid(program, NULL, 0) < 0 && errno == EINTR)
         ;
-    snprintf(reply->why, sizeof reply->why, "relume-helper has ended");
-    reply->error = addresses_are_limited() ? ENOMEM : 0;
+    snprintf(reply->why, sizeof reply->why, "relume-helper %s",
+             late ? "does not answer" : "has ended");
+    reply->error = !late && addresses_are_limited() ? ENOMEM : 0;
 }
 
 // Asks the program, which is started where there is none, or where it has ended in the meantime.
+// Its libraries take a third of a second to load, from a slow disk some more.
 static bool ask(struct helper_reply *reply, const struct helper_order *order, int end)
 {
+    static const double PROCESSOR_S = 6;
+    bool late = false;
     *reply = (struct helper_reply){0};
-    for (int attempt = 0; attempt < 2; attempt++) {
+    for (int attempt = 0; attempt < 2 && !late; attempt++) {
+        double waited_s = 0;
         if (control < 0 && !start_program(reply))
             return false;
         if (channel_send(control, order, sizeof *order, end) &&
+            !(late = !answer_comes(control, PROCESSOR_S, &waited_s)) &&
             channel_receive(control, reply, sizeof *reply, NULL))
             break;
-        drop_program(reply);
+        drop_program(reply, late);
     }
     reply->why[HELPER_WHY - 1] = '\0';
     return control >= 0;
@@ -256,31 +290,6 @@ relume_status helper_start(struct helper_job *job, enum helper_kind kind, const 
                     what[kind], reply.why);
 }
 
-// Where processor time is limited (ulimit -t), patience is too.
-static double patience_s(const struct helper_job *job)
-{
-    struct rlimit l;
-    double processor_s = job->processor_s;
-    if (!getrlimit(RLIMIT_CPU, &l) && l.rlim_cur < processor_s)
-        processor_s = (double)l.rlim_cur;
-    return 10 * processor_s;
-}
-
-// By the clock, in steps: time in which this process was stopped counts as one of them.
-static bool answer_comes(struct helper_process *p, struct helper_job *job)
-{
-    static const double step_s = 1;
-    struct pollfd answer = {.fd = p->channel, .events = POLLIN};
-    while (job->waited_s < patience_s(job)) {
-        const double start = now_s();
-        if (poll(&answer, 1, (int)(1e3 * step_s)) > 0)
-            return true;
-        const double step = now_s() - start;
-        job->waited_s += step < step_s ? step : step_s;
-    }
-    return false;
-}
-
 // It has closed its channel, so it ends, or has; or it has not answered and is made to.
 static void find_out(struct helper_process *p, const char *path, bool late)
 {
@@ -312,7 +321,8 @@ static relume_status ask_process(struct helper_process *p, struct helper_job *jo
 {
     const bool lost = atomic_load(&p->ended);
     bool late = false;
-    if (!lost && channel_send(p->channel, message, size, file) && !(late = !answer_comes(p, job)) &&
+    if (!lost && channel_send(p->channel, message, size, file) &&
+        !(late = !answer_comes(p->channel, job->processor_s, &job->waited_s)) &&
         channel_receive(p->channel, answer, answer_size, NULL))
         return RELUME_OK;
     if (!lost)

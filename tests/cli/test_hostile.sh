@@ -137,6 +137,11 @@ if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/
         expect_fail "odd reader: $pattern" "$status" "$pattern" out.bad \
             env LD_LIBRARY_PATH="$PWD/odd/lib" timeout -k 1 20 "$@"
     }
+    # A program that never answers, not even what it is asked before it reads; sleep takes no processor time.
+    mkdir deaf && cp "$RELUME" deaf/ && printf '#!/bin/sh\nexec sleep 300\n' >deaf/relume-helper && chmod +x deaf/relume-helper
+    { status=0
+      timeout -k 1 50 sh -c 'ulimit -t 1; exec "$@"' sh deaf/relume compare good.tif good.tif || status=$?
+      echo $status; } >deaf.txt 2>&1 &
     # By the clock nobody waits longer than ten times the processor time that there is.
     asleep() { # name
         status=0
@@ -187,6 +192,10 @@ if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/
 else
     not_ok 'the odd reader' "$why"
 fi
+
+wait
+check "a helper that never answers is given up" grep -q 'good.tif: the module for image formats cannot be loaded; relume-helper does not answer' deaf.txt
+check "as the machine's fault" test "$(tail -n 1 deaf.txt)" = 3
 
 # ---------------------------------------------------------------- work that asks nobody
 # A helper that never answers stands for any loop of a library: SIGTERM must do, without SIGKILL.

@@ -60,7 +60,8 @@ check 'info says how many, and version 2' grep -q '"version": 2.*"slabs": 6' inf
 # ---- eyes that look past all grids: by depth they see what rendering shows, higher than any camera,
 # where frames were black; what nobody sees is said
 relume relight ring.exr -o cpu.exr --eye 0.4,4,1.1 --fov 30 --size 64x64 --light "$light"
-"$VIEWER" ring.exr --offscreen gpu.exr --eye 0.4,4,1.1 --fov 30 --size 64x64 --light "$light"
+"$VIEWER" ring.exr --offscreen gpu.exr --eye 0.4,4,1.1 --fov 30 --size 64x64 --light "$light" 2>said.txt
+check 'the viewer says so' grep -q '^relume-view: [1-9][0-9]* % of the picture lies beyond the cameras' said.txt
 above 'the viewer fills the same' "$(psnr gpu.exr cpu.exr)" 40 # hits differ by texels where cameras graze
 expect_ok 'what no camera sees' '% of the picture is black: no camera sees what is there' "$RELUME" relight ring.exr -o near.exr --eye 0,3,3 --fov 50 --interpolate linear
 synth higher --slabs 6 --views 1x2 --spread 2.6 --lights-from lamps.txt

@@ -96,6 +96,11 @@ above 'by depth most of it is filled' "$(psnr near.exr near/view00/light0001.exr
 above 'without depth the nearest camera stands in' "$(psnr clamped.exr near/view00/light0001.exr)" 18
 expect_ok 'and it is said' 'beyond the cameras: shown as the nearest' \
     "$RELUME" relight slab.exr -o x.png --eye 0,0,1.6
+# the frame is drawn again for its exposure
+"$VIEWER" slab.exr --offscreen v.png --eye 0,0,1.6 --exposure auto 2>said.txt
+check 'the viewer says it, once' test "$(grep -c 'beyond the cameras: shown as the nearest' said.txt)" = 1
+"$VIEWER" slab.exr --offscreen v.png --eye 0.1,0,3 2>said.txt
+check 'not of an eye among them' test ! -s said.txt
 expect_fail 'an eye that sees no camera is refused' 1 'sees nothing of the slab' x.exr \
     "$RELUME" relight slab.exr -o x.exr --eye 9,9,3
 

@@ -126,7 +126,7 @@ static void drop_all(void)
         free_process(p);
     }
     if (control >= 0)
-        drop_program(&reply);
+        drop_program(&reply, false);
     stop_fake();
 }
 

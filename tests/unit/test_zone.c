@@ -85,7 +85,9 @@ static void test_dome(void **state)
 }
 
 // An even sky shows a white plane as 1, though lamps begin 50 degrees high; it was 1.035. What is
-// left: up to the border, a little beyond the lamps, flat triangles hold the lamps' values.
+// left: up to the border, a little beyond the lamps, flat triangles hold the lamps' values. One
+// that is tilted by 30 degrees, lit by every lamp, shows cos 30 of it: what is right for the flat
+// one and alike for all sides cannot be more (docs/reliability.md), and the truth is 0.933.
 static void test_even_sky(void **state)
 {
     (void)state;
@@ -96,7 +98,7 @@ static void test_even_sky(void **state)
         relume_environment *e;
         relume_weight_grid *grid;
         float weights[3 * LIGHTS] = {0}, constant[3] = {0};
-        double shown = 0.0;
+        double shown = 0.0, tilted = 0.0;
         make_dome(light, false);
         CHECK_OK(relume_image_create(&map, 64, 32, 3));
         for (int i = 0; i < 64 * 32 * 3; i++)
@@ -106,9 +108,12 @@ static void test_even_sky(void **state)
             .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
         CHECK_OK(relume_weight_grid_create(&grid, coder, NULL));
         relume_environment_weights(weights, constant, grid, &sky);
-        for (int i = 0; i < LIGHTS; i++)
+        for (int i = 0; i < LIGHTS; i++) {
             shown += (double)weights[i] * light[i].z;
+            tilted += (double)weights[i] * (0.5 * light[i].x + sqrt(0.75) * light[i].z);
+        }
         CHECK_NEAR(shown, 1.0, 0.025);
+        CHECK_NEAR(tilted / shown, sqrt(0.75), 0.005);  // lamps stand a little unevenly
         relume_weight_grid_destroy(&grid);
         relume_environment_destroy(&e);
         relume_image_destroy(&map);

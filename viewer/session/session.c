@@ -152,6 +152,7 @@ void session_close_file(struct session *s)
     relume_pack_destroy(&s->pack);
     relume_slab_set_destroy(&s->around);
     relume_slab_set_destroy(&s->stage);
+    s->beside_told = false;
 }
 
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
@@ -404,10 +405,46 @@ void session_close(struct session *s)
     app_release(&s->app);
 }
 
+// Of the picture, by a lattice of its rays: the part that passes no camera grid.
+static double share_beside(const struct frame_request *q, const relume_slab *slab,
+                           const relume_slab_set *slabs)
+{
+    enum { SIDE = 24 };
+    int n = 0;
+    if (slab)
+        return q->camera.framing == RELUME_FRAME_EYE ? 1.0 - relume_slab_share(slab, q->camera.eye)
+                                                     : 0.0;
+    for (int i = 0; q->has_window && i < SIDE * SIDE; i++)
+        n += !relume_slab_set_passes(slabs, &q->window, (i % SIDE + 0.5) / SIDE,
+                                     (i / SIDE + 0.5) / SIDE);
+    return n / (double)(SIDE * SIDE);
+}
+
+// Once, not for each step of an eye that goes there.
+static void tell_beside(struct session *s)
+{
+    char text[160];
+    if (s->beside_told || !s->pack)
+        return;
+    const double share = share_beside(&s->request, s->renderer.grid, s->around);
+    if (share < 0.01)
+        return;
+    snprintf(text, sizeof text,
+             "%.0f %% of the picture lies beyond the cameras: shown as the nearest of them see it, "
+             "black where none does",
+             100.0 * share);
+    s->log->message(s->log->user, RELUME_NOTE, text);
+    s->beside_told = true;
+}
+
 relume_status session_render(struct session *s)
 {
-    const relume_status status = frame_request_make(&s->request, &s->app);
-    return status ? status : renderer_draw(&s->renderer, &s->request);
+    relume_status status = frame_request_make(&s->request, &s->app);
+    if (!status)
+        status = renderer_draw(&s->renderer, &s->request);
+    if (!status)
+        tell_beside(s);
+    return status;
 }
 
 // The first frame is drawn once more, with the exposure that it asks for.

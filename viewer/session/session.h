@@ -73,6 +73,7 @@ struct session {
     double ui_scale;          // of the panel, as context_backend.scale; 0: what that says
     char font[PATH_MAX];      // of the panel
     bool font_told;           // that it is missing
+    bool beside_told;         // that the eye stands beside all camera grids of this file
     char told[SESSION_TEXT];  // by the log while a file was opened
     bool listens;             // to it
     int threads;              // that read files

@@ -130,9 +130,9 @@ static void close_around(struct around *t)
 
 // ---------------------------------------------------------------- frames
 
-// The share of pixels that differ: what decides between texels, cameras and cells are comparisons
-// of rounded numbers.
-static double share_off(struct around *t, const struct relume_view_params *params)
+// The share of values that differ by more: what decides between texels, cameras and cells are
+// comparisons of rounded numbers.
+static double share_beyond(double most, struct around *t, const struct relume_view_params *params)
 {
     struct relume_image want, got;
     struct relume_window window;
@@ -143,12 +143,22 @@ static double share_off(struct around *t, const struct relume_view_params *param
     assert_int_equal(draw_app(&t->renderer, &t->app), RELUME_OK);
     assert_int_equal(renderer_read(&got, &t->renderer), RELUME_OK);
     for (int i = 0; i < 3 * want.width * want.height; i++)
-        off += !(fabs((double)got.data[i] - (double)want.data[i]) < 1e-3);
+        off += !(fabs((double)got.data[i] - (double)want.data[i]) < most);
     const double share = (double)off / (3.0 * want.width * want.height);
     relume_image_destroy(&want);
     relume_image_destroy(&got);
     return share;
 }
+
+static double share_off(struct around *t, const struct relume_view_params *params)
+{
+    return share_beyond(1e-3, t, params);
+}
+
+// Rays beside all grids may graze a slab's planes and cross them thousands of texels away, where
+// floats place them to hundredths of a texel and the library's doubles better. The noise of these
+// views changes by about 1 from texel to texel, so another texel, camera or cell still tells.
+static const double of_grazing = 0.03;
 
 // Before a slab, between two, near, far, high, on a corner of two uv planes, and at a camera.
 static const struct relume_vec3 eyes[] = {
@@ -189,9 +199,10 @@ static void frames_by_depth_are_the_library_s(void **state)
         t->app.now.camera.eye = eyes[i];
         char text[64];
         snprintf(text, sizeof text, "by depth, eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
-        // rays beside the grids pass a texel within a small part of a disparity: floats of the
-        // noise that these views show decide otherwise more often
-        assert_below(text, share_off(t, relume_view_params(.disparity = t->disparity)), 0.03);
+        const struct relume_view_params params = {.disparity = t->disparity};
+        assert_below(text, share_beyond(of_grazing, t, &params), 0.004);
+        if (i != 6)
+            assert_below(text, share_off(t, &params), 0.005);
         // and not by accident, but at a camera
         if (i != 5)
             assert_true(share_off(t, NULL) > 0.1);
@@ -221,10 +232,11 @@ static void lenses_are_the_library_s(void **state)
             t->app.now.interpolation = RELUME_INTERPOLATE_LINEAR;
             // where a pixel lies on the border of two cells its samples are of its middle's; of the
             // last eye many pinholes see partly beside the grids
-            assert_below(text, share_off(t, &params), e == 2 ? 0.05 : 0.01);
+            const double most = e == 2 ? of_grazing : 1e-3;
+            assert_below(text, share_beyond(most, t, &params), 0.01);
             t->app.now.interpolation = RELUME_INTERPOLATE_DEFAULT;
             params.disparity = t->disparity;
-            assert_below(text, share_off(t, &params), e == 2 ? 0.11 : 0.01);
+            assert_below(text, share_beyond(most, t, &params), 0.01);
             // of a few pinholes while the object is in the hand
             t->app.drag = APP_DRAG_CAMERA;
             assert_true(e > 0 || share_off(t, &params) > 0.02);

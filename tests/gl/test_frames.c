@@ -114,7 +114,18 @@ struct slab_test {
     struct renderer renderer;
     struct relume_image views[CAMERAS];
     double uv[CAMERAS][2];
+    int texels;  // read of parts
 };
+
+static relume_status fetch_part(struct relume_codes_part *out, void *user, int view,
+                                const struct relume_rect *at)
+{
+    struct slab_test *t = user;
+    const struct relume_codes *codes;
+    assert_int_equal(fixture_fetch(&codes, &t->file, view), RELUME_OK);
+    t->texels += at->width * at->height;
+    return relume_codes_crop(out, codes, at);
+}
 
 static void open_slab(struct slab_test *t, int width, int height)
 {
@@ -137,6 +148,24 @@ static void open_slab(struct slab_test *t, int width, int height)
         t->views[i] = fixture_relight(&t->file, i, lights, LIGHTS);
 }
 
+// How views get onto the GPU: whole, as parts because nothing fits, as parts that the library
+// relights.
+enum { WHOLE, PARTS, PARTS_BY_LIBRARY, WAYS };
+
+static void open_slab_by(struct slab_test *t, int way)
+{
+    open_slab(t, 40, 30);
+    const struct part_source parts = {fetch_part, t};
+    const struct relume_pack_info info = {
+        .width = 40, .height = 30, .planes = t->file.codes[0].planes, .storage = RELUME_STORE_8};
+    t->texels = 0;
+    if (way == WHOLE)
+        return;
+    renderer_use_parts(&t->renderer, &parts, &info);
+    t->renderer.relighter.budget = 1;
+    t->renderer.relighter.by_library = way == PARTS_BY_LIBRARY;
+}
+
 static void close_slab(struct slab_test *t)
 {
     renderer_destroy(&t->renderer);
@@ -146,15 +175,14 @@ static void close_slab(struct slab_test *t)
 }
 
 // No eye has a pixel's centre on the rim of the cameras: there a rounding decides on black or not.
-static void slab_frames_are_the_library_s(void **state)
+static void check_slab_frames(int way)
 {
-    (void)state;
     static const struct relume_vec3 eyes[] = {{0, 0, 3},      {-1, 0.5, 3},   {-1, -0.5, 3},
                                               {0.1, 0.25, 3}, {1, 0, 3},      {0.4, 0.1, 3},
                                               {0.3, -0.2, 6}, {0, 0, 2},      {1.2, -0.31, 6},
                                               {0, 0, 1.2},    {-0.6, 0.4, 9}, {-0.2, 0.25, 3.2}};
     struct slab_test t;
-    open_slab(&t, 40, 30);
+    open_slab_by(&t, way);
     const struct relume_geometry g = slab_geometry();
     relume_slab *slab;
     assert_int_equal(relume_slab_create(&slab, &g, (const double(*)[2])t.uv, CAMERAS), RELUME_OK);
@@ -172,8 +200,16 @@ static void slab_frames_are_the_library_s(void **state)
         assert_below(text, compare_frame(&t.renderer, &app, &want), same_grid_bound);
         relume_image_destroy(&want);
     }
+    assert_true((t.texels > 0) == (way != WHOLE));
     relume_slab_destroy(&slab);
     close_slab(&t);
+}
+
+static void slab_frames_are_the_library_s(void **state)
+{
+    (void)state;
+    for (int way = WHOLE; way < WAYS; way++)
+        check_slab_frames(way);
 }
 
 // A floor that rises to the right with a block on it, as the camera at (u, v) sees it: smooth, with
@@ -218,13 +254,13 @@ static void compare_most(const char *what, const struct relume_image *got,
     assert_below(what, wrong, 0.01 * pixels);
 }
 
-static void slab_frames_by_depth_are_the_library_s(void **state)
+static void check_slab_frames_by_depth(int way)
 {
-    (void)state;
     static const struct relume_vec3 eyes[] = {{0, 0, 3},      {-0.6, 0.3, 3}, {0.1, 0.25, 3},
-                                              {0.4, 0.25, 3}, {0.3, 0, 5},    {-0.2, 0.11, 2.3}};
+                                              {0.4, 0.25, 3}, {0.3, 0, 5},    {-0.2, 0.11, 2.3},
+                                              {0.1, 0, 1.4}};
     struct slab_test t;
-    open_slab(&t, 40, 30);
+    open_slab_by(&t, way);
     const struct depth_source source = {make_depth, &t};
     assert_int_equal(renderer_use_depth(&t.renderer, &source), RELUME_OK);
     struct relume_image disparity[CAMERAS];
@@ -258,7 +294,15 @@ static void slab_frames_by_depth_are_the_library_s(void **state)
     }
     for (int i = 0; i < CAMERAS; i++)
         relume_image_destroy(&disparity[i]);
+    assert_true((t.texels > 0) == (way != WHOLE));
     close_slab(&t);
+}
+
+static void slab_frames_by_depth_are_the_library_s(void **state)
+{
+    (void)state;
+    for (int way = WHOLE; way < WAYS; way++)
+        check_slab_frames_by_depth(way);
 }
 
 static void other_ways_to_see_a_slab_are_the_library_s(void **state)

@@ -37,6 +37,8 @@ struct slab_seen {
     const struct relume_geometry *geometry;
     struct relume_vec3 eye;
     const struct target *const *views;  // relit, by view number; NULL where they have no weight
+    const struct relume_rect *part;     // by view number, where they are parts ...
+    int size[2];                        // ... of views of this size; NULL: they are whole
 };
 // The quadralinear basis, or the nearest camera.
 extern const struct fragment draw_slab_fragment;

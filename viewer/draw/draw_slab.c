@@ -17,6 +17,9 @@ enum {
     EYE,
     CELL,
     EXPOSURE,
+    FIRST_LOW,
+    FIRST_HIGH,
+    WHOLE,
     COMMON,
     NEAREST = COMMON,
     LINEAR_COUNT,
@@ -27,7 +30,7 @@ enum {
 };
 #define COMMON_UNIFORMS                                                                            \
     "rectangle", "frame_size", "view00", "view10", "view01", "view11", "picture", "st", "eye",     \
-        "cell", "exposure"
+        "cell", "exposure", "first_low", "first_high", "whole"
 static const char *const linear_uniforms[] = {COMMON_UNIFORMS, "nearest"};
 static const char *const depth_uniforms[] = {
     COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01", "disparity11", "range", "here",
@@ -104,6 +107,25 @@ static struct app_rectangle pixels_of(const struct cells *c, const struct strip 
     };
 }
 
+// Where the textures in use begin in their views.
+static void set_parts(const struct cells *c, const int view[4])
+{
+    float first[4][2] = {{0}};
+    int any = -1;
+    for (int i = 0; i < 4; i++)
+        any = c->seen->views[view[i]] ? view[i] : any;
+    for (int i = 0; c->seen->part && any >= 0 && i < 4; i++) {
+        const struct relume_rect *at = &c->seen->part[c->seen->views[view[i]] ? view[i] : any];
+        first[i][0] = (float)at->left;
+        first[i][1] = (float)at->top;
+    }
+    const GLint *at = c->program->at;
+    c->gl->Uniform4f(at[FIRST_LOW], first[0][0], first[0][1], first[1][0], first[1][1]);
+    c->gl->Uniform4f(at[FIRST_HIGH], first[2][0], first[2][1], first[3][0], first[3][1]);
+    c->gl->Uniform2f(at[WHOLE], c->seen->part ? (float)c->seen->size[0] : 0.0f,
+                     c->seen->part ? (float)c->seen->size[1] : 0.0f);
+}
+
 static void draw_cell(const struct cells *c, const struct strip *across, const struct strip *down)
 {
     const struct relume_slab_grid *grid = &c->grid;
@@ -112,6 +134,7 @@ static void draw_cell(const struct cells *c, const struct strip *across, const s
     const int view[4] = {low[across->low], low[across->high], high[across->low],
                          high[across->high]};
     (void)draw_use_cell(c->gl, c->seen->views, c->disparity, view);
+    set_parts(c, view);
     c->gl->Uniform4f(c->program->at[CELL], (float)grid->u[across->low], (float)grid->v[down->low],
                      (float)grid->u[across->high], (float)grid->v[down->high]);
     draw_rectangle(c->gl, c->program, c->place, pixels_of(c, across, down));

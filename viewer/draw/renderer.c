@@ -49,10 +49,11 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     if (r->uv && uv)
         memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
     r->needed = calloc((size_t)views, sizeof *r->needed);
+    r->part = calloc((size_t)views, sizeof *r->part);
     r->relit = calloc((size_t)views, sizeof *r->relit);
     r->backdrop =
         (struct lamp_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
-    relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = r->uv && r->needed && r->part && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
     if (!status)
@@ -87,6 +88,20 @@ relume_status renderer_use_depth(struct renderer *r, const struct depth_source *
     return slabs ? depths_create(&r->depths, r->gl, slab, slabs, source) : RELUME_OK;
 }
 
+void renderer_use_parts(struct renderer *r, const struct part_source *parts,
+                        const struct relume_pack_info *info)
+{
+    const struct relume_codes codes = {.width = info->width,
+                                       .height = info->height,
+                                       .planes = info->planes,
+                                       .storage = info->books ? RELUME_STORE_16 : info->storage};
+    r->relighter.parts = *parts;
+    r->size[0] = info->width;
+    r->size[1] = info->height;
+    r->view_bytes = relighter_view_bytes(&codes);
+    r->display = info->domain == RELUME_DOMAIN_DISPLAY;
+}
+
 void renderer_use_capture(struct renderer *r, const relume_capture *capture)
 {
     r->enhancer.capture = capture;
@@ -117,6 +132,7 @@ void renderer_destroy(struct renderer *r)
     relume_slab_destroy(&r->grid);
     free(r->uv);
     free(r->needed);
+    free(r->part);
     free(r->relit);
     *r = (struct renderer){0};
 }
@@ -295,7 +311,12 @@ static relume_status draw_around(struct renderer *r, const struct frame_request 
 static relume_status draw_framed_eye(struct renderer *r, const struct frame_request *q,
                                      const struct place *place)
 {
-    const struct slab_seen seen = {r->grid, &r->geometry, q->camera.eye, r->relit};
+    const struct slab_seen seen = {r->grid,
+                                   &r->geometry,
+                                   q->camera.eye,
+                                   r->relit,
+                                   r->by_parts ? r->part : NULL,
+                                   {r->size[0], r->size[1]}};
     bool any = false;
     for (int i = 0; i < r->views; i++)
         any |= r->needed[i];
@@ -311,7 +332,9 @@ static relume_status draw_framed_eye(struct renderer *r, const struct frame_requ
         return RELUME_OK;
     }
     double range[2];
-    const relume_status status = depths_use(&r->depths, r->needed, range);
+    const relume_status status = r->by_parts
+                                     ? depths_use_parts(&r->depths, r->needed, r->part, range)
+                                     : depths_use(&r->depths, r->needed, range);
     if (!status)
         draw_slab_depth(&r->slab_depth, r->gl, place, &seen, r->depths.texture, range);
     return status;
@@ -379,11 +402,53 @@ static relume_status stand_in(struct renderer *r)
     return status;
 }
 
+// Whether the views that a slab's eye needs would be too much for the graphics memory, whole, and
+// may be parts: light alone, that falls from afar and is not refitted.
+static bool takes_parts(const struct renderer *r, const struct frame_request *q)
+{
+    const struct relighter *l = &r->relighter;
+    size_t views = 0;
+    for (int i = 0; i < r->views; i++)
+        views += r->needed[i];
+    for (int i = 0; i < q->lights; i++)
+        if (relume_light_is_near(q->light[i].kind) ||
+            (r->display && q->light[i].kind == RELUME_LIGHT_ENVIRONMENT))
+            return false;
+    return l->parts.part && r->size[0] && r->grid && !r->drawer.gl &&
+           q->camera.framing == RELUME_FRAME_EYE && q->pass == RELUME_PASS_COLOUR &&
+           !takes_lens(q) && views * r->view_bytes > l->budget;
+}
+
+static relume_status relight_parts(struct renderer *r, const struct frame_request *q)
+{
+    const int *size = r->size;
+    const int frame[2] = {picture_width(q), (int)lround(q->picture.bottom - q->picture.top)};
+    struct relume_view_params params = q->view;
+    relume_status status = RELUME_OK;
+    params.size[0] = size[0];
+    params.size[1] = size[1];
+    if (takes_depth(r, q)) {
+        status = depths_find_ranges(&r->depths, r->needed);
+        params.range = (const double(*)[2])r->depths.range;
+    }
+    if (!status && relume_slab_parts(r->part, r->grid, q->camera.eye, frame, &params) < 0)
+        status = RELUME_ENOMEM;
+    for (int i = 0; !status && i < r->views; i++) {
+        r->relit[i] = NULL;
+        if (r->part[i].width)
+            status = relighter_part(&r->relit[i], &r->part[i], &r->relighter, i, size);
+    }
+    return status;
+}
+
 relume_status renderer_relight_views(struct renderer *r, const struct frame_request *q,
                                      const struct relume_light *lights, int count)
 {
     r->enhancer.params = q->enhance;
     relume_status status = relighter_begin(&r->relighter, lights, count);
+    r->by_parts = takes_parts(r, q);
+    if (!status && r->by_parts)
+        return relight_parts(r, q);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
         q->pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {

@@ -19,6 +19,11 @@ void renderer_use_slabs(struct renderer *renderer, const relume_slab_set *slabs,
 // The views of a slab, or of several, have depth. RELUME_ENOMEM.
 relume_status renderer_use_depth(struct renderer *renderer, const struct depth_source *source);
 
+// Where the views that an eye of a slab needs would not fit into the graphics memory, parts of them
+// are read from `parts`.
+void renderer_use_parts(struct renderer *renderer, const struct part_source *parts,
+                        const struct relume_pack_info *info);
+
 // A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.
 void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
 

@@ -31,8 +31,14 @@ struct renderer {
     struct depths depths;           // empty: not a slab, or without depth
     struct relume_geometry geometry;
     int views;
-    double (*uv)[2];               // [views]
-    bool *needed;                  // [views]
+    double (*uv)[2];  // [views]
+    bool *needed;     // [views]
+    // Of a slab whose needed views are too much for the graphics memory: what is here of each.
+    struct relume_rect *part;  // [views]
+    bool by_parts;
+    int size[2];                   // of views; 0: they are not read by parts
+    size_t view_bytes;             // of a whole one there
+    bool display;                  // environments are refitted
     const struct target **relit;   // [views]; NULL where not needed
     struct objects_drawer drawer;  // objects; empty: none
     bool stage;                    // there is nothing but objects

@@ -29,7 +29,11 @@ relume_status depths_create(struct depths *d, const struct gl *gl, const relume_
     d->range = calloc(views, sizeof *d->range);
     d->uv = calloc(views, sizeof *d->uv);
     d->bytes = calloc(views, sizeof *d->bytes);
-    if (!d->slab || !d->texture || !d->range || !d->uv || !d->bytes) {
+    d->ranged = calloc(views, sizeof *d->ranged);
+    d->at = calloc(views, sizeof *d->at);
+    d->cut = calloc(views, sizeof *d->cut);
+    if (!d->slab || !d->texture || !d->range || !d->uv || !d->bytes || !d->ranged || !d->at ||
+        !d->cut) {
         depths_destroy(d);
         return RELUME_ENOMEM;
     }
@@ -54,31 +58,43 @@ void depths_destroy(struct depths *d)
     free(d->range);
     free(d->uv);
     free(d->bytes);
+    free(d->ranged);
+    free(d->at);
+    free(d->cut);
     *d = (struct depths){0};
 }
 
-static void upload(struct depths *d, int view, const struct relume_image *disparity)
+static void upload(struct depths *d, int view, const struct relume_image *disparity,
+                   const struct relume_rect *at)
 {
     const struct gl *gl = d->gl;
     gl->GenTextures(1, &d->texture[view]);
     texture_use(gl, 0, GL_TEXTURE_2D, d->texture[view]);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, disparity->width, disparity->height, 0, GL_RED,
-                   GL_FLOAT, disparity->data);
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, disparity->width);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, at->width, at->height, 0, GL_RED, GL_FLOAT,
+                   disparity->data + (size_t)at->top * (size_t)disparity->width + at->left);
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     texture_settings(gl, GL_TEXTURE_2D);
-    d->bytes[view] = (size_t)disparity->width * (size_t)disparity->height * sizeof(float);
-    (void)relume_slab_range(d->range[view], disparity);
+    d->bytes[view] = (size_t)at->width * (size_t)at->height * sizeof(float);
+    d->at[view] = *at;
 }
 
-static relume_status load(struct depths *d, int view)
+// `at` is what becomes a texture; NULL: all of it, of no width: nothing.
+static relume_status load(struct depths *d, int view, const struct relume_rect *at)
 {
     struct relume_image depth = {0};
     struct relume_image disparity = {0};
     relume_status status = d->source.depth(&depth, d->source.user, view);
     if (!status)
         status = relume_slab_disparity(&disparity, d->slab[view], d->uv[view], &depth);
-    if (!status)
-        upload(d, view, &disparity);
+    if (!status) {
+        const struct relume_rect all = {0, 0, disparity.width, disparity.height};
+        (void)relume_slab_range(d->range[view], &disparity);
+        d->ranged[view] = true;
+        if (!at || at->width)
+            upload(d, view, &disparity, at ? at : &all);
+    }
     relume_image_destroy(&depth);
     relume_image_destroy(&disparity);
     return status;
@@ -97,7 +113,14 @@ static void make_room(struct depths *d, const bool *needed)
     }
 }
 
-relume_status depths_use(struct depths *d, const bool *needed, double range[2])
+static bool same(const struct relume_rect *a, const struct relume_rect *b)
+{
+    return a->left == b->left && a->top == b->top && a->width == b->width && a->height == b->height;
+}
+
+// `part` NULL: whole views.
+static relume_status use(struct depths *d, const bool *needed, const struct relume_rect *part,
+                         double range[2])
 {
     relume_status status = RELUME_OK;
     range[0] = (double)INFINITY;
@@ -105,11 +128,37 @@ relume_status depths_use(struct depths *d, const bool *needed, double range[2])
     for (int i = 0; !status && i < d->views; i++) {
         if (!needed[i])
             continue;
-        if (!d->texture[i])
-            status = load(d, i);
+        const struct relume_rect none = {0}, *at = part ? &part[i] : NULL;
+        const bool whole = d->texture[i] && !d->cut[i];
+        if (d->texture[i] && (part ? !same(&d->at[i], at) : !whole))
+            leave(d, i);
+        if (!d->texture[i] && (!part || at->width || !d->ranged[i]))
+            status = load(d, i, part && !at->width ? &none : at);
+        d->cut[i] = part != NULL;
         range[0] = fmin(range[0], d->range[i][0]);
         range[1] = fmax(range[1], d->range[i][1]);
     }
     make_room(d, needed);
+    return status;
+}
+
+relume_status depths_use(struct depths *d, const bool *needed, double range[2])
+{
+    return use(d, needed, NULL, range);
+}
+
+relume_status depths_use_parts(struct depths *d, const bool *needed, const struct relume_rect *part,
+                               double range[2])
+{
+    return use(d, needed, part, range);
+}
+
+relume_status depths_find_ranges(struct depths *d, const bool *needed)
+{
+    const struct relume_rect none = {0};
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < d->views; i++)
+        if (needed[i] && !d->ranged[i])
+            status = load(d, i, &none);
     return status;
 }

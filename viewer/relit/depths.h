@@ -17,10 +17,13 @@ struct depths {
     struct depth_source source;
     const relume_slab **slab;  // [views]: the view's
     int views;
-    GLuint *texture;     // [views], one channel of float; 0: not uploaded
-    double (*range)[2];  // [views]; from above to below: all background
-    double (*uv)[2];     // [views]
-    size_t *bytes;       // [views]
+    GLuint *texture;         // [views], one channel of float; 0: not uploaded
+    double (*range)[2];      // [views]; from above to below: all background
+    double (*uv)[2];         // [views]
+    size_t *bytes;           // [views]
+    bool *ranged;            // [views]: the range is known
+    struct relume_rect *at;  // [views]: what the texture holds of the view, ...
+    bool *cut;               // ... if it was asked for a part
 };
 
 // Of one slab, or of several that share their view numbers. `gl`, the slabs and what the source
@@ -33,5 +36,10 @@ void depths_destroy(struct depths *depths);
 // Upload what needed[views] marks and is not there; `range` becomes that of all of these. Others
 // leave the graphics memory once all take more than a quarter of a gigabyte.
 relume_status depths_use(struct depths *depths, const bool *needed, double range[2]);
+// Know the ranges of needed[views] without uploading them.
+relume_status depths_find_ranges(struct depths *depths, const bool *needed);
+// As depths_use, of part[views] alone; where these are empty nothing.
+relume_status depths_use_parts(struct depths *depths, const bool *needed,
+                               const struct relume_rect *part, double range[2]);
 
 #endif

@@ -14,6 +14,13 @@ struct code_source {
     relume_status (*surface)(struct relume_image *out, void *user, int view);
 };
 
+// Codes of a rectangle of a view alone, for the caller to destroy; `part` NULL: there are none.
+struct part_source {
+    relume_status (*part)(struct relume_codes_part *out, void *user, int view,
+                          const struct relume_rect *at);
+    void *user;
+};
+
 struct loader;
 
 // The source is used by the loader's thread as well from now on. RELUME_ENOMEM, RELUME_ESYSTEM.

@@ -47,6 +47,16 @@ static relume_status read_codes(const struct relume_codes **out, void *user, int
     return status;
 }
 
+static relume_status read_part(struct relume_codes_part *out, void *user, int view,
+                               const struct relume_rect *at)
+{
+    struct pack_source *s = user;
+    pthread_mutex_lock(&s->lock);
+    const relume_status status = relume_pack_codes_part(out, s->pack, view, at);
+    pthread_mutex_unlock(&s->lock);
+    return status;
+}
+
 static void drop_codes(void *user, int view)
 {
     struct pack_source *s = user;
@@ -100,6 +110,11 @@ struct depth_source pack_source_places(struct pack_source *source)
 struct code_source pack_source_codes(struct pack_source *source)
 {
     return (struct code_source){read_codes, drop_codes, source, find_surface};
+}
+
+struct part_source pack_source_parts(struct pack_source *source)
+{
+    return (struct part_source){read_part, source};
 }
 
 struct depth_source pack_source_depth(struct pack_source *source)

@@ -17,6 +17,7 @@ void pack_source_destroy(struct pack_source **source);
 
 // A view's codes stay until every one who asked for them has dropped them.
 struct code_source pack_source_codes(struct pack_source *source);
+struct part_source pack_source_parts(struct pack_source *source);
 // Where each view's pixels see the scene, as relume_renderer_places; three channels.
 struct depth_source pack_source_places(struct pack_source *source);
 struct depth_source pack_source_depth(struct pack_source *source);

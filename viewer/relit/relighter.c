@@ -14,11 +14,12 @@
 static void stop_lending(struct relighter *r, struct relit_view *v)
 {
     const int view = (int)(v - r->view);
-    if (v->lent && r->source.drop)
+    if (v->lent && r->source.drop && !v->part.memory)
         r->source.drop(r->source.user, view);
     if (v->lent && r->library)
         relume_relighter_drop(r->library, view);
     relume_image_destroy(&v->surface);
+    relume_codes_part_destroy(&v->part);
 }
 
 static void release(struct relighter *r, struct relit_view *v)
@@ -53,8 +54,7 @@ static void make_room(struct relighter *r, size_t bytes)
 static relume_status keep(struct relighter *r, int view, const struct relume_codes *codes)
 {
     struct relit_view *v = &r->view[view];
-    const size_t pixels = (size_t)codes->width * (size_t)codes->height;
-    const size_t bytes = pixels * 4 * sizeof(float) + codes_bytes(codes);
+    const size_t bytes = relighter_view_bytes(codes);
     make_room(r, bytes);
     v->present = true;
     v->bytes = bytes;
@@ -130,6 +130,41 @@ static size_t bytes_of_library(const struct relighter *r, const struct relit_vie
 {
     const size_t pixels = (size_t)v->surface.width * (size_t)v->surface.height;
     return relume_relighter_bytes(r->library, (int)(v - r->view)) + 3 * pixels * sizeof(float);
+}
+
+static bool holds(struct relume_rect a, const struct relume_rect *b)
+{
+    return a.left <= b->left && a.top <= b->top && a.left + a.width >= b->left + b->width &&
+           a.top + a.height >= b->top + b->height;
+}
+
+// A quarter more to each side: an eye that moves on finds what it needs for a while.
+static struct relume_rect with_margin(const struct relume_rect *at, const int size[2])
+{
+    const int dx = at->width / 4, dy = at->height / 4;
+    const int left = at->left > dx ? at->left - dx : 0, top = at->top > dy ? at->top - dy : 0;
+    const int right = at->left + at->width + dx, low = at->top + at->height + dy;
+    return (struct relume_rect){left, top, (right < size[0] ? right : size[0]) - left,
+                                (low < size[1] ? low : size[1]) - top};
+}
+
+static relume_status load_part(struct relighter *r, int view, const struct relume_rect *at)
+{
+    struct relit_view *v = &r->view[view];
+    struct relume_codes_part part;
+    release(r, v);
+    relume_status status = r->parts.part(&part, r->parts.user, view, at);
+    if (status)
+        return status;
+    status = keep(r, view, &part.codes);
+    v->at = *at;
+    if (status || !v->lent) {
+        relume_codes_part_destroy(&part);
+        return status;
+    }
+    v->part = part;
+    v->lent = &v->part.codes;
+    return RELUME_OK;
 }
 
 static relume_status relight_by_library(struct relighter *r, struct relit_view *v,
@@ -344,6 +379,8 @@ relume_status relighter_view(const struct target **out, struct relighter *r, int
     struct relit_view *v = &r->view[view];
     relume_status status = RELUME_OK;
     *out = NULL;
+    if (v->at.width)
+        release(r, v);
     if (!v->present && r->loader) {
         loader_ask(r->loader, view);
         r->pending = true;
@@ -357,16 +394,37 @@ relume_status relighter_view(const struct target **out, struct relighter *r, int
 relume_status relighter_wait(const struct target **out, struct relighter *r, int view)
 {
     *out = NULL;
-    if (!r->loader || r->view[view].present)
+    if (!r->loader || relighter_has(r, view))
         return relighter_view(out, r, view);
+    if (r->view[view].present)
+        release(r, &r->view[view]);
     loader_ask(r->loader, view);
     const relume_status status = take_loaded(r, view);
     return status ? status : show(out, r, &r->view[view]);
 }
 
+relume_status relighter_part(const struct target **out, struct relume_rect *at, struct relighter *r,
+                             int view, const int size[2])
+{
+    struct relit_view *v = &r->view[view];
+    const struct relume_rect wider = with_margin(at, size), all = {0, 0, size[0], size[1]};
+    *out = NULL;
+    const bool here = v->present && (v->at.width == 0 || holds(v->at, at));
+    relume_status status = here ? RELUME_OK : load_part(r, view, &wider);
+    if (!status)
+        status = show(out, r, v);
+    *at = v->at.width ? v->at : all;
+    return status;
+}
+
 bool relighter_has(const struct relighter *r, int view)
 {
-    return r->view[view].present;
+    return r->view[view].present && r->view[view].at.width == 0;
+}
+
+size_t relighter_view_bytes(const struct relume_codes *codes)
+{
+    return (size_t)codes->width * (size_t)codes->height * 4 * sizeof(float) + codes_bytes(codes);
 }
 
 relume_status relighter_stream(struct relighter *r)

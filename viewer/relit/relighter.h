@@ -30,6 +30,15 @@ relume_status relighter_view(const struct target **out, struct relighter *religh
 relume_status relighter_stream(struct relighter *relighter);
 // As relighter_view, waiting for the view.
 relume_status relighter_wait(const struct target **out, struct relighter *relighter, int view);
+// Whether all of a view is on the GPU.
 bool relighter_has(const struct relighter *relighter, int view);
+
+// As relighter_view, of the rectangle `*at` of a view of size[0] x size[1] alone, of `parts`,
+// read at once: `*at` becomes what the texture holds, which is more. Not for near
+// lights, nor for environments on codes of the display domain.
+relume_status relighter_part(const struct target **out, struct relume_rect *at,
+                             struct relighter *relighter, int view, const int size[2]);
+// Graphics memory of a view with such codes, relit.
+size_t relighter_view_bytes(const struct relume_codes *codes);
 
 #endif

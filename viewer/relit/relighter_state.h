@@ -15,10 +15,12 @@ struct relit_view {
     GLuint *array;  // [arrays]: array textures of codes, four planes a texel, or one of indices,
                     // a layer for each codebook
     int arrays;
-    int layers;          // of all arrays together
-    size_t bytes, kept;  // of all it has, and of that by `library`
-    uint64_t used;       // the frame that last asked for it
-    bool fresh;          // `relit` shows the present lights
+    int layers;                     // of all arrays together
+    size_t bytes, kept;             // of all it has, and of that by `library`
+    uint64_t used;                  // the frame that last asked for it
+    bool fresh;                     // `relit` shows the present lights
+    struct relume_rect at;          // what is here of the view; width 0: all of it
+    struct relume_codes_part part;  // then, where the library relights it
     struct target relit;
     struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;
@@ -39,8 +41,9 @@ struct relighter {
     const struct gl *gl;
     const struct relume_log *log;
     struct code_source source;
-    struct loader *loader;  // or NULL: views are read when they are asked for
-    bool pending;           // this frame asked for a view that is still being read
+    struct part_source parts;  // may be set before the first view is asked for
+    struct loader *loader;     // or NULL: views are read when they are asked for
+    bool pending;              // this frame asked for a view that is still being read
     struct program dot, develop, lookup;
     struct nearby near;
     bool by_library;  // not by passes: where OpenGL is software. May be set before the first

@@ -234,6 +234,7 @@ static relume_status make_renderer(struct session *s)
     if (status)
         return status;
     const struct code_source source = pack_source_codes(s->source);
+    const struct part_source parts = pack_source_parts(s->source);
     const struct depth_source depth = pack_source_depth(s->source);
     status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry,
                              s->around ? NULL : info->uv, info->views, s->log);
@@ -241,6 +242,7 @@ static relume_status make_renderer(struct session *s)
         return status;
     if (s->around)
         renderer_use_slabs(&s->renderer, s->around, info->uv, info->slab_of);
+    renderer_use_parts(&s->renderer, &parts, info);
     s->renderer.relighter.budget = s->vram_bytes;
     s->renderer.relighter.threads = s->threads;
     s->renderer.relighter.by_library =

@@ -13,6 +13,6 @@ vec4 value_at(vec2 within)
 
 void main()
 {
-    vec2 texels = vec2(textureSize(view00, 0)) / (picture.zw - picture.xy);
+    vec2 texels = view_size() / (picture.zw - picture.xy);
     color = vec4(exposure * footprint_mean(texels).rgb, 1.0);
 }

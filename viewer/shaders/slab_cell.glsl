@@ -5,6 +5,7 @@ uniform sampler2D view00;  // low u, low v
 uniform sampler2D view10;  // high u, low v
 uniform sampler2D view01;
 uniform sampler2D view11;
+#include "slab_parts.glsl"
 uniform vec4 st;       // st_min, st_max
 uniform vec4 cell;     // low u, low v, high u, high v
 uniform bool nearest;  // the nearest camera instead
@@ -16,8 +17,10 @@ vec3 cell_value(vec2 uv, vec2 at)
     vec2 part = clamp((uv - cell.xy) / size, 0.0, 1.0);
     if (nearest)
         part = step(0.5, part);
-    vec2 position = at * vec2(textureSize(view00, 0));
-    vec3 low = mix(texels_bilinear(view00, position), texels_bilinear(view10, position), part.x);
-    vec3 high = mix(texels_bilinear(view01, position), texels_bilinear(view11, position), part.x);
+    vec2 position = at * view_size();
+    vec3 low = mix(texels_bilinear(view00, position - first_low.xy),
+                   texels_bilinear(view10, position - first_low.zw), part.x);
+    vec3 high = mix(texels_bilinear(view01, position - first_high.xy),
+                    texels_bilinear(view11, position - first_high.zw), part.x);
     return mix(low, high, part.y);
 }

@@ -8,6 +8,7 @@ uniform sampler2D disparity00;
 uniform sampler2D disparity10;
 uniform sampler2D disparity01;
 uniform sampler2D disparity11;
+#include "slab_parts.glsl"
 uniform vec4 st;    // st_min, st_max
 uniform vec4 cell;  // low u, low v, high u, high v
 uniform vec4 here;  // 1 for each camera whose view is there, in the order above, else 0
@@ -21,6 +22,7 @@ struct Camera {
     float weight;
     vec2 shift;  // texels per unit of disparity
     float speed, pace;
+    ivec2 first;  // texel of its view that its texture begins with
 };
 vec2 texel;  // where the ray's point on the st plane lies in a view
 int rounds;
@@ -36,13 +38,13 @@ vec2 place_at(Camera c, float q)
 
 bool within(vec2 at)
 {
-    vec2 size = vec2(textureSize(view00, 0));
+    vec2 size = view_size();
     return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, size));
 }
 
-ivec2 texel_index(ivec2 at)
+ivec2 texel_index(sampler2D view, Camera c, ivec2 at)
 {
-    return clamp(at, ivec2(0), textureSize(view00, 0) - 1);
+    return clamp(at - c.first, ivec2(0), textureSize(view, 0) - 1);
 }
 
 float disparity_at(sampler2D disparity, Camera c, float q)
@@ -50,7 +52,7 @@ float disparity_at(sampler2D disparity, Camera c, float q)
     vec2 at = place_at(c, q);
     if (!within(at))
         return BACKGROUND;
-    return texelFetch(disparity, texel_index(ivec2(floor(at))), 0).r;
+    return texelFetch(disparity, texel_index(disparity, c, ivec2(floor(at))), 0).r;
 }
 
 float agreement(float speed, float q, float other)
@@ -73,9 +75,9 @@ void gather(inout Sum sum, sampler2D view, sampler2D disparity, Camera c, float 
         for (int i = 0; i < 2; i++) {
             ivec2 here = corner + ivec2(i, j);
             vec2 part = 1.0 - abs(at - 0.5 - vec2(here));
-            float found = texelFetch(disparity, texel_index(here), 0).r;
+            float found = texelFetch(disparity, texel_index(disparity, c, here), 0).r;
             float w = c.weight * part.x * part.y * agreement(c.speed, surface, found);
-            sum.rgb += w * texelFetch(view, texel_index(here), 0).rgb;
+            sum.rgb += w * texelFetch(view, texel_index(view, c, here), 0).rgb;
             sum.disparity += w * found;
             sum.weight += w;
         }
@@ -171,11 +173,11 @@ vec4 shade(float nearest, float farthest)
     return vec4(rgb, seen ? sum.weight : GUESSED * sum.weight);
 }
 
-Camera find_camera(vec2 uv, vec2 at, vec2 part, float present)
+Camera find_camera(vec2 uv, vec2 at, vec2 part, float present, vec2 first)
 {
-    vec2 per_st = vec2(textureSize(view00, 0)) / (st.zw - st.xy);
+    vec2 per_st = view_size() / (st.zw - st.xy);
     vec2 shift = (uv - at) * per_st * vec2(1.0, -1.0);
-    return Camera(present * part.x * part.y, shift, length(shift), length(shift));
+    return Camera(present * part.x * part.y, shift, length(shift), length(shift), ivec2(first));
 }
 
 // The cameras of the cell around `nearest`, of a ray that passes `uv`; `at` is its place in the
@@ -184,11 +186,11 @@ void find_cameras(vec2 uv, vec2 nearest, vec2 at)
 {
     vec2 size = max(cell.zw - cell.xy, vec2(1e-30));  // one row or column has cells of no width
     vec2 part = clamp((nearest - cell.xy) / size, 0.0, 1.0);
-    texel = at * vec2(textureSize(view00, 0));
+    texel = at * view_size();
     rounds = 2;
     slope = 0.0;
-    camera00 = find_camera(uv, cell.xy, 1.0 - part, here.x);
-    camera10 = find_camera(uv, cell.zy, vec2(part.x, 1.0 - part.y), here.y);
-    camera01 = find_camera(uv, cell.xw, vec2(1.0 - part.x, part.y), here.z);
-    camera11 = find_camera(uv, cell.zw, part, here.w);
+    camera00 = find_camera(uv, cell.xy, 1.0 - part, here.x, first_low.xy);
+    camera10 = find_camera(uv, cell.zy, vec2(part.x, 1.0 - part.y), here.y, first_low.zw);
+    camera01 = find_camera(uv, cell.xw, vec2(1.0 - part.x, part.y), here.z, first_high.xy);
+    camera11 = find_camera(uv, cell.zw, part, here.w, first_high.zw);
 }

@@ -184,6 +184,23 @@ relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int f
 
 // ---------------------------------------------------------------- a part of a view
 
+relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view,
+                         const struct relume_rect *rect)
+{
+    struct relume_codes_part part;
+    const struct relume_relit relit = {.view = view,
+                                       .codes = &part.codes,
+                                       .lights = r->lights,
+                                       .count = r->light_count,
+                                       .log = r->said ? NULL : r->params.log};
+    relume_status status = relume_pack_codes_part(&part, r->pack, view, rect);
+    if (!status)
+        status = relume_relighter_relight(out, r->relighter, &relit);
+    relume_codes_part_destroy(&part);
+    r->said |= !status;
+    return status;
+}
+
 static relume_status check_part(const relume_renderer *r, int view, const struct relume_rect *rect)
 {
     const int width = r->info->width, height = r->info->height;

@@ -114,6 +114,9 @@ relume_status frame_around(relume_renderer *r, const struct relume_camera *camer
 // and no parts, where they are most of the views. Draw with frame_parts_params then.
 relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int frame[2],
                           bool by_depth);
+// A rectangle of a view under distant lights, of which nothing is kept; `out` is created.
+relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view,
+                         const struct relume_rect *rect);
 struct relume_view_params frame_parts_params(const relume_renderer *r, bool by_depth);
 
 // ---------------------------------------------------------------- one ray

@@ -21,7 +21,7 @@ acquire:base math image capture multiview:base image directions capture ball pho
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder:base coder codebook
 selection:base math image coder compare:base image capture coder codebook heldout
-lossy:base:base coder
+lossy:base:base image coder
 encode:base coder codebook lossy:base image capture codebook coder light relight pack
 pack:base image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
@@ -79,7 +79,7 @@ jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
 aom/:src/lossy/av1_write.c
 dav1d:src/lossy/av1_read.c
-zlib:src/lossy/lossy.c
+zlib:src/lossy/lossy.c src/lossy/disparity.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 GLFW:viewer/window/context_glfw.c samples/viewer.c

@@ -40,6 +40,9 @@ struct relume_pack_view {
     // of docs/format.md, "Coded planes". `coefficients` are of RELUME_STORE_12.
     const uint32_t *coded;
     size_t coded_words;  // how many
+    bool predicted;      // coded planes: from those of another view, which is not predicted itself
+    int anchor;          // that view
+    float depth_step;    // depth is written in steps of its inverse, of that size; 0: as it is
 };
 // Which part of a file is written, where several machines share the work; relume_pack_join makes
 // one file of all parts. Borrowed.
@@ -147,9 +150,9 @@ RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_
 
 // What a part is. Plain data.
 struct relume_pack_part {
-    int part, parts;   // 1 .. parts
-    int first, views;  // that it holds, of
-    int all_views;     // of the whole
+    int part, parts;     // 1 .. parts
+    int first, views;    // that it holds, of
+    int all_views;       // of the whole
     char creator[64];    // "relume 0.1.0"
     char options[4096];  // as they were given to relume_pack_encode
     uint64_t file_bytes;
@@ -222,10 +225,11 @@ RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_p
 // Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 
-// Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing or cannot be
-// decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; an input status
-// when it is not, with a sentence where it is more than those rows: a header, a value out of range.
-// What PIZ and no compression decode in spite of damage to single bits is not noticed.
+// Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing
+// or cannot be decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; an
+// input status when it is not, with a sentence where it is more than those rows: a header, a value
+// out of range. What PIZ and no compression decode in spite of damage to single bits is not
+// noticed.
 struct relume_pack_check_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

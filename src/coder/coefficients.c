@@ -179,6 +179,24 @@ void coefficients_choose_steps(relume_coefficients *c, const struct range *total
     }
 }
 
+relume_status coefficients_share_steps(relume_coefficients *const *c, int count, bool masked,
+                                       enum relume_step step)
+{
+    const size_t planes = (size_t)c[0]->info.planes;
+    struct range *total = mem_array(planes, sizeof *total);
+    if (!total)
+        return RELUME_ENOMEM;
+    for (size_t p = 0; p < planes; p++)
+        total[p] = range_of(NULL, 0);
+    for (int i = 0; i < count; i++)
+        for (size_t b = 0; b < (size_t)c[i]->bands * planes; b++)
+            total[b % planes] = range_join(total[b % planes], c[i]->band[b]);
+    for (int i = 0; i < count; i++)
+        coefficients_choose_steps(c[i], total, masked, step);
+    mem_free(total);
+    return RELUME_OK;
+}
+
 float coefficients_band_step(struct range r)
 {
     return r.max > r.min ? (r.max - r.min) / 65535.0f : 0.0f;

@@ -46,6 +46,10 @@ size_t coefficients_waiting(const relume_coefficients *c);
 // Fix scale and offset of every plane for the range that it has in the whole view.
 void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked,
                                enum relume_step step);
+// The same steps for all of them, of integer codes and one coder: those of what each plane holds in
+// any. RELUME_ENOMEM.
+relume_status coefficients_share_steps(relume_coefficients *const *c, int count, bool masked,
+                                       enum relume_step step);
 // The quantiser, in two steps for `n` pixels of one plane in the band of `row`: values -> numbers
 // that wait, by the band's range; numbers that wait -> codes as the storage has them, by the steps.
 void coefficients_wait(const relume_coefficients *c, int plane, int row, const float *values,

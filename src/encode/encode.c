@@ -93,6 +93,28 @@ static relume_status encode_view(struct material *m, int i, const relume_coder *
     return status;
 }
 
+// The step of inverse depth whose half moves what the next camera of the slab sees by an eighth of
+// a pixel; 0, which is as it is, where there is no next camera.
+static float depth_step(const struct relume_manifest *m, const struct relume_image *depth, int slab)
+{
+    const struct relume_geometry *g = m->slabs ? &m->slab[slab] : &m->geometry;
+    double extent = 0.0;
+    int views = 0;
+    for (int v = 0, first = 0; v < m->views; v++) {
+        if (m->view[v].slab != slab)
+            continue;
+        first = views++ ? first : v;
+        for (int i = 0; i < 2; i++)
+            extent = fmax(extent, fabs(m->view[v].uv[i] - m->view[first].uv[i]));
+    }
+    if (g->projection != RELUME_SLAB || !(extent > 0.0))
+        return 0.0f;
+    const double pixel = fmin((g->st_max[0] - g->st_min[0]) / depth->width,
+                              (g->st_max[1] - g->st_min[1]) / depth->height);
+    const double between = extent / fmax(sqrt(views) - 1.0, 1.0);
+    return (float)(0.25 * pixel / (between * fabs(g->uv_z - g->st_z)));
+}
+
 // Indices into the books of view `set`.
 static relume_status assign_view(struct material *m, int i, int set,
                                  const struct relume_books_params *p)
@@ -213,6 +235,9 @@ static relume_status write_material(const struct material *m, const relume_captu
 
 // ---------------------------------------------------------------- with loss
 
+// Words and the heads of their rows, against the words.
+static const double PACKED = 1.003;
+
 // The bytes of a file but for its words.
 static relume_status weigh_rest(double *bytes, const struct material *m,
                                 const relume_capture *capture, const relume_coder *coder,
@@ -234,6 +259,14 @@ static relume_status weigh_rest(double *bytes, const struct material *m,
     return status;
 }
 
+static void use_words(struct material *m, int view, int anchor)
+{
+    m->view[view].coded = m->words[view].word;
+    m->view[view].coded_words = m->words[view].count;
+    m->view[view].predicted = view != anchor;
+    m->view[view].anchor = anchor;
+}
+
 static relume_status code_planes(struct material *m, const relume_capture *capture,
                                  const relume_coder *coder,
                                  const struct relume_pack_encode_params *p,
@@ -242,18 +275,30 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
 {
     const double pixels =
         (double)m->views * relume_capture_width(capture) * relume_capture_height(capture);
+    const struct relume_manifest *manifest = relume_capture_manifest(capture);
     struct rate_target target = {p->psnr_db, 0.0};
     struct rate_result result;
     double rest = 0.0;
-    relume_status status = p->psnr_db > 0.0 ? RELUME_OK : weigh_rest(&rest, m, capture, coder, p);
-    target.bytes = fmax(p->bytes_per_pixel * pixels - rest, 1.0);
-    if (!status)
-        status =
-            rate_encode(m->words, &result, m->coefficients, m->views, capture, &target, encode);
-    for (int i = 0; !status && i < m->views; i++) {
-        m->view[i].coded = m->words[i].word;
-        m->view[i].coded_words = m->words[i].count;
+    bool masked = false;
+    struct view_groups groups = {0};
+    for (int i = 0; i < m->views; i++) {
+        masked |= m->mask[i].data != NULL;
+        if (m->depth[i].data)
+            m->view[i].depth_step = depth_step(manifest, &m->depth[i], manifest->view[i].slab);
     }
+    relume_status status =
+        coefficients_share_steps(m->coefficients, m->views, masked, encode->step);
+    if (!status)
+        status = groups_make(&groups, manifest, lossy_most_views(coder));
+    if (!status && !(p->psnr_db > 0.0))
+        status = weigh_rest(&rest, m, capture, coder, p);
+    target.bytes = fmax((p->bytes_per_pixel * pixels - rest) / PACKED, 1.0);
+    if (!status)
+        status = rate_encode(m->words, &result, m->coefficients, &groups, capture, &target, encode);
+    for (int g = 0; !status && g < groups.count; g++)
+        for (int i = groups.begin[g]; i < groups.begin[g + 1]; i++)
+            use_words(m, groups.view[i], groups.view[groups.begin[g]]);
+    groups_destroy(&groups);
     if (status)
         return status;
     const double all = pow(10.0, -result.psnr_db / 20.0), fit = report->fit_rms;
@@ -305,7 +350,9 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         status = make_books(&m, manifest, &p);
     if (!status && !coded && p.books && report)
         status = judge_books(&m, capture, &encode);
-    struct relume_encode_report total = encode_report_mean(m.report + m.first, m.end - m.first);
+    struct relume_encode_report total = {0};
+    if (!status)
+        total = encode_report_mean(m.report + m.first, m.end - m.first);
     if (!status && coded)
         status = code_planes(&m, capture, coder, &p, &total, &encode);
     if (!status && report)

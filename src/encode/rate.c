@@ -6,76 +6,88 @@
 #include "base/thread.h"
 #include "coder/codes.h"
 #include "coder/coefficients.h"
-#include "lossy/av1.h"
 
 #include <math.h>
 #include <string.h>
 
 // The slow coder is about a whole step better in quality at the same quantiser.
-enum { MOST_TRIED = 3, FIRST_GUESS = 30 * AV1_STEPS, SLOW_IS_FINER = AV1_STEPS };
+enum { FIRST_GUESS = 30 * AV1_STEPS, SLOW_IS_FINER = AV1_STEPS };
+
+// What is tried first: of views that are alone three, else two groups; by the slow coder too where
+// all of them are more than so many times that.
+enum { MOST_ALONE = 3, MOST_GROUPS = 2, WORTH_TRYING = 2 };
 
 struct trial {
-    struct lossy_words words[MOST_TRIED];
+    struct lossy_words *words;  // [views], of the groups that are tried; NULL: not tried
     double psnr_db, bytes;
 };
 
 struct rate {
-    relume_coefficients *const *coefficients;
-    int views, tried, speed;
-    int first;       // which view of the capture the coefficients begin with
-    double done;     // 0 .. 1
-    double step_db;  // what a step of the quantiser is worth
+    relume_coefficients *const *coefficients;  // [views]
+    const struct view_groups *groups;
+    int tried, speed;  // of the groups, evenly spread
+    int first;         // which view of the capture the coefficients begin with
+    double done;       // 0 .. 1
+    double step_db;    // what a step of the quantiser is worth
     const relume_capture *capture;
     const struct relume_encode_params *p;
-    struct rate_target target;  // bytes of the views that are tried
+    struct rate_target target;  // bytes of all views
     struct trial trial[AV1_COARSEST + 1];
 };
 
-// ---------------------------------------------------------------- views in parallel
+static int views_of(const struct view_groups *g)
+{
+    return g->begin[g->count];
+}
+
+// ---------------------------------------------------------------- groups in parallel
 
 struct job {
     const struct rate *rate;
-    int quantiser, views, each;  // threads for each
-    struct lossy_words *words;   // [views]
-    relume_status *status;       // [views]
+    int quantiser, each;        // threads for each
+    struct lossy_words *words;  // [views]
+    relume_status *status;      // [tried]
 };
 
-static int view_of(const struct job *j, int i)
+// The views of the i-th group that is tried, *count of them.
+static const int *group_at(const struct rate *r, int i, int *count)
 {
-    return (int)((2LL * i + 1) * j->rate->views / (2LL * j->views));
+    const struct view_groups *g = r->groups;
+    const int group = (int)((2LL * i + 1) * g->count / (2LL * r->tried));
+    *count = g->begin[group + 1] - g->begin[group];
+    return g->view + g->begin[group];
 }
 
-static void code_view(void *context, size_t item, int worker)
+static void code_group(void *context, size_t item, int worker)
 {
     struct job *j = context;
+    const struct rate *r = j->rate;
+    int n;
+    const int *view = group_at(r, (int)item, &n);
+    const struct av1_effort effort = {j->quantiser, r->speed};
+    relume_coefficients *from[AV1_MOST_MEMBERS] = {0};
+    struct lossy_words words[AV1_MOST_MEMBERS];
     (void)worker;
-    j->status[item] = lossy_encode(&j->words[item], j->rate->coefficients[view_of(j, (int)item)],
-                                   j->quantiser, j->rate->speed, j->each, j->rate->p->log);
+    for (int i = 0; i < n; i++)
+        from[i] = r->coefficients[view[i]];
+    j->status[item] = lossy_encode(words, from, n, &effort, j->each, r->p->log);
+    for (int i = 0; i < n; i++)
+        j->words[view[i]] = words[i];
 }
 
-// `views` of all of them, evenly spread.
-static relume_status code_views(const struct rate *r, struct lossy_words *words, int views,
-                                int quantiser)
+static relume_status code_groups(const struct rate *r, struct lossy_words *words, int quantiser)
 {
     const int threads = thread_count(r->p->threads);
-    struct job j = {r, quantiser, views, views < threads ? threads / views : 1, words, NULL};
-    j.status = mem_zeroed((size_t)views, sizeof *j.status);
+    struct job j = {r, quantiser, r->tried < threads ? threads / r->tried : 1, words, NULL};
+    j.status = mem_zeroed((size_t)r->tried, sizeof *j.status);
     if (!j.status)
         return RELUME_ENOMEM;
-    thread_for(threads, (size_t)views, code_view, &j);
+    thread_for(threads, (size_t)r->tried, code_group, &j);
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < views; i++)
+    for (int i = 0; !status && i < r->tried; i++)
         status = j.status[i];
     mem_free(j.status);
     return status;
-}
-
-static double bytes_of(const struct lossy_words *words, int views)
-{
-    double sum = 0.0;
-    for (int i = 0; i < views; i++)
-        sum += 4.0 * (double)words[i].count;
-    return sum;
 }
 
 // ---------------------------------------------------------------- quality
@@ -96,7 +108,7 @@ static void shown_row(const void *user, int row, float *planes, size_t stride)
 }
 
 static relume_status judge_view(double *square, const struct rate *r, int view,
-                                const struct lossy_words *words)
+                                const struct lossy_words *words, const struct lossy_words *anchor)
 {
     relume_coefficients *c = r->coefficients[view];
     const struct relume_coefficients_info *info = relume_coefficients_info(c);
@@ -106,8 +118,7 @@ static relume_status judge_view(double *square, const struct rate *r, int view,
     uint16_t *codes =
         mem_array((size_t)info->planes, (size_t)info->width * (size_t)info->height * sizeof *codes);
     relume_status status =
-        codes ? lossy_decode(codes, &shape, words->word, words->count, r->p->threads, NULL)
-              : RELUME_ENOMEM;
+        codes ? lossy_decode(codes, &shape, words, anchor, r->p->threads, NULL) : RELUME_ENOMEM;
     const struct shown shown = {info, codes};
     struct encode_judgement judgement = {0};
     if (!status)
@@ -119,15 +130,23 @@ static relume_status judge_view(double *square, const struct rate *r, int view,
     return status;
 }
 
-static relume_status judge(double *psnr_db, const struct rate *r, const struct lossy_words *words,
-                           int views)
+// Their bytes and quality.
+static relume_status judge(struct trial *t, const struct rate *r)
 {
-    const struct job all = {.rate = r, .views = views};
     relume_status status = RELUME_OK;
     double square = 0.0;
-    for (int i = 0; !status && i < views; i++)
-        status = judge_view(&square, r, view_of(&all, i), &words[i]);
-    *psnr_db = -10.0 * log10(fmax(square / views, 1e-20));
+    int views = 0, n;
+    t->bytes = 0.0;
+    for (int i = 0; !status && i < r->tried; i++) {
+        const int *view = group_at(r, i, &n);
+        for (int k = 0; !status && k < n; k++, views++) {
+            status =
+                judge_view(&square, r, view[k], &t->words[view[k]], k ? &t->words[view[0]] : NULL);
+            t->bytes += 4.0 * (double)t->words[view[k]].count;
+        }
+    }
+    t->bytes *= (double)views_of(r->groups) / views;
+    t->psnr_db = -10.0 * log10(fmax(square / views, 1e-20));
     return status;
 }
 
@@ -136,18 +155,18 @@ static relume_status judge(double *psnr_db, const struct rate *r, const struct l
 static relume_status try_one(struct rate *r, int quantiser)
 {
     struct trial *t = &r->trial[quantiser];
-    relume_status status = code_views(r, t->words, r->tried, quantiser);
-    if (!status && r->target.psnr_db > 0.0)
-        status = judge(&t->psnr_db, r, t->words, r->tried);
-    t->bytes = bytes_of(t->words, r->tried);
-    return status;
+    t->words = mem_zeroed((size_t)views_of(r->groups), sizeof *t->words);
+    relume_status status = t->words ? code_groups(r, t->words, quantiser) : RELUME_ENOMEM;
+    return status ? status : judge(t, r);
 }
 
 static void forget(struct rate *r)
 {
-    for (int q = 0; q <= AV1_COARSEST; q++)
-        for (int i = 0; i < MOST_TRIED; i++)
+    for (int q = 0; q <= AV1_COARSEST; q++) {
+        for (int i = 0; r->trial[q].words && i < views_of(r->groups); i++)
             mem_free(r->trial[q].words[i].word);
+        mem_free(r->trial[q].words);
+    }
     memset(r->trial, 0, sizeof r->trial);
 }
 
@@ -184,10 +203,12 @@ static int within(int quantiser)
                                       : quantiser;
 }
 
-// So near that the next step would hardly be nearer: qualities are wanted within 0.3 dB.
+// So near that the next step would hardly be nearer: qualities are wanted within 0.3 dB, and bytes
+// that are all but used are used.
 static bool is_close(const struct rate *r, int quantiser)
 {
-    return r->target.psnr_db > 0.0 && fabs(surplus(r, quantiser)) < 0.2;
+    const double s = surplus(r, quantiser);
+    return r->target.psnr_db > 0.0 ? fabs(s) < 0.2 : s <= 0.0 && s > -0.15;
 }
 
 // Whether a trial is nearer to the target than another: in quality, or with as many bytes as are
@@ -207,11 +228,12 @@ static void learn_step(struct rate *r, int a, int b)
     r->step_db = fmin(fmax(each, 0.02), 0.5);
 }
 
-// From *quantiser on to the one that meets the target best.
-static relume_status search(struct rate *r, int speed, int *quantiser)
+// From *quantiser on to the one that meets the target best, on `tried` groups.
+static relume_status search(struct rate *r, int tried, int speed, int *quantiser)
 {
     int fine = AV1_FINEST - 1, coarse = AV1_COARSEST + 1;  // not tried
     forget(r);
+    r->tried = tried;
     r->speed = speed;
     for (int q = *quantiser, last = 0;;) {
         const relume_status status = try_one(r, q);
@@ -229,38 +251,38 @@ static relume_status search(struct rate *r, int speed, int *quantiser)
     }
 }
 
-// The fast coder finds about where, the slow one the step itself.
+// The fast coder finds about where, the slow one the step itself, then that of all groups.
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
-                          relume_coefficients *const *coefficients, int views,
-                          const relume_capture *capture, const struct rate_target *target,
-                          const struct relume_encode_params *p)
+                          relume_coefficients *const *coefficients,
+                          const struct view_groups *groups, const relume_capture *capture,
+                          const struct rate_target *target, const struct relume_encode_params *p)
 {
+    const int some = views_of(groups) > groups->count ? MOST_GROUPS : MOST_ALONE;
+    const int tried = groups->count < some ? groups->count : some;
     struct rate r = {.coefficients = coefficients,
-                     .views = views,
-                     .tried = views < MOST_TRIED ? views : MOST_TRIED,
+                     .groups = groups,
                      .capture = capture,
                      .p = p,
                      .step_db = 0.1,
                      .target = *target};
-    r.target.bytes *= (double)r.tried / views;
-    result->quantiser = FIRST_GUESS;
-    relume_status status = search(&r, AV1_FAST, &result->quantiser);
-    r.done = 0.5;
+    int *quantiser = &result->quantiser;
+    *quantiser = FIRST_GUESS;
+    relume_status status = search(&r, tried, AV1_FAST, quantiser);
+    r.done = 0.3;
     if (target->psnr_db > 0.0)
-        result->quantiser = within(result->quantiser + SLOW_IS_FINER);
+        *quantiser = within(*quantiser + SLOW_IS_FINER);
+    if (!status && WORTH_TRYING * tried < groups->count)
+        status = search(&r, tried, AV1_SLOW, quantiser);
+    r.done = 0.6;
     if (!status)
-        status = search(&r, AV1_SLOW, &result->quantiser);
-    struct trial *best = &r.trial[result->quantiser];
+        status = search(&r, groups->count, AV1_SLOW, quantiser);
+    struct trial *best = &r.trial[*quantiser];
     result->psnr_db = best->psnr_db;
-    if (!status && r.tried == views) {
-        memcpy(words, best->words, (size_t)views * sizeof *words);
-        memset(best->words, 0, sizeof best->words);
-    } else if (!status) {
-        status = code_views(&r, words, views, result->quantiser);
+    if (!status) {
+        memcpy(words, best->words, (size_t)views_of(groups) * sizeof *words);
+        memset(best->words, 0, (size_t)views_of(groups) * sizeof *words);
     }
     forget(&r);
-    if (!status && (r.tried < views || !(target->psnr_db > 0.0)))
-        status = judge(&result->psnr_db, &r, words, views);
     return status;
 }
 
@@ -268,16 +290,17 @@ relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, in
                             const relume_capture *capture, double psnr_db,
                             const struct relume_encode_params *p)
 {
+    int begin[] = {0, 1}, alone[] = {0};
+    const struct view_groups group = {1, begin, alone};
     struct rate r = {.coefficients = &coefficients,
-                     .views = 1,
-                     .tried = 1,
+                     .groups = &group,
                      .first = view,
                      .capture = capture,
                      .p = p,
                      .step_db = 0.3,
                      .target = {.psnr_db = psnr_db}};
     int quantiser = FIRST_GUESS;
-    const relume_status status = search(&r, AV1_FAST, &quantiser);
+    const relume_status status = search(&r, 1, AV1_FAST, &quantiser);
     *bytes = r.trial[quantiser].bytes * exp2(-surplus(&r, quantiser) / EACH_HALF);
     forget(&r);
     return status;

@@ -2,6 +2,7 @@
 #ifndef ENCODE_RATE_H
 #define ENCODE_RATE_H
 
+#include "encode/groups.h"
 #include "lossy/lossy.h"
 
 #include <relume/capture.h>
@@ -16,13 +17,13 @@ struct rate_result {
 };
 
 // words[views] of the coefficients of all views, of the coarsest quantiser that reaches the PSNR
-// best or the finest that keeps the bytes. It is found on at most three of the views. Where the
-// target is out of reach it is the finest or coarsest. Caller frees the words, also on failure.
-// RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
+// best or the finest that keeps the bytes. It is found on some of the groups, and corrected on all.
+// Where the target is out of reach it is the finest or coarsest. Caller frees the words, also on
+// failure. RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
-                          relume_coefficients *const *coefficients, int views,
-                          const relume_capture *capture, const struct rate_target *target,
-                          const struct relume_encode_params *p);
+                          relume_coefficients *const *coefficients,
+                          const struct view_groups *groups, const relume_capture *capture,
+                          const struct rate_target *target, const struct relume_encode_params *p);
 
 // About the bytes of one `view` of the capture at that PSNR. Errors as above.
 relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, int view,

@@ -1,4 +1,4 @@
-// av1.h - small pictures of 12-bit samples as an AV1 sequence: libaom writes, dav1d reads
+// av1.h - small pictures of 12-bit samples as AV1 sequences: libaom writes, dav1d reads
 #ifndef LOSSY_AV1_H
 #define LOSSY_AV1_H
 
@@ -11,7 +11,8 @@ enum {
     AV1_FINEST = AV1_STEPS,
     AV1_COARSEST = 63 * AV1_STEPS,
     AV1_SLOW = 3,
-    AV1_FAST = 6
+    AV1_FAST = 6,
+    AV1_MOST_MEMBERS = 25
 };
 
 // A sequence of pictures: samples[picture][component][height][width], each 0 .. AV1_TOP. One
@@ -21,14 +22,28 @@ struct av1_shape {
 };
 
 // `quantiser` AV1_FINEST .. AV1_COARSEST: AV1_STEPS times what libaom calls so, of whose whole
-// numbers the pictures have the two nearest in turn; `speed` AV1_SLOW .. AV1_FAST, which takes a
-// fifth of the time for a quarter more bytes. The bytes are malloced. They depend on the version of
-// libaom, not on the machine. RELUME_ENOMEM, RELUME_ESYSTEM.
-relume_status av1_encode(unsigned char **bytes, size_t *size, const uint16_t *samples,
-                         const struct av1_shape *shape, int quantiser, int speed,
+// numbers the pictures have the two nearest in turn. `speed` AV1_SLOW .. AV1_FAST, which takes a
+// half of the time for a tenth more bytes.
+struct av1_effort {
+    int quantiser, speed;
+};
+struct av1_bytes {
+    unsigned char *byte;  // [size], mem_free
+    size_t size, room;
+};
+
+// How many sequences can be one group.
+int av1_most_members(int pictures);
+// A group of sequences, out[members] of samples[members]. The first is decoded alone. Each picture
+// of another one is predicted from the first one's picture of that number and the one before, and
+// from its own last. The bytes depend on the version of libaom, not on the machine. RELUME_ENOMEM,
+// RELUME_ESYSTEM.
+relume_status av1_encode(struct av1_bytes *out, const uint16_t *const *samples, int members,
+                         const struct av1_shape *shape, const struct av1_effort *effort,
                          const struct relume_log *log);
-// Bytes that are no such sequence are RELUME_EDAMAGED. RELUME_ENOMEM.
+// `first` is the group's first sequence where `bytes` are another one, else NULL. Bytes that are no
+// such sequence are RELUME_EDAMAGED. RELUME_ENOMEM.
 relume_status av1_decode(uint16_t *samples, const struct av1_shape *shape,
-                         const unsigned char *bytes, size_t size);
+                         const struct av1_bytes *bytes, const struct av1_bytes *first);
 
 #endif

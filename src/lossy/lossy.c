@@ -4,7 +4,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "lossy/av1.h"
 
 #include <string.h>
 #include <zlib.h>
@@ -12,6 +11,10 @@
 // Words at the head, before two for each tile: bytes of its sequence, and their CRC-32.
 enum { WORD_MAGIC, WORD_TILE, WORD_TILES, HEAD_WORDS };
 enum { MAGIC = 0x31564C52, TILE = 512, GRANULE = 8, LEAST_SIDE = 16 };  // "RLV1"
+
+// A tile of a group is in memory while it is coded: smaller ones where it would take more than
+// this.
+enum { MOST_SAMPLES = 1 << 28, LEAST_TILE = 128 };
 
 struct tiles {
     struct lossy_shape shape;
@@ -166,16 +169,17 @@ static void repeat_edges(uint16_t *plane, const struct tile *t)
 
 struct encoding {
     struct tiles tiles;
-    const relume_coefficients *from;
-    int quantiser, speed;
+    relume_coefficients *const *from;  // [views]
+    int views;
+    const struct av1_effort *effort;
     const struct relume_log *log;
-    relume_status *status;  // [tiles]
-    unsigned char **bytes;  // [tiles]
-    size_t *size;           // [tiles]
+    relume_status *status;    // [tiles]
+    struct av1_bytes *bytes;  // [tiles][views]
 };
 
 // Rows of a coefficient are [row][plane][x].
-static relume_status gather(uint16_t *samples, const struct encoding *e, const struct tile *t)
+static relume_status gather(uint16_t *samples, const struct encoding *e, const struct tile *t,
+                            int view)
 {
     const struct lossy_shape *s = &e->tiles.shape;
     const size_t width = (size_t)s->width, stride = (size_t)t->video.width;
@@ -183,7 +187,7 @@ static relume_status gather(uint16_t *samples, const struct encoding *e, const s
     uint16_t *row = mem_array((size_t)s->planes, width * sizeof *row);
     relume_status status = row ? RELUME_OK : RELUME_ENOMEM;
     for (int y = 0; !status && y < t->height; y++) {
-        status = relume_coefficients_read(e->from, t->y + y, 1, row);
+        status = relume_coefficients_read(e->from[view], t->y + y, 1, row);
         for (int p = 0; !status && p < t->video.pictures; p++)
             for (int c = 0; c < t->video.components; c++)
                 memcpy(samples + (size_t)(p * t->video.components + c) * plane + (size_t)y * stride,
@@ -199,16 +203,21 @@ static void encode_tile(void *context, size_t item, int worker)
 {
     struct encoding *e = context;
     const struct tile t = tile_at(&e->tiles, (int)item);
-    uint16_t *samples = tile_samples(&t);
-    relume_status status = samples ? gather(samples, e, &t) : RELUME_ENOMEM;
+    uint16_t *samples[AV1_MOST_MEMBERS] = {0};
+    relume_status status = RELUME_OK;
     (void)worker;
-    if (!status) {
-        convert(samples, &t.video, to_luma);
-        status = av1_encode(&e->bytes[item], &e->size[item], samples, &t.video, e->quantiser,
-                            e->speed, e->log);
+    for (int v = 0; !status && v < e->views; v++) {
+        samples[v] = tile_samples(&t);
+        status = samples[v] ? gather(samples[v], e, &t, v) : RELUME_ENOMEM;
+        if (!status)
+            convert(samples[v], &t.video, to_luma);
     }
+    if (!status)
+        status = av1_encode(e->bytes + item * (size_t)e->views, (const uint16_t *const *)samples,
+                            e->views, &t.video, e->effort, e->log);
     e->status[item] = status;
-    mem_free(samples);
+    for (int v = 0; v < e->views; v++)
+        mem_free(samples[v]);
 }
 
 static size_t words_for(size_t bytes)
@@ -216,59 +225,84 @@ static size_t words_for(size_t bytes)
     return (bytes + 3) / 4;
 }
 
-// Little-endian bytes as words, which every machine keeps.
-static void put_bytes(uint32_t *word, const unsigned char *bytes, size_t size)
+void lossy_put_bytes(uint32_t *word, const unsigned char *bytes, size_t size)
 {
     memset(word, 0, 4 * words_for(size));
     for (size_t i = 0; i < size; i++)
         word[i / 4] |= (uint32_t)bytes[i] << 8 * (i % 4);
 }
 
-static relume_status join(struct lossy_words *out, const struct encoding *e)
+void lossy_take_bytes(unsigned char *bytes, const uint32_t *word, size_t size)
+{
+    for (size_t i = 0; i < size; i++)
+        bytes[i] = (unsigned char)(word[i / 4] >> 8 * (i % 4));
+}
+
+static relume_status join(struct lossy_words *out, const struct encoding *e, int view)
 {
     const size_t tiles = (size_t)e->tiles.count;
     size_t count = HEAD_WORDS + 2 * tiles, at = count;
     for (size_t i = 0; i < tiles; i++)
-        count += words_for(e->size[i]);
+        count += words_for(e->bytes[i * (size_t)e->views + (size_t)view].size);
     uint32_t *word = mem_array(count, sizeof *word);
     if (!word)
         return RELUME_ENOMEM;
     word[WORD_MAGIC] = MAGIC;
     word[WORD_TILE] = (uint32_t)e->tiles.size;
     word[WORD_TILES] = (uint32_t)tiles;
-    for (size_t i = 0; i < tiles; at += words_for(e->size[i++])) {
-        word[HEAD_WORDS + 2 * i] = (uint32_t)e->size[i];
-        word[HEAD_WORDS + 2 * i + 1] = (uint32_t)crc32(0, e->bytes[i], (uInt)e->size[i]);
-        put_bytes(word + at, e->bytes[i], e->size[i]);
+    for (size_t i = 0; i < tiles; i++) {
+        const struct av1_bytes *b = &e->bytes[i * (size_t)e->views + (size_t)view];
+        word[HEAD_WORDS + 2 * i] = (uint32_t)b->size;
+        word[HEAD_WORDS + 2 * i + 1] = (uint32_t)crc32(0, b->byte, (uInt)b->size);
+        lossy_put_bytes(word + at, b->byte, b->size);
+        at += words_for(b->size);
     }
     *out = (struct lossy_words){word, count};
     return RELUME_OK;
 }
 
-relume_status lossy_encode(struct lossy_words *out, const relume_coefficients *from, int quantiser,
-                           int speed, int threads, const struct relume_log *log)
+int lossy_most_views(const relume_coder *coder)
 {
-    const struct relume_coefficients_info *info = relume_coefficients_info(from);
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    return av1_most_members(lossy_in_colour(coder) ? info->planes / 3 : info->planes);
+}
+
+static int tile_side(const struct lossy_shape *shape, int views)
+{
+    int side = TILE;
+    while (side > LEAST_TILE &&
+           (double)side * side * shape->planes * views * sizeof(uint16_t) > MOST_SAMPLES)
+        side /= 2;
+    return side;
+}
+
+relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *from, int views,
+                           const struct av1_effort *effort, int threads,
+                           const struct relume_log *log)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(from[0]);
     int *order = lossy_order(info->coder);
     const struct lossy_shape shape = {info->width, info->height, info->planes,
                                       lossy_in_colour(info->coder), order};
-    struct encoding e = {tiles_of(&shape, TILE), from, quantiser, speed, log, NULL, NULL, NULL};
-    const size_t n = (size_t)e.tiles.count;
+    struct encoding e = {.tiles = tiles_of(&shape, tile_side(&shape, views)),
+                         .from = from,
+                         .views = views,
+                         .effort = effort,
+                         .log = log};
+    const size_t n = (size_t)e.tiles.count, sequences = n * (size_t)views;
     e.status = mem_zeroed(n, sizeof *e.status);
-    e.bytes = mem_zeroed(n, sizeof *e.bytes);
-    e.size = mem_zeroed(n, sizeof *e.size);
-    relume_status status = e.status && e.bytes && e.size ? RELUME_OK : RELUME_ENOMEM;
-    *out = (struct lossy_words){0};
+    e.bytes = mem_zeroed(sequences, sizeof *e.bytes);
+    relume_status status = e.status && e.bytes ? RELUME_OK : RELUME_ENOMEM;
+    memset(out, 0, (size_t)views * sizeof *out);
     if (!status)
         thread_for(threads, n, encode_tile, &e);
     for (size_t i = 0; !status && i < n; i++)
         status = e.status[i];
-    if (!status)
-        status = join(out, &e);
-    for (size_t i = 0; e.bytes && i < n; i++)
-        mem_free(e.bytes[i]);
+    for (int v = 0; !status && v < views; v++)
+        status = join(&out[v], &e, v);
+    for (size_t i = 0; e.bytes && i < sequences; i++)
+        mem_free(e.bytes[i].byte);
     mem_free(e.bytes);
-    mem_free(e.size);
     mem_free(e.status);
     mem_free(order);
     return status;
@@ -276,23 +310,40 @@ relume_status lossy_encode(struct lossy_words *out, const relume_coefficients *f
 
 // ---------------------------------------------------------------- decoding
 
+// Words whose tiles are known.
+struct found {
+    const uint32_t *word;
+    size_t *at;  // [tiles]: where the words of each begin
+};
+
 struct decoding {
     struct tiles tiles;
-    const uint32_t *word;
-    size_t *at;  // [tiles]: where its words begin
+    struct found view, anchor;
     uint16_t *codes;
     relume_status *status;  // [tiles]
 };
 
-// Where tiles lie, when all of them are within the words.
-static bool find_tiles(struct decoding *d, size_t count)
+// Of `words` that are tiles of such a view, all within the words.
+static relume_status find_tiles(struct found *f, struct tiles *tiles,
+                                const struct lossy_shape *shape, const struct lossy_words *words)
 {
-    size_t at = HEAD_WORDS + 2 * (size_t)d->tiles.count;
-    for (int i = 0; i < d->tiles.count; i++) {
-        d->at[i] = at;
-        at += words_for(d->word[HEAD_WORDS + 2 * i]);
+    const uint32_t *word = words->word;
+    f->word = word;
+    if (words->count < HEAD_WORDS || word[WORD_MAGIC] != MAGIC || word[WORD_TILE] < LEAST_SIDE ||
+        word[WORD_TILE] > 4096)
+        return RELUME_EDAMAGED;
+    *tiles = tiles_of(shape, (int)word[WORD_TILE]);
+    size_t at = HEAD_WORDS + 2 * (size_t)tiles->count;
+    if (word[WORD_TILES] != (uint32_t)tiles->count || words->count < at)
+        return RELUME_EDAMAGED;
+    f->at = mem_array((size_t)tiles->count, sizeof *f->at);
+    if (!f->at)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < tiles->count; i++) {
+        f->at[i] = at;
+        at += words_for(word[HEAD_WORDS + 2 * i]);
     }
-    return at <= count;
+    return at <= words->count ? RELUME_OK : RELUME_EDAMAGED;
 }
 
 static void scatter(const struct decoding *d, const struct tile *t, const uint16_t *samples)
@@ -309,28 +360,38 @@ static void scatter(const struct decoding *d, const struct tile *t, const uint16
         }
 }
 
+// The sequence of a tile, when its checksum agrees; the bytes are freed by the caller.
+static relume_status tile_bytes(struct av1_bytes *out, const struct found *f, size_t tile)
+{
+    const uint32_t *head = f->word + HEAD_WORDS + 2 * tile, *from = f->word + f->at[tile];
+    out->size = head[0];
+    out->byte = mem_array(out->size, 1);
+    if (!out->byte)
+        return RELUME_ENOMEM;
+    lossy_take_bytes(out->byte, from, out->size);
+    return crc32(0, out->byte, (uInt)out->size) == head[1] ? RELUME_OK : RELUME_EDAMAGED;
+}
+
 static void decode_tile(void *context, size_t item, int worker)
 {
     struct decoding *d = context;
     const struct tile t = tile_at(&d->tiles, (int)item);
-    const size_t size = d->word[HEAD_WORDS + 2 * item];
+    struct av1_bytes bytes = {0}, first = {0};
     uint16_t *samples = tile_samples(&t);
-    unsigned char *bytes = mem_array(size, 1);
-    relume_status status = samples && bytes ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = samples ? tile_bytes(&bytes, &d->view, item) : RELUME_ENOMEM;
     (void)worker;
-    for (size_t i = 0; !status && i < size; i++)
-        bytes[i] = (unsigned char)(d->word[d->at[item] + i / 4] >> 8 * (i % 4));
-    if (!status && crc32(0, bytes, (uInt)size) != d->word[HEAD_WORDS + 2 * item + 1])
-        status = RELUME_EDAMAGED;
+    if (!status && d->anchor.word)
+        status = tile_bytes(&first, &d->anchor, item);
     if (!status)
-        status = av1_decode(samples, &t.video, bytes, size);
+        status = av1_decode(samples, &t.video, &bytes, d->anchor.word ? &first : NULL);
     if (!status) {
         convert(samples, &t.video, from_luma);
         scatter(d, &t, samples);
     }
     d->status[item] = status;
     mem_free(samples);
-    mem_free(bytes);
+    mem_free(bytes.byte);
+    mem_free(first.byte);
 }
 
 static relume_status decode_all(struct decoding *d, int threads, const struct lossy_lost *lost)
@@ -346,29 +407,25 @@ static relume_status decode_all(struct decoding *d, int threads, const struct lo
     return RELUME_OK;
 }
 
-relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape, const uint32_t *word,
-                           size_t count, int threads, const struct lossy_lost *lost)
+relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
+                           const struct lossy_words *words, const struct lossy_words *anchor,
+                           int threads, const struct lossy_lost *lost)
 {
-    struct decoding d = {.word = word, .codes = codes};
-    if (count < HEAD_WORDS || word[WORD_MAGIC] != MAGIC || word[WORD_TILE] < LEAST_SIDE ||
-        word[WORD_TILE] > 4096)
-        return RELUME_EDAMAGED;
-    d.tiles = tiles_of(shape, (int)word[WORD_TILE]);
-    const size_t n = (size_t)d.tiles.count;
-    if (word[WORD_TILES] != n || count < HEAD_WORDS + 2 * n)
-        return RELUME_EDAMAGED;
-    d.at = mem_array(n, sizeof *d.at);
-    d.status = mem_zeroed(n, sizeof *d.status);
-    relume_status status = d.at && d.status ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && !find_tiles(&d, count))
+    const size_t pixels = (size_t)shape->width * (size_t)shape->height;
+    struct decoding d = {.codes = codes};
+    struct tiles of_anchor;
+    relume_status status = find_tiles(&d.view, &d.tiles, shape, words);
+    if (!status && anchor)
+        status = find_tiles(&d.anchor, &of_anchor, shape, anchor);
+    if (!status && anchor && of_anchor.size != d.tiles.size)
         status = RELUME_EDAMAGED;
     if (!status) {
-        memset(codes, 0,
-               (size_t)shape->planes * (size_t)shape->width * (size_t)shape->height *
-                   sizeof *codes);
-        status = decode_all(&d, threads, lost);
+        d.status = mem_zeroed((size_t)d.tiles.count, sizeof *d.status);
+        memset(codes, 0, (size_t)shape->planes * pixels * sizeof *codes);
+        status = d.status ? decode_all(&d, threads, lost) : RELUME_ENOMEM;
     }
-    mem_free(d.at);
+    mem_free(d.view.at);
+    mem_free(d.anchor.at);
     mem_free(d.status);
     return status;
 }

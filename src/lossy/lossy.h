@@ -2,9 +2,13 @@
 //
 // A view is cut into tiles of up to 512 x 512 pixels, each of which is decoded alone. A tile is one
 // AV1 sequence, its pictures the coefficients one after the other: grey planes, or where red, green
-// and blue have planes of their own pictures in colour. How the words lie: docs/format.md.
+// and blue have planes of their own pictures in colour. Views side by side are coded as a group:
+// the first, the anchor, alone, every other one predicted from the anchor, so that no view takes
+// more than two to decode. How the words lie: docs/format.md.
 #ifndef LOSSY_LOSSY_H
 #define LOSSY_LOSSY_H
+
+#include "lossy/av1.h"
 
 #include <relume/coder.h>
 
@@ -25,20 +29,29 @@ struct lossy_words {
     uint32_t *word;  // [count], from malloc
     size_t count;
 };
-// The codes of `from`, whose storage is RELUME_STORE_12. `quantiser` as av1.h.
-// `speed` likewise. Words do not depend on `threads`. RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM,
-// RELUME_ECANCEL.
-relume_status lossy_encode(struct lossy_words *out, const relume_coefficients *from, int quantiser,
-                           int speed, int threads, const struct relume_log *log);
+// Bytes as words of which the first byte is the lowest: words are what every machine keeps.
+void lossy_put_bytes(uint32_t *word, const unsigned char *bytes, size_t size);
+void lossy_take_bytes(unsigned char *bytes, const uint32_t *word, size_t size);
+
+// How many views of such a coder can be one group.
+int lossy_most_views(const relume_coder *coder);
+// The codes of from[views], a group, whose storage is RELUME_STORE_12 and whose steps are the same;
+// the first is the anchor. `effort` as av1.h. Words do not depend on `threads`. RELUME_ENOMEM,
+// RELUME_EIO, RELUME_ESYSTEM, RELUME_ECANCEL.
+relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *from, int views,
+                           const struct av1_effort *effort, int threads,
+                           const struct relume_log *log);
 
 // Called with the rectangle of a tile that cannot be decoded; its codes are 0.
 struct lossy_lost {
     void (*tile)(void *user, int x, int y, int width, int height);
     void *user;
 };
-// Into codes[planes][height][width]. RELUME_EDAMAGED when words are no such tiles, or a tile cannot
-// be decoded and `lost` is NULL. RELUME_ENOMEM.
-relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape, const uint32_t *word,
-                           size_t count, int threads, const struct lossy_lost *lost);
+// Into codes[planes][height][width]; `anchor` where the view is not one itself, else NULL.
+// RELUME_EDAMAGED when words are no such tiles, or a tile cannot be decoded and `lost` is NULL.
+// RELUME_ENOMEM.
+relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
+                           const struct lossy_words *words, const struct lossy_words *anchor,
+                           int threads, const struct lossy_lost *lost);
 
 #endif

@@ -39,6 +39,8 @@ enum { FORMAT_VERSION = 4, FORMAT_CODED = 4, FORMAT_DISCS = 3, FORMAT_SLABS = 2,
 #define ATTR_REPORT        "relume.report"
 #define ATTR_BOOKS         "relume.books"
 #define ATTR_CODING        "relume.coding"
+#define ATTR_WIDTH         "relume.width"
+#define ATTR_HEIGHT        "relume.height"
 
 // A part of the work (docs/format.md, "Parts"): format and attributes of the first part beside
 // those of the whole, and of a view's
@@ -57,6 +59,12 @@ enum { FORMAT_VERSION = 4, FORMAT_CODED = 4, FORMAT_DISCS = 3, FORMAT_SLABS = 2,
 #define ATTR_SCALE  "relume.scale"
 #define ATTR_OFFSET "relume.offset"
 #define ATTR_MEMBER "relume.member"
+
+// Attributes of the part of a group of coded views: each as "VIEW WORDS DEPTH-WORDS", the anchor
+// first, and the step of its coded depth
+#define ATTR_GROUP    "relume.group"
+#define ATTR_STEP     "relume.step"
+#define FORMAT_MEMBER "%s%d %zu %zu "
 
 // Attributes of a codebook's part, beside scale and offset
 #define ATTR_BOOK  "relume.book"

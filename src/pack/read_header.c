@@ -1,5 +1,6 @@
 // read_header.c - what all of a relume file is, out of the attributes of its first part
 #include "base/log.h"
+#include "base/memory.h"
 #include "pack/format.h"
 #include "pack/reader.h"
 
@@ -69,17 +70,30 @@ static void read_report(relume_pack *p)
     };
 }
 
-static relume_status read_counts(relume_pack *p)
+// Of the views: that of the first picture, but where planes are coded.
+static relume_status read_size(relume_pack *p)
 {
     const struct exr_part_info first = exr_part_info(p->file, 0);
     p->info.width = first.width;
     p->info.height = first.height;
+    if (p->coded && (!exr_get_int(p->file, 0, ATTR_WIDTH, &p->info.width) ||
+                     !exr_get_int(p->file, 0, ATTR_HEIGHT, &p->info.height) || p->info.width < 1 ||
+                     p->info.height < 1 || p->info.width > 65536 || p->info.height > 65536 ||
+                     !limits_allow(&p->limits, p->info.width, p->info.height)))
+        return reader_bad(p, ATTR_WIDTH " and " ATTR_HEIGHT,
+                          "1 to 65536 pixels a side, within the limits");
+    return RELUME_OK;
+}
+
+static relume_status read_counts(relume_pack *p)
+{
     if (!exr_get_int(p->file, 0, ATTR_BOOKS, &p->info.books))
         p->info.books = 0;
     if (p->info.books < 0 || p->info.books > RELUME_MOST_BOOKS)
         return reader_bad(p, ATTR_BOOKS, "0 to 8");
     if (!exr_get_int(p->file, 0, ATTR_VIEWS, &p->info.views) || p->info.views < 1 ||
-        p->info.views > p->limits.max_views || p->info.views >= exr_part_count(p->file))
+        p->info.views > p->limits.max_views ||
+        (!p->coded && p->info.views >= exr_part_count(p->file)))
         return reader_bad(p, ATTR_VIEWS, "a part for every view, within the limits");
     return RELUME_OK;
 }
@@ -110,8 +124,7 @@ static relume_status read_geometry(relume_pack *p)
     enum relume_projection projection;
     if (!name || relume_projection_parse(&projection, name))
         return reader_bad(p, ATTR_PROJECTION, "planar, slab, cylindrical, spherical or cube");
-    const struct exr_part_info part = exr_part_info(p->file, 0);
-    *g = relume_geometry_default(projection, part.width, part.height);
+    *g = relume_geometry_default(projection, p->info.width, p->info.height);
     if (projection == RELUME_PLANAR) {
         const float *v = reader_floats(p, 0, ATTR_WINDOW, 5);
         const char *camera = exr_get_text(p->file, 0, ATTR_CAMERA);
@@ -138,10 +151,10 @@ static relume_status read_geometry(relume_pack *p)
         g->v_min = (double)v[0];
         g->v_max = (double)v[1];
         g->center = (struct relume_vec3){(double)v[2], (double)v[3], (double)v[4]};
-        g->disc = disc >= 0.0f && disc <= (float)part.height ? (int)disc : -1;
-        if ((float)g->disc != disc || !relume_geometry_fits(g, part.width, part.height))
+        g->disc = disc >= 0.0f && disc <= (float)p->info.height ? (int)disc : -1;
+        if ((float)g->disc != disc || !relume_geometry_fits(g, p->info.width, p->info.height))
             return reader_bad(p, ATTR_PANORAMA, "discs of a cylinder that fit");
-        if (projection == RELUME_CUBE && part.width != 6 * part.height)
+        if (projection == RELUME_CUBE && p->info.width != 6 * p->info.height)
             return reader_bad(p, "size", "six square faces side by side");
     }
     return read_uv(p);
@@ -219,6 +232,8 @@ relume_status reader_read_header(relume_pack *p)
     relume_status status = check_format(p);
     if (!status)
         status = read_kinds(p);
+    if (!status)
+        status = read_size(p);
     if (!status)
         status = read_counts(p);
     if (!status)

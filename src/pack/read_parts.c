@@ -12,17 +12,14 @@ static relume_status check_view_part(relume_pack *p, int part, int view)
     const int planes = relume_coder_info(p->coder)->planes;
     char where[32];
     snprintf(where, sizeof where, "view %d", view);
-    if (p->coded && (i.channels != 1 || !i.uniform || i.sample != EXR_SAMPLE_UINT))
-        return reader_bad(p, where, "rows of words");
-    if (!p->coded && (i.width != p->info.width || i.height != p->info.height))
+    if (i.width != p->info.width || i.height != p->info.height)
         return reader_bad(p, where, "the size of the other parts");
     if (p->info.books) {
         if (i.channels != p->info.books || !i.uniform || i.sample != EXR_SAMPLE_UINT)
             return reader_bad(p, where, "one channel of whole numbers for every codebook");
         return RELUME_OK;
     }
-    if (!p->coded &&
-        (i.channels != planes || !i.uniform || i.sample != codes_sample(p->info.storage)))
+    if (i.channels != planes || !i.uniform || i.sample != codes_sample(p->info.storage))
         return reader_bad(p, where, "one channel of the stored type for every plane");
     if (!reader_floats(p, part, ATTR_SCALE, planes) || !reader_floats(p, part, ATTR_OFFSET, planes))
         return reader_bad(p, where, "a finite scale and offset for every plane");
@@ -43,17 +40,21 @@ static bool is_next(const relume_pack *p, int part, char name[48], int view, con
     return part < exr_part_count(p->file) && !strcmp(exr_part_info(p->file, part).name, name);
 }
 
+static relume_status find_codes(relume_pack *p, int view, int *part)
+{
+    char name[48];
+    p->parts[view] = (struct view_parts){.codes = *part, .depth = -1, .mask = -1, .anchor = -1};
+    if (!is_next(p, *part, name, view, ""))
+        return reader_bad(p, name, "a part of that name");
+    const relume_status status = check_view_part(p, (*part)++, view);
+    return status || p->info.shared ? status : reader_find_books(p, view, part);
+}
+
 static relume_status find_view(relume_pack *p, int view, int *part)
 {
     char name[48];
     struct view_parts *parts = &p->parts[view];
-    *parts = (struct view_parts){-1, -1, -1};
-    if (!is_next(p, *part, name, view, ""))
-        return reader_bad(p, name, "a part of that name");
-    relume_status status = check_view_part(p, *part, view);
-    parts->codes = (*part)++;
-    if (!status && !p->info.shared)
-        status = reader_find_books(p, view, part);
+    relume_status status = p->coded ? RELUME_OK : find_codes(p, view, part);
     if (!status && is_next(p, *part, name, view, ".depth")) {
         if (!is_plane(p, *part, EXR_SAMPLE_FLOAT))
             return reader_bad(p, name, "one float channel of the views' size");
@@ -78,7 +79,8 @@ relume_status reader_find_parts(relume_pack *p)
     if (!p->parts || !p->loaded || !p->books)
         return RELUME_ENOMEM;
     int part = 1;
-    relume_status status = reader_find_books(p, -1, &part);
+    relume_status status =
+        p->coded ? reader_find_groups(p, &part) : reader_find_books(p, -1, &part);
     for (int v = 0; !status && v < p->info.views; v++)
         status = find_view(p, v, &part);
     if (status)

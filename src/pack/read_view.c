@@ -1,8 +1,6 @@
 // read_view.c - the samples of one view: its codes, depth and mask
-#include "base/log.h"
 #include "base/memory.h"
 #include "coder/codes.h"
-#include "lossy/lossy.h"
 #include "pack/format.h"
 #include "pack/reader.h"
 
@@ -59,104 +57,6 @@ relume_status reader_load(relume_pack *p, int part, const struct relume_rect *re
     return status;
 }
 
-struct word_rows {
-    uint32_t *word;
-    size_t width;
-};
-
-static void load_words(void *context, int row, int rows, const void *samples)
-{
-    const struct word_rows *to = context;
-    memcpy(to->word + (size_t)row * to->width, samples,
-           (size_t)rows * to->width * sizeof *to->word);
-}
-
-// What is said of the tiles of a view that cannot be decoded.
-struct losing {
-    const relume_pack *pack;
-    const char *part;
-    const struct relume_codes *codes;
-    uint16_t *data;
-    int side;                // of a tile
-    int count, column, row;  // how many, and which is the first
-};
-
-static uint16_t code_of_nothing(const struct relume_codes *codes, int plane)
-{
-    const float code = rintf(-codes->offset[plane] / codes->scale[plane]);
-    return (uint16_t)fminf(fmaxf(code, 0.0f), (float)relume_storage_top(codes->storage));
-}
-
-static void lose_tile(void *context, int x, int y, int width, int height)
-{
-    struct losing *l = context;
-    const struct relume_pack_check_params *check = l->pack->check;
-    const struct relume_rect at = {x, y, width, height};
-    const int column = x / l->side, row = y / l->side;
-    if (l->count++ == 0) {
-        l->column = column;
-        l->row = row;
-    }
-    if (check && check->tile)
-        check->tile(check->user, l->part, column, row, &at);
-    for (int p = 0; p < l->pack->info.planes; p++) {
-        const uint16_t nothing = code_of_nothing(l->codes, p);
-        for (int j = 0; j < height; j++)
-            for (int i = 0; i < width; i++)
-                l->data[((size_t)p * (size_t)l->codes->height + (size_t)(y + j)) *
-                            (size_t)l->codes->width +
-                        (size_t)(x + i)] = nothing;
-    }
-}
-
-static relume_status say_lost(const struct losing *l)
-{
-    const relume_pack *p = l->pack;
-    char more[32] = "";
-    if (l->count > 1)
-        snprintf(more, sizeof more, " and %d more", l->count - 1);
-    if (!p->keep_going)
-        return log_fail(
-            p->log, RELUME_EDAMAGED,
-            "%s: damaged: the tile in column %d, row %d of part '%s'%s; expected sound AV1 "
-            "data; --keep-going shows the rest",
-            p->path, l->column, l->row, l->part, more);
-    if (!p->check)
-        log_line(p->log, RELUME_WARNING,
-                 "%s: damaged: the tile in column %d, row %d of part '%s'%s; shown without it",
-                 p->path, l->column, l->row, l->part, more);
-    return RELUME_OK;
-}
-
-// Planes that were coded with loss, black again where the mask says so.
-static relume_status load_coded(relume_pack *p, int view, const struct relume_codes *codes,
-                                uint16_t *data)
-{
-    const int part = p->parts[view].codes;
-    const struct exr_part_info info = exr_part_info(p->file, part);
-    const size_t count = (size_t)info.width * (size_t)info.height;
-    struct word_rows words = {mem_array(count, sizeof *words.word), (size_t)info.width};
-    int *order = lossy_order(p->coder);
-    const struct lossy_shape shape = {p->info.width, p->info.height, p->info.planes,
-                                      lossy_in_colour(p->coder), order};
-    struct losing losing = {p, info.name, codes, data, 1, 0, 0, 0};
-    const struct lossy_lost lost = {lose_tile, &losing};
-    relume_status status = words.word
-                               ? exr_read(p->file, part, p->threads, load_words, &words, p->log)
-                               : RELUME_ENOMEM;
-    if (!status) {
-        losing.side = count > 1 && words.word[1] ? (int)words.word[1] : 1;  // docs/format.md
-        status = lossy_decode(data, &shape, words.word, count, p->threads, &lost);
-    }
-    if (status == RELUME_EDAMAGED)
-        status = reader_bad(p, info.name, "tiles of sound AV1 data");
-    if (!status && losing.count)
-        status = say_lost(&losing);
-    mem_free(words.word);
-    mem_free(order);
-    return status;
-}
-
 // Scale and offset of the planes, and of the one of the mask, whose codes are 0 and 1.
 static void find_steps(float *steps, const relume_pack *p, int part, size_t planes)
 {
@@ -179,13 +79,13 @@ relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, i
     void *data;
     if (!steps)
         return RELUME_ENOMEM;
-    find_steps(steps, p, part, planes);
+    find_steps(steps, p, p->coded ? 0 : part, planes);
     stepped.scale = steps;
     stepped.offset = steps + planes;
     relume_status status = codes_part_create(to, &data, &stepped, rect->width, rect->height);
     mem_free(steps);
     if (!status)
-        status = p->coded ? load_coded(p, view, &to->codes, data)
+        status = p->coded ? reader_load_coded(p, view, &to->codes, data)
                           : reader_load(p, part, rect, data, p->info.planes, 0);
     if (!status && planes > stored)
         status =
@@ -241,6 +141,8 @@ relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
     const struct relume_rect all = reader_whole(pack);
+    if (pack->parts[view].depth_words.count)
+        return reader_load_coded_depth(out, pack, view);
     return reader_load_plane(out, pack, pack->parts[view].depth, &all);
 }
 

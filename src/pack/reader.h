@@ -8,8 +8,16 @@
 #include <relume/codebook.h>
 #include <relume/pack.h>
 
+// Some of the words of a part.
+struct word_range {
+    size_t first, count;
+};
+
 struct view_parts {
     int codes, depth, mask;  // part numbers, -1 when absent
+    int anchor;              // coded: the view from which it is predicted, -1: from none
+    struct word_range words, depth_words;  // coded: of `codes`, and where there are any of `depth`
+    float depth_step;
 };
 
 // The codebooks of one view, or those of all.
@@ -67,6 +75,13 @@ relume_status reader_load_indices(struct relume_codes_part *to, relume_pack *p, 
 // Of depth or of a mask; empty where there is no such part.
 relume_status reader_load_plane(struct relume_image *out, relume_pack *p, int part,
                                 const struct relume_rect *rect);
+
+// Of files that are coded with loss (read_coded.c): the groups of views that begin at *part, which
+// moves behind them; the planes of a view; its depth, where that has words.
+relume_status reader_find_groups(relume_pack *p, int *part);
+relume_status reader_load_coded(relume_pack *p, int view, const struct relume_codes *codes,
+                                uint16_t *data);
+relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, int view);
 
 // What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
 // mean, 1 inside and 0 outside; and the code vectors of nothing.

@@ -5,34 +5,24 @@
 #include "pack/writer.h"
 
 #include <math.h>
+#include <string.h>
 
-// Where planes are coded with loss the preview is coarse, so that it is not most of the file: one
-// colour for 16 x 16 pixels, halves of 7 bits. Blocks of rows that are packed together are 16 rows.
-enum { COARSE = 16, COARSE_BITS = 0xfff8 };
+// Where planes are coded with loss the preview is small, so that it is not most of the file: not
+// more pixels a side than these, each the mean of so many of the view.
+enum { SMALL = 64, MOST_ROWS = 16 };
 
-static void make_coarse(float *rgb, size_t width, size_t rows)
+static size_t coarseness(const struct relume_coefficients_info *info)
 {
-    for (size_t y = 0; y < rows; y++)
-        for (size_t x = 0; x < width; x++)
-            for (size_t c = 0; c < 3; c++) {
-                const size_t first = y / COARSE * COARSE * width + x / COARSE * COARSE;
-                rgb[3 * (y * width + x) + c] = rgb[3 * first + c];
-            }
+    const int side = info->width > info->height ? info->width : info->height;
+    return ((size_t)side + SMALL - 1) / SMALL;
 }
 
-// The first pixel of each 16 x 16 becomes their mean.
-static void gather_coarse(float *rgb, size_t width, size_t rows)
+// Rows of the view join the sums of a row of the preview.
+static void add_rows(float *sum, const float *rgb, size_t width, size_t rows, size_t coarse)
 {
-    for (size_t y = 0; y < rows; y += COARSE)
-        for (size_t x = 0; x < width; x += COARSE)
-            for (size_t c = 0; c < 3; c++) {
-                float sum = 0.0f;
-                int n = 0;
-                for (size_t v = y; v < rows && v < y + COARSE; v++)
-                    for (size_t u = x; u < width && u < x + COARSE; u++, n++)
-                        sum += rgb[3 * (v * width + u) + c];
-                rgb[3 * (y * width + x) + c] = sum / (float)n;
-            }
+    for (size_t i = 0; i < rows * width; i++)
+        for (size_t c = 0; c < 3; c++)
+            sum[3 * (i % width / coarse) + c] += rgb[3 * i + c];
 }
 
 // The first of the views that are written.
@@ -42,6 +32,14 @@ static const struct relume_pack_view *first_view(const struct relume_pack_conten
 }
 
 // B, G, R as halves, none of which is infinite.
+static uint16_t *put_row(uint16_t *out, const float *rgb, size_t width)
+{
+    for (size_t channel = 3; channel-- > 0;)
+        for (size_t x = 0; x < width; x++)
+            *out++ = half_from_float(fminf(rgb[3 * x + channel], 65504.0f));
+    return out;
+}
+
 static relume_status preview_rows(void *context, int row, int rows, void *samples)
 {
     const struct relume_pack_contents *c = context;
@@ -52,17 +50,55 @@ static relume_status preview_rows(void *context, int row, int rows, void *sample
         return RELUME_ENOMEM;
     const relume_status status =
         c->preview ? c->preview(c->preview_user, row, rows, rgb) : RELUME_OK;
-    if (!status && first_view(c)->coded) {
-        gather_coarse(rgb, width, (size_t)rows);
-        make_coarse(rgb, width, (size_t)rows);
-    }
-    const uint16_t bits = first_view(c)->coded ? COARSE_BITS : 0xffff;
     for (size_t y = 0; !status && y < (size_t)rows; y++)
-        for (size_t channel = 3; channel-- > 0;)
-            for (size_t x = 0; x < width; x++)
-                *out++ =
-                    half_from_float(fminf(rgb[3 * (y * width + x) + channel], 65504.0f)) & bits;
+        out = put_row(out, rgb + 3 * y * width, width);
     mem_free(rgb);
+    return status;
+}
+
+// One row of the small one, out of a few rows of the view at a time.
+static relume_status small_row(float *sum, float *rgb, const struct relume_pack_contents *c,
+                               size_t row)
+{
+    const struct relume_coefficients_info *info =
+        relume_coefficients_info(first_view(c)->coefficients);
+    const size_t coarse = coarseness(info), width = (size_t)info->width;
+    const size_t first = row * coarse, height = (size_t)info->height;
+    const size_t end = first + coarse < height ? first + coarse : height;
+    relume_status status = RELUME_OK;
+    for (size_t y = first, n; !status && c->preview && y < end; y += n) {
+        n = end - y < MOST_ROWS ? end - y : MOST_ROWS;
+        status = c->preview(c->preview_user, (int)y, (int)n, rgb);
+        if (!status)
+            add_rows(sum, rgb, width, n, coarse);
+    }
+    for (size_t x = 0; x * coarse < width; x++) {
+        const size_t right = (x + 1) * coarse < width ? (x + 1) * coarse : width;
+        for (size_t k = 0; k < 3; k++)
+            sum[3 * x + k] /= (float)((end - first) * (right - x * coarse));
+    }
+    return status;
+}
+
+static relume_status small_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_pack_contents *c = context;
+    const struct relume_coefficients_info *info =
+        relume_coefficients_info(first_view(c)->coefficients);
+    const size_t width = (size_t)info->width,
+                 small = (width + coarseness(info) - 1) / coarseness(info);
+    float *rgb = mem_zeroed(MOST_ROWS * width, 3 * sizeof *rgb);
+    float *sum = mem_array(small, 3 * sizeof *sum);
+    uint16_t *out = samples;
+    relume_status status = rgb && sum ? RELUME_OK : RELUME_ENOMEM;
+    for (int y = row; !status && y < row + rows; y++) {
+        memset(sum, 0, small * 3 * sizeof *sum);
+        status = small_row(sum, rgb, c, (size_t)y);
+        if (!status)
+            out = put_row(out, sum, small);
+    }
+    mem_free(rgb);
+    mem_free(sum);
     return status;
 }
 
@@ -143,6 +179,22 @@ static void describe_coder(struct writer *w, struct exr_part *part)
     }
 }
 
+// The picture of the first part is not of the views' size then.
+static void describe_coding(struct writer *w, struct exr_part *part,
+                            const struct relume_coefficients_info *info)
+{
+    const int coarse = (int)coarseness(info);
+    part->codec = EXR_CODEC_ZIP;
+    part->width = (info->width + coarse - 1) / coarse;
+    part->height = (info->height + coarse - 1) / coarse;
+    part->rows = small_rows;
+    writer_text(part, ATTR_CODING, CODING_AV1);
+    writer_int(part, ATTR_WIDTH, info->width);
+    writer_int(part, ATTR_HEIGHT, info->height);
+    writer_floats(w, part, ATTR_SCALE, info->scale, info->planes);
+    writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
+}
+
 static void describe_share(struct writer *w, struct exr_part *part)
 {
     const struct relume_pack_share *s = w->contents->share;
@@ -165,7 +217,7 @@ void writer_add_header(struct writer *w)
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
     const double report[] = {c->report.fit_rms, c->report.store_rms};
     struct exr_part *part = writer_part(w, "preview", info->width, info->height);
-    part->codec = view->coded ? EXR_CODEC_ZIP : w->codec;
+    part->codec = w->codec;
     part->sample = EXR_SAMPLE_HALF;
     part->channels = 3;
     part->channel = channels;
@@ -186,7 +238,7 @@ void writer_add_header(struct writer *w)
     if (isfinite(report[0]) && isfinite(report[1]))
         writer_doubles(w, part, ATTR_REPORT, report, 2);
     if (view->coded)
-        writer_text(part, ATTR_CODING, CODING_AV1);
+        describe_coding(w, part, info);
     if (view->books)
         writer_int(part, ATTR_BOOKS, relume_books_info(view->books)->books);
     describe_coder(w, part);

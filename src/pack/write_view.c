@@ -75,45 +75,6 @@ static void fill_with_planes(struct writer *w, struct exr_part *part,
     writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
 }
 
-// Words become rows of nearly equal length, since pictures are not wider than 65536 pixels.
-static size_t words_height(size_t count)
-{
-    return (count + 32767) / 32768;
-}
-
-static size_t words_width(size_t count)
-{
-    return (count + words_height(count) - 1) / words_height(count);
-}
-
-static relume_status coded_words(void *context, int row, int rows, void *samples)
-{
-    const struct relume_pack_view *view = context;
-    const size_t width = words_width(view->coded_words), first = (size_t)row * width;
-    const size_t n = (size_t)rows * width, left = view->coded_words - first;
-    memset(samples, 0, n * sizeof *view->coded);
-    memcpy(samples, view->coded + first, (left < n ? left : n) * sizeof *view->coded);
-    return RELUME_OK;
-}
-
-// They are packed as they can be.
-static void fill_with_words(struct writer *w, struct exr_part *part,
-                            const struct relume_pack_view *view)
-{
-    static const char *const channel[] = {CODING_AV1};
-    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
-    part->codec = EXR_CODEC_NONE;
-    part->sample = EXR_SAMPLE_UINT;
-    part->width = (int)words_width(view->coded_words);
-    part->height = (int)words_height(view->coded_words);
-    part->channels = 1;
-    part->channel = channel;
-    part->rows = coded_words;
-    part->context = (void *)(uintptr_t)view;
-    writer_floats(w, part, ATTR_SCALE, info->scale, info->planes);
-    writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
-}
-
 // Numbers that join needs as they are.
 static const char *measured_text(struct writer *w, int index)
 {
@@ -127,9 +88,8 @@ static const char *measured_text(struct writer *w, int index)
     return text;
 }
 
-void writer_add_view(struct writer *w, int index, bool shared)
+static void add_codes(struct writer *w, int index, bool shared)
 {
-    static const char *const depth_channel[] = {"Z"}, *const mask_channel[] = {"A"};
     const struct relume_pack_view *view = &w->contents->view[index];
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
     struct exr_part *part =
@@ -141,12 +101,19 @@ void writer_add_view(struct writer *w, int index, bool shared)
         writer_text(part, ATTR_MEASURED, measured_text(w, index));
     if (view->books)
         writer_fill_indices(part, view);
-    else if (view->coded)
-        fill_with_words(w, part, view);
     else
         fill_with_planes(w, part, view);
     if (view->books && !shared)
         writer_add_books(w, view->books, index);
-    add_plane(w, "depth", index, view->depth, depth_channel, EXR_SAMPLE_FLOAT, depth_rows);
+}
+
+void writer_add_view(struct writer *w, int index, bool shared)
+{
+    static const char *const depth_channel[] = {"Z"}, *const mask_channel[] = {"A"};
+    const struct relume_pack_view *view = &w->contents->view[index];
+    if (!view->coded)
+        add_codes(w, index, shared);
+    if (!view->coded || !(view->depth_step > 0.0f))
+        add_plane(w, "depth", index, view->depth, depth_channel, EXR_SAMPLE_FLOAT, depth_rows);
     add_plane(w, "mask", index, view->mask, mask_channel, EXR_SAMPLE_HALF, mask_rows);
 }

@@ -104,6 +104,8 @@ static void add_parts(struct writer *w)
     writer_add_header(w);
     if (shared)
         writer_add_books(w, c->view[0].books, -1);
+    if (c->view[first].coded)
+        writer_add_groups(w);
     for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
         writer_add_view(w, i, shared);
 }

@@ -32,9 +32,11 @@ void writer_doubles(struct writer *w, struct exr_part *part, const char *name, c
 
 // The first part: the preview, and what all of the file is (write_header.c).
 void writer_add_header(struct writer *w);
-// The parts of a view: its planes, or indices into codebooks and these unless they are `shared`;
-// its depth and mask (write_view.c).
+// The parts of a view: its planes unless they are coded, or indices into codebooks and these unless
+// they are `shared`; its mask, and its depth unless that is coded (write_view.c).
 void writer_add_view(struct writer *w, int view, bool shared);
+// The parts of all views whose planes are coded, and of their depth (write_coded.c).
+void writer_add_groups(struct writer *w);
 // The parts of the codebooks of a view, or of all of them (-1); and the indices into them.
 void writer_add_books(struct writer *w, const relume_books *books, int view);
 void writer_fill_indices(struct exr_part *part, const struct relume_pack_view *view);

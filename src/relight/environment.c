@@ -275,11 +275,10 @@ relume_status environment_on_lights(struct relume_light *out, int *count, const 
                                     const struct relume_light *light, int threads)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);
-    struct relume_coder_params p = {.hemispherical = info->hemispherical,
-                                    .pole_y = info->pole_y,
-                                    .interpolant = info->interpolant
-                                                       ? info->interpolant
-                                                       : relume_interpolant_find("chord")};
+    struct relume_coder_params p = {
+        .hemispherical = info->hemispherical,
+        .pole_y = info->pole_y,
+        .interpolant = info->interpolant ? info->interpolant : relume_interpolant_find("chord")};
     const size_t n = (size_t)info->lights;
     relume_coder *table = NULL;
     relume_weight_grid *grid = NULL;

@@ -1,8 +1,8 @@
 // test_lossy.c - planes coded with loss: near what they were, alone by tiles, and never believed
 #include "test.h"
 
-#include "lossy/av1.h"
-#include "lossy/lossy.h"
+#include "base/memory.h"
+#include "lossy/disparity.h"
 
 #include <math.h>
 
@@ -11,9 +11,10 @@ enum { LIGHTS = 6 };
 static const struct relume_vec3 lights[LIGHTS] = {
     {0, 0, 1}, {0.6, 0, 0.8}, {0, 0.6, 0.8}, {-0.6, 0, 0.8}, {0, -0.6, 0.8}, {0.48, 0.36, 0.8}};
 
-// A smooth picture with an edge, another for every plane.
-static uint16_t sample(int plane, int x, int y)
+// A smooth picture with an edge, another for every plane; moved a little from view to view.
+static uint16_t sample(int plane, int x, int y, int view)
 {
+    x += 2 * view;
     const double wave = 1200.0 * sin(0.11 * x + 0.5 * plane) * cos(0.07 * y - 0.3 * plane);
     return (uint16_t)(2048.0 + wave + (x + 2 * y > 40 + 9 * plane ? 600.0 : 0.0));
 }
@@ -27,7 +28,7 @@ struct made {
 };
 
 // `table` has pictures in colour, `sh` of the luminance grey planes.
-static void make(struct made *m, int width, int height, bool colour)
+static void make_view(struct made *m, int width, int height, bool colour, int view)
 {
     *m = (struct made){0};
     assert_int_equal(relume_coder_create(
@@ -43,7 +44,7 @@ static void make(struct made *m, int width, int height, bool colour)
     for (int p = 0; p < planes; p++) {
         for (size_t i = 0; i < pixels; i++)
             m->codes[(size_t)p * pixels + i] =
-                sample(p, (int)(i % (size_t)width), (int)(i / (size_t)width));
+                sample(p, (int)(i % (size_t)width), (int)(i / (size_t)width), view);
         plane[p] = m->codes + (size_t)p * pixels;
         scale[p] = 1.0f;
         offset[p] = 0.0f;
@@ -60,6 +61,11 @@ static void make(struct made *m, int width, int height, bool colour)
     m->order = lossy_order(m->coder);
     m->shape = (struct lossy_shape){width, height, planes, lossy_in_colour(m->coder), m->order};
     assert_int_equal(m->shape.colour, colour);
+}
+
+static void make(struct made *m, int width, int height, bool colour)
+{
+    make_view(m, width, height, colour, 0);
 }
 
 static void drop(struct made *m)
@@ -81,7 +87,8 @@ static double rms(const uint16_t *a, const uint16_t *b, size_t n)
 static struct lossy_words encoded(const struct made *m, int quantiser, int threads)
 {
     struct lossy_words words;
-    assert_int_equal(lossy_encode(&words, m->coefficients, quantiser, AV1_FAST, threads, NULL),
+    assert_int_equal(lossy_encode(&words, &m->coefficients, 1,
+                                  &(const struct av1_effort){quantiser, AV1_FAST}, threads, NULL),
                      RELUME_OK);
     return words;
 }
@@ -98,11 +105,10 @@ static void test_planes_come_back(void **state)
         uint16_t *back = malloc(n * sizeof *back);
         const struct lossy_words fine = encoded(&m, AV1_FINEST, 1),
                                  coarse = encoded(&m, 50 * AV1_STEPS, 1);
-        assert_int_equal(lossy_decode(back, &m.shape, fine.word, fine.count, 1, NULL), RELUME_OK);
+        assert_int_equal(lossy_decode(back, &m.shape, &fine, NULL, 1, NULL), RELUME_OK);
         // the finest steps are some 8 of 4096 codes, of luma and the differences that make blue
         assert_true(rms(back, m.codes, n) < 8.0);
-        assert_int_equal(lossy_decode(back, &m.shape, coarse.word, coarse.count, 1, NULL),
-                         RELUME_OK);
+        assert_int_equal(lossy_decode(back, &m.shape, &coarse, NULL, 1, NULL), RELUME_OK);
         assert_true(rms(back, m.codes, n) < 320.0);  // a fifth of what the planes vary by
         assert_true(coarse.count <= fine.count);
         relume_free(fine.word);
@@ -146,10 +152,10 @@ static void test_a_damaged_tile_is_lost_alone(void **state)
     struct lossy_words w = encoded(&m, 80, 1);
     const size_t n = (size_t)m.shape.planes * 600 * 24;
     uint16_t *whole = malloc(n * sizeof *whole), *part = malloc(n * sizeof *part);
-    assert_int_equal(lossy_decode(whole, &m.shape, w.word, w.count, 1, NULL), RELUME_OK);
+    assert_int_equal(lossy_decode(whole, &m.shape, &w, NULL, 1, NULL), RELUME_OK);
     w.word[w.count - 3] ^= 0x400;
-    assert_int_equal(lossy_decode(part, &m.shape, w.word, w.count, 1, NULL), RELUME_EDAMAGED);
-    assert_int_equal(lossy_decode(part, &m.shape, w.word, w.count, 1, &lost), RELUME_OK);
+    assert_int_equal(lossy_decode(part, &m.shape, &w, NULL, 1, NULL), RELUME_EDAMAGED);
+    assert_int_equal(lossy_decode(part, &m.shape, &w, NULL, 1, &lost), RELUME_OK);
     const int expected[5] = {1, 512, 0, 88, 24};
     assert_memory_equal(seen, expected, sizeof expected);
     for (size_t i = 0; i < n; i++)
@@ -168,19 +174,106 @@ static void test_words_are_not_believed(void **state)
     const struct lossy_words w = encoded(&m, 80, 1);
     uint16_t *back = malloc((size_t)m.shape.planes * 24 * 24 * sizeof *back);
     for (size_t count = 0; count < w.count; count++)
-        assert_int_equal(lossy_decode(back, &m.shape, w.word, count, 1, NULL), RELUME_EDAMAGED);
+        assert_int_equal(
+            lossy_decode(back, &m.shape, &(const struct lossy_words){w.word, count}, NULL, 1, NULL),
+            RELUME_EDAMAGED);
     for (size_t i = 0; i < 5; i++) {  // the head: what it is, tiles, bytes, checksum
         w.word[i] ^= 0x80000001u;
-        assert_int_equal(lossy_decode(back, &m.shape, w.word, w.count, 1, NULL), RELUME_EDAMAGED);
+        assert_int_equal(lossy_decode(back, &m.shape, &w, NULL, 1, NULL), RELUME_EDAMAGED);
         w.word[i] ^= 0x80000001u;
     }
     const struct lossy_shape other = {32, 24, m.shape.planes, true, m.order};
     uint16_t *wide = malloc((size_t)m.shape.planes * 32 * 24 * sizeof *wide);
-    assert_int_equal(lossy_decode(wide, &other, w.word, w.count, 1, NULL), RELUME_EDAMAGED);
+    assert_int_equal(lossy_decode(wide, &other, &w, NULL, 1, NULL), RELUME_EDAMAGED);
     free(wide);
     free(back);
     relume_free(w.word);
     drop(&m);
+}
+
+// Views that hardly differ: each needs its anchor and nothing else, and little more than that.
+static void test_a_group_is_predicted_from_its_anchor(void **state)
+{
+    enum { VIEWS = 3 };
+    struct made m[VIEWS];
+    relume_coefficients *from[VIEWS];
+    struct lossy_words group[VIEWS];
+    int seen[5] = {0};
+    const struct lossy_lost lost = {note_tile, seen};
+    (void)state;
+    for (int v = 0; v < VIEWS; v++) {
+        make_view(&m[v], 600, 48, true, v);
+        from[v] = m[v].coefficients;
+    }
+    assert_int_equal(
+        lossy_encode(group, from, VIEWS, &(const struct av1_effort){80, AV1_FAST}, 2, NULL),
+        RELUME_OK);
+    const struct lossy_words alone = encoded(&m[2], 80, 1);
+    const size_t n = (size_t)m->shape.planes * 600 * 48;
+    uint16_t *back = malloc(n * sizeof *back);
+    for (int v = 0; v < VIEWS; v++) {
+        assert_int_equal(lossy_decode(back, &m->shape, &group[v], v ? &group[0] : NULL, 2, NULL),
+                         RELUME_OK);
+        // as near as a view alone at this step: some 20 of 4096 codes
+        assert_true(rms(back, m[v].codes, n) < 32.0);
+    }
+    assert_true(2 * group[2].count < alone.count);
+    assert_int_equal(lossy_decode(back, &m->shape, &group[2], NULL, 1, NULL), RELUME_EDAMAGED);
+    group[0].word[group[0].count - 3] ^= 0x400;
+    assert_int_equal(lossy_decode(back, &m->shape, &group[2], &group[0], 1, NULL), RELUME_EDAMAGED);
+    assert_int_equal(lossy_decode(back, &m->shape, &group[2], &group[0], 1, &lost), RELUME_OK);
+    assert_int_equal(seen[0], 1);
+    assert_int_equal(seen[1], 512);
+    free(back);
+    mem_free(alone.word);
+    for (int v = 0; v < VIEWS; v++) {
+        mem_free(group[v].word);
+        drop(&m[v]);
+    }
+}
+
+// ---------------------------------------------------------------- depth
+
+static struct relume_image depth_map(int width, int height)
+{
+    struct relume_image d;
+    assert_int_equal(relume_image_create(&d, width, height, 1), RELUME_OK);
+    for (int i = 0; i < width * height; i++) {
+        const int x = i % width, y = i / width;
+        d.data[i] = x + y < 5 ? INFINITY : x > y ? 2.0f + 0.013f * (float)y : 7.0f;
+    }
+    return d;
+}
+
+// To half a step of the inverse, and float's rounding of it.
+static void test_depth_comes_back_within_half_a_step(void **state)
+{
+    static const int sizes[][2] = {{1, 1}, {7, 3}, {40, 33}};
+    static const float steps[] = {0.01f, 1e-4f, 1e-12f};  // the last has too many steps
+    (void)state;
+    for (int i = 0; i < 9; i++) {
+        struct relume_image d = depth_map(sizes[i / 3][0], sizes[i / 3][1]), back;
+        struct lossy_words words;
+        float step = steps[i % 3];
+        assert_int_equal(relume_image_create(&back, d.width, d.height, 1), RELUME_OK);
+        assert_int_equal(disparity_encode(&words, &step, &d), RELUME_OK);
+        assert_true(step >= steps[i % 3]);
+        assert_int_equal(disparity_decode(&back, &words, step), RELUME_OK);
+        for (int k = 0; k < d.width * d.height; k++) {
+            const double truth = 1.0 / d.data[k], found = 1.0 / back.data[k];
+            assert_true(isinf(d.data[k]) == isinf(back.data[k]));
+            assert_true(fabs(truth - found) <= 0.5 * step + 1e-7 * truth);
+        }
+        for (size_t count = 0; count < words.count; count++)
+            assert_int_equal(
+                disparity_decode(&back, &(const struct lossy_words){words.word, count}, step),
+                RELUME_EDAMAGED);
+        words.word[words.count - 1] ^= 1;
+        assert_int_equal(disparity_decode(&back, &words, step), RELUME_EDAMAGED);
+        mem_free(words.word);
+        relume_image_destroy(&back);
+        relume_image_destroy(&d);
+    }
 }
 
 int main(void)
@@ -190,6 +283,8 @@ int main(void)
         cmocka_unit_test(test_threads_change_nothing),
         cmocka_unit_test(test_a_damaged_tile_is_lost_alone),
         cmocka_unit_test(test_words_are_not_believed),
+        cmocka_unit_test(test_a_group_is_predicted_from_its_anchor),
+        cmocka_unit_test(test_depth_comes_back_within_half_a_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

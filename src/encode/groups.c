@@ -1,0 +1,104 @@
+// groups.c - the cameras of a slab are halved until as many stand together as are wanted
+#include "encode/groups.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+
+struct camera {
+    double uv[2];
+    int view;
+};
+
+static int compare(const struct camera *a, const struct camera *b, int axis)
+{
+    if (a->uv[axis] != b->uv[axis])
+        return a->uv[axis] < b->uv[axis] ? -1 : 1;
+    if (a->uv[!axis] != b->uv[!axis])
+        return a->uv[!axis] < b->uv[!axis] ? -1 : 1;
+    return a->view - b->view;
+}
+
+static int by_u(const void *a, const void *b)
+{
+    return compare(a, b, 0);
+}
+
+static int by_v(const void *a, const void *b)
+{
+    return compare(a, b, 1);
+}
+
+static double extent(const struct camera *c, int n, int axis)
+{
+    double least = c->uv[axis], most = least;
+    for (int i = 1; i < n; i++) {
+        least = fmin(least, c[i].uv[axis]);
+        most = fmax(most, c[i].uv[axis]);
+    }
+    return most - least;
+}
+
+// The view nearest to the middle of them is the first, the others follow in their order.
+static void add_group(struct view_groups *to, const struct camera *c, int at, int n)
+{
+    double u = 0.0, v = 0.0;
+    int anchor = 0;
+    for (int i = 0; i < n; i++) {
+        u += c[i].uv[0] / n;
+        v += c[i].uv[1] / n;
+    }
+    for (int i = 1; i < n; i++)
+        if (hypot(c[i].uv[0] - u, c[i].uv[1] - v) < hypot(c[anchor].uv[0] - u, c[anchor].uv[1] - v))
+            anchor = i;
+    to->view[at] = c[anchor].view;
+    for (int i = 0; i < n; i++)
+        if (i != anchor)
+            to->view[at + i + (i < anchor)] = c[i].view;
+    to->begin[to->count++] = at;
+}
+
+// `n` cameras, whose views lie from `at` on, become `groups` groups.
+static void halve(struct view_groups *to, struct camera *c, int at, int n, int groups)
+{
+    if (groups == 1) {
+        add_group(to, c, at, n);
+        return;
+    }
+    const int first = (int)((long long)n * (groups / 2) / groups);
+    qsort(c, (size_t)n, sizeof *c, extent(c, n, 1) > extent(c, n, 0) ? by_v : by_u);
+    halve(to, c, at, first, groups / 2);
+    halve(to, c + first, at + first, n - first, groups - groups / 2);
+}
+
+relume_status groups_make(struct view_groups *out, const struct relume_manifest *manifest, int most)
+{
+    const size_t views = (size_t)manifest->views;
+    const int side_by_side = manifest->geometry.projection == RELUME_SLAB ? most : 1;
+    struct camera *camera = mem_array(views, sizeof *camera);
+    *out = (struct view_groups){.begin = mem_array(views + 1, sizeof *out->begin),
+                                .view = mem_array(views, sizeof *out->view)};
+    int at = 0;
+    for (int s = 0; camera && out->begin && out->view && at < manifest->views; s++) {
+        int n = 0;
+        for (int v = 0; v < manifest->views; v++) {
+            const struct relume_manifest_view *view = &manifest->view[v];
+            if (view->slab == s)
+                camera[n++] = (struct camera){{view->uv[0], view->uv[1]}, v};
+        }
+        if (n)
+            halve(out, camera, at, n, (n + side_by_side - 1) / side_by_side);
+        at += n;
+    }
+    mem_free(camera);
+    if (at < manifest->views)
+        return RELUME_ENOMEM;
+    out->begin[out->count] = at;
+    return RELUME_OK;
+}
+
+void groups_destroy(struct view_groups *groups)
+{
+    mem_free(groups->begin);
+    mem_free(groups->view);
+}

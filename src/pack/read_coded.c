@@ -1,0 +1,226 @@
+// read_coded.c - views whose planes are coded with loss: where they lie in the parts of their
+// groups, and what they hold
+#include "base/log.h"
+#include "base/memory.h"
+#include "lossy/disparity.h"
+#include "pack/format.h"
+#include "pack/reader.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// ---------------------------------------------------------------- where they lie
+
+// One member of a group: "VIEW WORDS DEPTH-WORDS", one blank between numbers.
+static bool next_member(const char **text, unsigned long long n[3])
+{
+    for (int i = 0; i < 3; i++) {
+        char *end;
+        if (**text < '0' || **text > '9')
+            return false;
+        n[i] = strtoull(*text, &end, 10);
+        *text = *end == ' ' ? end + 1 : end;
+    }
+    return true;
+}
+
+static relume_status find_members(relume_pack *p, int part)
+{
+    const struct exr_part_info info = exr_part_info(p->file, part);
+    const unsigned long long words = (unsigned long long)info.width * (unsigned)info.height;
+    const char *text = exr_get_text(p->file, part, ATTR_GROUP);
+    int steps, anchor = -1, member = 0;
+    const float *step = reader_any_floats(p, part, ATTR_STEP, &steps);
+    unsigned long long at = 0, n[3];
+    for (; text && step && *text; member++) {
+        if (!next_member(&text, n) || n[0] >= (unsigned)p->info.views || n[1] > words - at ||
+            n[2] > words - at - n[1] || member >= steps || !(step[member] >= 0.0f))
+            return reader_bad(p, info.name, "views and their words, all of them in the part");
+        struct view_parts *v = &p->parts[n[0]];
+        if (v->codes >= 0)
+            return reader_bad(p, info.name, "every view in one group");
+        *v = (struct view_parts){.codes = part,
+                                 .depth = n[2] ? part : -1,
+                                 .mask = -1,
+                                 .anchor = anchor,
+                                 .words = {at, n[1]},
+                                 .depth_words = {at + n[1], n[2]},
+                                 .depth_step = step[member]};
+        if (n[2] && !(step[member] > 0.0f))
+            return reader_bad(p, info.name, "a step above 0 where there is depth");
+        p->info.has_depth |= n[2] > 0;
+        anchor = anchor < 0 ? (int)n[0] : anchor;
+        at += n[1] + n[2];
+    }
+    return member ? RELUME_OK : reader_bad(p, info.name, "the views that it holds");
+}
+
+relume_status reader_find_groups(relume_pack *p, int *part)
+{
+    relume_status status = RELUME_OK;
+    const int planes = relume_coder_info(p->coder)->planes;
+    for (int v = 0; v < p->info.views; v++)
+        p->parts[v] = (struct view_parts){-1, -1, -1, -1, {0}, {0}, 0.0f};
+    for (int g = 0; !status && *part < exr_part_count(p->file); g++, ++*part) {
+        const struct exr_part_info i = exr_part_info(p->file, *part);
+        char name[32];
+        snprintf(name, sizeof name, "group%04d", g);
+        if (strcmp(i.name, name))
+            break;
+        status = i.channels == 1 && i.uniform && i.sample == EXR_SAMPLE_UINT
+                     ? find_members(p, *part)
+                     : reader_bad(p, name, "rows of words");
+    }
+    for (int v = 0; !status && v < p->info.views; v++)
+        if (p->parts[v].codes < 0)
+            status = reader_bad(p, ATTR_GROUP, "every view in one group");
+    if (!status &&
+        (!reader_floats(p, 0, ATTR_SCALE, planes) || !reader_floats(p, 0, ATTR_OFFSET, planes)))
+        status = reader_bad(p, "preview", "a finite scale and offset for every plane");
+    return status;
+}
+
+// ---------------------------------------------------------------- words
+
+struct words {
+    uint32_t *word;  // [range.count]
+    struct word_range range;
+    size_t width;
+};
+
+static void load_words(void *context, int row, int rows, const void *samples)
+{
+    const struct words *to = context;
+    const size_t from = (size_t)row * to->width, last = to->range.first + to->range.count;
+    const size_t begin = from > to->range.first ? from : to->range.first;
+    const size_t rows_end = from + (size_t)rows * to->width;
+    const size_t end = rows_end < last ? rows_end : last;
+    if (begin < end)
+        memcpy(to->word + (begin - to->range.first), (const uint32_t *)samples + (begin - from),
+               (end - begin) * sizeof *to->word);
+}
+
+// Words of a part, which the caller frees.
+static relume_status read_words(struct lossy_words *out, const relume_pack *p, int part,
+                                struct word_range range)
+{
+    const size_t width = (size_t)exr_part_info(p->file, part).width;
+    const size_t first = range.first / width, end = (range.first + range.count + width - 1) / width;
+    struct words to = {mem_array(range.count, sizeof *to.word), range, width};
+    *out = (struct lossy_words){to.word, range.count};
+    if (!to.word)
+        return RELUME_ENOMEM;
+    return range.count ? exr_read_rows(p->file, part, (int)first, (int)(end - first), p->threads,
+                                       load_words, &to, p->log)
+                       : RELUME_OK;
+}
+
+// ---------------------------------------------------------------- planes
+
+// What is said of the tiles of a view that cannot be decoded.
+struct losing {
+    const relume_pack *pack;
+    char view[32];
+    const struct relume_codes *codes;
+    uint16_t *data;
+    int side;                // of a tile
+    int count, column, row;  // how many, and which is the first
+};
+
+static uint16_t code_of_nothing(const struct relume_codes *codes, int plane)
+{
+    const float code = rintf(-codes->offset[plane] / codes->scale[plane]);
+    return (uint16_t)fminf(fmaxf(code, 0.0f), (float)relume_storage_top(codes->storage));
+}
+
+static void lose_tile(void *context, int x, int y, int width, int height)
+{
+    struct losing *l = context;
+    const struct relume_pack_check_params *check = l->pack->check;
+    const struct relume_rect at = {x, y, width, height};
+    const int column = x / l->side, row = y / l->side;
+    if (l->count++ == 0) {
+        l->column = column;
+        l->row = row;
+    }
+    if (check && check->tile)
+        check->tile(check->user, l->view, column, row, &at);
+    for (int p = 0; p < l->pack->info.planes; p++) {
+        const uint16_t nothing = code_of_nothing(l->codes, p);
+        for (int j = 0; j < height; j++)
+            for (int i = 0; i < width; i++)
+                l->data[((size_t)p * (size_t)l->codes->height + (size_t)(y + j)) *
+                            (size_t)l->codes->width +
+                        (size_t)(x + i)] = nothing;
+    }
+}
+
+static relume_status say_lost(const struct losing *l)
+{
+    const relume_pack *p = l->pack;
+    char more[32] = "";
+    if (l->count > 1)
+        snprintf(more, sizeof more, " and %d more", l->count - 1);
+    if (!p->keep_going)
+        return log_fail(
+            p->log, RELUME_EDAMAGED,
+            "%s: damaged: the tile in column %d, row %d of part '%s'%s; expected sound AV1 "
+            "data; --keep-going shows the rest",
+            p->path, l->column, l->row, l->view, more);
+    if (!p->check)
+        log_line(p->log, RELUME_WARNING,
+                 "%s: damaged: the tile in column %d, row %d of part '%s'%s; shown without it",
+                 p->path, l->column, l->row, l->view, more);
+    return RELUME_OK;
+}
+
+relume_status reader_load_coded(relume_pack *p, int view, const struct relume_codes *codes,
+                                uint16_t *data)
+{
+    const struct view_parts *v = &p->parts[view];
+    struct lossy_words words = {0}, anchor = {0};
+    int *order = lossy_order(p->coder);
+    const struct lossy_shape shape = {p->info.width, p->info.height, p->info.planes,
+                                      lossy_in_colour(p->coder), order};
+    struct losing losing = {.pack = p, .codes = codes, .data = data, .side = 1};
+    const struct lossy_lost lost = {lose_tile, &losing};
+    snprintf(losing.view, sizeof losing.view, "view%04d", view);
+    relume_status status = read_words(&words, p, v->codes, v->words);
+    if (!status && v->anchor >= 0)
+        status = read_words(&anchor, p, v->codes, p->parts[v->anchor].words);
+    if (!status) {
+        losing.side = words.count > 1 && words.word[1] ? (int)words.word[1] : 1;  // docs/format.md
+        status =
+            lossy_decode(data, &shape, &words, v->anchor >= 0 ? &anchor : NULL, p->threads, &lost);
+    }
+    if (status == RELUME_EDAMAGED)
+        status = reader_bad(p, losing.view, "tiles of sound AV1 data");
+    if (!status && losing.count)
+        status = say_lost(&losing);
+    mem_free(words.word);
+    mem_free(anchor.word);
+    mem_free(order);
+    return status;
+}
+
+// ---------------------------------------------------------------- depth
+
+relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, int view)
+{
+    const struct view_parts *v = &p->parts[view];
+    struct lossy_words words = {0};
+    char name[32];
+    snprintf(name, sizeof name, "view%04d.depth", view);
+    relume_status status = relume_image_create(out, p->info.width, p->info.height, 1);
+    if (!status)
+        status = read_words(&words, p, v->depth, v->depth_words);
+    if (!status)
+        status = disparity_decode(out, &words, v->depth_step);
+    if (status == RELUME_EDAMAGED)
+        status = reader_bad(p, name, "a sound depth map");
+    mem_free(words.word);
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}

@@ -1,0 +1,115 @@
+// write_coded.c - the parts of a file whose planes are coded with loss: one for each group of views
+#include "base/memory.h"
+#include "lossy/disparity.h"
+#include "pack/format.h"
+#include "pack/writer.h"
+
+#include <string.h>
+
+// What a part holds: the words of the planes and of the depth of a view, view after view.
+struct words {
+    struct lossy_words *run;  // [runs], some of them empty
+    int runs;
+    size_t count, width;
+};
+
+// Rows are short, so that few more are read than a view needs, and the part is not too high.
+enum { ROW_WORDS = 2048, MOST_ROWS = 65536 };
+
+static size_t rows_of(size_t words)
+{
+    const size_t rows = (words + ROW_WORDS - 1) / ROW_WORDS;
+    return rows < MOST_ROWS ? rows : MOST_ROWS;
+}
+
+static relume_status words_rows(void *context, int row, int rows, void *samples)
+{
+    const struct words *w = context;
+    const size_t from = (size_t)row * w->width, to = from + (size_t)rows * w->width;
+    uint32_t *out = samples;
+    size_t at = 0;
+    memset(out, 0, (to - from) * sizeof *out);
+    for (int i = 0; i < w->runs; at += w->run[i++].count) {
+        const size_t begin = at > from ? at : from;
+        const size_t end = at + w->run[i].count < to ? at + w->run[i].count : to;
+        if (begin < end)
+            memcpy(out + begin - from, w->run[i].word + begin - at, (end - begin) * sizeof *out);
+    }
+    return RELUME_OK;
+}
+
+// Depth that is coded; the words are the writer's.
+static struct lossy_words depth_words(struct writer *w, const struct relume_pack_view *view,
+                                      float *step)
+{
+    struct lossy_words made = {0}, kept = {0};
+    if (!view->depth || !(view->depth_step > 0.0f))
+        return kept;
+    *step = view->depth_step;
+    if (!disparity_encode(&made, step, view->depth))
+        kept.word = arena_array(&w->arena, made.count, sizeof *kept.word);
+    w->failed |= !kept.word;
+    if (kept.word) {
+        kept.count = made.count;
+        memcpy(kept.word, made.word, made.count * sizeof *kept.word);
+    }
+    mem_free(made.word);
+    return kept;
+}
+
+static void add_view(struct writer *w, struct words *to, const char **members, float *step,
+                     int index)
+{
+    const struct relume_pack_view *view = &w->contents->view[index];
+    const int member = to->runs / 2;
+    struct lossy_words *run = to->run + to->runs;
+    run[0] = (struct lossy_words){(uint32_t *)(uintptr_t)view->coded, view->coded_words};
+    run[1] = depth_words(w, view, &step[member]);
+    to->runs += 2;
+    to->count += run[0].count + run[1].count;
+    *members = arena_format(&w->arena, FORMAT_MEMBER, *members ? *members : "", index, run[0].count,
+                            run[1].count);
+    w->failed |= !*members;
+}
+
+// The anchor and the views that are predicted from it.
+static void add_group(struct writer *w, int group, int anchor)
+{
+    static const char *const channel[] = {CODING_AV1};
+    const struct relume_pack_contents *c = w->contents;
+    struct words *words = arena_array(&w->arena, 1, sizeof *words);
+    float *step = arena_array(&w->arena, (size_t)c->views, sizeof *step);
+    struct lossy_words *run = arena_array(&w->arena, 2 * (size_t)c->views, sizeof *run);
+    struct exr_part *part = writer_part(w, arena_format(&w->arena, "group%04d", group), 1, 1);
+    const char *members = NULL;
+    w->failed |= !words || !step || !run;
+    if (w->failed)
+        return;
+    words->run = run;
+    add_view(w, words, &members, step, anchor);
+    for (int v = 0; v < c->views; v++)
+        if (c->view[v].predicted && c->view[v].anchor == anchor)
+            add_view(w, words, &members, step, v);
+    const size_t rows = rows_of(words->count);
+    words->width = (words->count + rows - 1) / rows;
+    part->codec = EXR_CODEC_NONE;
+    part->sample = EXR_SAMPLE_UINT;
+    part->width = (int)words->width;
+    part->height = (int)rows;
+    part->channels = 1;
+    part->channel = channel;
+    part->rows = words_rows;
+    part->context = words;
+    writer_text(part, ATTR_GROUP, members);
+    writer_floats(w, part, ATTR_STEP, step, words->runs / 2);
+    if (c->slabs)
+        writer_int(part, ATTR_MEMBER, c->view[anchor].slab);
+}
+
+void writer_add_groups(struct writer *w)
+{
+    int groups = 0;
+    for (int v = 0; v < w->contents->views; v++)
+        if (!w->contents->view[v].predicted)
+            add_group(w, groups++, v);
+}

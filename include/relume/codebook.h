@@ -17,7 +17,8 @@ typedef struct relume_codebook relume_codebook;
 enum relume_codebook_start {
     RELUME_START_RANDOM =
         0,               // different vectors of the data, drawn by the seed (Wong 1998, Fig 9-10)
-    RELUME_START_SPLIT,  // one code, split again and again along its cell's principal axis; no seed
+    RELUME_START_SPLIT,  // one code, split again and again along its cell's principal axis, then
+                         // codes of up to 8192 moved to where they do more; no seed
 };
 
 struct relume_codebook_params {  // zero in a field means its default
@@ -30,7 +31,8 @@ struct relume_codebook_params {  // zero in a field means its default
     int max_rounds;    // stop after this many Lloyd rounds; default 64
     double min_gain;   // stop when a round gains less than this part of the squared error,
                        // [0, 1); default 1e-4, negative: only when no vector changes its code
-    size_t sample;     // learn from this many vectors, drawn by the seed; default: from all
+    size_t sample;     // learn from this many vectors, drawn by the seed, and in at most six more
+                       // rounds from all; default: from all
     int threads;       // default: all cores
     unsigned cpu_off;  // RELUME_CPU_* features not to use; the result is the same
 };

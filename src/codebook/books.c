@@ -16,8 +16,8 @@
 #include <string.h>
 
 enum { DEFAULT_CODES = 256, DEFAULT_ROUNDS = 24, PER_CODE = 40, LEAST_SAMPLE = 65536 };
-// Floats of a sample: a quarter of a gigabyte.
-static const size_t MOST_FLOATS = (size_t)1 << 26;
+// Floats of a sample: a quarter of a gigabyte, and what it has anyway, for the last rounds.
+static const size_t MOST_FLOATS = (size_t)1 << 26, LAST_FLOATS = (size_t)1 << 24;
 
 void relume_books_destroy(relume_books **books)
 {
@@ -172,6 +172,14 @@ static relume_status remove_book(struct sample *s, const relume_books *books, in
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
+// What most rounds learn from.
+static size_t usual_sample(const struct relume_books_params *p, int codes)
+{
+    const size_t usual = (size_t)codes * PER_CODE;
+    const size_t n = p->sample ? p->sample : usual > LEAST_SAMPLE ? usual : LEAST_SAMPLE;
+    return n > (size_t)codes ? n : (size_t)codes;
+}
+
 static relume_status learn_book(relume_books *books, int i, struct sample *s,
                                 const struct relume_books_params *p)
 {
@@ -183,6 +191,7 @@ static relume_status learn_book(relume_books *books, int i, struct sample *s,
         &trained, s->part, s->n, b->dim,
         relume_codebook_params(.log = p->log, .start = p->start, .seed = p->seed + (uint64_t)i,
                                .codes = b->codes, .threads = p->threads,
+                               .sample = usual_sample(p, b->codes),
                                .max_rounds = p->max_rounds ? p->max_rounds : DEFAULT_ROUNDS));
     if (status)
         return status;
@@ -268,11 +277,13 @@ static relume_status check(const struct relume_coder_info *coder,
     return RELUME_OK;
 }
 
+// What is held, and the last rounds learn from.
 static size_t sample_size(const struct relume_books_params *p, int codes, size_t pixels,
                           size_t planes)
 {
-    const size_t usual = (size_t)codes * PER_CODE;
-    size_t n = p->sample ? p->sample : usual > LEAST_SAMPLE ? usual : LEAST_SAMPLE;
+    size_t n = usual_sample(p, codes);
+    if (!p->sample && n < LAST_FLOATS / planes)
+        n = LAST_FLOATS / planes;
     n = n < MOST_FLOATS / planes ? n : MOST_FLOATS / planes;
     n = n > (size_t)codes ? n : (size_t)codes;
     return n < pixels ? n : pixels;

@@ -15,7 +15,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-enum { CHUNK = 3072, DEFAULT_CODES = 256, DEFAULT_ROUNDS = 64 };
+enum { CHUNK = 3072, DEFAULT_CODES = 256, DEFAULT_ROUNDS = 64, LAST_ROUNDS = 6 };
 static const double DEFAULT_GAIN = 1e-4;
 
 // ---------------------------------------------------------------- assignment
@@ -336,37 +336,59 @@ static relume_status make_book(relume_codebook **out, struct training *t)
     return RELUME_OK;
 }
 
+// The book of a sample of what `all` is trained on; to be freed.
+static relume_status train_sample(float **book, const struct training *all,
+                                  const struct relume_codebook_params *p)
+{
+    struct training t = *all;
+    float *sample = draw_sample(all->vectors, all->n, all->dim, p->sample, p->seed);
+    t.vectors = sample;
+    t.n = p->sample;
+    relume_status status = sample && alloc_training(&t) ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = train(&t, p);
+    if (!status) {
+        *book = t.code;
+        t.code = NULL;
+    }
+    free_training(&t);
+    mem_free(sample);
+    return status;
+}
+
 relume_status relume_codebook_train(relume_codebook **out, const float *vectors, size_t n, int dim,
                                     const struct relume_codebook_params *params)
 {
-    const struct relume_codebook_params p = PARAMS_WORK(relume_codebook_params, params);
+    struct relume_codebook_params p = PARAMS_WORK(relume_codebook_params, params);
     const int codes = p.codes ? p.codes : DEFAULT_CODES;
     *out = NULL;
     relume_status status = check(vectors, n, dim, &p, codes);
     if (status)
         return status;
-    float *sample = NULL;
-    if (p.sample && p.sample < n) {
-        sample = draw_sample(vectors, n, dim, p.sample, p.seed);
-        if (!sample)
-            return RELUME_ENOMEM;
-    }
     struct training t = {
         .log = p.log,
-        .vectors = sample ? sample : vectors,
-        .n = sample ? p.sample : n,
+        .vectors = vectors,
+        .n = n,
         .dim = dim,
         .most_codes = codes,
         .threads = p.threads,
         .cpu_off = p.cpu_off,
     };
-    status = alloc_training(&t) ? RELUME_OK : RELUME_ENOMEM;
+    float *begun = NULL;
+    if (p.sample && p.sample < n)
+        status = train_sample(&begun, &t, &p);
+    if (!status && !alloc_training(&t))
+        status = RELUME_ENOMEM;
+    if (begun) {
+        p.initial = begun;
+        p.max_rounds = p.max_rounds && p.max_rounds < LAST_ROUNDS ? p.max_rounds : LAST_ROUNDS;
+    }
     if (!status)
         status = train(&t, &p);
     if (!status)
         status = make_book(out, &t);
     free_training(&t);
-    mem_free(sample);
+    mem_free(begun);
     return status;
 }
 

@@ -42,6 +42,15 @@ void training_move(struct training *t);
 // Assign and move until the gain is below `min_gain` of the error, or `max_rounds` are done.
 relume_status training_run(struct training *t, int max_rounds, double min_gain);
 
+// The principal axis of a cell, axis[2 dim] of which the second half is scratch, and the variance
+// along it.
+double training_axis(const struct training *t, int cell, double *axis);
+// The code of the cell and `other` become the means of its halves.
+void training_split(struct training *t, int cell, float *other, const double *axis,
+                    double variance);
+// Codes of cells that others could take over go to cells that are worth two, while that helps.
+relume_status training_shift(struct training *t);
+
 // Starts: fill t->code and t->codes.
 void start_random(struct training *t, uint64_t seed);
 relume_status start_split(struct training *t);

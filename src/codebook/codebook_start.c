@@ -4,7 +4,8 @@
 // the mean of everything becomes two codes, these four, and so on. A cell is split along its
 // principal axis, into the means that the halves of a normal distribution have: mean +- sqrt(2
 // lambda / pi) e with e, lambda the axis and its variance. When fewer codes are left to make than
-// there are cells, the cells of the largest squared error are split.
+// there are cells, the cells of the largest squared error are split; then codes move from where
+// they do little to where they do more (codebook_shift.c).
 #include "codebook/codebook.h"
 
 #include "base/memory.h"
@@ -80,6 +81,26 @@ static void begin_axis(const struct training *t, int cell, double *axis)
         axis[k] /= length;
 }
 
+double training_axis(const struct training *t, int cell, double *axis)
+{
+    double variance = 0.0;
+    begin_axis(t, cell, axis);
+    for (int step = 0; step < POWER_STEPS; step++)
+        variance = power_step(t, cell, axis, axis + t->dim);
+    return variance;
+}
+
+void training_split(struct training *t, int cell, float *other, const double *axis, double variance)
+{
+    float *code = t->code + (size_t)cell * (size_t)t->dim;
+    const double reach = sqrt(2.0 * variance / M_PI);
+    for (int k = 0; k < t->dim; k++) {
+        const double mean = (double)code[k];
+        code[k] = (float)(mean - reach * axis[k]);
+        other[k] = (float)(mean + reach * axis[k]);
+    }
+}
+
 static void split_cell(void *context, size_t item, int worker)
 {
     const struct split *s = context;
@@ -92,16 +113,7 @@ static void split_cell(void *context, size_t item, int worker)
     memcpy(other, code, dim * sizeof *other);
     if (t->begin[cell] == t->begin[cell + 1] || !(t->error[cell] > 0.0))
         return;
-    double variance = 0.0;
-    begin_axis(t, cell, axis);
-    for (int step = 0; step < POWER_STEPS; step++)
-        variance = power_step(t, cell, axis, axis + dim);
-    const double reach = sqrt(2.0 * variance / M_PI);
-    for (size_t k = 0; k < dim; k++) {
-        const double mean = (double)code[k];
-        code[k] = (float)(mean - reach * axis[k]);
-        other[k] = (float)(mean + reach * axis[k]);
-    }
+    training_split(t, cell, other, axis, training_axis(t, cell, axis));
 }
 
 static int larger_first(const void *a, const void *b)
@@ -139,5 +151,5 @@ relume_status start_split(struct training *t)
     }
     mem_free(cells);
     mem_free(axis);
-    return status;
+    return status ? status : training_shift(t);
 }

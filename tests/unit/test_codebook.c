@@ -351,6 +351,58 @@ static void test_split_finds_the_axis(void **state)
     free(v);
 }
 
+// As many tight groups as codes, far apart and of unequal size: the best book has a code in each,
+// and its error is that of the groups around their means. Splitting alone left several groups to
+// share a code (a hundred times that error).
+static void test_codes_reach_every_group(void **state)
+{
+    (void)state;
+    enum { GROUPS = 48, DIM = 5, MOST = 400 };
+    static float v[GROUPS * MOST * DIM];
+    size_t n = 0;
+    double best = 0.0;
+    uint32_t seed = 11;
+    for (int g = 0; g < GROUPS; g++) {
+        const size_t members = g % 5 ? 40 : MOST, first = n;
+        double centre[DIM], mean[DIM] = {0.0};
+        for (int k = 0; k < DIM; k++)
+            centre[k] = 20.0 * test_uniform(&seed);
+        for (; n < first + members; n++)
+            for (int k = 0; k < DIM; k++) {
+                v[n * DIM + (size_t)k] = (float)(centre[k] + 0.2 * test_uniform(&seed));
+                mean[k] += (double)v[n * DIM + (size_t)k] / (double)members;
+            }
+        for (size_t i = first; i < n; i++)
+            for (int k = 0; k < DIM; k++)
+                best += pow((double)v[i * DIM + (size_t)k] - mean[k], 2.0);
+    }
+    relume_codebook *book =
+        train(v, n, DIM, relume_codebook_params(.codes = GROUPS, .start = RELUME_START_SPLIT));
+    CHECK_NEAR(relume_codebook_info(book)->squared_error, best, 1e-6 * best);  // means are floats
+    relume_codebook_destroy(&book);
+}
+
+// Most rounds learn from a sample, the last ones from everything: a Lloyd round more gains nothing.
+static void test_last_rounds_see_all(void **state)
+{
+    (void)state;
+    enum { N = 4000, DIM = 3, CODES = 30 };
+    float *v = clusters(N, DIM, 7);
+    relume_codebook *book =
+        train(v, N, DIM,
+              relume_codebook_params(.codes = CODES, .sample = 300, .start = RELUME_START_SPLIT));
+    const struct relume_codebook_info *info = relume_codebook_info(book);
+    uint16_t *index = malloc(N * sizeof *index);
+    double error;
+    CHECK_OK(relume_codebook_assign(book, v, N, index, &error, NULL));
+    assert_true(info->rounds <= 6);
+    assert_true(error <= info->squared_error);
+    CHECK_NEAR(error, info->squared_error, 0.02 * error);  // a book of the sample is 10 % off
+    free(index);
+    relume_codebook_destroy(&book);
+    free(v);
+}
+
 static void expect_einval(const float *v, size_t n, int dim, struct relume_codebook_params p,
                           const char *word)
 {
@@ -458,6 +510,8 @@ int main(void)
         cmocka_unit_test(test_duplicates),
         cmocka_unit_test(test_as_many_codes_as_vectors),
         cmocka_unit_test(test_split_finds_the_axis),
+        cmocka_unit_test(test_codes_reach_every_group),
+        cmocka_unit_test(test_last_rounds_see_all),
         cmocka_unit_test(test_bad_input),
         cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_allocations),

@@ -200,7 +200,7 @@ RELUME_RESULT relume_status relume_btf_fitted_open(relume_btf_fitted **out, cons
                                                    const struct relume_btf_params *params);
 RELUME_API void relume_btf_fitted_destroy(relume_btf_fitted **fitted);
 
-// What a fitted model is. Pointers belong to it.
+// What a fitted model is.
 struct relume_btf_fitted_info {
     const struct relume_btf_model *model;  // the kind of model
     int width, height, views, lights;
@@ -211,8 +211,9 @@ struct relume_btf_fitted_info {
     uint64_t bytes_levels;            // of the arrays of all levels
     double rim;  // mean cosine of the lowest measured lights, below which values fall to 0
 };
-// A copy; what it points to belongs to the model.
-RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
+// It belongs to `fitted`.
+RELUME_API const struct relume_btf_fitted_info *relume_btf_fitted_info(
+    const relume_btf_fitted *fitted);
 
 // What a graphics processor has to do for a pixel between the measured directions (2003 paper,
 // Tab. 3): vector operations (of up to four numbers; a power counts as one) and texture fetches (up

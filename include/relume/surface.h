@@ -103,7 +103,7 @@ RELUME_RESULT relume_status relume_btf_surface_open(relume_btf_surface **out, co
                                                     const struct relume_btf_params *params);
 RELUME_API void relume_btf_surface_destroy(relume_btf_surface **surface);
 
-// What a surface is; pointers belong to it.
+// What a surface is.
 struct relume_btf_surface_info {
     int width, height;                      // texels
     int levels;                             // of detail, at least 1
@@ -111,8 +111,8 @@ struct relume_btf_surface_info {
     const struct relume_btf_map_info *map;  // of the finest level
     uint64_t bytes;                         // of the arrays of all levels of the model and the map
 };
-// A copy; what it points to belongs to the surface.
-RELUME_API struct relume_btf_surface_info relume_btf_surface_info(
+// It belongs to `surface`.
+RELUME_API const struct relume_btf_surface_info *relume_btf_surface_info(
     const relume_btf_surface *surface);
 // The model and the map of a level of detail, for clients that look texels up themselves.
 struct relume_btf_surface_level {

@@ -225,6 +225,8 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
         status = fit_levels(*out, btf, &p);
     if (status)
         relume_btf_fitted_destroy(out);
+    else
+        model_settle(*out);
     return status;
 }
 
@@ -232,9 +234,12 @@ relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf
                                   const struct relume_log *log)
 {
     *out = NULL;
-    const relume_status status = check_values(btf, log);
-    return status ? status
-                  : fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
+    relume_status status = check_values(btf, log);
+    if (!status)
+        status = fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
+    if (!status)
+        model_settle(*out);
+    return status;
 }
 
 // ---------------------------------------------------------------- reading back
@@ -251,9 +256,9 @@ static double mean_rim(const relume_direction_mesh *lights)
     return sum / AROUND;
 }
 
-struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
+void model_settle(relume_btf_fitted *m)
 {
-    struct relume_btf_fitted_info info = {
+    m->info = (struct relume_btf_fitted_info){
         .model = m->model,
         .width = m->width,
         .height = m->height,
@@ -262,22 +267,26 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         .clusters = m->clusters,
         .components = m->components,
         .lobes = m->lobes,
+        .levels = 1,
+        // layouts alone have no directions
+        .rim = m->light_dome ? mean_rim(m->light_dome) : 0.0,
     };
     for (int i = 0; i < m->arrays; i++) {
         const uint64_t bytes = npy_bytes(&m->array[i].npy);
-        info.bytes += bytes;
-        info.bytes_each += m->array[i].each ? bytes / m->texels : 0;
+        m->info.bytes += bytes;
+        m->info.bytes_each += m->array[i].each ? bytes / m->texels : 0;
     }
-    // layouts alone have no directions
-    info.rim = m->light_dome ? mean_rim(m->light_dome) : 0.0;
-    info.levels = 1;
-    info.bytes_levels = info.bytes;
+    m->info.bytes_levels = m->info.bytes;
     if (m->half) {
-        const struct relume_btf_fitted_info half = relume_btf_fitted_info(m->half);
-        info.levels += half.levels;
-        info.bytes_levels += half.bytes_levels;
+        model_settle(m->half);
+        m->info.levels += m->half->info.levels;
+        m->info.bytes_levels += m->half->info.bytes_levels;
     }
-    return info;
+}
+
+const struct relume_btf_fitted_info *relume_btf_fitted_info(const relume_btf_fitted *m)
+{
+    return &m->info;
 }
 
 struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *m)

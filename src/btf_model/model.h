@@ -33,9 +33,10 @@ struct relume_btf_fitted {
     relume_direction_mesh *view_dome, *light_dome;
     struct model_array array[MODEL_ARRAYS];
     int arrays;
-    void *prepared;           // what the model's `prepare` made of them, or NULL
-    relume_btf_fitted *half;  // the next level of detail, or NULL
-    const relume_btf *table;  // the measured values, where they are the model
+    void *prepared;                      // what the model's `prepare` made of them, or NULL
+    relume_btf_fitted *half;             // the next level of detail, or NULL
+    const relume_btf *table;             // the measured values, where they are the model
+    struct relume_btf_fitted_info info;  // of the whole, by model_settle
 };
 
 // One value that is asked for. Models that are gridded over views (lights) get measured ones only.
@@ -87,6 +88,8 @@ void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool 
                const size_t shape[NPY_DIMS]);
 // Zeroed arrays as the layout says, in place of what there is. RELUME_ENOMEM.
 relume_status model_make_arrays(relume_btf_fitted *m);
+// Fill `info` of all levels, once these and their directions are there.
+void model_settle(relume_btf_fitted *m);
 #define MODEL_SHAPE(...) ((const size_t[NPY_DIMS]){__VA_ARGS__})
 
 static inline uint16_t *model_halfs(const relume_btf_fitted *m, int array)

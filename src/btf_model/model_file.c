@@ -34,7 +34,7 @@ static relume_status save_json(const relume_btf_fitted *m, const char *folder,
                           "  \"texel_bytes\": %d, \"pair_bytes\": %d, \"includes_cosine\": %s,\n"
                           "  \"view_directions\": %s,\n  \"light_directions\": %s }\n",
                           VERSION, m->model->name, m->width, m->height, m->clusters, m->components,
-                          m->lobes, relume_btf_fitted_info(m).levels, m->texel_bytes, m->pair_bytes,
+                          m->lobes, m->info.levels, m->texel_bytes, m->pair_bytes,
                           m->without_cosine ? "false" : "true", view, light);
     const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
     mem_free(path);
@@ -288,5 +288,7 @@ relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
         status = open_half(m, path, level, params);
     if (status)
         relume_btf_fitted_destroy(out);
+    else
+        model_settle(*out);
     return status;
 }

@@ -12,12 +12,12 @@ static bool is_shown(const relume_objects *o, int material)
 
 static const relume_btf_fitted *model_of(const relume_objects *o, int material)
 {
-    return relume_btf_surface_info(o->material[material].surface).model;
+    return relume_btf_surface_info(o->material[material].surface)->model;
 }
 
 static double rim_of(const relume_objects *o, int material)
 {
-    return relume_btf_fitted_info(model_of(o, material)).rim;
+    return relume_btf_fitted_info(model_of(o, material))->rim;
 }
 
 // The maps of an earlier material whose lowest lights are the same, or new ones.

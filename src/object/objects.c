@@ -17,7 +17,7 @@ static void close_material(struct relume_object_material *m)
 {
     relume_btf_fitted *model = NULL;  // a surface that has a map owns its model
     if (m->surface && !m->mapped)
-        model = (relume_btf_fitted *)relume_btf_surface_info(m->surface).model;
+        model = (relume_btf_fitted *)relume_btf_surface_info(m->surface)->model;
     relume_btf_surface_destroy((relume_btf_surface **)&m->surface);
     relume_btf_fitted_destroy(&model);
     relume_btf_destroy((relume_btf **)&m->btf);
@@ -92,11 +92,11 @@ static relume_status open_surface(struct relume_object_material *m, const char *
     m->mapped = true;
     if (status)
         return status;
-    const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
-    m->fitted = info.model;
-    m->model = relume_btf_model_name(relume_btf_fitted_info(info.model).model);
-    m->width = info.width, m->height = info.height;
-    m->bytes = info.bytes;
+    const struct relume_btf_surface_info *info = relume_btf_surface_info(surface);
+    m->fitted = info->model;
+    m->model = relume_btf_model_name(relume_btf_fitted_info(info->model)->model);
+    m->width = info->width, m->height = info->height;
+    m->bytes = info->bytes;
     return RELUME_OK;
 }
 
@@ -121,11 +121,11 @@ static relume_status open_model(struct relume_object_material *m, const char *fo
         status = cover_whole(m, fitted, p);
     if (status)
         return status;
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
+    const struct relume_btf_fitted_info *info = relume_btf_fitted_info(fitted);
     m->fitted = fitted;
-    m->model = relume_btf_model_name(info.model);
-    m->width = info.width, m->height = info.height;
-    m->bytes = info.bytes_levels;
+    m->model = relume_btf_model_name(info->model);
+    m->width = info->width, m->height = info->height;
+    m->bytes = info->bytes_levels;
     return RELUME_OK;
 }
 

@@ -93,6 +93,18 @@ relume_status surface_start(relume_btf_surface **out, const relume_btf_fitted *m
         status = make_level(&s->level[s->levels], &s->level[s->levels - 1]);
         s->levels++;
     }
+    const struct relume_btf_map_info *m = &s->level[0].map;
+    model = s->level[0].model;
+    s->info = (struct relume_btf_surface_info){
+        .width = m->columns * m->width,
+        .height = m->rows * m->height,
+        .levels = s->levels,
+        .model = model,
+        .map = m,
+        .bytes = relume_btf_fitted_info(model)->bytes_levels +
+                 (model->texels <= 65536 ? 2 : 4) * map_texels(m) +
+                 2 * (uint64_t)m->columns * (uint64_t)m->rows,
+    };
     if (status)
         relume_btf_surface_destroy(out);
     return status;
@@ -140,19 +152,9 @@ void relume_btf_surface_destroy(relume_btf_surface **surface)
     mem_free(s);
 }
 
-struct relume_btf_surface_info relume_btf_surface_info(const relume_btf_surface *s)
+const struct relume_btf_surface_info *relume_btf_surface_info(const relume_btf_surface *s)
 {
-    const struct relume_btf_map_info *m = &s->level[0].map;
-    const size_t number = s->level[0].model->texels <= 65536 ? 2 : 4;
-    return (struct relume_btf_surface_info){
-        .width = m->columns * m->width,
-        .height = m->rows * m->height,
-        .levels = s->levels,
-        .model = s->level[0].model,
-        .map = m,
-        .bytes = relume_btf_fitted_info(s->level[0].model).bytes_levels + number * map_texels(m) +
-                 2 * (uint64_t)m->columns * (uint64_t)m->rows,
-    };
+    return &s->info;
 }
 
 struct relume_btf_surface_level relume_btf_surface_level(const relume_btf_surface *s, int level)

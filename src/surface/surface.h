@@ -51,6 +51,7 @@ struct relume_btf_surface {
         struct relume_btf_map_info map;
         relume_btf_map *own;  // what `map` points to
     } level[SURFACE_LEVELS];
+    struct relume_btf_surface_info info;
 };
 
 // Levels of the model and of the map, from the finest map, which the surface then owns.

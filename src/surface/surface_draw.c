@@ -174,7 +174,7 @@ static relume_status make_ambient(struct drawing *d, int i, const struct relume_
     const relume_btf_fitted *model = d->surface->level[0].model;
     const relume_status status = relume_prefiltered_create(
         &d->prefilter[i], &d->lights[i],
-        relume_prefiltered_params(.log = p->log, .rim = relume_btf_fitted_info(model).rim,
+        relume_prefiltered_params(.log = p->log, .rim = relume_btf_fitted_info(model)->rim,
                                   .threads = p->threads));
     return status ? status
                   : relume_btf_oriented_light_create(
@@ -209,7 +209,7 @@ relume_status relume_btf_draw(struct relume_image *image, const relume_btf_surfa
                               const struct relume_btf_draw_params *params)
 {
     const struct relume_btf_draw_params p = PARAMS_WORK(relume_btf_draw_params, params);
-    const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
+    const struct relume_btf_surface_info *info = relume_btf_surface_info(surface);
     if (!image->data || image->channels != 3)
         return log_fail(p.log, RELUME_EINVAL, "picture: expected three channels");
     relume_status status = check_camera(camera, p.log);
@@ -222,9 +222,9 @@ relume_status relume_btf_draw(struct relume_image *image, const relume_btf_surfa
                         .camera = camera,
                         .lights = lights,
                         .count = count,
-                        .unit = 0.5 * info.width,
-                        .width = info.width,
-                        .height = info.height};
+                        .unit = 0.5 * info->width,
+                        .width = info->width,
+                        .height = info->height};
     if (camera->perspective)
         d.lens = make_lens(camera, image->width, image->height);
     status = make_ambients(&d, &p);

@@ -158,15 +158,15 @@ static void run(const char *sky, const char *folder)
     must(relume_environment_create(&e, &map, NULL), sky);
     must(relume_btf_fitted_open(&model, folder, NULL), folder);
     must(relume_btf_surface_create(&surface, model, NULL, NULL), folder);
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(model);
+    const struct relume_btf_fitted_info *info = relume_btf_fitted_info(model);
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
-    must(relume_prefiltered_create(&prefilter, &light, relume_prefiltered_params(.rim = info.rim)),
+    must(relume_prefiltered_create(&prefilter, &light, relume_prefiltered_params(.rim = info->rim)),
          sky);
     must(relume_btf_environment_create(&any_way, model, prefilter), folder);
     struct trial t = {
-        model,      surface,    &light, prefilter, any_way, frame_of(0), unit(0.28, 0, 0.96),
-        info.width, info.height};
+        model,       surface,     &light, prefilter, any_way, frame_of(0), unit(0.28, 0, 0.96),
+        info->width, info->height};
     judge(&t, sky, folder);
     relume_btf_environment_destroy(&any_way);
     relume_prefiltered_destroy(&prefilter);

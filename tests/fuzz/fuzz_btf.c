@@ -153,8 +153,8 @@ static bool open_model(const char *path)
     relume_btf_fitted *fitted;
     if (relume_btf_fitted_open(&fitted, path, relume_btf_params(.limits = &limits)))
         return false;
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-    look(NULL, fitted, info.width, info.height);
+    const struct relume_btf_fitted_info *info = relume_btf_fitted_info(fitted);
+    look(NULL, fitted, info->width, info->height);
     (void)relume_btf_fitted_cost(fitted);
     relume_btf_fitted_destroy(&fitted);
     return true;

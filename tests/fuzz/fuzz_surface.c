@@ -27,11 +27,11 @@ static struct bytes whole[FILES];  // as they were saved
 static void look(const relume_btf_surface *s)
 {
     const struct relume_btf_ray ray = {.view = {0.3, 0.0, 0.95}, .light = {-0.5, 0.2, 0.8}};
-    const struct relume_btf_surface_info info = relume_btf_surface_info(s);
+    const struct relume_btf_surface_info *info = relume_btf_surface_info(s);
     float rgb[3];
     for (int i = 0; i < 16; i++)
-        relume_btf_surface_evaluate(s, i * info.width / 15.0, i * info.height / 15.0, 0.3 * i, &ray,
-                                    rgb);
+        relume_btf_surface_evaluate(s, i * info->width / 15.0, i * info->height / 15.0, 0.3 * i,
+                                    &ray, rgb);
 }
 
 static bool open_map(const char *path)

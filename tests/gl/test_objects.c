@@ -356,7 +356,7 @@ static void levels_agree(void **state)
     int n, tried = 0;
     assert_int_equal(relume_rig_lights(&lights, &n, rig), RELUME_OK);
     for (int i = 0; i < info->materials; i++) {
-        const int levels = relume_btf_surface_info(info->material[i].surface).levels;
+        const int levels = relume_btf_surface_info(info->material[i].surface)->levels;
         double brightest;
         if (levels == 1)
             continue;

@@ -194,7 +194,7 @@ static void test_brute_force(void **state)
             if (between_lights(name))
                 continue;
             relume_btf_fitted *m = fit(btf, name);
-            CHECK_NEAR(relume_btf_fitted_info(m).rim, 0.347, 0.002);
+            CHECK_NEAR(relume_btf_fitted_info(m)->rim, 0.347, 0.002);
             // Linear models: cells of 3.75 degrees for those of 1.4. Lobes: the part of them above
             // the horizon is that under a uniform sky, and below the lowest lights they are
             // followed down, where the model stays with the rim and falls.

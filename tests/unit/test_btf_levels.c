@@ -87,10 +87,10 @@ static void check_model(const struct relume_btf_model *model, const relume_btf *
     CHECK_OK(
         relume_btf_fit(&alone, half, model, relume_btf_fit_params(.clusters = 1, .components = 3)));
     check_same(relume_btf_fitted_level(all, 1), alone);
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(all);
-    assert_int_equal(info.levels, 3);
-    assert_int_equal(relume_btf_fitted_info(relume_btf_fitted_level(all, 9)).width, 1);
-    assert_true(info.bytes_levels > info.bytes);
+    const struct relume_btf_fitted_info *info = relume_btf_fitted_info(all);
+    assert_int_equal(info->levels, 3);
+    assert_int_equal(relume_btf_fitted_info(relume_btf_fitted_level(all, 9))->width, 1);
+    assert_true(info->bytes_levels > info->bytes);
     snprintf(path, sizeof path, "%s/%s", folder, relume_btf_model_name(model));
     CHECK_OK(relume_btf_fitted_save(all, path, NULL));
     CHECK_OK(relume_btf_fitted_open(&back, path, NULL));

@@ -228,10 +228,10 @@ static void check_lookups(const relume_btf_fitted *m, const char *name)
     relume_btf_surface *s;
     double a[3], b[3], mid[3], coarse[3];
     CHECK_OK(relume_btf_surface_create(&s, m, map, NULL));
-    const struct relume_btf_surface_info info = relume_btf_surface_info(s);
-    assert_int_equal(info.width, 8);
-    assert_int_equal(info.height, 4);
-    assert_int_equal(info.levels, !strcmp(name, "table") ? 1 : 3);
+    const struct relume_btf_surface_info *info = relume_btf_surface_info(s);
+    assert_int_equal(info->width, 8);
+    assert_int_equal(info->height, 4);
+    assert_int_equal(info->levels, !strcmp(name, "table") ? 1 : 3);
     const double tight = 1e-6;  // one rounding of floats
     // the matrix puts tile 1, texels 8 to 11, first
     texel_value(a, m, 8, 2);
@@ -242,7 +242,7 @@ static void check_lookups(const relume_btf_fitted *m, const char *name)
     for (int c = 0; c < 3; c++)
         mid[c] = 0.75 * a[c] + 0.25 * b[c];
     check_value(s, 3.75, 1.5, 0.0, mid, tight);  // over the border of tiles: texels 11 and 0
-    if (info.levels > 1) {
+    if (info->levels > 1) {
         texel_value(coarse, relume_btf_fitted_level(m, 1), 4, 1);
         check_value(s, 1.0, 3.0, 1.0, coarse, tight);  // 2 x 2 texels from (8, 2)
         float filtered[3];
@@ -258,7 +258,7 @@ static void check_lookups(const relume_btf_fitted *m, const char *name)
     }
     // long and thin: three texels of the finest level, which 3.0625 to 1 counts as
     const struct relume_btf_footprint thin = {1.5, 1.5, {3.0625, 0.0}, {0.0, 1.0}};
-    const double level = info.levels > 1 ? log2(3.0625 / 3.0) : 0.0;
+    const double level = info->levels > 1 ? log2(3.0625 / 3.0) : 0.0;
     float got[3], one[3];
     relume_btf_surface_filter(s, &thin, &ray, got);
     for (int c = 0; c < 3; c++)
@@ -424,10 +424,10 @@ static void test_bytes(void **state)
     relume_btf_surface *s;
     CHECK_OK(relume_btf_map_create(&map, &info, NULL));
     CHECK_OK(relume_btf_surface_create(&s, &m, map, NULL));
-    const struct relume_btf_surface_info i = relume_btf_surface_info(s);
-    assert_int_equal(i.width, 4096);
-    assert_int_equal(i.height, 4096);
-    CHECK_NEAR((double)i.bytes / 1048576.0 - 0.125, 4.26, 0.01);
+    const struct relume_btf_surface_info *i = relume_btf_surface_info(s);
+    assert_int_equal(i->width, 4096);
+    assert_int_equal(i->height, 4096);
+    CHECK_NEAR((double)i->bytes / 1048576.0 - 0.125, 4.26, 0.01);
     relume_btf_surface_destroy(&s);
     relume_btf_map_destroy(&map);
     free(texel);
@@ -471,8 +471,8 @@ static void test_files(void **state)
     CHECK_OK(relume_btf_surface_create(&s, m, map, NULL));
     CHECK_OK(relume_btf_surface_save(s, path, NULL));
     CHECK_OK(relume_btf_surface_open(&back, path, NULL));
-    assert_int_equal(relume_btf_surface_info(back).bytes, relume_btf_surface_info(s).bytes);
-    assert_int_equal(relume_btf_surface_info(back).levels, 2);
+    assert_int_equal(relume_btf_surface_info(back)->bytes, relume_btf_surface_info(s)->bytes);
+    assert_int_equal(relume_btf_surface_info(back)->levels, 2);
     for (int i = 0; i < 40; i++) {
         float a[3], b[3];
         relume_btf_surface_evaluate(s, 0.37 * i, 0.21 * i, 0.05 * i, &ray, a);

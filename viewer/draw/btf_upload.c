@@ -299,12 +299,13 @@ static relume_status upload_level(struct btf_material *m, const struct gl *gl,
                                   const struct relume_log *log)
 {
     const struct relume_btf_surface_level at = relume_btf_surface_level(from->surface, number);
-    const struct relume_btf_fitted_info i = relume_btf_fitted_info(at.model);
+    const struct relume_btf_fitted_info *i = relume_btf_fitted_info(at.model);
     struct btf_level *level = &m->level[m->levels++];
     level->width = at.map->columns * at.map->width;
     level->height = at.map->rows * at.map->height;
-    level->area = i.width * i.height;
-    memcpy(level->counts, (int[4]){i.views, i.lights, i.components, i.lobes}, sizeof level->counts);
+    level->area = i->width * i->height;
+    memcpy(level->counts, (int[4]){i->views, i->lights, i->components, i->lobes},
+           sizeof level->counts);
     const relume_status status =
         from->fitted ? upload_fitted(m, gl, at.model, log) : upload_measured(m, gl, from->btf, log);
     return status ? status : upload_map(m, gl, from->mapped ? at.map : NULL, log);
@@ -319,16 +320,16 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
     if (!m->shader)
         return say(log, RELUME_ESYSTEM, "%s: model %s cannot be drawn here", material->name,
                    material->model);
-    const struct relume_btf_surface_info info = relume_btf_surface_info(material->surface);
-    const struct relume_btf_directions d = relume_btf_fitted_directions(info.model);
+    const struct relume_btf_surface_info *info = relume_btf_surface_info(material->surface);
+    const struct relume_btf_directions d = relume_btf_fitted_directions(info->model);
     m->without_cosine = d.without_cosine;
-    m->rim = relume_btf_fitted_info(info.model).rim;
+    m->rim = relume_btf_fitted_info(info->model)->rim;
     relume_status status = upload_level(m, gl, material, 0, log);
     if (!status)
         status = upload_dome(m, gl, BTF_UNIT_DOMES, d.view, m->level->counts[0], log);
     if (!status)
         status = upload_dome(m, gl, BTF_UNIT_DOMES + 2, d.light, m->level->counts[1], log);
-    for (int i = 1; i < info.levels && !status; i++)
+    for (int i = 1; i < info->levels && !status; i++)
         status = upload_level(m, gl, material, i, log);
     if (status)
         btf_release(m, gl);
@@ -372,7 +373,7 @@ relume_status btf_need_table(struct btf_material *m, const struct gl *gl,
     if (m->table)
         return RELUME_OK;
     if (!m->shader->lobes)
-        return upload_cones(m, gl, relume_btf_surface_info(from->surface).model, prefilter, log);
+        return upload_cones(m, gl, relume_btf_surface_info(from->surface)->model, prefilter, log);
     return fill_buffer(m, gl, &m->table, &m->table_buffer, GL_R32F, PARTS, PARTS * sizeof(float),
                        relume_prefiltered_info(prefilter)->part, log);
 }

@@ -26,14 +26,14 @@ static relume_status parse_camera(struct relume_btf_camera *camera, const struct
 
 static relume_status draw(const relume_btf_surface *surface, const struct btf_options *o)
 {
-    const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
+    const struct relume_btf_surface_info *info = relume_btf_surface_info(surface);
     const struct relume_light *lights;
     struct relume_btf_camera camera;
     struct relume_image image = {0};
     relume_rig *rig = NULL;
     int n = 0;
     relume_status status = parse_camera(&camera, o);
-    int size[2] = {camera.perspective ? 640 : info.width, camera.perspective ? 400 : info.height};
+    int size[2] = {camera.perspective ? 640 : info->width, camera.perspective ? 400 : info->height};
     if (o->picture[0])
         memcpy(size, o->picture, sizeof size);
     if (!status)

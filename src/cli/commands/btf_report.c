@@ -31,7 +31,7 @@ double btf_speed(const relume_btf_fitted *fitted)
 {
     enum { BATCH = 256 };
     static const double LONG_ENOUGH_S = 0.1;
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
+    const struct relume_btf_fitted_info *info = relume_btf_fitted_info(fitted);
     const double start = now_s();
     double taken = 0.0, count = 0.0;
     for (uint32_t n = 0; taken < LONG_ENOUGH_S; taken = now_s() - start)
@@ -42,8 +42,8 @@ double btf_speed(const relume_btf_fitted *fitted)
             const struct relume_vec3 v = {r * cos(a), r * sin(a), sqrt(1.0 - r * r)};
             const struct relume_vec3 l = {s * cos(b), s * sin(b), sqrt(1.0 - s * s)};
             float rgb[3];
-            relume_btf_fitted_evaluate(fitted, (int)(n * 7919u % (uint32_t)info.width),
-                                       (int)(n * 104729u % (uint32_t)info.height), v, l, rgb);
+            relume_btf_fitted_evaluate(fitted, (int)(n * 7919u % (uint32_t)info->width),
+                                       (int)(n * 104729u % (uint32_t)info->height), v, l, rgb);
         }
     return count / taken;
 }

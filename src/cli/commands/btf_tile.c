@@ -17,9 +17,9 @@ static relume_status choose_model(relume_btf_fitted **own, const relume_btf_fitt
 static relume_status make_map(relume_btf_map **out, const relume_btf_fitted *sample,
                               const struct btf_options *o)
 {
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(sample);
+    const struct relume_btf_fitted_info *info = relume_btf_fitted_info(sample);
     if (o->map)
-        return relume_btf_map_open(out, o->map, info.width, info.height,
+        return relume_btf_map_open(out, o->map, info->width, info->height,
                                    relume_btf_params(.log = o->args.log));
     return relume_btf_map_tiles(
         out, sample,
@@ -31,7 +31,7 @@ static relume_status make_map(relume_btf_map **out, const relume_btf_fitted *sam
 void btf_say_surface(const struct relume_btf_surface_info *i, const struct relume_btf_seams *s,
                      bool json)
 {
-    const char *model = relume_btf_model_name(relume_btf_fitted_info(i->model).model);
+    const char *model = relume_btf_model_name(relume_btf_fitted_info(i->model)->model);
     const double whole = (double)i->width * i->height;
     if (json)
         printf("{\"width\": %d, \"height\": %d, \"tiles\": %d, \"tile_width\": %d, "
@@ -66,8 +66,7 @@ static relume_status save(const relume_btf_fitted *model, const relume_btf_map *
         status = relume_btf_surface_save(surface, o->output,
                                          relume_btf_params(.log = o->args.log, .force = o->force));
     if (!status) {
-        const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
-        btf_say_surface(&info, seams, o->json);
+        btf_say_surface(relume_btf_surface_info(surface), seams, o->json);
     }
     relume_btf_surface_destroy(&surface);
     return status;

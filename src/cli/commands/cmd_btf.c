@@ -160,7 +160,7 @@ static relume_status make_part(relume_btf **out, const relume_btf *whole,
 static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
                            const relume_btf *btf, const struct btf_options *o)
 {
-    row->info = relume_btf_fitted_info(fitted);
+    row->info = *relume_btf_fitted_info(fitted);
     row->cost = relume_btf_fitted_cost(fitted);
     row->evaluations = btf_speed(fitted);
     return relume_btf_judge(&row->error, fitted, btf,
@@ -289,23 +289,25 @@ static relume_status model_info(const struct btf_options *o)
         relume_btf_fitted_open(&fitted, o->args.input[0], relume_btf_params(.log = o->args.log));
     if (status)
         return status;
-    const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
-    const uint64_t raw = relume_btf_bytes(i.width, i.height, i.views, i.lights);
+    const struct relume_btf_fitted_info *i = relume_btf_fitted_info(fitted);
+    const uint64_t raw = relume_btf_bytes(i->width, i->height, i->views, i->lights);
     if (o->json)
         printf(
             "{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
             "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
             "\"bytes_each\": %llu, \"levels\": %d, \"bytes_levels\": %llu, \"raw_bytes\": %llu}\n",
-            relume_btf_model_name(i.model), i.width, i.height, i.views, i.lights, i.clusters,
-            i.components, i.lobes, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
-            i.levels, (unsigned long long)i.bytes_levels, (unsigned long long)raw);
+            relume_btf_model_name(i->model), i->width, i->height, i->views, i->lights, i->clusters,
+            i->components, i->lobes, (unsigned long long)i->bytes,
+            (unsigned long long)i->bytes_each, i->levels, (unsigned long long)i->bytes_levels,
+            (unsigned long long)raw);
     else
         printf(
             "model    %s: %s\ntexels   %d x %d\nviews    %d\nlights   %d\nbytes    %llu, %llu of "
             "each texel; 1:%.0f of the measured values\nlevels   %d, %llu bytes\n",
-            relume_btf_model_name(i.model), relume_btf_model_summary(i.model), i.width, i.height,
-            i.views, i.lights, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
-            (double)raw / (double)i.bytes, i.levels, (unsigned long long)i.bytes_levels);
+            relume_btf_model_name(i->model), relume_btf_model_summary(i->model), i->width,
+            i->height, i->views, i->lights, (unsigned long long)i->bytes,
+            (unsigned long long)i->bytes_each, (double)raw / (double)i->bytes, i->levels,
+            (unsigned long long)i->bytes_levels);
     relume_btf_fitted_destroy(&fitted);
     return RELUME_OK;
 }
@@ -317,8 +319,7 @@ static relume_status surface_info(const struct btf_options *o)
         relume_btf_surface_open(&surface, o->args.input[0], relume_btf_params(.log = o->args.log));
     if (status)
         return status;
-    const struct relume_btf_surface_info i = relume_btf_surface_info(surface);
-    btf_say_surface(&i, NULL, o->json);
+    btf_say_surface(relume_btf_surface_info(surface), NULL, o->json);
     relume_btf_surface_destroy(&surface);
     return RELUME_OK;
 }

@@ -1,6 +1,7 @@
 // acquire.c - the steps from photographs to a capture folder
 #include "acquire/acquire.h"
 
+#include "base/tree.h"
 #include "base/log.h"
 #include "base/params.h"
 #include "base/memory.h"
@@ -17,12 +18,6 @@
 
 static const double OUTLIER = 3.0;         // times what photographs usually miss
 static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
-
-const char *acquire_base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
 
 static void forget(struct acquisition *s, int i)
 {
@@ -329,7 +324,7 @@ static relume_status run(struct acquisition *s)
 // The last number in a file's name, -1 where there is none.
 static long number_of(const char *path)
 {
-    const char *name = acquire_base_name(path), *dot = strrchr(name, '.');
+    const char *name = path_name(path), *dot = strrchr(name, '.');
     const char *at = dot ? dot : name + strlen(name);
     while (at > name && !isdigit((unsigned char)at[-1]))
         at--;

@@ -73,7 +73,6 @@ void acquire_say_alike(struct acquisition *s);
 // Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
 __attribute__((format(printf, 3, 4))) relume_status acquire_drop(struct acquisition *s, int i,
                                                                  const char *format, ...);
-const char *acquire_base_name(const char *path);
 
 // Read all photographs into the folder; an input status.
 relume_status acquire_read(struct acquisition *s);

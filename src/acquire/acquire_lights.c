@@ -1,4 +1,5 @@
 // acquire_lights.c - where the lights of the photographs were
+#include "base/tree.h"
 #include "acquire/acquire.h"
 
 #include "acquire/ball.h"
@@ -466,8 +467,8 @@ static int find_name(const struct draft *lp, const char *path)
 {
     for (int i = 0; i < lp->m.lights; i++) {
         const char *listed = strrchr(lp->view[0].images[i], '\\');
-        listed = listed ? listed + 1 : acquire_base_name(lp->view[0].images[i]);
-        if (!strcasecmp(listed, acquire_base_name(path)))
+        listed = listed ? listed + 1 : path_name(lp->view[0].images[i]);
+        if (!strcasecmp(listed, path_name(path)))
             return i;
     }
     return -1;
@@ -492,7 +493,7 @@ static relume_status match_names(struct acquisition *s, int *order, bool *matche
     if (!status && *matched && missing)
         status = log_fail(s->p.log, RELUME_EUNFIT,
                           "%s: does not list '%s'; expected a line for every photograph",
-                          s->p.lights, acquire_base_name(missing));
+                          s->p.lights, path_name(missing));
     return status;
 }
 

@@ -22,7 +22,7 @@ bool acquire_has_poses(const char *path)
 static bool is_photograph(const struct acquisition *s, const char *name)
 {
     for (int i = 0; i < s->p.photograph_count; i++)
-        if (!strcmp(acquire_base_name(s->p.photographs[i]), acquire_base_name(name)))
+        if (!strcmp(path_name(s->p.photographs[i]), path_name(name)))
             return true;
     return false;
 }
@@ -74,7 +74,7 @@ static relume_status tell_apart(const struct acquisition *s, const struct posed_
         return log_fail(
             s->p.log, RELUME_EUNFIT,
             "%s: has a pose for none of the photographs; expected '%s' or another of them",
-            s->p.lights, acquire_base_name(s->p.photographs[0]));
+            s->p.lights, path_name(s->p.photographs[0]));
     if (lamps == s->p.photograph_count)
         return RELUME_OK;
     return log_fail(s->p.log, RELUME_EUNFIT,

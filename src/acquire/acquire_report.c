@@ -1,4 +1,5 @@
 // acquire_report.c - report.html: what was made, how good it is, and what to do better
+#include "base/tree.h"
 #include "acquire/acquire.h"
 
 #include "acquire/report_picture.h"
@@ -182,7 +183,7 @@ static void put_row(FILE *f, const struct relume_acquisition *out, int i, double
     const struct relume_acquired_photo *p = &out->photo[i];
     const vec3 d = out->position ? out->position[i] : out->direction[i];
     fprintf(f, "<tr%s><td>%d ", p->outlier ? " class=\"off\"" : "", i);
-    put_text(f, acquire_base_name(p->path));
+    put_text(f, path_name(p->path));
     fprintf(f, "</td><td>%.3f</td><td>%.3f</td><td>%.3f</td>", d.x, d.y, d.z);
     fprintf(f, p->sigma_deg > 0.0 ? "<td>%.2f&#176;</td>" : "<td></td>", p->sigma_deg);
     fprintf(f, p->light.spread_deg > 0.0 ? "<td>%.1f&#176;</td>" : "<td></td>",
@@ -233,7 +234,7 @@ static void put_thumbnails(struct report *r)
         put_picture(r, &s->shot[i].small, THUMB, gain, LOOK_LIGHT);
         put_sun(r->f, s->out->direction[i]);
         fprintf(r->f, "</div><figcaption>%d ", i);
-        put_text(r->f, acquire_base_name(s->shot[i].path));
+        put_text(r->f, path_name(s->shot[i].path));
         fputs("</figcaption></figure>\n", r->f);
     }
     fputs("</div>\n", r->f);

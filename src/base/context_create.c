@@ -1,9 +1,12 @@
-// context_create.c - what calls share
+// context_create.c - what calls share; parameters of callers that were compiled against an older or
+// a newer library
 #include "base/context.h"
 
 #include "base/inputs.h"
 #include "base/memory.h"
 #include "base/params.h"
+
+#include <string.h>
 
 relume_status relume_context_create(relume_context **out,
                                     const struct relume_context_params *params)
@@ -30,4 +33,27 @@ void relume_context_note(relume_context *context, const char *path)
 {
     if (context && context->inputs)
         inputs_add(context->inputs, path);
+}
+
+// ---------------------------------------------------------------- parameters
+
+// Every params struct begins with its size.
+void *params_copy(void *own, size_t size, const void *params)
+{
+    size_t theirs;
+    if (params) {
+        memcpy(&theirs, params, sizeof theirs);
+        memcpy(own, params, theirs && theirs < size ? theirs : size);
+    }
+    memcpy(own, &size, sizeof size);
+    return own;
+}
+
+void *params_work(void *own, size_t size, const void *params, size_t log, size_t threads)
+{
+    const relume_context *context =
+        context_of(*(const struct relume_log **)((char *)params_copy(own, size, params) + log));
+    int *n = (int *)((char *)own + threads);
+    *n = *n || !context ? *n : context->threads;
+    return own;
 }

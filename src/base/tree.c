@@ -91,6 +91,18 @@ char *tree_resolve(const char *path)
     return at;
 }
 
+bool path_ends(const char *path, const char *ending)
+{
+    const size_t n = strlen(path), m = strlen(ending);
+    return n >= m && !strcasecmp(path + n - m, ending);
+}
+
+const char *path_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 bool tree_is_folder(const char *path)
 {
     struct stat s;
@@ -182,19 +194,13 @@ void tree_list_free(struct tree_list *list)
     *list = (struct tree_list){0};
 }
 
-static bool ends_with(const char *name, const char *ending)
-{
-    const size_t n = strlen(name), m = strlen(ending);
-    return n >= m && !strcasecmp(name + n - m, ending);
-}
-
 char *tree_only(const char *folder, const char *ending)
 {
     char *found = NULL;
     int n = 0;
     DIR *dir = opendir(folder);
     for (const struct dirent *e; dir && (e = readdir(dir));)
-        if (ends_with(e->d_name, ending) && n++ == 0)
+        if (path_ends(e->d_name, ending) && n++ == 0)
             found = mem_format("%s/%s", folder, e->d_name);
     if (dir)
         closedir(dir);

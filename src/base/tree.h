@@ -20,6 +20,10 @@ char *tree_base(const char *path);
 // new string. NULL with errno, ELOOP among others.
 char *tree_resolve(const char *path);
 
+// Whether `path` ends so, upper and lower case alike; what follows its last slash, in it.
+bool path_ends(const char *path, const char *ending);
+const char *path_name(const char *path);
+
 // What is there, followed through links: a folder; neither a file nor a folder.
 bool tree_is_folder(const char *path);
 bool tree_is_device(const char *path);

@@ -32,6 +32,12 @@ struct relume_coder {
     void *data;    // the basis's own
 };
 
+// Of bases that can have any number of coefficients.
+static inline bool basis_takes_any(int count)
+{
+    return count >= 1 && count <= RELUME_MOST_COEFFICIENTS;
+}
+
 // The functions of a basis that interpolates.
 void coder_interpolate(const relume_coder *coder, struct relume_vec3 light, double *values);
 

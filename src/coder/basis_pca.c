@@ -9,11 +9,6 @@
 
 enum { DEFAULT_COUNT = 27 };
 
-static bool has_count(int count)
-{
-    return count >= 1 && count <= RELUME_MOST_COEFFICIENTS;
-}
-
 static int fit_count(int want, int lights)
 {
     const int most = want ? want : DEFAULT_COUNT;
@@ -68,7 +63,7 @@ const struct relume_basis relume_basis_pca = {
     .learned = true,
     .fits = true,
     .fit_count = fit_count,
-    .has_count = has_count,
+    .has_count = basis_takes_any,
     .prepare = prepare,
     .evaluate = coder_interpolate,
 };

@@ -3,16 +3,11 @@
 #include "base/memory.h"
 #include "coder/basis.h"
 
-static bool has_count(int count)
-{
-    return count >= 1 && count <= RELUME_MOST_COEFFICIENTS;
-}
-
 // One coefficient per light, neither more nor fewer.
 static int fit_count(int want, int lights)
 {
     (void)want;
-    return has_count(lights) ? lights : 0;
+    return basis_takes_any(lights) ? lights : 0;
 }
 
 static relume_status prepare(relume_coder *coder, const struct relume_log *log)
@@ -34,7 +29,7 @@ const struct relume_basis relume_basis_table = {
     .summary = "every photograph, interpolated between lights (the reference; large)",
     .interpolates = true,
     .fit_count = fit_count,
-    .has_count = has_count,
+    .has_count = basis_takes_any,
     .prepare = prepare,
     .evaluate = coder_interpolate,
 };

@@ -45,12 +45,6 @@ struct coder {
 
 // ---------------------------------------------------------------- steps
 
-static double value_of(const struct foreign *f, int plane, size_t pixel)
-{
-    return (double)f->codes[(size_t)plane * foreign_pixels(f) + pixel] * (double)f->scale[plane] +
-           (double)f->offset[plane];
-}
-
 // Means over the pixels: of the squared luminance over the hemisphere, of the squared colour.
 static void mean_squares(const struct foreign *f, double *luminance, double *colour)
 {
@@ -60,12 +54,13 @@ static void mean_squares(const struct foreign *f, double *luminance, double *col
     for (size_t i = 0; i < pixels; i += every, count += 1.0) {
         double term[PTM_TERMS];
         for (int k = 0; k < PTM_TERMS; k++)
-            term[k] = value_of(f, k, i);
+            term[k] = foreign_coefficient(f, k, i);
         for (int k = 0; k < PTM_TERMS; k++)
             for (int m = 0; m < PTM_TERMS; m++)
                 *luminance += term[k] * term[m] * moment[k][m];
         for (int c = 0; c < COLOURS; c++)
-            *colour += value_of(f, PTM_TERMS + c, i) * value_of(f, PTM_TERMS + c, i);
+            *colour +=
+                foreign_coefficient(f, PTM_TERMS + c, i) * foreign_coefficient(f, PTM_TERMS + c, i);
     }
     *luminance /= count;
     *colour /= count;

@@ -35,12 +35,6 @@ void foreign_free(struct foreign *f)
     *f = (struct foreign){0};
 }
 
-static double coefficient(const struct foreign *f, int plane, size_t pixel)
-{
-    return (double)f->codes[(size_t)plane * foreign_pixels(f) + pixel] * (double)f->scale[plane] +
-           (double)f->offset[plane];
-}
-
 void foreign_weights(const struct foreign *f, struct relume_vec3 light, double *weights,
                      double constant[3])
 {
@@ -70,8 +64,9 @@ void foreign_pixel(const struct foreign *f, size_t pixel, const double *weights,
         const double *w = weights + (size_t)c * (size_t)k;
         rgb[c] = constant[c];
         for (int i = 0; i < k; i++)
-            rgb[c] += w[i] * coefficient(f, f->form == FOREIGN_CHANNELS ? 3 * i + c : i, pixel);
+            rgb[c] +=
+                w[i] * foreign_coefficient(f, f->form == FOREIGN_CHANNELS ? 3 * i + c : i, pixel);
         if (f->form == FOREIGN_LUMINANCE)
-            rgb[c] *= coefficient(f, k + c, pixel);
+            rgb[c] *= foreign_coefficient(f, k + c, pixel);
     }
 }

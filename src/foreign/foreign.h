@@ -53,4 +53,11 @@ void foreign_weights(const struct foreign *f, struct relume_vec3 light, double *
 void foreign_pixel(const struct foreign *f, size_t pixel, const double *weights,
                    const double constant[3], double rgb[3]);
 
+// The value of a coefficient plane at a pixel.
+static inline double foreign_coefficient(const struct foreign *f, int plane, size_t pixel)
+{
+    return (double)f->codes[(size_t)plane * foreign_pixels(f) + pixel] * (double)f->scale[plane] +
+           (double)f->offset[plane];
+}
+
 #endif

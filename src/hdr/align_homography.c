@@ -289,11 +289,6 @@ static void to_pixels(struct relume_homography *out, const double h[9], int widt
         out->m[i / 3][i % 3] = m[i] / m[8];
 }
 
-static int longer_side(const struct relume_image *image)
-{
-    return image->width > image->height ? image->width : image->height;
-}
-
 static relume_status lumas(struct pyramid *out, const struct relume_image *image, int threads)
 {
     struct relume_image luma;
@@ -323,7 +318,7 @@ relume_status relume_align_homography(struct relume_homography *out,
     if (!status)
         status = lumas(&b, image, p.threads);
     for (int i = a.levels - 1; !status && i >= 0; i--)
-        if (i == a.levels - 1 || longer_side(&a.level[i]) <= FINE)
+        if (i == a.levels - 1 || pyramid_longer_side(&a.level[i]) <= FINE)
             status = align_level(h, &out->correlation, &a.level[i], &b.level[i], i == a.levels - 1,
                                  roll_deg, p.threads);
     pyramid_free(&a);

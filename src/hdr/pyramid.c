@@ -33,11 +33,6 @@ relume_status pyramid_halve(struct relume_image *out, const struct relume_image 
     return status;
 }
 
-static int longer_side(const struct relume_image *image)
-{
-    return image->width > image->height ? image->width : image->height;
-}
-
 relume_status pyramid_make(struct pyramid *out, const struct relume_image *image, int side,
                            int threads)
 {
@@ -46,7 +41,7 @@ relume_status pyramid_make(struct pyramid *out, const struct relume_image *image
     out->level[0].data = mem_copy(image->data, samples, sizeof(float));
     relume_status status = out->level[0].data ? RELUME_OK : RELUME_ENOMEM;
     while (!status && out->levels < PYRAMID_LEVELS &&
-           longer_side(&out->level[out->levels - 1]) > side) {
+           pyramid_longer_side(&out->level[out->levels - 1]) > side) {
         status = pyramid_halve(&out->level[out->levels], &out->level[out->levels - 1], threads);
         out->levels += !status;
     }

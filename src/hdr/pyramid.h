@@ -19,4 +19,9 @@ relume_status pyramid_make(struct pyramid *out, const struct relume_image *image
                            int threads);
 void pyramid_free(struct pyramid *pyramid);
 
+static inline int pyramid_longer_side(const struct relume_image *image)
+{
+    return image->width > image->height ? image->width : image->height;
+}
+
 #endif

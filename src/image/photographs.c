@@ -23,12 +23,6 @@ struct gathering {
     char names[160];  // of the first that were left out
 };
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 // ---------------------------------------------------------------- what is left out
 
 static const char relume_file[] = "a relume file";
@@ -58,7 +52,7 @@ static const char *why_none(const char *path, const struct relume_log *log)
 
 static bool is_named(const char *path, const char *word)
 {
-    return strcasestr(base_name(path), word) != NULL;
+    return strcasestr(path_name(path), word) != NULL;
 }
 
 static const char *by_product(const char *path)
@@ -74,7 +68,7 @@ static void leave_out(struct gathering *g, const char *path, const char *why)
 {
     const size_t n = strlen(g->names), room = sizeof g->names - n;
     if (g->skipped++ < 3)
-        snprintf(g->names + n, room, "%s%.60s%s%s%s", n ? ", " : "", base_name(path),
+        snprintf(g->names + n, room, "%s%.60s%s%s%s", n ? ", " : "", path_name(path),
                  *why ? " (" : "", why, *why ? ")" : "");
 }
 

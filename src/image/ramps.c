@@ -1,6 +1,7 @@
 // ramps.c - how much of a smooth slope is left between contours
 #include <relume/image.h>
 
+#include "math/bilinear.h"
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
@@ -36,11 +37,6 @@ static void find_luma(void *context, size_t y, int worker)
     }
 }
 
-static int inside(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 static void smooth_across(void *context, size_t y, int worker)
 {
     (void)worker;
@@ -50,7 +46,7 @@ static void smooth_across(void *context, size_t y, int worker)
     for (int x = 0; x < width; x++) {
         float sum = 0.0f;
         for (int k = -RADIUS; k <= RADIUS; k++)
-            sum += s->kernel[k + RADIUS] * from[inside(x + k, width)];
+            sum += s->kernel[k + RADIUS] * from[index_clamped(x + k, width)];
         s->rows[y * (size_t)width + (size_t)x] = sum;
     }
 }
@@ -64,7 +60,7 @@ static void smooth_down(void *context, size_t y, int worker)
         float sum = 0.0f;
         for (int k = -RADIUS; k <= RADIUS; k++)
             sum += s->kernel[k + RADIUS] *
-                   s->rows[(size_t)inside((int)y + k, s->image->height) * width + x];
+                   s->rows[(size_t)index_clamped((int)y + k, s->image->height) * width + x];
         s->out[y * width + x] = sum;
     }
 }

@@ -1,4 +1,5 @@
 // views_names.c - where a camera stands, told by the name of its photograph
+#include "base/tree.h"
 #include "multiview/views.h"
 
 #include "base/log.h"
@@ -11,12 +12,6 @@
 #include <string.h>
 
 enum { MOST_NUMBERS = 8, MOST_DIGITS = 9 };
-
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
 
 // ---------------------------------------------------------------- patterns
 
@@ -91,7 +86,7 @@ static bool all_match(struct view_place *places, const struct photo_set *set, co
 {
     for (int i = 0; i < set->count; i++) {
         struct match m = {.found = 0};
-        if (!matches(&m, pattern, base_name(set->camera[i].name)) || !place_of(&places[i], &m)) {
+        if (!matches(&m, pattern, path_name(set->camera[i].name)) || !place_of(&places[i], &m)) {
             *first_bad = i;
             return false;
         }
@@ -123,9 +118,9 @@ static relume_status varying_numbers(int which[2], int *count, const struct phot
 {
     long first[MOST_NUMBERS], other[MOST_NUMBERS];
     bool varies[MOST_NUMBERS] = {false}, too_long[MOST_NUMBERS] = {false};
-    const int n = whole_numbers(first, base_name(set->camera[0].name));
+    const int n = whole_numbers(first, path_name(set->camera[0].name));
     for (int i = 1; i < set->count; i++) {
-        if (whole_numbers(other, base_name(set->camera[i].name)) != n)
+        if (whole_numbers(other, path_name(set->camera[i].name)) != n)
             return log_fail(log, RELUME_EUNFIT,
                             "%s: the name does not match; expected the pattern of %s, or --names",
                             set->camera[i].name, set->camera[0].name);
@@ -151,7 +146,7 @@ static void place_by_numbers(struct view_place *places, const struct photo_set *
 {
     for (int i = 0; i < set->count; i++) {
         long numbers[MOST_NUMBERS];
-        whole_numbers(numbers, base_name(set->camera[i].name));
+        whole_numbers(numbers, path_name(set->camera[i].name));
         places[i] = (struct view_place){
             .row = count == 2 ? (int)numbers[which[0]] : 0,
             .column = (int)numbers[which[count - 1]],

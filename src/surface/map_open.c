@@ -1,15 +1,10 @@
 // map_open.c - index maps that other programs made: NumPy arrays of numbers, pictures of places
+#include "base/tree.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "surface/surface.h"
 
 #include <string.h>
-
-static bool ends_with(const char *text, const char *end)
-{
-    const size_t n = strlen(text), m = strlen(end);
-    return n >= m && !strcmp(text + n - m, end);
-}
 
 static struct relume_btf_map_info sizes(size_t width, size_t height, int sample_width,
                                         int sample_height)
@@ -91,7 +86,7 @@ relume_status relume_btf_map_open(relume_btf_map **out, const char *path, int sa
 {
     const struct relume_log *log = params ? params->log : NULL;
     *out = NULL;
-    relume_status status = ends_with(path, ".npy")
+    relume_status status = path_ends(path, ".npy")
                                ? open_numbers(out, path, sample_width, sample_height, log)
                                : open_picture(out, path, sample_width, sample_height, params);
     if (!status)

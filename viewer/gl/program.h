@@ -47,4 +47,15 @@ relume_status program_create_passes(const struct compute_pass *list, size_t n, c
                                     const struct relume_log *log);
 void program_destroy(struct program *program, const struct gl *gl);
 
+static inline void gl_set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
+{
+    gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
+}
+
+// The buffer that passes see at that binding.
+static inline void gl_bind(const struct gl *gl, GLuint binding, GLuint buffer)
+{
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
+}
+
 #endif

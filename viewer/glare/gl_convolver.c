@@ -1,6 +1,8 @@
 // gl_convolver.c - a frame convolved with an eye's pattern by compute passes
 #include "glare/gl_convolver.h"
 
+#include "gl/program.h"
+
 #include <math.h>
 
 enum { EXACT_REACH = 2048 };
@@ -123,11 +125,6 @@ void gl_convolver_destroy(struct gl_convolver *c, const struct gl *gl)
 
 // ---------------------------------------------------------------- steps
 
-static void bind(const struct gl *gl, GLuint binding, GLuint buffer)
-{
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
-}
-
 static relume_status run_rows(const struct gl_convolver *c, const struct gl *gl, struct gl_fft *fft,
                               int first, int lines, bool inverse, const struct relume_log *log)
 {
@@ -153,7 +150,7 @@ static relume_status take_frame(struct gl_convolver *c, const struct gl *gl, str
     gl->Uniform2i(c->frame.at[FRAME_SIZE], c->size[0], c->size[1]);
     gl->Uniform1f(c->frame.at[FRAME_GREATEST], (float)greatest);
     texture_use(gl, 0, GL_TEXTURE_2D, frame->texture);
-    bind(gl, 0, c->spectrum);
+    gl_bind(gl, 0, c->spectrum);
     gl_compute(gl, c->size[0], c->size[1]);
     const relume_status status = run_rows(c, gl, fft, 0, c->height, false, log);
     return status ? status : run_columns(c, gl, fft, false, log);
@@ -166,8 +163,8 @@ static void resample(const struct gl_convolver *c, const struct gl *gl, const st
     gl->Uniform1f(p->at[SHARE_SCALE], (float)(psf->shape.step / pixel));
     gl->Uniform1i(p->at[SHARE_FIELD], psf->shape.field);
     gl->Uniform1i(p->at[SHARE_REACH], c->reach);
-    bind(gl, 0, in);
-    bind(gl, 1, out);
+    gl_bind(gl, 0, in);
+    gl_bind(gl, 1, out);
     gl->DispatchCompute((GLuint)(width + 63) / 64, (GLuint)(2 * c->reach + 1), 1);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
@@ -177,8 +174,8 @@ static void add_up(const struct gl_convolver *c, const struct gl *gl, GLuint in,
 {
     gl->UseProgram(c->sum.id);
     gl->Uniform1i(c->sum.at[SUM_LENGTH], 2 * c->reach + 1);
-    bind(gl, 0, in);
-    bind(gl, 1, out);
+    gl_bind(gl, 0, in);
+    gl_bind(gl, 1, out);
     gl->DispatchCompute((GLuint)lines, 1, 1);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
@@ -226,10 +223,10 @@ static void make_kernel(struct gl_convolver *c, const struct gl *gl,
                   view->veiled ? (float)(solid / all) : 0);
     gl->Uniform1f(c->kernel.at[KERNEL_STEPS], (float)(view->pixel / view->veil.step));
     gl->Uniform1i(c->kernel.at[KERNEL_ALL], RELUME_VEIL_STEPS);
-    bind(gl, 0, c->work);
-    bind(gl, 1, c->pixels);
-    bind(gl, 2, c->total);
-    bind(gl, 3, c->veil);
+    gl_bind(gl, 0, c->work);
+    gl_bind(gl, 1, c->pixels);
+    gl_bind(gl, 2, c->total);
+    gl_bind(gl, 3, c->veil);
     gl_compute(gl, c->size[0], c->size[1]);
 }
 
@@ -254,10 +251,10 @@ static relume_status multiply(const struct gl_convolver *c, const struct gl *gl,
 {
     gl->UseProgram(c->product.id);
     gl->Uniform2i(c->product.at[PRODUCT_SIZE], c->size[0], c->size[1]);
-    bind(gl, 0, c->spectrum);
-    bind(gl, 1, c->work);
+    gl_bind(gl, 0, c->spectrum);
+    gl_bind(gl, 1, c->work);
     gl_compute(gl, c->size[0], c->size[1]);
-    bind(gl, 0, c->work);
+    gl_bind(gl, 0, c->work);
     const relume_status status = run_columns(c, gl, fft, true, log);
     return status ? status : run_rows(c, gl, fft, 0, c->height, true, log);
 }
@@ -269,7 +266,7 @@ static void make_picture(const struct gl_convolver *c, const struct gl *gl,
     gl->Uniform2i(c->picture.at[PICTURE_SIZE], c->size[0], c->size[1]);
     gl->Uniform1f(c->picture.at[PICTURE_FACTOR],
                   (float)(light / ((double)c->size[0] * (double)c->size[1])));
-    bind(gl, 0, c->work);
+    gl_bind(gl, 0, c->work);
     gl->BindImageTexture(0, seen->texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     gl_compute(gl, c->width, c->height);
     gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |

@@ -1,6 +1,7 @@
 // gl_psf.c - the pattern of one point source by compute passes: what relume_psf_update does
 #include "glare/gl_psf.h"
 
+#include "gl/program.h"
 #include "gl/target.h"
 
 #include <math.h>
@@ -138,11 +139,6 @@ void gl_psf_destroy(struct gl_psf *psf, const struct gl *gl)
 
 // ---------------------------------------------------------------- steps
 
-static void bind(const struct gl *gl, GLuint binding, GLuint buffer)
-{
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
-}
-
 static relume_status make_phase(struct gl_psf *psf, const struct gl *gl, double dioptres)
 {
     const int n = psf->tiles * psf->shape.size;
@@ -172,8 +168,8 @@ static void make_wave(const struct gl_psf *psf, const struct gl *gl)
     gl->Uniform1i(psf->wave.at[WAVE_SIZE], n);
     gl->Uniform1i(psf->wave.at[WAVE_TILES], psf->tiles);
     texture_use(gl, 0, GL_TEXTURE_2D, psf->aperture.texture);
-    bind(gl, 0, psf->waves);
-    bind(gl, 1, psf->phase);
+    gl_bind(gl, 0, psf->waves);
+    gl_bind(gl, 1, psf->phase);
     gl_compute(gl, n, n);
 }
 
@@ -184,7 +180,7 @@ static relume_status transform(struct gl_psf *psf, const struct gl *gl, struct g
     const int n = psf->shape.size;
     const int from = psf->tiles > 1 ? 0 : psf->aperture.from;
     const int to = psf->tiles > 1 ? n : psf->aperture.to;
-    bind(gl, 0, psf->waves);
+    gl_bind(gl, 0, psf->waves);
     const struct gl_fft_lines rows = {
         .length = n, .first = from, .lines = to - from, .planes = 1, .stride = {1, n, 0}};
     const struct gl_fft_lines columns = {.length = n, .lines = n, .planes = 1, .stride = {n, 1, 0}};
@@ -196,9 +192,9 @@ static void take_power(const struct gl_psf *psf, const struct gl *gl)
 {
     gl->UseProgram(psf->power.id);
     gl->Uniform1i(psf->power.at[POWER_SIZE], psf->shape.size);
-    bind(gl, 0, psf->waves);
-    bind(gl, 1, psf->texel);
-    bind(gl, 2, psf->mono);
+    gl_bind(gl, 0, psf->waves);
+    gl_bind(gl, 1, psf->texel);
+    gl_bind(gl, 2, psf->mono);
     gl_compute(gl, psf->shape.size + 1, psf->shape.size + 1);
 }
 
@@ -208,8 +204,8 @@ static void smear(const struct gl_psf *psf, const struct gl *gl)
     gl->Uniform1i(psf->smear.at[SMEAR_SIZE], psf->shape.size);
     gl->Uniform1i(psf->smear.at[SMEAR_FINES], psf->spectrum.fines);
     gl->Uniform1fv(psf->smear.at[SMEAR_FINE], psf->spectrum.fines, psf->spectrum.fine);
-    bind(gl, 0, psf->mono);
-    bind(gl, 1, psf->smeared);
+    gl_bind(gl, 0, psf->mono);
+    gl_bind(gl, 1, psf->smeared);
     gl_compute(gl, psf->shape.size + 1, psf->shape.size + 1);
 }
 
@@ -225,9 +221,9 @@ static void colour(const struct gl_psf *psf, const struct gl *gl)
     gl->Uniform1i(psf->colour.at[COLOUR_FIELD], g->field);
     gl->Uniform2f(psf->colour.at[COLOUR_FADE], (float)(g->fade / g->step),
                   (float)(g->radius / g->step));
-    bind(gl, 0, smeared ? psf->smeared : psf->mono);
-    bind(gl, 1, psf->taps);
-    bind(gl, 2, psf->colours);
+    gl_bind(gl, 0, smeared ? psf->smeared : psf->mono);
+    gl_bind(gl, 1, psf->taps);
+    gl_bind(gl, 2, psf->colours);
     gl_compute(gl, g->field, g->field);
 }
 

@@ -2,6 +2,7 @@
 // textures
 #include "relit/light_uniforms.h"
 
+#include "gl/program.h"
 #include "program/say.h"
 #include "common/vec.h"
 #include "gl/target.h"
@@ -105,11 +106,6 @@ static relume_status use_picture(struct light_uniforms *s, int unit,
     return status;
 }
 
-static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
-{
-    gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
-}
-
 relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int unit,
                                  const struct relume_light *l)
 {
@@ -118,15 +114,15 @@ relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int 
     gl->Uniform1i(at[SHINE_KIND], (GLint)l->kind);
     gl->Uniform3f(at[SHINE_RGB], l->rgb[0], l->rgb[1], l->rgb[2]);
     gl->Uniform1i(at[SHINE_NOFALL], l->nofall);
-    set_vec3(gl, at[SHINE_POSITION], l->position);
+    gl_set_vec3(gl, at[SHINE_POSITION], l->position);
     gl->Uniform1f(at[SHINE_HALF_ANGLE], (float)(l->half_angle_deg * (M_PI / 180.0)));
     if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA &&
         l->kind != RELUME_LIGHT_ENVIRONMENT) {
         struct relume_vec3 right, up;
         relume_light_frame(&right, &up, l->direction);
-        set_vec3(gl, at[SHINE_AXIS], vec3_unit(l->direction));
-        set_vec3(gl, at[SHINE_RIGHT], right);
-        set_vec3(gl, at[SHINE_UP], up);
+        gl_set_vec3(gl, at[SHINE_AXIS], vec3_unit(l->direction));
+        gl_set_vec3(gl, at[SHINE_RIGHT], right);
+        gl_set_vec3(gl, at[SHINE_UP], up);
     }
     return status;
 }

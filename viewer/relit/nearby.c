@@ -2,6 +2,7 @@
 // pixel's own direction
 #include "relit/nearby.h"
 
+#include "gl/program.h"
 #include "program/say.h"
 #include "relit/weights.h"
 
@@ -398,11 +399,6 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
     return light_uniforms_set(&near->uniforms, at + LIGHT, UNIT_PICTURE, l);
 }
 
-static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
-{
-    gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
-}
-
 static void set_zone(const struct nearby *near, const struct relume_captured_region *zone)
 {
     const struct gl *gl = near->gl;
@@ -410,9 +406,9 @@ static void set_zone(const struct nearby *near, const struct relume_captured_reg
     texture_use(gl, UNIT_BORDER, GL_TEXTURE_2D, near->border);
     gl->Uniform1i(at[ZONE_BORDER], UNIT_BORDER);
     gl->Uniform1i(at[ZONE_EVERYWHERE], zone->everywhere);
-    set_vec3(gl, at[ZONE_RIGHT], zone->right);
-    set_vec3(gl, at[ZONE_UP], zone->up);
-    set_vec3(gl, at[ZONE_FACING], zone->facing);
+    gl_set_vec3(gl, at[ZONE_RIGHT], zone->right);
+    gl_set_vec3(gl, at[ZONE_UP], zone->up);
+    gl_set_vec3(gl, at[ZONE_FACING], zone->facing);
     gl->Uniform4f(at[ZONE_AXIS], (float)zone->axis.x, (float)zone->axis.y, (float)zone->axis.z,
                   (float)zone->inside);
 }

@@ -339,15 +339,23 @@ FILE *infile_stream(struct infile **in, const char *path, const struct relume_re
 
 // ---------------------------------------------------------------- by name
 
-bool input_exists(const char *path, const struct relume_log *log)
+enum input_kind input_kind(const char *path, const struct relume_log *log)
 {
     const struct relume_files *files = files_for(path, log);
     struct relume_reader reader;
+    struct stat s;
     if (files && ask(files, path, &reader)) {
         give_back(files, &reader);
-        return true;
+        return INPUT_FILE;
     }
-    return (!files || !errno) && !access(path, F_OK);
+    if ((files && errno) || stat(path, &s))
+        return INPUT_NONE;
+    return S_ISREG(s.st_mode) ? INPUT_FILE : S_ISDIR(s.st_mode) ? INPUT_FOLDER : INPUT_OTHER;
+}
+
+bool input_exists(const char *path, const struct relume_log *log)
+{
+    return input_kind(path, log) != INPUT_NONE;
 }
 
 FILE *input_open(const char *path, const struct relume_log *log)

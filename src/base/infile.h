@@ -40,8 +40,11 @@ ssize_t infile_read(struct infile *s, void *bytes, size_t size, uint64_t offset)
 int infile_descriptor(struct infile *s);
 void infile_close(struct infile *s);
 
-// `path` alone: whether there is such an input; a stream of it, and a descriptor to be closed, NULL
+// `path` alone: what it is (a name of the log's context is a file, whatever the file system has of
+// that name); whether there is such an input; a stream of it, and a descriptor to be closed, NULL
 // and -1 with errno.
+enum input_kind { INPUT_NONE, INPUT_FILE, INPUT_FOLDER, INPUT_OTHER };
+enum input_kind input_kind(const char *path, const struct relume_log *log);
 bool input_exists(const char *path, const struct relume_log *log);
 FILE *input_open(const char *path, const struct relume_log *log);
 int input_descriptor(const char *path, const struct relume_log *log);

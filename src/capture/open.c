@@ -32,7 +32,7 @@ static relume_status find_description(char **out, const char *folder, const stru
 static relume_status read_description(relume_capture *c, const char *path,
                                       const struct relume_capture_params *p)
 {
-    if (tree_is_folder(path)) {
+    if (input_kind(path, p->log) == INPUT_FOLDER) {
         const relume_status status = find_description(&c->path, path, p->log);
         if (status)
             return status;

@@ -2,6 +2,7 @@
 #include <relume/exchange.h>
 
 #include "base/tree.h"
+#include "exchange/kind.h"
 #include "exchange/ptm.h"
 #include "exchange/rti.h"
 #include "exchange/web.h"
@@ -22,33 +23,27 @@ enum { STAND_INS = 32 };
 
 // ---------------------------------------------------------------- reading
 
-static bool ends_with(const char *path, const char *end)
-{
-    const size_t n = strlen(path), m = strlen(end);
-    return n >= m && !strcasecmp(path + n - m, end);
-}
-
 static relume_status read_any(struct foreign *f, const char *path,
                               const struct relume_import_params *p)
 {
     const struct relume_limits *limits = limits_of(p->limits, p->log);
-    if (!input_exists(path, p->log))
+    const enum input_kind is = input_kind(path, p->log);
+    const bool folder = is == INPUT_FOLDER;
+    const enum relume_kind kind = folder ? exchange_kind_of(path, p->log) : RELUME_KIND_FOREIGN;
+    if (is == INPUT_NONE)
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file or folder", path);
-    const bool folder = tree_is_folder(path);
-    if (folder && relume_kind_of(path) != RELUME_KIND_FOREIGN)
-        return log_fail(p->log, RELUME_EFORMAT,
-                        "%s: a folder without info.json, so no web folder; expected one as relight "
-                        "and OpenLIME read it, or a .ptm, .rti or .hsh file%s",
-                        path,
-                        relume_kind_of(path) == RELUME_KIND_CAPTURE
-                            ? "; this is a capture, for 'relume encode'"
-                            : "");
-    if (folder || ends_with(path, ".json"))
+    if (kind != RELUME_KIND_FOREIGN)
+        return log_fail(
+            p->log, RELUME_EFORMAT,
+            "%s: a folder without info.json, so no web folder; expected one as relight "
+            "and OpenLIME read it, or a .ptm, .rti or .hsh file%s",
+            path, kind == RELUME_KIND_CAPTURE ? "; this is a capture, for 'relume encode'" : "");
+    if (folder || path_ends(path, ".json"))
         return web_read(f, path, limits, p->log);
-    if (ends_with(path, ".ptm") || ends_with(path, ".lptm"))
+    if (path_ends(path, ".ptm") || path_ends(path, ".lptm"))
         return ptm_read(f, path, limits, p->log);
-    if (ends_with(path, ".rti") || ends_with(path, ".hsh"))
-        return rti_read(f, path, ends_with(path, ".hsh"), limits, p->log);
+    if (path_ends(path, ".rti") || path_ends(path, ".hsh"))
+        return rti_read(f, path, path_ends(path, ".hsh"), limits, p->log);
     return log_fail(
         p->log, RELUME_EFORMAT,
         "%s: this format cannot be imported; expected .ptm, .rti, .hsh or a folder with info.json",

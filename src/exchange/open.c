@@ -20,12 +20,6 @@
 #include <strings.h>
 #include <unistd.h>
 
-static bool ends_with(const char *path, const char *end)
-{
-    const size_t n = strlen(path), m = strlen(end);
-    return n >= m && !strcasecmp(path + n - m, end);
-}
-
 // ---------------------------------------------------------------- what it is
 
 static bool holds(const char *folder, const char *name, const struct relume_log *log)
@@ -60,7 +54,7 @@ static size_t read_head(char head[HEAD], const char *path, const struct relume_l
 
 static bool is_among(const char *path, const char *const *endings)
 {
-    while (*endings && !ends_with(path, *endings))
+    while (*endings && !path_ends(path, *endings))
         endings++;
     return *endings != NULL;
 }
@@ -69,7 +63,7 @@ static enum relume_kind kind_of_json(const char *head, size_t n, const char *pat
 {
     if (memmem(head, n, "relume-capture", strlen("relume-capture")))
         return RELUME_KIND_CAPTURE;
-    return ends_with(path, "info.json") || memmem(head, n, "colorspace", strlen("colorspace"))
+    return path_ends(path, "info.json") || memmem(head, n, "colorspace", strlen("colorspace"))
                ? RELUME_KIND_FOREIGN
                : RELUME_KIND_UNKNOWN;
 }
@@ -79,21 +73,22 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
     static const char *const foreign[] = {".ptm", ".lptm", ".rti", ".hsh", NULL};
     static const char *const photographs[] = {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", NULL};
     char head[HEAD];
-    if (!input_exists(path, log))
+    const enum input_kind kind = input_kind(path, log);
+    if (kind == INPUT_NONE)
         return RELUME_KIND_UNKNOWN;
-    if (tree_is_folder(path))
+    if (kind == INPUT_FOLDER)
         return kind_of_folder(path, log);
     if (is_among(path, foreign))
         return RELUME_KIND_FOREIGN;
-    if (ends_with(path, ".lp"))
+    if (path_ends(path, ".lp"))
         return RELUME_KIND_CAPTURE;
     const size_t n = read_head(head, path, log);
-    if (ends_with(path, ".json"))
+    if (path_ends(path, ".json"))
         return kind_of_json(head, n, path);
     if (n > 4 && !memcmp(head, exr_magic, 4))
         return picture_is_relume(path, log) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     if (relume_image_can_save(path) || is_among(path, photographs))
-        return ends_with(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
+        return path_ends(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     return RELUME_KIND_UNKNOWN;
 }
 
@@ -149,9 +144,10 @@ static relume_status picture(const char *path, const char *out, const struct rel
 
 static relume_status unknown(const char *path, const struct relume_open_params *p)
 {
-    if (!input_exists(path, p->log))
+    const enum input_kind kind = input_kind(path, p->log);
+    if (kind == INPUT_NONE)
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
-    if (!tree_is_folder(path))
+    if (kind != INPUT_FOLDER)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",

@@ -32,7 +32,8 @@ static relume_status read_format(struct ptm_header *h, struct bytes *b)
         sscanf(word + 4, "%lf", &h->version) != 1)
         return ptm_wrong(h, "not a polynomial texture map", "PTM_1.2 in the first line");
     if (!(h->version >= 1.0 && h->version < 2.0))
-        return ptm_wrong(h, word, "a version from PTM_1.0 to PTM_1.2");
+        return log_fail(h->log, RELUME_EUNSUPPORTED,
+                        "%s: %s; expected a version from PTM_1.0 to PTM_1.2", h->path, word);
     if (!bytes_word(b, word, sizeof word))
         return ptm_wrong(h, "no format", "PTM_FORMAT_RGB or another");
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)

@@ -42,7 +42,9 @@ static relume_status read_text(struct header *h, struct bytes *b)
     if (!bytes_integer(b, &terms) || !bytes_integer(b, &colour) || !bytes_integer(b, &size))
         return wrong(h, "no layout", "terms, colour type, bytes of an element");
     if (channels != 3 || colour != COLOUR_RGB || size != 1)
-        return wrong(h, "layout", "3 channels, colour type 2, elements of 1 byte");
+        return log_fail(h->log, RELUME_EUNSUPPORTED,
+                        "%s: layout; expected 3 channels, colour type 2, elements of 1 byte",
+                        h->path);
     if (terms < 1 || terms > MOST_TERMS || !functions_has_count(FUNCTIONS_HSH, (int)terms))
         return log_fail(h->log, RELUME_EUNSUPPORTED, "%s: %ld terms; expected 1, 4, 9 or 16",
                         h->path, terms);
@@ -59,13 +61,15 @@ static relume_status read_ranges(struct header *h, struct bytes *b, bool old)
     for (int k = 0; k < h->terms; k++)
         good = good && bytes_float(b, &second[k]);
     if (!good)
-        return wrong(h, "truncated", "two numbers for every term");
+        return log_fail(h->log, RELUME_EDAMAGED,
+                        "%s: truncated; expected two numbers for every term", h->path);
     for (int k = 0; k < h->terms; k++) {
         const float range = old ? second[k] - first[k] : first[k];
         h->scale[k] = range / 255.0f;
         h->offset[k] = old ? first[k] : second[k];
         if (!(fabsf(range) < 1e6f) || !(fabsf(h->offset[k]) < 1e6f))
-            return wrong(h, "range of a term", "finite numbers below 1e6");
+            return log_fail(h->log, RELUME_EDAMAGED,
+                            "%s: range of a term; expected finite numbers below 1e6", h->path);
     }
     return RELUME_OK;
 }

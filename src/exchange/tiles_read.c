@@ -89,7 +89,7 @@ static relume_status read_description(struct pyramid *p)
     char *path = mem_format("%s/plane_%d.dzi", p->folder, p->image);
     relume_status status = path ? bytes_load(&b, path, p->log) : RELUME_ENOMEM;
     if (!status && b.size > MOST_DZI)
-        status = log_fail(p->log, RELUME_EFORMAT, "%s: too long for a DeepZoom description", path);
+        status = log_fail(p->log, RELUME_ELIMIT, "%s: too long for a DeepZoom description", path);
     char *text = status ? NULL : mem_format("%.*s", (int)b.size, (const char *)b.data);
     if (!status)
         status = text ? parse(p, path, text) : RELUME_ENOMEM;

@@ -35,9 +35,15 @@ struct folder {
     const struct relume_log *log;
 };
 
+static relume_status refuse(const struct folder *w, relume_status status, const char *what,
+                            const char *expected)
+{
+    return log_fail(w->log, status, "%s: %s; expected %s", w->info, what, expected);
+}
+
 static relume_status wrong(const struct folder *w, const char *what, const char *expected)
 {
-    return log_fail(w->log, RELUME_EFORMAT, "%s: %s; expected %s", w->info, what, expected);
+    return refuse(w, RELUME_EFORMAT, what, expected);
 }
 
 static bool find_name(const char *name, const char *const *names, int count, int *index)
@@ -64,11 +70,11 @@ static relume_status read_kinds(struct folder *w)
     int kind = 0, space = 0;
     const char *format = jvalue_text(jvalue_member(w->root, "format"));
     if (!find_name(jvalue_text(jvalue_member(w->root, "type")), kind_names, 5, &kind))
-        return wrong(w, "type", "ptm, hsh, sh, rbf or bilinear");
+        return refuse(w, RELUME_EUNSUPPORTED, "type", "ptm, hsh, sh, rbf or bilinear");
     if (!find_name(jvalue_text(jvalue_member(w->root, "colorspace")), space_names, SPACES, &space))
-        return wrong(w, "colorspace", "rgb, lrgb, ycc, mrgb or mycc");
+        return refuse(w, RELUME_EUNSUPPORTED, "colorspace", "rgb, lrgb, ycc, mrgb or mycc");
     if (format && strcmp(format, "jpg"))
-        return wrong(w, "format", "jpg");
+        return refuse(w, RELUME_EUNSUPPORTED, "format", "jpg");
     w->f->functions.kind = (enum function_kind)kind;
     w->space = (enum space)space;
     if ((kind == FUNCTIONS_GAUSS || kind == FUNCTIONS_GRID) != (space >= SPACE_MRGB))
@@ -89,7 +95,8 @@ static relume_status read_profile(struct folder *w)
         return RELUME_OK;
     }
     w->f->linear = !strcmp(profile, "RGB");
-    return w->f->linear ? RELUME_OK : wrong(w, "colorprofile", "RGB, sRGB or P3");
+    return w->f->linear ? RELUME_OK
+                        : refuse(w, RELUME_EUNSUPPORTED, "colorprofile", "RGB, sRGB or P3");
 }
 
 // ---------------------------------------------------------------- functions
@@ -99,8 +106,10 @@ static relume_status read_lights(struct folder *w)
     const jvalue *lights = jvalue_member(w->root, "lights");
     const struct relume_limits limits = limits_or_default(w->limits);
     const size_t n = jvalue_count(lights) / 3;
-    if (n < 1 || jvalue_count(lights) % 3 || n > (size_t)limits.max_lights || n > FUNCTIONS_MOST)
-        return wrong(w, "lights", "x y z of every light, within the limits");
+    if (n < 1 || jvalue_count(lights) % 3)
+        return wrong(w, "lights", "x y z of every light");
+    if (n > (size_t)limits.max_lights || n > FUNCTIONS_MOST)
+        return refuse(w, RELUME_ELIMIT, "lights", "a number within the limits");
     struct relume_vec3 *light = mem_array(n, sizeof *light);
     if (!light)
         return RELUME_ENOMEM;
@@ -110,11 +119,12 @@ static relume_status read_lights(struct folder *w)
         double v[3];
         for (size_t c = 0; c < 3; c++)
             if (!jvalue_number(jvalue_item(lights, 3 * i + c), &v[c]))
-                return wrong(w, "lights", "finite numbers");
+                return refuse(w, RELUME_EDAMAGED, "lights", "finite numbers");
         light[i] = vec3_of(v[0], v[1], v[2]);
         const double length = vec3_length(light[i]);
         if (!(length > 1e-4) || !isfinite(length))
-            return wrong(w, "lights", "directions; found a vector without length");
+            return refuse(w, RELUME_EDAMAGED, "lights",
+                          "directions; found a vector without length");
         light[i] = vec3_unit(light[i]);
     }
     if (!jvalue_number(jvalue_member(w->root, "sigma"), &w->f->functions.sigma) ||
@@ -240,11 +250,11 @@ static relume_status read_basis(struct folder *w)
     if (!basis)
         return read_basis_file(w, size);
     if (!counted || !jvalue_numbers(basis, w->basis, size))
-        return log_fail(w->log, RELUME_EFORMAT, "%s: basis; expected %zu numbers, found %zu",
+        return log_fail(w->log, RELUME_EDAMAGED, "%s: basis; expected %zu numbers, found %zu",
                         w->info, size, jvalue_count(basis));
     for (size_t i = 0; i < size; i++)
         if (w->basis[i] < 0.0 || w->basis[i] > 255.0)
-            return wrong(w, "basis", "numbers from 0 to 255");
+            return refuse(w, RELUME_EDAMAGED, "basis", "numbers from 0 to 255");
     return RELUME_OK;
 }
 
@@ -420,7 +430,7 @@ static relume_status read_planes(struct folder *w)
 
 static relume_status find_folder(struct folder *w, const char *path)
 {
-    const bool is_folder = tree_is_folder(path);
+    const bool is_folder = input_kind(path, w->log) == INPUT_FOLDER;
     const char *slash = strrchr(path, '/');
     w->at = is_folder ? mem_text(path)
             : slash   ? mem_format("%.*s", (int)(slash - path), path)

@@ -453,7 +453,10 @@ static relume_status start_read(exr_file *file, const struct relume_limits *limi
     if (r == EXR_ERR_OUT_OF_MEMORY)
         return RELUME_ENOMEM;
     if (r)
-        return log_fail(log, r == EXR_ERR_FILE_BAD_HEADER ? RELUME_EFORMAT : RELUME_EDAMAGED,
+        return log_fail(log,
+                        r == EXR_ERR_FILE_BAD_HEADER           ? RELUME_EFORMAT
+                        : r == EXR_ERR_FEATURE_NOT_IMPLEMENTED ? RELUME_EUNSUPPORTED
+                                                               : RELUME_EDAMAGED,
                         "%s: cannot be read as OpenEXR; %s", file->path,
                         exr_get_default_error_message(r));
     return check_parts(file, limits, log);

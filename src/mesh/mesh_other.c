@@ -169,25 +169,26 @@ static relume_status read_there(struct mesh_file *out, struct helper_job *job, c
     if (status)
         return log_fail(log, status, "%s: cannot be read as a 3D model; %s", path, job->why);
     if (answer.what != MESH_READ) {
-        const char *why = answer.text[0]
-                              ? answer.text
-                              : helper_short_of(answer.memory, given && given->max_memory);
-        return why ? log_fail(log, RELUME_EDAMAGED, "%s: cannot be read as a 3D model; %s", path,
-                              why)
+        const bool read = answer.text[0] != '\0';
+        const char *why =
+            read ? answer.text : helper_short_of(answer.memory, given && given->max_memory);
+        return why ? log_fail(log, read ? RELUME_EDAMAGED : RELUME_ELIMIT,
+                              "%s: cannot be read as a 3D model; %s", path, why)
                    : RELUME_ENOMEM;
     }
     const size_t bytes = model_bytes(&answer, limits.max_memory);
-    status = !answer.triangles ? RELUME_OK
-             : bytes           ? fetch(out, job, &answer, bytes)
-                               : RELUME_EDAMAGED;
-    if (status == RELUME_EDAMAGED)
+    if (answer.triangles && !bytes)
         return log_fail(log, RELUME_ELIMIT,
                         "%s: a model of %llu vertices and %llu triangles; expected one that fits "
                         "%llu MB (--max-memory)",
                         path, (unsigned long long)answer.vertices,
                         (unsigned long long)answer.triangles,
                         (unsigned long long)(limits.max_memory >> 20));
-    return status;
+    status = answer.triangles ? fetch(out, job, &answer, bytes) : RELUME_OK;
+    return status != RELUME_EDAMAGED
+               ? status
+               : log_fail(log, status, "%s: cannot be read as a 3D model; its parts do not fit",
+                          path);
 }
 
 relume_status mesh_read_other(struct mesh_file *out, const char *path, const struct relume_log *log)

@@ -39,9 +39,14 @@ struct ply {
     const struct relume_log *log;
 };
 
+static relume_status refuse(const struct ply *p, relume_status status, const char *what)
+{
+    return log_fail(p->log, status, "%s: %s", p->path, what);
+}
+
 static relume_status bad(const struct ply *p, const char *what)
 {
-    return log_fail(p->log, RELUME_EFORMAT, "%s: %s", p->path, what);
+    return refuse(p, RELUME_EFORMAT, what);
 }
 
 // ---------------------------------------------------------------- header
@@ -103,7 +108,7 @@ static relume_status read_property(struct ply *p, const char *line)
         return bad(p, "a property in the header cannot be understood");
     struct element *e = &p->element[p->elements - 1];
     if (e->properties == MAX_PROPERTIES)
-        return bad(p, "more than 64 properties in one element");
+        return refuse(p, RELUME_ELIMIT, "more than 64 properties in one element");
     // A list is only asked for corners, a plain number never.
     if (list != (new.use == USE_CORNERS))
         new.use = USE_NONE;
@@ -120,7 +125,7 @@ static relume_status read_element(struct ply *p, const char *line)
     if (sscanf(line, "element %63s %llu", name, &new.count) != 2 || new.count > UINT32_MAX)
         return bad(p, "an element in the header cannot be understood");
     if (p->elements == MAX_ELEMENTS)
-        return bad(p, "more than 16 elements");
+        return refuse(p, RELUME_ELIMIT, "more than 16 elements");
     new.is_vertex = !strcmp(name, "vertex");
     new.is_face = !strcmp(name, "face");
     p->element[p->elements++] = new;
@@ -135,7 +140,9 @@ static relume_status read_format(struct ply *p, const char *line)
                   : !strcmp(name, "binary_little_endian") ? FORM_LITTLE
                   : !strcmp(name, "binary_big_endian")    ? FORM_BIG
                                                           : FORM_NONE;
-    return p->form ? RELUME_OK : bad(p, "unknown PLY format; expected ascii or binary 1.0");
+    return p->form
+               ? RELUME_OK
+               : refuse(p, RELUME_EUNSUPPORTED, "unknown PLY format; expected ascii or binary 1.0");
 }
 
 static bool header_line(struct ply *p, char *line, size_t room)
@@ -220,7 +227,8 @@ static bool read_value(struct ply *p, enum type type, double *out)
 
 static relume_status truncated(const struct ply *p)
 {
-    return bad(p, "ends too early or has something that is not a number; expected what its header "
+    return refuse(p, RELUME_EDAMAGED,
+                  "ends too early or has something that is not a number; expected what its header "
                   "declares");
 }
 
@@ -256,7 +264,7 @@ static relume_status read_list(struct ply *p, const struct property *property, d
         if (property->use != USE_CORNERS)
             continue;
         if (!(value >= 0.0 && value < vertices))
-            return bad(p, "a face names a vertex that does not exist");
+            return refuse(p, RELUME_EDAMAGED, "a face names a vertex that does not exist");
         const uint32_t vertex = (uint32_t)value;
         if (k == 0)
             first = vertex;
@@ -278,7 +286,7 @@ static relume_status read_item(struct ply *p, const struct element *e)
         if (property->count && !read_value(p, property->count, &length))
             return truncated(p);
         if (!(length >= 0.0 && length <= MAX_CORNERS))
-            return bad(p, "a list of more than 4096 entries");
+            return refuse(p, RELUME_ELIMIT, "a list of more than 4096 entries");
         status = read_list(p, &plain, length);
     }
     return status;

@@ -8,7 +8,6 @@
 #include "pack/reader.h"
 
 #include <math.h>
-#include <sys/stat.h>
 
 relume_status reader_bad(const relume_pack *p, const char *what, const char *expected)
 {
@@ -47,11 +46,11 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
     p->limits = limits_or_default(limits_of(params_.limits, params_.log));
     p->path = mem_text(infile_name(path));
     relume_status status = p->path ? RELUME_OK : RELUME_ENOMEM;
-    struct stat s;
-    if (!status && !params_.reader && !input_exists(path, p->log))
+    const enum input_kind kind = params_.reader ? INPUT_FILE : input_kind(path, p->log);
+    if (!status && kind == INPUT_NONE)
         status =
             log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
-    else if (!status && !params_.reader && !stat(path, &s) && !S_ISREG(s.st_mode))
+    else if (!status && kind != INPUT_FILE)
         status = log_fail(p->log, RELUME_EFORMAT, "%s: not a file; expected a relume file", path);
     if (!status)
         status = exr_open(&p->file, path, params_.reader, &p->limits, p->log);

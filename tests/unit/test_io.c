@@ -539,6 +539,25 @@ static void test_names_that_are_not_there(void **state)
     relume_context_destroy(&log.log.context);
 }
 
+// A name of the context counts, whatever the disk has of that name: here a folder.
+static void test_a_name_that_is_a_folder_too(void **state)
+{
+    (void)state;
+    struct store *s = calloc(1, sizeof *s);
+    struct test_log log;
+    relume_pack *pack;
+    test_log_init(&log);
+    store_add(s, strrchr(pack_path, '/') + 1);
+    snprintf(s->entry[0].path, sizeof s->entry[0].path, "%s", folder);
+    log.log.context = store_context(s);
+    CHECK_OK(relume_pack_open(&pack, folder, relume_pack_params(.log = &log.log)));
+    relume_pack_destroy(&pack);
+    CHECK_OK(relume_open(&pack, folder, relume_open_params(.log = &log.log)));
+    relume_pack_destroy(&pack);
+    assert_int_equal(relume_pack_open(&pack, folder, NULL), RELUME_EFORMAT);
+    store_free(s, log.log.context);
+}
+
 static void test_a_web_folder_of_names(void **state)
 {
     (void)state;
@@ -609,6 +628,7 @@ int main(void)
         cmocka_unit_test(test_a_capture_of_names),
         cmocka_unit_test(test_other_formats_in_memory),
         cmocka_unit_test(test_names_that_are_not_there),
+        cmocka_unit_test(test_a_name_that_is_a_folder_too),
         cmocka_unit_test(test_a_web_folder_of_names),
         cmocka_unit_test(test_a_context_has_the_defaults),
     };

@@ -69,6 +69,44 @@ static void test_what_is_wrong_with_a_file(void **state)
     version[0] -= 100;
 }
 
+// The same for what other programs wrote.
+static void test_other_formats(void **state)
+{
+    (void)state;
+#define PTM_NUMBERS "1 1 1 1 1 1\n0 0 0 0 0 0\n"
+    static const struct {
+        const char *name, *text;
+        relume_status status;
+    } file[] = {
+        {"a.rti", "photograph", RELUME_EFORMAT},
+        {"b.rti", "2\n4 4 3\n", RELUME_EUNSUPPORTED},
+        {"c.rti", "3\n4 4 4\n9 2 1\n", RELUME_EUNSUPPORTED},
+        {"d.rti", "3\n4 4 3\n1 2 1\nAAAA", RELUME_EDAMAGED},
+        {"e.rti", "3\n4 4 3\n1 2 1\nAAAABBBBcodes", RELUME_EDAMAGED},
+        {"f.rti", "3\n4 4 3\n1 2 1\n\xff\xff\xff\xff\xff\xff\xff\xff", RELUME_EDAMAGED},
+        {"g.rti", "3\n70000 4 3\n1 2 1\nAAAABBBBcodes", RELUME_ELIMIT},
+        {"a.ptm", "photograph", RELUME_EFORMAT},
+        {"b.ptm", "PTM_3.0\nPTM_FORMAT_RGB\n4\n4\n" PTM_NUMBERS, RELUME_EUNSUPPORTED},
+        {"c.ptm", "PTM_1.2\nPTM_FORMAT_LUM\n4\n4\n" PTM_NUMBERS, RELUME_EUNSUPPORTED},
+        {"d.ptm", "PTM_1.2\nPTM_FORMAT_RGB\n4\n4\n" PTM_NUMBERS "codes", RELUME_EDAMAGED},
+        {"e.ptm", "PTM_1.2\nPTM_FORMAT_RGB\n70000\n4\n" PTM_NUMBERS "codes", RELUME_ELIMIT},
+        {"info.json", "{\"type\":\"ptm\",", RELUME_EFORMAT},
+        {"info.json", "{\"type\":\"neural\",\"colorspace\":\"rgb\"}", RELUME_EUNSUPPORTED},
+        {"info.json", "{\"type\":\"ptm\",\"colorspace\":\"lab\"}", RELUME_EUNSUPPORTED},
+        {"info.json", "{\"type\":\"ptm\",\"colorspace\":\"lrgb\",\"nplanes\":9}", RELUME_EFORMAT},
+    };
+    for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
+        char path[128], out[128];
+        snprintf(path, sizeof path, "%s/%s", folder, file[i].name);
+        snprintf(out, sizeof out, "%s/out.exr", folder);
+        test_write(path, file[i].text, strlen(file[i].text));
+        const relume_status status = relume_import(path, out, NULL);
+        if (status != file[i].status)
+            fail_msg("%s (%zu): %s; expected %s", file[i].name, i, relume_status_name(status),
+                     relume_status_name(file[i].status));
+    }
+}
+
 static void test_what_does_not_do_here(void **state)
 {
     (void)state;
@@ -146,6 +184,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_is_wrong_with_a_file),
+        cmocka_unit_test(test_other_formats),
         cmocka_unit_test(test_what_does_not_do_here),
         cmocka_unit_test(test_what_the_machine_lacks),
         cmocka_unit_test(test_the_table),

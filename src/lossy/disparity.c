@@ -1,38 +1,124 @@
-// disparity.c - whole steps foretold by the three neighbours above and to the left, then deflated
+// disparity.c - whole steps foretold by their neighbours; what they differ by goes to a range coder
 #include "lossy/disparity.h"
 
 #include "base/memory.h"
+#include "lossy/entropy.h"
 
 #include <math.h>
-#include <string.h>
 #include <zlib.h>
 
-// Words at the head, before the deflated bytes: their number and CRC-32. Inflated they are the low
-// bytes of what differs from the foretold, then the high bytes.
+// Words at the head, before the coded bytes: their number and CRC-32.
 enum { WORD_MAGIC, WORD_BYTES, WORD_CRC, HEAD_WORDS };
-enum { MAGIC = 0x31444C52, MOST_STEPS = 65535 };  // "RLD1"
+enum { MAGIC = 0x32444C52, MOST_STEPS = 65535 };  // "RLD2"
 
-// Of the left, the upper and the upper left neighbour: the least or the most of the first two
-// across an edge, else the plane through all (Weinberger et al. 2000, LOCO-I).
-static int foretold(const uint16_t *row, const uint16_t *above, size_t x)
+// ---------------------------------------------------------------- what is foretold
+
+// Left, above, above to the left and to the right; what the picture lacks is as its neighbour.
+struct around {
+    int a, b, c, d;
+};
+
+static struct around around(const uint16_t *row, const uint16_t *above, size_t x, size_t width)
 {
-    const int a = x ? row[x - 1] : above ? above[x] : 0;
-    const int b = above ? above[x] : a, c = above && x ? above[x - 1] : b;
-    const int least = a < b ? a : b, most = a < b ? b : a;
-    return c >= most ? least : c <= least ? most : a + b - c;
+    struct around n;
+    n.a = x ? row[x - 1] : above ? above[x] : 0;
+    n.b = above ? above[x] : n.a;
+    n.c = above && x ? above[x - 1] : n.b;
+    n.d = above && x + 1 < width ? above[x + 1] : n.b;
+    return n;
 }
 
-// Differences, small ones of either sign first, modulo 65536.
-static uint16_t fold(int difference)
+// The least or the most of left and above across an edge, else the plane through all three
+// (Weinberger et al. 2000, LOCO-I, whose contexts these are, too).
+static int foretold(struct around n)
 {
-    const int d = (int16_t)(uint16_t)difference;
-    return (uint16_t)(d < 0 ? -2 * d - 1 : 2 * d);
+    const int least = n.a < n.b ? n.a : n.b, most = n.a < n.b ? n.b : n.a;
+    return n.c >= most ? least : n.c <= least ? most : n.a + n.b - n.c;
 }
 
-static int unfold(unsigned folded)
+enum { CLASSES = 7, CONTEXTS = CLASSES * CLASSES * CLASSES, EVEN = CONTEXTS / 2 };
+
+// -3 .. 3 by how steep it is.
+static int slope(int difference)
 {
-    return folded & 1 ? -(int)(folded / 2) - 1 : (int)(folded / 2);
+    const int much = difference < 0 ? -difference : difference;
+    const int class = much > 2 ? 3 : much;
+    return difference < 0 ? -class : class;
 }
+
+// What the three slopes are; a mirrored one is the same with the other sign.
+static int context_of(struct around n, bool *mirrored)
+{
+    const int sum =
+        (slope(n.a - n.c) * CLASSES + slope(n.c - n.b)) * CLASSES + slope(n.b - n.d) + EVEN;
+    *mirrored = sum > EVEN;
+    return *mirrored ? 2 * EVEN - sum : sum;
+}
+
+// ---------------------------------------------------------------- differences
+
+enum { MOST_EXPONENT = 16 };
+
+// Whether there is one, its sign, then how many bits its size has, and these as they are.
+struct model {
+    struct entropy_chance any[CONTEXTS], sign[CONTEXTS], more[2][MOST_EXPONENT + 1];
+};
+
+static void begin_model(struct model *m)
+{
+    for (int i = 0; i < CONTEXTS; i++)
+        m->any[i] = m->sign[i] = ENTROPY_EVEN;
+    for (int i = 0; i <= MOST_EXPONENT; i++)
+        m->more[0][i] = m->more[1][i] = ENTROPY_EVEN;
+}
+
+static void put_plain(struct entropy_writer *w, unsigned value, int bits)
+{
+    for (int i = bits; i-- > 0;) {
+        struct entropy_chance even = ENTROPY_EVEN;
+        entropy_put(w, &even, (int)(value >> i & 1));
+    }
+}
+
+static unsigned get_plain(struct entropy_reader *r, int bits)
+{
+    unsigned value = 0;
+    for (int i = 0; i < bits; i++) {
+        struct entropy_chance even = ENTROPY_EVEN;
+        value = 2 * value + (unsigned)entropy_get(r, &even);
+    }
+    return value;
+}
+
+static void put(struct entropy_writer *w, struct model *m, int context, int difference)
+{
+    struct entropy_chance *more = m->more[context != EVEN];
+    entropy_put(w, &m->any[context], difference != 0);
+    if (!difference)
+        return;
+    entropy_put(w, &m->sign[context], difference < 0);
+    const unsigned size = (unsigned)(difference < 0 ? -difference : difference);
+    int exponent = 0;
+    for (; size >> (exponent + 1); exponent++)
+        entropy_put(w, &more[exponent], 1);
+    entropy_put(w, &more[exponent], 0);
+    put_plain(w, size & ((1u << exponent) - 1), exponent);
+}
+
+static int get(struct entropy_reader *r, struct model *m, int context)
+{
+    struct entropy_chance *more = m->more[context != EVEN];
+    if (!entropy_get(r, &m->any[context]))
+        return 0;
+    const bool negative = entropy_get(r, &m->sign[context]);
+    int exponent = 0;
+    while (exponent < MOST_EXPONENT && entropy_get(r, &more[exponent]))
+        exponent++;
+    const int size = (int)(1u << exponent | get_plain(r, exponent));
+    return negative ? -size : size;
+}
+
+// ---------------------------------------------------------------- maps
 
 static uint16_t steps_of(float depth, float step)
 {
@@ -42,21 +128,43 @@ static uint16_t steps_of(float depth, float step)
     return (uint16_t)(steps < 1.0 ? 1.0 : steps > MOST_STEPS ? MOST_STEPS : steps);
 }
 
-static void fold_all(unsigned char *bytes, uint16_t *row, const struct relume_image *depth,
-                     float step)
+static void put_all(struct entropy_writer *w, struct model *m, uint16_t *rows,
+                    const struct relume_image *depth, float step)
 {
-    const size_t width = (size_t)depth->width, n = width * (size_t)depth->height;
-    uint16_t *above = NULL, *now = row;
-    for (size_t i = 0; i < n; i += width) {
-        for (size_t x = 0; x < width; x++)
-            now[x] = steps_of(depth->data[i + x], step);
+    const size_t width = (size_t)depth->width;
+    const float *from = depth->data;
+    uint16_t *above = NULL, *row = rows;
+    for (int y = 0; y < depth->height; y++, from += width) {
         for (size_t x = 0; x < width; x++) {
-            const uint16_t d = fold(now[x] - foretold(now, above, x));
-            bytes[i + x] = (unsigned char)d;
-            bytes[n + i + x] = (unsigned char)(d >> 8);
+            const struct around n = around(row, above, x, width);
+            bool mirrored;
+            const int context = context_of(n, &mirrored);
+            row[x] = steps_of(from[x], step);
+            const int difference = row[x] - foretold(n);
+            put(w, m, context, mirrored ? -difference : difference);
         }
-        above = now;
-        now = now == row ? row + width : row;
+        above = row;
+        row = row == rows ? rows + width : rows;
+    }
+    entropy_end(w);
+}
+
+static void get_all(struct relume_image *depth, struct entropy_reader *r, struct model *m,
+                    uint16_t *rows, float step)
+{
+    const size_t width = (size_t)depth->width;
+    float *to = depth->data;
+    uint16_t *above = NULL, *row = rows;
+    for (int y = 0; y < depth->height; y++, to += width) {
+        for (size_t x = 0; x < width; x++) {
+            const struct around n = around(row, above, x, width);
+            bool mirrored;
+            const int context = context_of(n, &mirrored), difference = get(r, m, context);
+            row[x] = (uint16_t)(foretold(n) + (mirrored ? -difference : difference));
+            to[x] = row[x] ? (float)(1.0 / ((double)row[x] * step)) : INFINITY;
+        }
+        above = row;
+        row = row == rows ? rows + width : rows;
     }
 }
 
@@ -69,77 +177,64 @@ static float nearest(const struct relume_image *depth)
     return least;
 }
 
+static relume_status to_words(struct lossy_words *out, const struct entropy_writer *w)
+{
+    const size_t count = HEAD_WORDS + (w->size + 3) / 4;
+    uint32_t *word = w->failed ? NULL : mem_zeroed(count, sizeof *word);
+    if (!word)
+        return RELUME_ENOMEM;
+    word[WORD_MAGIC] = MAGIC;
+    word[WORD_BYTES] = (uint32_t)w->size;
+    word[WORD_CRC] = (uint32_t)crc32(0, w->byte, (uInt)w->size);
+    lossy_put_bytes(word + HEAD_WORDS, w->byte, w->size);
+    *out = (struct lossy_words){word, count};
+    return RELUME_OK;
+}
+
 relume_status disparity_encode(struct lossy_words *out, float *step,
                                const struct relume_image *depth)
 {
-    const size_t width = (size_t)depth->width, n = width * (size_t)depth->height;
-    uLongf size = compressBound((uLong)(2 * n));
-    unsigned char *bytes = mem_array(2 * n, 1), *deflated = mem_array(size, 1);
-    uint16_t *rows = mem_array(2 * width, sizeof *rows);
     const float least = 1.0f / nearest(depth) / MOST_STEPS;
-    relume_status status = bytes && deflated && rows ? RELUME_OK : RELUME_ENOMEM;
+    struct model *model = mem_array(1, sizeof *model);
+    uint16_t *rows = mem_array(2 * (size_t)depth->width, sizeof *rows);
+    struct entropy_writer w = entropy_write();
+    relume_status status = model && rows ? RELUME_OK : RELUME_ENOMEM;
     *step = *step > least ? *step : least > 0.0f ? least : 1.0f;
     *out = (struct lossy_words){0};
     if (!status) {
-        fold_all(bytes, rows, depth, *step);
-        status = compress2(deflated, &size, bytes, (uLong)(2 * n), 9) == Z_OK ? RELUME_OK
-                                                                              : RELUME_ENOMEM;
+        begin_model(model);
+        put_all(&w, model, rows, depth, *step);
+        status = to_words(out, &w);
     }
-    if (!status) {
-        out->count = HEAD_WORDS + (size + 3) / 4;
-        out->word = mem_zeroed(out->count, sizeof *out->word);
-        status = out->word ? RELUME_OK : RELUME_ENOMEM;
-    }
-    if (!status) {
-        out->word[WORD_MAGIC] = MAGIC;
-        out->word[WORD_BYTES] = (uint32_t)size;
-        out->word[WORD_CRC] = (uint32_t)crc32(0, deflated, (uInt)size);
-        lossy_put_bytes(out->word + HEAD_WORDS, deflated, size);
-    }
-    mem_free(bytes);
-    mem_free(deflated);
+    mem_free(w.byte);
+    mem_free(model);
     mem_free(rows);
     return status;
-}
-
-static void unfold_all(struct relume_image *depth, uint16_t *row, const unsigned char *bytes,
-                       float step)
-{
-    const size_t width = (size_t)depth->width, n = width * (size_t)depth->height;
-    uint16_t *above = NULL, *now = row;
-    for (size_t i = 0; i < n; i += width) {
-        for (size_t x = 0; x < width; x++) {
-            const unsigned folded = bytes[i + x] | (unsigned)bytes[n + i + x] << 8;
-            now[x] = (uint16_t)(foretold(now, above, x) + unfold(folded));
-            depth->data[i + x] = now[x] ? (float)(1.0 / ((double)now[x] * step)) : INFINITY;
-        }
-        above = now;
-        now = now == row ? row + width : row;
-    }
 }
 
 relume_status disparity_decode(struct relume_image *depth, const struct lossy_words *words,
                                float step)
 {
-    const size_t width = (size_t)depth->width, n = width * (size_t)depth->height;
     if (words->count < HEAD_WORDS || words->word[WORD_MAGIC] != MAGIC ||
         words->word[WORD_BYTES] > 4 * (words->count - HEAD_WORDS))
         return RELUME_EDAMAGED;
     const size_t size = words->word[WORD_BYTES];
-    uLongf inflated = (uLongf)(2 * n);
-    unsigned char *deflated = mem_array(size, 1), *bytes = mem_array(2 * n, 1);
-    uint16_t *rows = mem_array(2 * width, sizeof *rows);
-    relume_status status = deflated && bytes && rows ? RELUME_OK : RELUME_ENOMEM;
+    struct model *model = mem_array(1, sizeof *model);
+    uint16_t *rows = mem_array(2 * (size_t)depth->width, sizeof *rows);
+    unsigned char *byte = mem_array(size, 1);
+    relume_status status = model && rows && byte ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {
-        lossy_take_bytes(deflated, words->word + HEAD_WORDS, size);
-        if (crc32(0, deflated, (uInt)size) != words->word[WORD_CRC] ||
-            uncompress(bytes, &inflated, deflated, (uLong)size) != Z_OK || inflated != 2 * n)
+        lossy_take_bytes(byte, words->word + HEAD_WORDS, size);
+        if (crc32(0, byte, (uInt)size) != words->word[WORD_CRC])
             status = RELUME_EDAMAGED;
     }
-    if (!status)
-        unfold_all(depth, rows, bytes, step);
-    mem_free(deflated);
-    mem_free(bytes);
+    if (!status) {
+        struct entropy_reader r = entropy_read(byte, size);
+        begin_model(model);
+        get_all(depth, &r, model, rows, step);
+    }
+    mem_free(model);
     mem_free(rows);
+    mem_free(byte);
     return status;
 }

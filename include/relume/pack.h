@@ -48,9 +48,10 @@ struct relume_pack_view {
 // one file of all parts. Borrowed.
 struct relume_pack_share {
     int part, parts;                // 1 .. parts
-    int first, views;               // those that it holds
+    int first, views;               // those that it holds, or rows of one
     const char *capture, *options;  // what must be the same in all parts; texts
     bool free_storage;              // nobody asked for the storage: join refuses coarse steps
+    enum relume_step step;          // what was asked for
     const struct relume_encode_report *measured;  // [views] of it
 };
 
@@ -153,6 +154,7 @@ struct relume_pack_part {
     int part, parts;     // 1 .. parts
     int first, views;    // that it holds, of
     int all_views;       // of the whole
+    int row, rows;       // of the view, where it holds no more; else 0
     char creator[64];    // "relume 0.1.0"
     char options[4096];  // as they were given to relume_pack_encode
     uint64_t file_bytes;

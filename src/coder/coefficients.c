@@ -26,6 +26,8 @@ void relume_coefficients_destroy(relume_coefficients **coefficients)
     mem_free(c->scale);
     mem_free(c->offset);
     mem_free(c->band);
+    mem_free(c->some.error);
+    mem_free(c->some.shown_error);
     mem_free(c);
 }
 

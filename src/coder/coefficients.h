@@ -20,6 +20,16 @@ struct range range_join(struct range a, struct range b);
 // A tiny range becomes one value.
 struct range range_settle(struct range r);
 
+// Rows of a view that were encoded by themselves, and what of them the whole view's report takes.
+struct encode_rows {
+    int row, rows;        // 0 rows: all of the view
+    double *error;        // [height of the view]: squared, each row's own sum, so that sums do not
+                          // depend on who adds them up
+    double *shown_error;  // [lights]: squared, of display values
+    double root_sum;
+    size_t error_count, lit_count;
+};
+
 // Planes of integer codes wait as 16-bit numbers with a scale of their own per band of rows, finer
 // than any code that follows; halves wait as they are, over a power of two where they would be too
 // large; floats wait as they are. The file's order is [row][plane][x].
@@ -31,6 +41,7 @@ struct relume_coefficients {
     bool coarse;  // `log`: halves of 8 significant bits
     int fd;
     struct relume_encode_report report;
+    struct encode_rows some;
 };
 
 relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder, int width,
@@ -63,6 +74,27 @@ void coefficients_restore(const relume_coefficients *c, int plane, int row, cons
 // One row as it waits, unquantised: out[plane][x]; `waiting` has room for as many numbers.
 // RELUME_EIO.
 relume_status coefficients_values(const relume_coefficients *c, int row, void *waiting, float *out);
+
+// The rows `row` .. `row + rows` of a view, from BAND_ROWS on to BAND_ROWS on: they wait, steps are
+// not chosen. As relume_encode.
+relume_status encode_some_rows(relume_coefficients **out, const relume_coder *coder,
+                               const relume_capture *capture, int view, int row, int rows,
+                               const struct relume_encode_params *p);
+// All rows wait in `c`, its bands and `some` are those of all of them: choose the steps and fill in
+// the report. `display` is the curve of the domain `p->domain`, which is not AUTO. RELUME_EIO,
+// RELUME_ENOMEM.
+relume_status encode_finish_rows(relume_coefficients *c, const struct relume_image *mask,
+                                 struct relume_transfer display,
+                                 const struct relume_encode_params *p);
+
+// Which of `parts` parts holds what: whole views, or where there are fewer views than parts rows of
+// one.
+struct encode_share {
+    int first, views;
+    int row, rows;  // 0 rows: all
+};
+// False when there are more parts than bands of rows.
+bool encode_share_of(struct encode_share *out, int part, int parts, int views, int height);
 
 // Of all views: root mean squares, means, sums. `steps_rms` of each is set.
 struct relume_encode_report encode_report_mean(const struct relume_encode_report *view, int views);

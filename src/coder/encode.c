@@ -46,7 +46,9 @@ struct encoding {
     struct captured captured;
     struct census census;
     size_t repaired;
-    double error_sum, root_sum;
+    int end;            // the row behind the last that is encoded
+    double *row_error;  // [height]
+    double root_sum;
     struct relume_transfer display;  // of the samples
     struct encoder *screen;  // the display's coding of linear coefficients, or NULL: they are coded
     double *shown_error;     // [lights]: squared, of display values, by the basis
@@ -168,7 +170,7 @@ static relume_status measure_fit(struct encoding *e, int row)
                 if (is_inside(&e->mask, (size_t)(e->row + row) * width + x)) {
                     const double sample = (double)seen[(size_t)c * size + i * width + x];
                     const double d = sample - (double)again[i * width + x];
-                    e->error_sum += d * d;
+                    e->row_error[e->row + row] += d * d;
                     e->shown_error[i] += shown_difference(e, (float)sample, again[i * width + x]);
                     add_root(e, sample);
                     e->error_count++;
@@ -193,7 +195,7 @@ static relume_status measure_near(struct encoding *e, int row)
         for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
             const double sample = (double)e->own[(i / 3 * pixels + at) * 3 + i % 3];
             const double d = sample - (double)again[i];
-            e->error_sum += d * d;
+            e->row_error[e->row + row] += d * d;
             e->shown_error[i / 3] += shown_difference(e, (float)sample, again[i]);
             add_root(e, sample);
             e->error_count++;
@@ -252,7 +254,7 @@ static relume_status write_band(struct encoding *e, size_t pixels,
 
 static relume_status read_band(struct encoding *e)
 {
-    e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
+    e->rows = e->end - e->row < BAND_ROWS ? e->end - e->row : BAND_ROWS;
     return e->near ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
                    : relume_table_fetch(e->table, e->rows);
 }
@@ -316,8 +318,11 @@ static bool say_done(const struct encoding *e, const relume_capture *capture, in
 static relume_status encode_bands(struct encoding *e, const relume_capture *capture, int view,
                                   const struct relume_encode_params *p)
 {
+    const int first = e->row;
     relume_status status = open_table(e, capture, view, p);
-    for (e->row = 0; !status && e->row < e->height; e->row += BAND_ROWS) {
+    if (!status)
+        status = relume_table_skip(e->table, first);
+    for (; !status && e->row < e->end; e->row += BAND_ROWS) {
         status = encode_band(e, p);
         if (!status && !say_done(e, capture, view, "encoding", p->log))
             status = RELUME_ECANCEL;
@@ -420,6 +425,22 @@ static double shown_square(const struct encoding *e)
     return e->error_count ? sum / (double)e->error_count : 0.0;
 }
 
+// What measuring needs; linear coefficients are looked at on `screen`.
+static relume_status alloc_measuring(struct encoding *e, struct relume_transfer screen)
+{
+    e->row_error = mem_zeroed((size_t)e->height, sizeof *e->row_error);
+    e->shown_error = mem_zeroed((size_t)e->lights, sizeof *e->shown_error);
+    if (!e->row_error || !e->shown_error)
+        return RELUME_ENOMEM;
+    if (e->display.curve == RELUME_CURVE_LINEAR) {
+        e->screen = mem_array(1, sizeof *e->screen);
+        if (!e->screen)
+            return RELUME_ENOMEM;
+        encoder_init(e->screen, screen);
+    }
+    return captured_create(&e->captured, e->coder, e->coder->world, e->lights);
+}
+
 static relume_status alloc_encoder(struct encoding *e, const relume_capture *capture)
 {
     const size_t band = (size_t)BAND_ROWS * (size_t)e->width, planes = (size_t)e->planes;
@@ -429,19 +450,11 @@ static relume_status alloc_encoder(struct encoding *e, const relume_capture *cap
     for (int i = 0; i < 2; i++)
         e->packed[i] = mem_array(planes * band, coefficients_waiting(e->out));
     e->total = mem_array(planes, sizeof *e->total);
-    e->shown_error = mem_zeroed((size_t)e->lights, sizeof *e->shown_error);
-    if (!e->values || !e->shown_error || !e->chunk || !e->work || !e->packed[0] || !e->packed[1] ||
-        !e->total)
+    if (!e->values || !e->chunk || !e->work || !e->packed[0] || !e->packed[1] || !e->total)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    if (e->display.curve == RELUME_CURVE_LINEAR) {
-        e->screen = mem_array(1, sizeof *e->screen);
-        if (!e->screen)
-            return RELUME_ENOMEM;
-        encoder_init(e->screen, relume_encode_display(capture));
-    }
-    return captured_create(&e->captured, e->coder, e->coder->world, e->lights);
+    return alloc_measuring(e, relume_encode_display(capture));
 }
 
 static void free_encoder(struct encoding *e)
@@ -454,6 +467,7 @@ static void free_encoder(struct encoding *e)
     mem_free(e->packed[0]);
     mem_free(e->packed[1]);
     mem_free(e->total);
+    mem_free(e->row_error);
     mem_free(e->shown_error);
     mem_free(e->screen);
     captured_destroy(&e->captured);
@@ -473,6 +487,7 @@ static relume_status begin(struct encoding *e, const relume_coder *coder,
         .width = relume_capture_width(capture),
         .height = relume_capture_height(capture),
         .planes = coder->info.planes,
+        .end = relume_capture_height(capture),
         .images = m->view[view].images,
         .display = {.curve = RELUME_CURVE_LINEAR},
         .threads = p->threads,
@@ -482,9 +497,38 @@ static relume_status begin(struct encoding *e, const relume_coder *coder,
     return relume_capture_mask(&e->mask, capture, view, p->log);
 }
 
-relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
-                            const relume_capture *capture, int view,
-                            const struct relume_encode_params *params)
+// Steps are chosen, and what was measured becomes the report.
+static relume_status finish(relume_coefficients *c, struct encoding *e, enum relume_step step)
+{
+    struct relume_encode_report *r = &c->report;
+    relume_status status = RELUME_OK;
+    double error = 0.0;
+    for (int y = 0; y < e->height; y++)
+        error += e->row_error[y];
+    r->fit_rms = e->error_count ? sqrt(error / (double)e->error_count) : 0.0;
+    const double root = e->lit_count ? e->root_sum / (double)e->lit_count : 0.0;
+    r->typical = root * root;
+    coefficients_choose_steps(c, e->total, e->mask.data != NULL, step);
+    if (relume_storage_top(c->info.storage))
+        status = measure_storage(c, e);
+    r->steps_rms = r->store_rms;
+    r->psnr_db = shown_psnr(e);
+    return status;
+}
+
+static void keep_sums(relume_coefficients *c, struct encoding *e)
+{
+    c->some.error = e->row_error;
+    c->some.shown_error = e->shown_error;
+    c->some.root_sum = e->root_sum;
+    c->some.error_count = e->error_count;
+    c->some.lit_count = e->lit_count;
+    e->row_error = e->shown_error = NULL;
+}
+
+relume_status encode_some_rows(relume_coefficients **out, const relume_coder *coder,
+                               const relume_capture *capture, int view, int row, int rows,
+                               const struct relume_encode_params *params)
 {
     const struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
@@ -498,6 +542,9 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     if (!status)
         status = coefficients_create(&c, coder, e.width, e.height, &p);
     e.out = c;
+    e.row = row;
+    if (rows)
+        e.end = row + rows;
     if (!status)
         status = alloc_encoder(&e, capture);
     if (!status)
@@ -507,19 +554,68 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     if (!status) {
         c->report.census = census_result(&e.census);
         c->report.census.repaired = e.repaired;
-        c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
-        const double root = e.lit_count ? e.root_sum / (double)e.lit_count : 0.0;
-        c->report.typical = root * root;
-        coefficients_choose_steps(c, e.total, e.mask.data != NULL, p.step);
-        if (relume_storage_top(c->info.storage))
-            status = measure_storage(c, &e);
-        c->report.steps_rms = c->report.store_rms;
-        c->report.psnr_db = shown_psnr(&e);
+        c->some.row = row;
+        c->some.rows = rows;
+        if (rows)
+            keep_sums(c, &e);
+        else
+            status = finish(c, &e, p.step);
     }
     free_encoder(&e);
     if (status)
         relume_coefficients_destroy(&c);
     *out = c;
+    return status;
+}
+
+relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
+                            const relume_capture *capture, int view,
+                            const struct relume_encode_params *params)
+{
+    return encode_some_rows(out, coder, capture, view, 0, 0, params);
+}
+
+// ---------------------------------------------------------------- rows of several
+
+static void join_bands(struct encoding *e, const relume_coefficients *c)
+{
+    for (size_t p = 0; p < (size_t)e->planes; p++) {
+        e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
+        for (size_t b = 0; b < (size_t)c->bands; b++)
+            e->total[p] = range_join(e->total[p], c->band[b * (size_t)e->planes + p]);
+    }
+}
+
+relume_status encode_finish_rows(relume_coefficients *c, const struct relume_image *mask,
+                                 struct relume_transfer display,
+                                 const struct relume_encode_params *p)
+{
+    const bool coded = p->domain == RELUME_DOMAIN_DISPLAY;
+    struct encoding e = {
+        .coder = c->info.coder,
+        .out = c,
+        .lights = c->info.coder->info.lights,
+        .width = c->info.width,
+        .height = c->info.height,
+        .planes = c->info.planes,
+        .display = coded ? display : (struct relume_transfer){.curve = RELUME_CURVE_LINEAR},
+        .root_sum = c->some.root_sum,
+        .error_count = c->some.error_count,
+        .lit_count = c->some.lit_count,
+    };
+    relume_status status = alloc_measuring(&e, display);
+    e.total = mem_array((size_t)e.planes, sizeof *e.total);
+    if (!status && !e.total)
+        status = RELUME_ENOMEM;
+    if (!status) {
+        memcpy(e.row_error, c->some.error, (size_t)e.height * sizeof *e.row_error);
+        memcpy(e.shown_error, c->some.shown_error, (size_t)e.lights * sizeof *e.shown_error);
+        join_bands(&e, c);
+        e.mask = *mask;
+        status = finish(c, &e, p->step);
+        e.mask = (struct relume_image){0};
+    }
+    free_encoder(&e);
     return status;
 }
 

@@ -1,4 +1,4 @@
-// report.c - how well views were encoded, all together
+// report.c - views as a whole: how well they were encoded, who encodes which
 #include "coder/coefficients.h"
 
 #include <math.h>
@@ -37,4 +37,36 @@ bool relume_encode_is_coarse(const struct relume_encode_report *report)
     static const double COARSE = 0.05;  // photographs of 8 bits lose a hundredth of this
     const double lost = report->typical > 0.0 ? report->steps_rms / report->typical : 0.0;
     return lost >= COARSE && report->steps_rms >= report->fit_rms;
+}
+
+// The first of `parts` parts that is of view `v` or of one behind it.
+static int first_part(int v, int parts, int views)
+{
+    return (int)((int64_t)parts * v / views);
+}
+
+static bool share_rows(struct encode_share *out, int part, int parts, int views, int height)
+{
+    const int bands = (height + BAND_ROWS - 1) / BAND_ROWS;
+    int v = 0;
+    while (first_part(v + 1, parts, views) < part)
+        v++;
+    const int before = first_part(v, parts, views);
+    const int64_t of = first_part(v + 1, parts, views) - before, i = part - 1 - before;
+    const int first = (int)(bands * i / of), end = (int)(bands * (i + 1) / of);
+    *out = (struct encode_share){.first = v, .views = 1, .row = first * BAND_ROWS};
+    out->rows = (end < bands ? end * BAND_ROWS : height) - out->row;
+    return true;
+}
+
+bool encode_share_of(struct encode_share *out, int part, int parts, int views, int height)
+{
+    if ((int64_t)parts > (int64_t)views * ((height + BAND_ROWS - 1) / BAND_ROWS))
+        return false;
+    if (parts > views)
+        return share_rows(out, part, parts, views, height);
+    out->first = (int)((int64_t)views * (part - 1) / parts);
+    out->views = (int)((int64_t)views * part / parts) - out->first;
+    out->row = out->rows = 0;
+    return true;
 }

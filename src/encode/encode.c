@@ -20,6 +20,7 @@ struct material {
     struct relume_encode_report *report;  // [views]
     int views;
     int first, end;  // those that are encoded
+    int row, rows;   // of one view alone; 0 rows: all
 };
 
 static void destroy(struct material *m)
@@ -58,12 +59,14 @@ static void place_views(struct material *m, const struct relume_manifest *manife
     }
 }
 
-static bool create(struct material *m, int views, const struct relume_pack_encode_params *p)
+static bool create(struct material *m, int views, const struct encode_share *share)
 {
     const size_t n = (size_t)views;
     m->views = views;
-    m->first = p->parts ? (int)((int64_t)views * (p->part - 1) / p->parts) : 0;
-    m->end = p->parts ? (int)((int64_t)views * p->part / p->parts) : views;
+    m->first = share->first;
+    m->end = share->first + share->views;
+    m->row = share->row;
+    m->rows = share->rows;
     m->view = mem_zeroed(n, sizeof *m->view);
     m->coefficients = mem_zeroed(n, sizeof *m->coefficients);
     m->depth = mem_zeroed(n, sizeof *m->depth);
@@ -80,12 +83,13 @@ static relume_status encode_view(struct material *m, int i, const relume_coder *
                                  const relume_capture *capture, bool with_depth,
                                  const struct relume_encode_params *p)
 {
-    relume_status status = relume_encode(&m->coefficients[i], coder, capture, i, p);
+    relume_status status =
+        encode_some_rows(&m->coefficients[i], coder, capture, i, m->row, m->rows, p);
     if (!status)
         m->report[i] = relume_coefficients_report(m->coefficients[i]);
-    if (!status && with_depth)
+    if (!status && with_depth && m->row == 0)
         status = relume_capture_depth(&m->depth[i], capture, i, p->log);
-    if (!status)
+    if (!status && m->row == 0)
         status = relume_capture_mask(&m->mask[i], capture, i, p->log);
     m->view[i].coefficients = m->coefficients[i];
     m->view[i].depth = m->depth[i].data ? &m->depth[i] : NULL;
@@ -217,6 +221,7 @@ static relume_status write_material(const struct material *m, const relume_captu
         .capture = digest,
         .options = p->options ? p->options : "",
         .free_storage = p->free_storage,
+        .step = p->step,
         .measured = m->report + m->first,
     };
     if (p->parts) {
@@ -225,8 +230,8 @@ static relume_status write_material(const struct material *m, const relume_captu
             return status;
         contents.share = &share;
         contents.report = (struct relume_encode_report){0};
-        contents.preview =
-            m->first <= m->views / 2 && m->views / 2 < m->end ? contents.preview : NULL;
+        if (m->rows || m->first > m->views / 2 || m->views / 2 >= m->end)
+            contents.preview = NULL;
     }
     return relume_pack_write(&contents, path,
                              relume_pack_params(.log = p->log, .compression = p->compression,
@@ -307,17 +312,28 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
     return RELUME_OK;
 }
 
-static relume_status check_share(const struct relume_pack_encode_params *p, int views)
+// Which views, or rows of one, are to be encoded.
+static relume_status find_share(struct encode_share *out, const relume_capture *capture,
+                                const struct relume_pack_encode_params *p)
 {
+    const int views = relume_capture_manifest(capture)->views;
+    const bool coded = p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0;
+    *out = (struct encode_share){.views = views};
     if (!p->parts)
         return RELUME_OK;
-    if (p->part < 1 || p->part > p->parts || p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 ||
-        (p->books && p->share))
+    if (p->part < 1 || p->part > p->parts || coded || (p->books && p->share))
         return RELUME_EINVAL;
-    if (p->parts > views)
+    if (!encode_share_of(out, p->part, p->parts, views, relume_capture_height(capture)))
+        return log_fail(
+            p->log, RELUME_EUNFIT,
+            "%d views of %d rows cannot be shared by %d parts; expected 16 rows or more "
+            "for each",
+            views, relume_capture_height(capture), p->parts);
+    if (out->rows && p->books)
         return log_fail(p->log, RELUME_EUNFIT,
-                        "%d views cannot be shared by %d parts; expected at most %d", views,
-                        p->parts, views);
+                        "a codebook is learnt from a whole view; expected at most %d part%s for %d "
+                        "view%s",
+                        views, relume_plural(views), views, relume_plural(views));
     return RELUME_OK;
 }
 
@@ -339,8 +355,9 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         return RELUME_EINVAL;
     const struct relume_manifest *manifest = relume_capture_manifest(capture);
     struct material m = {0};
-    relume_status status = check_share(&p, manifest->views);
-    if (!status && !create(&m, manifest->views, &p))
+    struct encode_share share;
+    relume_status status = find_share(&share, capture, &p);
+    if (!status && !create(&m, manifest->views, &share))
         status = RELUME_ENOMEM;
     if (!status)
         place_views(&m, manifest);

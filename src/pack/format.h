@@ -44,11 +44,15 @@ enum { FORMAT_VERSION = 4, FORMAT_CODED = 4, FORMAT_DISCS = 3, FORMAT_SLABS = 2,
 
 // A part of the work (docs/format.md, "Parts"): format and attributes of the first part beside
 // those of the whole, and of a view's
-#define FORMAT_PART   "relume part"
-#define ATTR_PART     "relume.part"
-#define ATTR_CAPTURE  "relume.part.capture"
-#define ATTR_OPTIONS  "relume.part.options"
-#define ATTR_MEASURED "relume.part.measured"
+#define FORMAT_PART    "relume part"
+#define ATTR_PART      "relume.part"
+#define ATTR_CAPTURE   "relume.part.capture"
+#define ATTR_OPTIONS   "relume.part.options"
+#define ATTR_PART_STEP "relume.part.step"
+#define ATTR_EXACT     "relume.part.exact"
+#define ATTR_MEASURED  "relume.part.measured"
+#define ATTR_BANDS     "relume.part.bands"
+#define ATTR_ERRORS    "relume.part.errors"
 
 // A report, its figures as hexadecimal floats: fit, store, steps, PSNR, typical, the census
 #define FORMAT_MEASURED "%a %a %a %a %a %zu %zu %zu %zu %zu %d"

@@ -5,7 +5,7 @@
 #include "base/params.h"
 #include "coder/coefficients.h"
 #include "pack/format.h"
-#include "pack/part.h"
+#include "pack/join_rows.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -206,12 +206,7 @@ static relume_status set_report(struct joining *j, struct relume_encode_report *
     a->floats = v;
     if (report)
         *report = all;
-    if (j->part->free_storage && relume_encode_is_coarse(&all))
-        return log_fail(j->log, RELUME_EUNFIT,
-                        "%s: very bright highlights: these bits will ruin the picture; run all "
-                        "parts again with --bits half",
-                        j->part->path);
-    return RELUME_OK;
+    return part_is_coarse(j->part, &all, j->log);
 }
 
 static relume_status gather(struct joining *j, struct relume_encode_report *report)
@@ -244,6 +239,7 @@ relume_status relume_pack_join(const char *const *parts, int count, const char *
 {
     const struct relume_pack_params p = PARAMS_WORK(relume_pack_params, params);
     struct joining j = {.log = p.log};
+    struct relume_encode_report ignored;
     int open = 0;
     if (count < 1 || (!path && !p.writer))
         return RELUME_EINVAL;
@@ -256,9 +252,11 @@ relume_status relume_pack_join(const char *const *parts, int count, const char *
     j.count = open;
     if (!status)
         status = check_parts(&j);
-    if (!status)
+    if (!status && j.part->info.rows)
+        status = join_rows(j.order, j.count, path, report ? report : &ignored, &p);
+    else if (!status)
         status = gather(&j, report);
-    if (!status)
+    if (!status && !j.part->info.rows)
         status = exr_write(path, p.writer, j.exr, j.exrs, p.threads, p.log);
     for (int i = 0; i < open; i++)
         part_close(&j.part[i]);

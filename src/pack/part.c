@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "coder/coefficients.h"
 #include "pack/format.h"
 
 #include <math.h>
@@ -41,34 +42,27 @@ static bool copy_text(char *to, size_t size, const char *from)
     return from && (size_t)snprintf(to, size, "%s", from) < size;
 }
 
-// Whether its numbers are those with which views are shared (src/encode).
-static bool is_share(const struct relume_pack_part *i)
-{
-    const int64_t all = i->all_views;
-    return i->part >= 1 && i->part <= i->parts && i->parts <= all && i->views >= 1 &&
-           i->first == all * (i->part - 1) / i->parts &&
-           i->first + i->views == all * i->part / i->parts;
-}
-
 static relume_status read_place(struct part_file *p, const struct relume_limits *limits,
                                 const struct relume_log *log)
 {
     struct relume_pack_part *i = &p->info;
-    int count = 0, place[5];
+    struct encode_share share;
+    int count = 0;
     const float *v = exr_get_floats(p->file, 0, ATTR_PART, &count);
-    for (int k = 0; k < 5; k++) {
-        if (!v || count != 5 || !(v[k] >= 0.0f && v[k] < 0x1p24f && v[k] == floorf(v[k])))
+    for (int k = 0; k < 3; k++)
+        if (!v || count != 3 || !(v[k] >= 0.0f && v[k] < 0x1p24f && v[k] == floorf(v[k])))
             return bad(p, "number", log);
-        place[k] = (int)v[k];
-    }
-    i->part = place[0];
-    i->parts = place[1];
-    i->first = place[2];
-    i->views = place[3];
-    p->free_storage = place[4] != 0;
+    i->part = (int)v[0];
+    i->parts = (int)v[1];
+    p->free_storage = v[2] != 0.0f;
     if (!exr_get_int(p->file, 0, ATTR_VIEWS, &i->all_views) || i->all_views < 1 ||
-        i->all_views > limits->max_views || !is_share(i))
+        i->all_views > limits->max_views || i->part < 1 || i->part > i->parts ||
+        !encode_share_of(&share, i->part, i->parts, i->all_views, exr_part_info(p->file, 0).height))
         return bad(p, "number of views", log);
+    i->first = share.first;
+    i->views = share.views;
+    i->row = share.row;
+    i->rows = share.rows;
     return RELUME_OK;
 }
 
@@ -130,6 +124,17 @@ relume_status part_open(struct part_file *out, const char *path, const struct re
     else
         i->file_bytes = exr_bytes(out->file);
     return status;
+}
+
+relume_status part_is_coarse(const struct part_file *part, const struct relume_encode_report *all,
+                             const struct relume_log *log)
+{
+    if (!part->free_storage || !relume_encode_is_coarse(all))
+        return RELUME_OK;
+    return log_fail(log, RELUME_EUNFIT,
+                    "%s: very bright highlights: these bits will ruin the picture; run all parts "
+                    "again with --bits half",
+                    part->path);
 }
 
 void part_close(struct part_file *part)

@@ -19,6 +19,9 @@ relume_status part_open(struct part_file *out, const char *path, const struct re
                         const struct relume_limits *limits, const struct relume_log *log);
 // What was measured of the view whose rows are part `exr` of the file.
 bool part_measured(struct relume_encode_report *out, const struct part_file *part, int exr);
+// RELUME_EUNFIT with a sentence where nobody asked for the storage and its steps are too coarse.
+relume_status part_is_coarse(const struct part_file *part, const struct relume_encode_report *all,
+                             const struct relume_log *log);
 void part_close(struct part_file *part);
 
 #endif

@@ -19,13 +19,13 @@ static bool optional_floats(const relume_pack *p, const char *name, long long co
 static relume_status check_format(relume_pack *p)
 {
     const char *format = exr_get_text(p->file, 0, ATTR_FORMAT);
-    if (format && !strcmp(format, FORMAT_PART))
+    if (!p->part && format && !strcmp(format, FORMAT_PART))
         return log_fail(
             p->log, RELUME_EFORMAT,
             "%s: a part of a relume file; expected the file that 'relume join' makes of "
             "all parts",
             p->path);
-    if (!format || strcmp(format, FORMAT_NAME))
+    if (!format || (!p->part && strcmp(format, FORMAT_NAME)))
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: an OpenEXR file, but not a relume file; expected one made by 'relume "
                         "encode'",
@@ -93,7 +93,7 @@ static relume_status read_counts(relume_pack *p)
         return reader_bad(p, ATTR_BOOKS, "0 to 8");
     if (!exr_get_int(p->file, 0, ATTR_VIEWS, &p->info.views) || p->info.views < 1 ||
         p->info.views > p->limits.max_views ||
-        (!p->coded && p->info.views >= exr_part_count(p->file)))
+        (!p->coded && !p->part && p->info.views >= exr_part_count(p->file)))
         return reader_bad(p, ATTR_VIEWS, "a part for every view, within the limits");
     return RELUME_OK;
 }

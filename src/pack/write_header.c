@@ -5,6 +5,7 @@
 #include "pack/writer.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // Where planes are coded with loss the preview is small, so that it is not most of the file: not
@@ -195,18 +196,30 @@ static void describe_coding(struct writer *w, struct exr_part *part,
     writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
 }
 
+// What single precision does not hold: lights and parameters to the last digit, which what join
+// measures depends on.
+static const char *exact_text(struct writer *w)
+{
+    enum { EACH = 26 };
+    const struct relume_coder_info *info = w->coder;
+    const double *lights = &info->directions->x;
+    const size_t numbers = 3 * (size_t)info->lights + 4;
+    char *text = arena_array(&w->arena, numbers, EACH), *to = text;
+    for (size_t i = 0; text && i < numbers; i++)
+        to += snprintf(to, EACH, "%a ", i < 4 ? info->parameter[i] : lights[i - 4]);
+    w->failed |= !text;
+    return text;
+}
+
 static void describe_share(struct writer *w, struct exr_part *part)
 {
     const struct relume_pack_share *s = w->contents->share;
-    float *place = arena_array(&w->arena, 5, sizeof *place);
-    if (place) {
-        const int numbers[] = {s->part, s->parts, s->first, s->views, s->free_storage};
-        for (int i = 0; i < 5; i++)
-            place[i] = (float)numbers[i];
-    }
-    writer_floats(w, part, ATTR_PART, place, 5);
+    const double place[] = {s->part, s->parts, s->free_storage};
+    writer_doubles(w, part, ATTR_PART, place, 3);
     writer_text(part, ATTR_CAPTURE, s->capture);
     writer_text(part, ATTR_OPTIONS, s->options);
+    writer_int(part, ATTR_PART_STEP, (int)s->step);
+    writer_text(part, ATTR_EXACT, exact_text(w));
 }
 
 void writer_add_header(struct writer *w)

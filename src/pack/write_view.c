@@ -1,10 +1,13 @@
 // write_view.c - the parts of one view: its coefficients, depth and mask
 #include "base/memory.h"
+#include "base/scratch.h"
 #include "coder/codes.h"
+#include "coder/coefficients.h"
 #include "base/half.h"
 #include "pack/format.h"
 #include "pack/writer.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static relume_status code_rows(void *context, int row, int rows, void *samples)
@@ -88,6 +91,64 @@ static const char *measured_text(struct writer *w, int index)
     return text;
 }
 
+static relume_status waiting_rows(void *context, int row, int rows, void *samples)
+{
+    const relume_coefficients *c = context;
+    const size_t bytes =
+        (size_t)rows * (size_t)c->info.planes * (size_t)c->info.width * coefficients_waiting(c);
+    return scratch_read(c->fd, samples, bytes, coefficients_offset(c, c->some.row + row))
+               ? RELUME_OK
+               : RELUME_EIO;
+}
+
+// "c0000" and so on: planes in their own order.
+static const char **waiting_channels(struct writer *w, int planes)
+{
+    const char **names = arena_array(&w->arena, (size_t)planes, sizeof *names);
+    for (int p = 0; names && p < planes; p++)
+        if (!(names[p] = arena_format(&w->arena, "c%05d", p)))
+            w->failed = true;
+    w->failed |= !names;
+    return names;
+}
+
+static const char *errors_text(struct writer *w, const relume_coefficients *c)
+{
+    enum { EACH = 26 };
+    const struct encode_rows *s = &c->some;
+    const size_t lights = (size_t)w->coder->lights, rows = (size_t)s->rows;
+    char *text = arena_array(&w->arena, rows + lights + 5, EACH), *to = text;
+    if (!text) {
+        w->failed = true;
+        return NULL;
+    }
+    to += sprintf(to, "%a %zu %zu ", s->root_sum, s->error_count, s->lit_count);
+    for (size_t i = 0; i < lights; i++)
+        to += snprintf(to, EACH, "%a ", s->shown_error[i]);
+    for (size_t y = 0; y < rows; y++)
+        to += snprintf(to, EACH, "%a ", s->error[(size_t)s->row + y]);
+    return text;
+}
+
+// Rows that wait for those of other parts, without which they have no steps.
+static void fill_with_waiting(struct writer *w, struct exr_part *part,
+                              const struct relume_pack_view *view)
+{
+    const relume_coefficients *c = view->coefficients;
+    const int planes = c->info.planes, first = c->some.row / BAND_ROWS;
+    const int bands = (c->some.rows + BAND_ROWS - 1) / BAND_ROWS;
+    part->codec = EXR_CODEC_NONE;
+    part->sample = c->info.storage == RELUME_STORE_FLOAT ? EXR_SAMPLE_FLOAT : EXR_SAMPLE_HALF;
+    part->height = c->some.rows;
+    part->channels = planes;
+    part->channel = waiting_channels(w, planes);
+    part->rows = waiting_rows;
+    part->context = (void *)(uintptr_t)c;
+    writer_floats(w, part, ATTR_BANDS, &c->band[(size_t)first * (size_t)planes].min,
+                  2 * bands * planes);
+    writer_text(part, ATTR_ERRORS, errors_text(w, c));
+}
+
 static void add_codes(struct writer *w, int index, bool shared)
 {
     const struct relume_pack_view *view = &w->contents->view[index];
@@ -101,6 +162,8 @@ static void add_codes(struct writer *w, int index, bool shared)
         writer_text(part, ATTR_MEASURED, measured_text(w, index));
     if (view->books)
         writer_fill_indices(part, view);
+    else if (view->coefficients->some.rows)
+        fill_with_waiting(w, part, view);
     else
         fill_with_planes(w, part, view);
     if (view->books && !shared)

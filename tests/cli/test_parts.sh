@@ -32,6 +32,18 @@ joined 'masks' masked 3
 joined 'floats, rle' masked 2 --basis sh --coefficients 4 --bits float --compression rle
 joined 'a codebook for each view' masked 3 --basis sh --coefficients 4 --codebook 7
 joined 'one step' masked 2 --basis pca --step common --bits 12
+# fewer views than parts: rows of views, 16 or more
+"$RELUME" synth bust -o flat --size 70 --lights 12 --samples 1 -q
+"$sphere" cut --size 44 --lights 9 --views 2 --mask --format jpg
+"$RELUME" synth attic -o room --size 40 --lights 8 --samples 1 -q
+joined 'rows, by itself' flat 3
+joined 'rows, as many as can be' flat 5 --basis sh --coefficients 4
+joined 'rows of halves, one step' flat 2 --basis table --bits half --step common
+joined 'rows of floats' flat 2 --basis sh --coefficients 4 --bits float --compression zip
+joined 'rows, luminance and colour' flat 2 --basis sh --coefficients 4 --colour luminance --bits log
+joined 'rows of one of two views, masks' cut 5
+joined 'rows of one of two views, one step' cut 3 --basis pca --step common --bits 12
+joined 'rows of a panorama' room 2
 check 'the joined file is whole' relume check joined.exr
 
 # ---- threads, and a part that is made again
@@ -90,7 +102,8 @@ cannot() { # name status pattern options...
     shift 3
     expect_fail "$name" "$want" "$pattern" out.part "$RELUME" encode slab -o out.part "$@"
 }
-cannot 'more parts than views' 1 '9 views cannot be shared by 10 parts' --part 1/10 --basis sh
+cannot 'more parts than bands of rows' 1 '9 views of 40 rows cannot be shared by 28 parts; expected 16 rows or more' --part 1/28 --basis sh
+cannot 'rows of a codebook' 1 'a codebook is learnt from a whole view; expected at most 9 parts for 9 views' --part 1/10 --basis sh --codebook 4
 cannot 'with loss' 2 '--psnr and --bytes-per-pixel try steps on all views' --part 1/2 --psnr 30
 cannot 'one codebook for all' 2 '--share learns one set of codebooks from all views' --part 1/2 --codebook 4 --share
 cannot 'part 0' 2 '--part: expected which of how many parts' --part 0/2

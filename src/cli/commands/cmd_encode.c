@@ -133,6 +133,13 @@ static void say_result(const struct args *args, const relume_capture *capture,
                        const struct request *r)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);
+    if (r->pack.parts && !report->psnr_db) {
+        announce(args, RELUME_NOTE,
+                 "%s: part %d of %d, rows that wait for the others; 'relume join' makes one file "
+                 "of all parts",
+                 r->output, r->pack.part, r->pack.parts);
+        return;
+    }
     if (r->pack.parts) {
         announce(args, RELUME_NOTE,
                  "%s: part %d of %d: reproduces your photographs at %.1f dB PSNR (differences %s); "

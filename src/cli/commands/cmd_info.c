@@ -109,8 +109,8 @@ static void print_part(const struct relume_pack_part *p, bool json)
     struct shown text;
     if (json) {
         printf("{\"format\": \"relume part\", \"part\": %d, \"parts\": %d, \"first_view\": %d, "
-               "\"views\": %d, \"all_views\": %d, \"options\": ",
-               p->part, p->parts, p->first, p->views, p->all_views);
+               "\"views\": %d, \"all_views\": %d, \"first_row\": %d, \"rows\": %d, \"options\": ",
+               p->part, p->parts, p->first, p->views, p->all_views, p->row, p->rows);
         json_text(stdout, p->options);
         printf(", \"file_bytes\": %llu}\n", (unsigned long long)p->file_bytes);
         return;
@@ -118,6 +118,8 @@ static void print_part(const struct relume_pack_part *p, bool json)
     printf("part          %d of %d; 'relume join' makes one file of all parts\n", p->part,
            p->parts);
     printf("views         %d to %d of %d\n", p->first, p->first + p->views - 1, p->all_views);
+    if (p->rows)
+        printf("rows          %d to %d\n", p->row, p->row + p->rows - 1);
     printf("options       %s\n", p->options[0] ? shown(&text, p->options) : "none");
     printf("file          %llu bytes\n", (unsigned long long)p->file_bytes);
 }

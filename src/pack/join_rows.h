@@ -1,0 +1,12 @@
+// join_rows.h - parts that hold rows of views, not whole ones
+#ifndef PACK_JOIN_ROWS_H
+#define PACK_JOIN_ROWS_H
+
+#include "pack/part.h"
+
+// All `count` parts, in order and belonging together: their rows are quantised and written.
+// `report` is filled in. An input status, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status join_rows(const struct part_file *const *parts, int count, const char *path,
+                        struct relume_encode_report *report, const struct relume_pack_params *p);
+
+#endif

@@ -1,0 +1,97 @@
+// fuzz_parts.c - parts of relume files made of noise: read, checked, joined alone and with sound
+// ones
+#include "fuzz.h"
+
+static const struct relume_limits limits = {
+    .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
+
+static const char *const words[] = {"relume.format",
+                                    "relume.version",
+                                    "relume.views",
+                                    "relume.report",
+                                    "relume.creator",
+                                    "relume.part",
+                                    "relume.part.capture",
+                                    "relume.part.options",
+                                    "relume.part.step",
+                                    "relume.part.exact",
+                                    "relume.part.measured",
+                                    "relume.part.bands",
+                                    "relume.part.errors",
+                                    "relume part",
+                                    "preview",
+                                    "view0000",
+                                    "view0000.mask",
+                                    "view0001.depth",
+                                    "0x1p+1 ",
+                                    "floatvector",
+                                    "dataWindow",
+                                    "compression",
+                                    "scanlineimage",
+                                    NULL};
+
+// The second part of rows, and of views.
+static char second[2][96];
+
+static void join(const char *const *parts, int count)
+{
+    struct relume_buffer file = {0};
+    const struct relume_writer writer = relume_buffer_writer(&file);
+    struct relume_encode_report report;
+    if (!relume_pack_join(parts, count, NULL, &report,
+                          relume_pack_params(.limits = &limits, .threads = 1, .writer = &writer)) &&
+        !file.size)
+        abort();
+    relume_buffer_destroy(&file);
+}
+
+static bool one(struct fuzz *f, struct bytes b)
+{
+    const struct relume_reader reader = relume_memory_reader(b.data, b.size);
+    struct relume_pack_part part;
+    fuzz_store(f->path, b);
+    (void)!relume_pack_check(f->path, relume_pack_check_params(.limits = &limits, .threads = 1));
+    if (relume_pack_part_read(&part, NULL,
+                              relume_pack_params(.limits = &limits, .reader = &reader)))
+        return false;
+    join((const char *const[]){f->path}, 1);
+    join((const char *const[]){f->path, second[part.rows == 0]}, 2);
+    return true;
+}
+
+static void add(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
+                int coefficients, int part, int parts, enum relume_storage storage)
+{
+    fixture_write(fixture, f->folder);
+    fixture_must(
+        fixture_encode(f->folder, f->path, basis, coefficients,
+                       relume_pack_encode_params(.storage = storage, .part = part, .parts = parts,
+                                                 .compression = RELUME_COMPRESS_NONE)),
+        "encode");
+    fuzz_add(f, fuzz_load(f->path));
+}
+
+int main(int argc, char **argv)
+{
+    struct fuzz f = {.words = words};
+    const struct fixture plain = {.width = 9, .height = 40, .lights = 6, .views = 1};
+    const struct fixture slab = {.width = 8,
+                                 .height = 5,
+                                 .lights = 5,
+                                 .views = 3,
+                                 .hemisphere = true,
+                                 .depth = true,
+                                 .mask = true};
+    fuzz_begin(&f, "fuzz_parts", argc, argv);
+    add(&f, &plain, &relume_basis_sh, 4, 2, 2, RELUME_STORE_8);
+    snprintf(second[0], sizeof second[0], "%s/rows.part", f.folder);
+    fuzz_store(second[0], f.seed[0]);
+    add(&f, &slab, &relume_basis_sh, 4, 2, 2, RELUME_STORE_8);
+    snprintf(second[1], sizeof second[1], "%s/views.part", f.folder);
+    fuzz_store(second[1], f.seed[1]);
+    add(&f, &plain, &relume_basis_sh, 4, 1, 2, RELUME_STORE_8);
+    add(&f, &slab, &relume_basis_sh, 4, 1, 2, RELUME_STORE_8);
+    add(&f, &slab, &relume_basis_table, 0, 1, 1, RELUME_STORE_HALF);
+    add(&f, &plain, &relume_basis_pca, 3, 1, 2, RELUME_STORE_12);
+    return fuzz_run(&f, argc, argv, one);
+}

@@ -117,8 +117,10 @@ static relume_status judge_view(double *square, const struct rate *r, int view,
                                       lossy_in_colour(info->coder), order};
     uint16_t *codes =
         mem_array((size_t)info->planes, (size_t)info->width * (size_t)info->height * sizeof *codes);
+    const struct relume_rect all = {0, 0, info->width, info->height};
     relume_status status =
-        codes ? lossy_decode(codes, &shape, words, anchor, r->p->threads, NULL) : RELUME_ENOMEM;
+        codes ? lossy_decode(codes, &shape, &all, words, anchor, r->p->threads, NULL)
+              : RELUME_ENOMEM;
     const struct shown shown = {info, codes};
     struct encode_judgement judgement = {0};
     if (!status)

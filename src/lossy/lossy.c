@@ -319,9 +319,35 @@ struct found {
 struct decoding {
     struct tiles tiles;
     struct found view, anchor;
-    uint16_t *codes;
-    relume_status *status;  // [tiles]
+    const struct relume_rect *rect;  // of the view
+    int across, count, first;        // tiles that it touches: so many across, which is the first
+    uint16_t *codes;                 // of the rectangle
+    relume_status *status;           // [count]
 };
+
+static struct tile tile_of_item(const struct decoding *d, int item)
+{
+    return tile_at(&d->tiles, d->first + item / d->across * d->tiles.across + item % d->across);
+}
+
+static void choose_tiles(struct decoding *d)
+{
+    const int size = d->tiles.size, left = d->rect->left / size, top = d->rect->top / size;
+    const int right = (d->rect->left + d->rect->width - 1) / size;
+    const int bottom = (d->rect->top + d->rect->height - 1) / size;
+    d->across = right - left + 1;
+    d->count = d->across * (bottom - top + 1);
+    d->first = top * d->tiles.across + left;
+}
+
+// What of a tile is in the rectangle.
+static struct relume_rect seen_of(const struct decoding *d, const struct tile *t)
+{
+    const struct relume_rect *r = d->rect;
+    const int left = t->x > r->left ? t->x : r->left, top = t->y > r->top ? t->y : r->top;
+    return (struct relume_rect){left, top, least(t->x + t->width, r->left + r->width) - left,
+                                least(t->y + t->height, r->top + r->height) - top};
+}
 
 // Of `words` that are tiles of such a view, all within the words.
 static relume_status find_tiles(struct found *f, struct tiles *tiles,
@@ -348,15 +374,18 @@ static relume_status find_tiles(struct found *f, struct tiles *tiles,
 
 static void scatter(const struct decoding *d, const struct tile *t, const uint16_t *samples)
 {
-    const struct lossy_shape *s = &d->tiles.shape;
-    const size_t width = (size_t)s->width, stride = (size_t)t->video.width;
+    const struct relume_rect seen = seen_of(d, t), *r = d->rect;
+    const size_t width = (size_t)r->width, stride = (size_t)t->video.width;
+    const size_t from = (size_t)(seen.top - t->y) * stride + (size_t)(seen.left - t->x);
+    const size_t to = (size_t)(seen.top - r->top) * width + (size_t)(seen.left - r->left);
     for (int p = 0; p < t->video.pictures; p++)
         for (int c = 0; c < t->video.components; c++) {
-            uint16_t *to = d->codes + plane_of(s, p, c) * width * (size_t)s->height +
-                           (size_t)t->y * width + t->x;
-            for (size_t y = 0; y < (size_t)t->height; y++, samples += stride)
-                memcpy(to + y * width, samples, (size_t)t->width * sizeof *to);
-            samples += (size_t)(t->video.height - t->height) * stride;
+            uint16_t *plane =
+                d->codes + plane_of(&d->tiles.shape, p, c) * width * (size_t)r->height;
+            for (size_t y = 0; y < (size_t)seen.height; y++)
+                memcpy(plane + to + y * width, samples + from + y * stride,
+                       (size_t)seen.width * sizeof *plane);
+            samples += stride * (size_t)t->video.height;
         }
 }
 
@@ -375,13 +404,14 @@ static relume_status tile_bytes(struct av1_bytes *out, const struct found *f, si
 static void decode_tile(void *context, size_t item, int worker)
 {
     struct decoding *d = context;
-    const struct tile t = tile_at(&d->tiles, (int)item);
+    const struct tile t = tile_of_item(d, (int)item);
+    const size_t tile = (size_t)(t.y / d->tiles.size * d->tiles.across + t.x / d->tiles.size);
     struct av1_bytes bytes = {0}, first = {0};
     uint16_t *samples = tile_samples(&t);
-    relume_status status = samples ? tile_bytes(&bytes, &d->view, item) : RELUME_ENOMEM;
+    relume_status status = samples ? tile_bytes(&bytes, &d->view, tile) : RELUME_ENOMEM;
     (void)worker;
     if (!status && d->anchor.word)
-        status = tile_bytes(&first, &d->anchor, item);
+        status = tile_bytes(&first, &d->anchor, tile);
     if (!status)
         status = av1_decode(samples, &t.video, &bytes, d->anchor.word ? &first : NULL);
     if (!status) {
@@ -396,11 +426,12 @@ static void decode_tile(void *context, size_t item, int worker)
 
 static relume_status decode_all(struct decoding *d, int threads, const struct lossy_lost *lost)
 {
-    thread_for(threads, (size_t)d->tiles.count, decode_tile, d);
-    for (int i = 0; i < d->tiles.count; i++) {
-        const struct tile t = tile_at(&d->tiles, i);
+    thread_for(threads, (size_t)d->count, decode_tile, d);
+    for (int i = 0; i < d->count; i++) {
+        const struct tile t = tile_of_item(d, i);
+        const struct relume_rect seen = seen_of(d, &t);
         if (d->status[i] == RELUME_EDAMAGED && lost)
-            lost->tile(lost->user, t.x, t.y, t.width, t.height);
+            lost->tile(lost->user, &seen);
         else if (d->status[i])
             return d->status[i];
     }
@@ -408,11 +439,12 @@ static relume_status decode_all(struct decoding *d, int threads, const struct lo
 }
 
 relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
-                           const struct lossy_words *words, const struct lossy_words *anchor,
-                           int threads, const struct lossy_lost *lost)
+                           const struct relume_rect *rect, const struct lossy_words *words,
+                           const struct lossy_words *anchor, int threads,
+                           const struct lossy_lost *lost)
 {
-    const size_t pixels = (size_t)shape->width * (size_t)shape->height;
-    struct decoding d = {.codes = codes};
+    const size_t pixels = (size_t)rect->width * (size_t)rect->height;
+    struct decoding d = {.codes = codes, .rect = rect};
     struct tiles of_anchor;
     relume_status status = find_tiles(&d.view, &d.tiles, shape, words);
     if (!status && anchor)
@@ -420,7 +452,8 @@ relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
     if (!status && anchor && of_anchor.size != d.tiles.size)
         status = RELUME_EDAMAGED;
     if (!status) {
-        d.status = mem_zeroed((size_t)d.tiles.count, sizeof *d.status);
+        choose_tiles(&d);
+        d.status = mem_zeroed((size_t)d.count, sizeof *d.status);
         memset(codes, 0, (size_t)shape->planes * pixels * sizeof *codes);
         status = d.status ? decode_all(&d, threads, lost) : RELUME_ENOMEM;
     }
@@ -428,4 +461,9 @@ relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
     mem_free(d.anchor.at);
     mem_free(d.status);
     return status;
+}
+
+int lossy_side(const struct lossy_words *words)
+{
+    return (int)words->word[WORD_TILE];
 }

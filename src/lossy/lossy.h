@@ -42,16 +42,19 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                            const struct av1_effort *effort, int threads,
                            const struct relume_log *log);
 
-// Called with the rectangle of a tile that cannot be decoded; its codes are 0.
+// Called with what a tile that cannot be decoded has of the rectangle; its codes are 0.
 struct lossy_lost {
-    void (*tile)(void *user, int x, int y, int width, int height);
+    void (*tile)(void *user, const struct relume_rect *at);
     void *user;
 };
-// Into codes[planes][height][width]; `anchor` where the view is not one itself, else NULL.
-// RELUME_EDAMAGED when words are no such tiles, or a tile cannot be decoded and `lost` is NULL.
-// RELUME_ENOMEM.
+// A rectangle of a view into codes[planes][rect.height][rect.width]; no tile beside it is decoded.
+// `anchor` where the view is not one itself, else NULL. RELUME_EDAMAGED when words are no such
+// tiles, or a tile cannot be decoded and `lost` is NULL. RELUME_ENOMEM.
 relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
-                           const struct lossy_words *words, const struct lossy_words *anchor,
-                           int threads, const struct lossy_lost *lost);
+                           const struct relume_rect *rect, const struct lossy_words *words,
+                           const struct lossy_words *anchor, int threads,
+                           const struct lossy_lost *lost);
+// The side of the tiles of words that could be decoded.
+int lossy_side(const struct lossy_words *words);
 
 #endif

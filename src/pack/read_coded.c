@@ -122,9 +122,10 @@ static relume_status read_words(struct lossy_words *out, const relume_pack *p, i
 struct losing {
     const relume_pack *pack;
     char view[32];
+    const struct relume_rect *rect;  // of which the codes are
     const struct relume_codes *codes;
     uint16_t *data;
-    int side;                // of a tile
+    const struct lossy_words *words;
     int count, column, row;  // how many, and which is the first
 };
 
@@ -134,25 +135,27 @@ static uint16_t code_of_nothing(const struct relume_codes *codes, int plane)
     return (uint16_t)fminf(fmaxf(code, 0.0f), (float)relume_storage_top(codes->storage));
 }
 
-static void lose_tile(void *context, int x, int y, int width, int height)
+static void lose_tile(void *context, const struct relume_rect *at)
 {
     struct losing *l = context;
     const struct relume_pack_check_params *check = l->pack->check;
-    const struct relume_rect at = {x, y, width, height};
-    const int column = x / l->side, row = y / l->side;
+    const int side = lossy_side(l->words), column = at->left / side, row = at->top / side;
     if (l->count++ == 0) {
         l->column = column;
         l->row = row;
     }
     if (check && check->tile)
-        check->tile(check->user, l->view, column, row, &at);
+        check->tile(check->user, l->view, column, row, at);
     for (int p = 0; p < l->pack->info.planes; p++) {
         const uint16_t nothing = code_of_nothing(l->codes, p);
-        for (int j = 0; j < height; j++)
-            for (int i = 0; i < width; i++)
-                l->data[((size_t)p * (size_t)l->codes->height + (size_t)(y + j)) *
-                            (size_t)l->codes->width +
-                        (size_t)(x + i)] = nothing;
+        for (int y = at->top - l->rect->top, i = 0; i < at->height; i++, y++) {
+            uint16_t *to =
+                l->data +
+                ((size_t)p * (size_t)l->rect->height + (size_t)y) * (size_t)l->rect->width +
+                (at->left - l->rect->left);
+            for (int x = 0; x < at->width; x++)
+                to[x] = nothing;
+        }
     }
 }
 
@@ -175,25 +178,23 @@ static relume_status say_lost(const struct losing *l)
     return RELUME_OK;
 }
 
-relume_status reader_load_coded(relume_pack *p, int view, const struct relume_codes *codes,
-                                uint16_t *data)
+relume_status reader_load_coded(relume_pack *p, int view, const struct relume_rect *rect,
+                                const struct relume_codes *codes, uint16_t *data)
 {
     const struct view_parts *v = &p->parts[view];
     struct lossy_words words = {0}, anchor = {0};
     int *order = lossy_order(p->coder);
     const struct lossy_shape shape = {p->info.width, p->info.height, p->info.planes,
                                       lossy_in_colour(p->coder), order};
-    struct losing losing = {.pack = p, .codes = codes, .data = data, .side = 1};
+    struct losing losing = {.pack = p, .rect = rect, .codes = codes, .data = data, .words = &words};
     const struct lossy_lost lost = {lose_tile, &losing};
     snprintf(losing.view, sizeof losing.view, "view%04d", view);
     relume_status status = read_words(&words, p, v->codes, v->words);
     if (!status && v->anchor >= 0)
         status = read_words(&anchor, p, v->codes, p->parts[v->anchor].words);
-    if (!status) {
-        losing.side = words.count > 1 && words.word[1] ? (int)words.word[1] : 1;  // docs/format.md
-        status =
-            lossy_decode(data, &shape, &words, v->anchor >= 0 ? &anchor : NULL, p->threads, &lost);
-    }
+    if (!status)
+        status = lossy_decode(data, &shape, rect, &words, v->anchor >= 0 ? &anchor : NULL,
+                              p->threads, &lost);
     if (status == RELUME_EDAMAGED)
         status = reader_bad(p, losing.view, "tiles of sound AV1 data");
     if (!status && losing.count)

@@ -23,12 +23,12 @@ relume_status reader_mask_plane(relume_pack *p, int view, const struct relume_re
     return status;
 }
 
-relume_status reader_mask_codes(relume_pack *p, int view, const struct relume_codes *codes,
-                                uint16_t *data)
+relume_status reader_mask_codes(relume_pack *p, int view, const struct relume_rect *rect,
+                                const struct relume_codes *codes, uint16_t *data)
 {
-    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    const size_t pixels = (size_t)rect->width * (size_t)rect->height;
     struct relume_image mask;
-    const relume_status status = relume_pack_mask(&mask, p, view);
+    const relume_status status = reader_load_plane(&mask, p, p->parts[view].mask, rect);
     for (int k = 0; !status && mask.data && k < p->info.planes; k++) {
         uint16_t *plane = data + (size_t)k * pixels;
         const long zero = lrintf(-codes->offset[k] / codes->scale[k]);

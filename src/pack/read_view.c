@@ -85,14 +85,14 @@ relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, i
     relume_status status = codes_part_create(to, &data, &stepped, rect->width, rect->height);
     mem_free(steps);
     if (!status)
-        status = p->coded ? reader_load_coded(p, view, &to->codes, data)
+        status = p->coded ? reader_load_coded(p, view, rect, &to->codes, data)
                           : reader_load(p, part, rect, data, p->info.planes, 0);
     if (!status && planes > stored)
         status =
             reader_mask_plane(p, view, rect,
                               (char *)data + stored * (size_t)rect->width * (size_t)rect->height *
                                                  relume_storage_bytes(like->storage));
-    return !status && p->coded ? reader_mask_codes(p, view, &to->codes, data) : status;
+    return !status && p->coded ? reader_mask_codes(p, view, rect, &to->codes, data) : status;
 }
 
 struct plane_sink {

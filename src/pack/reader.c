@@ -96,12 +96,7 @@ const struct relume_geometry *relume_pack_geometry(const relume_pack *pack, int 
     return info->slabs ? &info->slab[info->slab_of[view]] : &info->geometry;
 }
 
-static bool is_whole(const relume_pack *p, const struct relume_rect *rect)
-{
-    return rect->width == p->info.width && rect->height == p->info.height;
-}
-
-// From the file; of coded planes the tiles are decoded whole.
+// From the file.
 static relume_status load(struct relume_codes_part *to, relume_pack *p, int view,
                           const struct relume_rect *rect)
 {
@@ -113,18 +108,8 @@ static relume_status load(struct relume_codes_part *to, relume_pack *p, int view
         .books = p->info.books,
         .storage = p->info.books ? 0 : p->info.storage,
     };
-    relume_status status;
-    if (p->coded && !is_whole(p, rect)) {
-        const struct relume_rect all = reader_whole(p);
-        struct relume_codes_part whole;
-        status = load(&whole, p, view, &all);
-        if (!status)
-            status = relume_codes_crop(to, &whole.codes, rect);
-        relume_codes_part_destroy(&whole);
-    } else {
-        status =
-            (p->info.books ? reader_load_indices : reader_load_planes)(to, p, view, rect, &like);
-    }
+    const relume_status status =
+        (p->info.books ? reader_load_indices : reader_load_planes)(to, p, view, rect, &like);
     if (status)
         relume_codes_part_destroy(to);
     return status;

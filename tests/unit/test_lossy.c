@@ -105,10 +105,18 @@ static void test_planes_come_back(void **state)
         uint16_t *back = malloc(n * sizeof *back);
         const struct lossy_words fine = encoded(&m, AV1_FINEST, 1),
                                  coarse = encoded(&m, 50 * AV1_STEPS, 1);
-        assert_int_equal(lossy_decode(back, &m.shape, &fine, NULL, 1, NULL), RELUME_OK);
+        assert_int_equal(
+            lossy_decode(back, &m.shape,
+                         &(const struct relume_rect){0, 0, m.shape.width, m.shape.height}, &fine,
+                         NULL, 1, NULL),
+            RELUME_OK);
         // the finest steps are some 8 of 4096 codes, of luma and the differences that make blue
         assert_true(rms(back, m.codes, n) < 8.0);
-        assert_int_equal(lossy_decode(back, &m.shape, &coarse, NULL, 1, NULL), RELUME_OK);
+        assert_int_equal(
+            lossy_decode(back, &m.shape,
+                         &(const struct relume_rect){0, 0, m.shape.width, m.shape.height}, &coarse,
+                         NULL, 1, NULL),
+            RELUME_OK);
         assert_true(rms(back, m.codes, n) < 320.0);  // a fifth of what the planes vary by
         assert_true(coarse.count <= fine.count);
         relume_free(fine.word);
@@ -116,6 +124,37 @@ static void test_planes_come_back(void **state)
         free(back);
         drop(&m);
     }
+}
+
+// Within a tile, across two, and the last column.
+static void test_a_rectangle_is_that_of_the_view(void **state)
+{
+    static const struct relume_rect rects[] = {{3, 5, 20, 7}, {500, 0, 30, 24}, {599, 23, 1, 1}};
+    struct made m;
+    (void)state;
+    make(&m, 600, 24, true);
+    const struct lossy_words w = encoded(&m, 80, 1);
+    const size_t n = (size_t)m.shape.planes * 600 * 24;
+    uint16_t *whole = malloc(n * sizeof *whole), *part = malloc(n * sizeof *part);
+    const struct relume_rect all = {0, 0, 600, 24};
+    assert_int_equal(lossy_decode(whole, &m.shape, &all, &w, NULL, 1, NULL), RELUME_OK);
+    for (size_t i = 0; i < sizeof rects / sizeof *rects; i++) {
+        const struct relume_rect *r = &rects[i];
+        assert_int_equal(lossy_decode(part, &m.shape, r, &w, NULL, 2, NULL), RELUME_OK);
+        for (int p = 0; p < m.shape.planes; p++)
+            for (int y = 0; y < r->height; y++)
+                assert_memory_equal(part + ((size_t)p * (size_t)r->height + (size_t)y) *
+                                               (size_t)r->width,
+                                    whole + ((size_t)p * 24 + (size_t)(r->top + y)) * 600 + r->left,
+                                    (size_t)r->width * sizeof *part);
+    }
+    // a tile beside the rectangle is not looked at
+    w.word[w.count - 3] ^= 0x400;
+    assert_int_equal(lossy_decode(part, &m.shape, &rects[0], &w, NULL, 1, NULL), RELUME_OK);
+    free(whole);
+    free(part);
+    mem_free(w.word);
+    drop(&m);
 }
 
 static void test_threads_change_nothing(void **state)
@@ -131,14 +170,14 @@ static void test_threads_change_nothing(void **state)
     drop(&m);
 }
 
-static void note_tile(void *user, int x, int y, int width, int height)
+static void note_tile(void *user, const struct relume_rect *at)
 {
     int *seen = user;
     seen[0]++;
-    seen[1] = x;
-    seen[2] = y;
-    seen[3] = width;
-    seen[4] = height;
+    seen[1] = at->left;
+    seen[2] = at->top;
+    seen[3] = at->width;
+    seen[4] = at->height;
 }
 
 // Two tiles: damage to one leaves the other.
@@ -152,10 +191,19 @@ static void test_a_damaged_tile_is_lost_alone(void **state)
     struct lossy_words w = encoded(&m, 80, 1);
     const size_t n = (size_t)m.shape.planes * 600 * 24;
     uint16_t *whole = malloc(n * sizeof *whole), *part = malloc(n * sizeof *part);
-    assert_int_equal(lossy_decode(whole, &m.shape, &w, NULL, 1, NULL), RELUME_OK);
+    assert_int_equal(lossy_decode(whole, &m.shape,
+                                  &(const struct relume_rect){0, 0, m.shape.width, m.shape.height},
+                                  &w, NULL, 1, NULL),
+                     RELUME_OK);
     w.word[w.count - 3] ^= 0x400;
-    assert_int_equal(lossy_decode(part, &m.shape, &w, NULL, 1, NULL), RELUME_EDAMAGED);
-    assert_int_equal(lossy_decode(part, &m.shape, &w, NULL, 1, &lost), RELUME_OK);
+    assert_int_equal(lossy_decode(part, &m.shape,
+                                  &(const struct relume_rect){0, 0, m.shape.width, m.shape.height},
+                                  &w, NULL, 1, NULL),
+                     RELUME_EDAMAGED);
+    assert_int_equal(lossy_decode(part, &m.shape,
+                                  &(const struct relume_rect){0, 0, m.shape.width, m.shape.height},
+                                  &w, NULL, 1, &lost),
+                     RELUME_OK);
     const int expected[5] = {1, 512, 0, 88, 24};
     assert_memory_equal(seen, expected, sizeof expected);
     for (size_t i = 0; i < n; i++)
@@ -175,16 +223,25 @@ static void test_words_are_not_believed(void **state)
     uint16_t *back = malloc((size_t)m.shape.planes * 24 * 24 * sizeof *back);
     for (size_t count = 0; count < w.count; count++)
         assert_int_equal(
-            lossy_decode(back, &m.shape, &(const struct lossy_words){w.word, count}, NULL, 1, NULL),
+            lossy_decode(back, &m.shape,
+                         &(const struct relume_rect){0, 0, m.shape.width, m.shape.height},
+                         &(const struct lossy_words){w.word, count}, NULL, 1, NULL),
             RELUME_EDAMAGED);
     for (size_t i = 0; i < 5; i++) {  // the head: what it is, tiles, bytes, checksum
         w.word[i] ^= 0x80000001u;
-        assert_int_equal(lossy_decode(back, &m.shape, &w, NULL, 1, NULL), RELUME_EDAMAGED);
+        assert_int_equal(
+            lossy_decode(back, &m.shape,
+                         &(const struct relume_rect){0, 0, m.shape.width, m.shape.height}, &w, NULL,
+                         1, NULL),
+            RELUME_EDAMAGED);
         w.word[i] ^= 0x80000001u;
     }
     const struct lossy_shape other = {32, 24, m.shape.planes, true, m.order};
     uint16_t *wide = malloc((size_t)m.shape.planes * 32 * 24 * sizeof *wide);
-    assert_int_equal(lossy_decode(wide, &other, &w, NULL, 1, NULL), RELUME_EDAMAGED);
+    assert_int_equal(lossy_decode(wide, &other,
+                                  &(const struct relume_rect){0, 0, other.width, other.height}, &w,
+                                  NULL, 1, NULL),
+                     RELUME_EDAMAGED);
     free(wide);
     free(back);
     relume_free(w.word);
@@ -212,16 +269,31 @@ static void test_a_group_is_predicted_from_its_anchor(void **state)
     const size_t n = (size_t)m->shape.planes * 600 * 48;
     uint16_t *back = malloc(n * sizeof *back);
     for (int v = 0; v < VIEWS; v++) {
-        assert_int_equal(lossy_decode(back, &m->shape, &group[v], v ? &group[0] : NULL, 2, NULL),
-                         RELUME_OK);
+        assert_int_equal(
+            lossy_decode(back, &m->shape,
+                         &(const struct relume_rect){0, 0, m->shape.width, m->shape.height},
+                         &group[v], v ? &group[0] : NULL, 2, NULL),
+            RELUME_OK);
         // as near as a view alone at this step: some 20 of 4096 codes
         assert_true(rms(back, m[v].codes, n) < 32.0);
     }
     assert_true(2 * group[2].count < alone.count);
-    assert_int_equal(lossy_decode(back, &m->shape, &group[2], NULL, 1, NULL), RELUME_EDAMAGED);
+    assert_int_equal(
+        lossy_decode(back, &m->shape,
+                     &(const struct relume_rect){0, 0, m->shape.width, m->shape.height}, &group[2],
+                     NULL, 1, NULL),
+        RELUME_EDAMAGED);
     group[0].word[group[0].count - 3] ^= 0x400;
-    assert_int_equal(lossy_decode(back, &m->shape, &group[2], &group[0], 1, NULL), RELUME_EDAMAGED);
-    assert_int_equal(lossy_decode(back, &m->shape, &group[2], &group[0], 1, &lost), RELUME_OK);
+    assert_int_equal(
+        lossy_decode(back, &m->shape,
+                     &(const struct relume_rect){0, 0, m->shape.width, m->shape.height}, &group[2],
+                     &group[0], 1, NULL),
+        RELUME_EDAMAGED);
+    assert_int_equal(
+        lossy_decode(back, &m->shape,
+                     &(const struct relume_rect){0, 0, m->shape.width, m->shape.height}, &group[2],
+                     &group[0], 1, &lost),
+        RELUME_OK);
     assert_int_equal(seen[0], 1);
     assert_int_equal(seen[1], 512);
     free(back);
@@ -280,6 +352,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_planes_come_back),
+        cmocka_unit_test(test_a_rectangle_is_that_of_the_view),
         cmocka_unit_test(test_threads_change_nothing),
         cmocka_unit_test(test_a_damaged_tile_is_lost_alone),
         cmocka_unit_test(test_words_are_not_believed),

@@ -264,12 +264,15 @@ static relume_status weigh_rest(double *bytes, const struct material *m,
     return status;
 }
 
-static void use_words(struct material *m, int view, int anchor)
+// Which view each is predicted from.
+static void set_anchors(struct material *m, const struct view_groups *groups)
 {
-    m->view[view].coded = m->words[view].word;
-    m->view[view].coded_words = m->words[view].count;
-    m->view[view].predicted = view != anchor;
-    m->view[view].anchor = anchor;
+    for (int g = 0; g < groups->count; g++)
+        for (int i = groups->begin[g]; i < groups->begin[g + 1]; i++) {
+            struct relume_pack_view *view = &m->view[groups->view[i]];
+            view->predicted = i > groups->begin[g];
+            view->anchor = groups->view[groups->begin[g]];
+        }
 }
 
 static relume_status code_planes(struct material *m, const relume_capture *capture,
@@ -295,14 +298,17 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
         coefficients_share_steps(m->coefficients, m->views, masked, encode->step);
     if (!status)
         status = groups_make(&groups, manifest, lossy_most_views(coder));
+    if (!status)
+        set_anchors(m, &groups);
     if (!status && !(p->psnr_db > 0.0))
         status = weigh_rest(&rest, m, capture, coder, p);
     target.bytes = fmax((p->bytes_per_pixel * pixels - rest) / PACKED, 1.0);
     if (!status)
         status = rate_encode(m->words, &result, m->coefficients, &groups, capture, &target, encode);
-    for (int g = 0; !status && g < groups.count; g++)
-        for (int i = groups.begin[g]; i < groups.begin[g + 1]; i++)
-            use_words(m, groups.view[i], groups.view[groups.begin[g]]);
+    for (int i = 0; !status && i < m->views; i++) {
+        m->view[i].coded = m->words[i].word;
+        m->view[i].coded_words = m->words[i].count;
+    }
     groups_destroy(&groups);
     if (status)
         return status;

@@ -445,7 +445,7 @@ relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
 {
     const size_t pixels = (size_t)rect->width * (size_t)rect->height;
     struct decoding d = {.codes = codes, .rect = rect};
-    struct tiles of_anchor;
+    struct tiles of_anchor = {.size = 0};
     relume_status status = find_tiles(&d.view, &d.tiles, shape, words);
     if (!status && anchor)
         status = find_tiles(&d.anchor, &of_anchor, shape, anchor);

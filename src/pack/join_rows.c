@@ -203,11 +203,10 @@ static relume_status read_plane(struct relume_image *out, const struct rows_join
                                 enum exr_sample sample)
 {
     const int k = find_plane(part, ending);
-    const struct exr_part_info info =
-        k < 0 ? (struct exr_part_info){0} : exr_part_info(part->file, k);
     relume_pack *h = j->header;
     if (k < 0)
         return RELUME_OK;
+    const struct exr_part_info info = exr_part_info(part->file, k);
     if (info.width != h->info.width || info.height != h->info.height || info.channels != 1 ||
         !info.uniform || info.sample != sample)
         return damaged(j, part);

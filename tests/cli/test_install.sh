@@ -162,7 +162,7 @@ offers() { # expected, words...
 }
 if command -v bash >/dev/null; then
     check "completion of commands" offers "encode eval export" relume e
-    check "completion of options" offers "--compression --coefficients --colour --codebook --codebook-start" relume encode --co
+    check "completion of options" offers "--compression --coefficients --colour --codebook --codebook-start --commands" relume encode --co
     check "completion of values" offers "8 10 12 16 half log float" relume encode --bits ""
     check "completion of tasks" offers "render" relume btf re
     check "completion of a task's options" offers "--tiles --tile" relume btf tile --ti

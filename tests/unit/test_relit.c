@@ -110,7 +110,14 @@ static void a_view_that_leaves_has_taught(void **state)
     CHECK_OK(relume_environment_create(&sky, &map, NULL));
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = sky, .rgb = {1, 1, 1}};
-    struct relume_image want = wanted(&s, &light, 1);
+    const struct relume_image *first;
+    CHECK_OK(relume_relighter_create(&r, 1, NULL));
+    CHECK_OK(relume_relighter_picture(
+        &first, r, &(struct relume_relit){0, &s.codes, NULL, &light, 1, NULL}));
+    struct relume_image want;
+    CHECK_OK(relume_image_create(&want, SIDE, SIDE, 3));
+    memcpy(want.data, first->data, 3 * SIDE * SIDE * sizeof *want.data);
+    relume_relighter_destroy(&r);
     CHECK_OK(relume_relighter_create(&r, 2, NULL));
     for (int view = 0; view < 2; view++) {
         expect(r, &(struct relume_relit){view, &s.codes, NULL, &light, 1, NULL}, &want, 0.0);

@@ -416,6 +416,7 @@ static void test_bytes(void **state)
                            .clusters = 1024,
                            .lobes = 2};
     m.model->layout(&m);
+    model_settle(&m);
     const size_t texels = (size_t)10 * 256 * 256;
     uint32_t *texel = calloc(texels, sizeof *texel);
     const uint16_t matrix[256] = {0};

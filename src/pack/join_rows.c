@@ -325,7 +325,8 @@ static bool create(struct rows_joining *j)
 
 static void destroy(struct rows_joining *j)
 {
-    for (int v = 0; j->report && v < j->header->info.views; v++) {
+    const bool whole = j->coefficients && j->depth && j->mask;  // else there is nothing in them
+    for (int v = 0; whole && v < j->header->info.views; v++) {
         relume_coefficients_destroy(&j->coefficients[v]);
         relume_image_destroy(&j->depth[v]);
         relume_image_destroy(&j->mask[v]);

@@ -148,7 +148,7 @@ $B/obj/src/cli/%.o:           own_include = -Isrc/cli -Isrc
 $B/obj/viewer/%.o:            own_include = -Iviewer -Isrc
 $B/obj/viewer/window/context_glfw.o: own_flags = $(GLFW)
 $(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
-$B/obj/tests/tools/decode.o: own_flags = $(EXR)
+$B/obj/tests/tools/decode.o $B/obj/tests/unit/test_piz.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Isrc/cli -Itests -Iviewer
 # Tests themselves are many and short: compiled fast, and linked by the faster linker where it is.
 $(UNIT_C:%.c=$B/obj/%.o) $(GL_C:%.c=$B/obj/%.o): own_mode = $(if $(filter release,$(config)),-O1)

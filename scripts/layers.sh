@@ -65,7 +65,7 @@ if [ "${1:-}" = --table ]; then
 fi
 
 # external header: the files it may appear in
-external="openexr:src/image/exr.c tests/tools/decode.c
+external="openexr:src/image/exr.c tests/tools/decode.c tests/unit/test_piz.c
 OpenImageIO:src/image/oiio.cpp
 dlfcn:src/base/module.c tests/tools/preload/faults.c
 opencv:src/multiview/stitch.cpp

@@ -115,8 +115,21 @@ void codes_restore(float *out, enum relume_storage storage, const void *codes, s
 
 enum { RUN = 1024 };  // numbers between codes and samples: they stay in the cache
 
+// A float's exponent and mantissa are those of a half where no bit is lost.
+static void halves_of_bytes(uint16_t *out, const uint8_t *bytes, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t bits = bits_of_float((float)bytes[i]) - (112u << 23);
+        out[i] = (uint16_t)(bytes[i] ? bits >> 13 : 0);
+    }
+}
+
 void codes_to_samples(void *samples, enum relume_storage storage, const void *codes, size_t n)
 {
+    if (storage == RELUME_STORE_8) {
+        halves_of_bytes(samples, codes, n);
+        return;
+    }
     float numbers[RUN];
     const enum exr_sample sample = codes_sample(storage);
     for (size_t at = 0; at < n; at += RUN) {

@@ -63,32 +63,32 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
     return c->scale && c->offset && c->band ? RELUME_OK : RELUME_ENOMEM;
 }
 
-// Eight running extremes side by side: compilers keep them in vector registers.
+struct range range_join(struct range a, struct range b)
+{
+    return (struct range){b.min < a.min ? b.min : a.min, b.max > a.max ? b.max : a.max};
+}
+
+// Running extremes side by side: compilers keep them in vector registers.
 struct range range_of(const float *v, size_t n)
 {
-    enum { LANES = 8 };
+    enum { LANES = 16 };
     float min[LANES], max[LANES];
     for (int i = 0; i < LANES; i++) {
         min[i] = FLT_MAX;
         max[i] = -FLT_MAX;
     }
-    for (size_t x = 0; x < n; x++) {
-        const float f = v[x];
-        const size_t i = x % LANES;
-        min[i] = f < min[i] ? f : min[i];
-        max[i] = f > max[i] ? f : max[i];
-    }
+    size_t x = 0;
+    for (; x + LANES <= n; x += LANES)
+        for (size_t i = 0; i < LANES; i++) {
+            min[i] = v[x + i] < min[i] ? v[x + i] : min[i];
+            max[i] = v[x + i] > max[i] ? v[x + i] : max[i];
+        }
     struct range r = {FLT_MAX, -FLT_MAX};
-    for (int i = 0; i < LANES; i++) {
-        r.min = min[i] < r.min ? min[i] : r.min;
-        r.max = max[i] > r.max ? max[i] : r.max;
-    }
+    for (int i = 0; i < LANES; i++)
+        r = range_join(r, (struct range){min[i], max[i]});
+    for (; x < n; x++)
+        r = range_join(r, (struct range){v[x], v[x]});
     return r;
-}
-
-struct range range_join(struct range a, struct range b)
-{
-    return (struct range){b.min < a.min ? b.min : a.min, b.max > a.max ? b.max : a.max};
 }
 
 struct range range_settle(struct range r)

@@ -7,6 +7,7 @@
 #include "base/outfile.h"
 #include "base/thread.h"
 #include "base/half.h"
+#include "image/piz.h"
 
 #include <errno.h>
 #include <openexr.h>
@@ -83,7 +84,8 @@ static exr_context_initializer_t initial(void *user)
 
 struct pipeline {
     exr_encode_pipeline_t exr;  // first: the core hands back a pointer to it
-    exr_result_t (*compress)(exr_encode_pipeline_t *pipeline);
+    exr_result_t (*compress)(exr_encode_pipeline_t *pipeline);  // the library's
+    piz *piz;
 };
 
 struct writing {
@@ -153,11 +155,36 @@ static exr_result_t already_packed(exr_encode_pipeline_t *pipeline)
     return EXR_ERR_SUCCESS;
 }
 
+static bool lend(void **buffer, size_t *room, size_t size)
+{
+    if (*room >= size)
+        return true;
+    mem_free(*buffer);
+    *buffer = mem_lend(size);
+    *room = *buffer ? size : 0;
+    return *buffer;
+}
+
+// By our own code, or by the library what that does not do.
+static exr_result_t compress_once(struct pipeline *p)
+{
+    exr_encode_pipeline_t *e = &p->exr;
+    const exr_coding_channel_info_t *c = e->channels;
+    if (!p->piz)
+        return p->compress(e);
+    if (!lend(&e->scratch_buffer_1, &e->scratch_alloc_size_1, e->packed_bytes) ||
+        !lend(&e->compressed_buffer, &e->compressed_alloc_size, piz_room(e->packed_bytes)))
+        return EXR_ERR_OUT_OF_MEMORY;
+    e->compressed_bytes = piz_compress(p->piz, e->compressed_buffer, e->scratch_buffer_1,
+                                       e->packed_buffer, c->width, c->height, e->channel_count);
+    return e->compressed_bytes ? EXR_ERR_SUCCESS : p->compress(e);
+}
+
 // A block whose compressed size equals its plain size means "stored plain" to every reader, but
 // OpenEXR 3.1 stores the compressed bytes then; only larger ones it replaces.
 static exr_result_t compress(exr_encode_pipeline_t *pipeline)
 {
-    const exr_result_t r = ((const struct pipeline *)pipeline)->compress(pipeline);
+    const exr_result_t r = compress_once((struct pipeline *)pipeline);
     const size_t plain = pipeline->packed_bytes;
     if (r || pipeline->compressed_bytes < plain || pipeline->compressed_alloc_size < plain)
         return r;
@@ -221,17 +248,16 @@ static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int
         p->compress = pipeline->compress_fn;
         if (p->compress)
             pipeline->compress_fn = compress;
+        if (w->part->codec == EXR_CODEC_PIZ && w->part->sample == EXR_SAMPLE_HALF &&
+            !(p->piz = piz_create()))
+            return RELUME_ENOMEM;
         pipeline->convert_and_pack_fn = already_packed;
         pipeline->yield_until_ready_fn = await_turn;
     }
     pipeline->encoding_user_data = turn;
-    const size_t size = chunk.unpacked_size;
-    if (pipeline->packed_alloc_size < size) {
-        mem_free(pipeline->packed_buffer);
-        pipeline->packed_buffer = mem_lend(size);
-        pipeline->packed_alloc_size = pipeline->packed_buffer ? size : 0;
-    }
-    return pipeline->packed_buffer ? RELUME_OK : RELUME_ENOMEM;
+    return lend(&pipeline->packed_buffer, &pipeline->packed_alloc_size, chunk.unpacked_size)
+               ? RELUME_OK
+               : RELUME_ENOMEM;
 }
 
 static void write_block(void *context, size_t item, int worker)
@@ -287,8 +313,10 @@ static relume_status write_part(struct writing *w, const struct exr_part *part, 
     const size_t blocks =
         ((size_t)part->height + (size_t)w->block_rows - 1) / (size_t)w->block_rows;
     thread_for(threads, blocks, write_block, w);
-    for (int i = 0; i < threads; i++)
+    for (int i = 0; i < threads; i++) {
         exr_encoding_destroy(w->exr, &w->pipelines[i].exr);
+        piz_destroy(&w->pipelines[i].piz);
+    }
     mem_free(w->pipelines);
     return w->status;
 }

@@ -23,7 +23,7 @@ codebook:base math kernel image coder:base coder codebook
 selection:base math image coder compare:base image capture coder codebook heldout
 lossy:base:base image coder
 encode:base coder codebook lossy:base image capture codebook coder light relight pack
-pack:base image coder lossy:base image capture codebook coder pack
+pack:base geometry image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange
 relight:base math kernel image:base image coder light relight rig relighter

@@ -97,11 +97,13 @@ static relume_status encode_view(struct material *m, int i, const relume_coder *
     return status;
 }
 
-// The step of inverse depth whose half moves what the next camera of the slab sees by an eighth of
-// a pixel; 0, which is as it is, where there is no next camera.
-static float depth_step(const struct relume_manifest *m, const struct relume_image *depth, int slab)
+// The half of a step moves what the next camera of a slab sees by so many pixels; without one it is
+// this part of the inverse of the usual depth.
+static const double MOST_PARALLAX = 0.25, OF_USUAL = 1.0 / 128.0;
+
+// How far apart the cameras of a slab stand; 0: there is one.
+static double between_cameras(const struct relume_manifest *m, int slab)
 {
-    const struct relume_geometry *g = m->slabs ? &m->slab[slab] : &m->geometry;
     double extent = 0.0;
     int views = 0;
     for (int v = 0, first = 0; v < m->views; v++) {
@@ -111,12 +113,32 @@ static float depth_step(const struct relume_manifest *m, const struct relume_ima
         for (int i = 0; i < 2; i++)
             extent = fmax(extent, fabs(m->view[v].uv[i] - m->view[first].uv[i]));
     }
-    if (g->projection != RELUME_SLAB || !(extent > 0.0))
-        return 0.0f;
+    return extent / fmax(sqrt(views) - 1.0, 1.0);
+}
+
+// The mean inverse of a depth map, of what is finite; 0 where nothing is.
+static double usual_inverse(const struct relume_image *depth)
+{
+    const size_t n = (size_t)depth->width * (size_t)depth->height;
+    double sum = 0.0, count = 0.0;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(depth->data[i])) {
+            sum += 1.0 / (double)depth->data[i];
+            count++;
+        }
+    return count > 0.0 ? sum / count : 0.0;
+}
+
+// The step of inverse depth; 0: depth is written as it is.
+static float depth_step(const struct relume_manifest *m, const struct relume_image *depth, int slab)
+{
+    const struct relume_geometry *g = m->slabs ? &m->slab[slab] : &m->geometry;
+    const double between = g->projection == RELUME_SLAB ? between_cameras(m, slab) : 0.0;
+    if (!(between > 0.0))
+        return (float)(2.0 * OF_USUAL * usual_inverse(depth));
     const double pixel = fmin((g->st_max[0] - g->st_min[0]) / depth->width,
                               (g->st_max[1] - g->st_min[1]) / depth->height);
-    const double between = extent / fmax(sqrt(views) - 1.0, 1.0);
-    return (float)(0.25 * pixel / (between * fabs(g->uv_z - g->st_z)));
+    return (float)(2.0 * MOST_PARALLAX * pixel / (between * fabs(g->uv_z - g->st_z)));
 }
 
 // Indices into the books of view `set`.

@@ -3,13 +3,14 @@
 
 #include "base/memory.h"
 #include "lossy/entropy.h"
+#include "lossy/slopes.h"
 
 #include <math.h>
 #include <zlib.h>
 
 // Words at the head, before the coded bytes: their number and CRC-32.
 enum { WORD_MAGIC, WORD_BYTES, WORD_CRC, HEAD_WORDS };
-enum { MAGIC = 0x32444C52, MOST_STEPS = 65535 };  // "RLD2"
+enum { MAGIC = 0x33444C52, MOST_STEPS = 65535 };  // "RLD3"
 
 // ---------------------------------------------------------------- what is foretold
 
@@ -128,44 +129,35 @@ static uint16_t steps_of(float depth, float step)
     return (uint16_t)(steps < 1.0 ? 1.0 : steps > MOST_STEPS ? MOST_STEPS : steps);
 }
 
-static void put_all(struct entropy_writer *w, struct model *m, uint16_t *rows,
-                    const struct relume_image *depth, float step)
+static void put_all(struct entropy_writer *w, struct model *m, const uint16_t *steps,
+                    const struct relume_image *depth)
 {
     const size_t width = (size_t)depth->width;
-    const float *from = depth->data;
-    uint16_t *above = NULL, *row = rows;
-    for (int y = 0; y < depth->height; y++, from += width) {
+    const uint16_t *above = NULL, *row = steps;
+    for (int y = 0; y < depth->height; y++, above = row, row += width)
         for (size_t x = 0; x < width; x++) {
             const struct around n = around(row, above, x, width);
             bool mirrored;
             const int context = context_of(n, &mirrored);
-            row[x] = steps_of(from[x], step);
             const int difference = row[x] - foretold(n);
             put(w, m, context, mirrored ? -difference : difference);
         }
-        above = row;
-        row = row == rows ? rows + width : rows;
-    }
     entropy_end(w);
 }
 
-static void get_all(struct relume_image *depth, struct entropy_reader *r, struct model *m,
-                    uint16_t *rows, float step)
+static void get_all(uint16_t *steps, struct entropy_reader *r, struct model *m,
+                    const struct relume_image *depth)
 {
     const size_t width = (size_t)depth->width;
-    float *to = depth->data;
-    uint16_t *above = NULL, *row = rows;
-    for (int y = 0; y < depth->height; y++, to += width) {
+    const uint16_t *above = NULL;
+    uint16_t *row = steps;
+    for (int y = 0; y < depth->height; y++, above = row, row += width)
         for (size_t x = 0; x < width; x++) {
             const struct around n = around(row, above, x, width);
             bool mirrored;
             const int context = context_of(n, &mirrored), difference = get(r, m, context);
             row[x] = (uint16_t)(foretold(n) + (mirrored ? -difference : difference));
-            to[x] = row[x] ? (float)(1.0 / ((double)row[x] * step)) : INFINITY;
         }
-        above = row;
-        row = row == rows ? rows + width : rows;
-    }
 }
 
 static float nearest(const struct relume_image *depth)
@@ -194,35 +186,34 @@ static relume_status to_words(struct lossy_words *out, const struct entropy_writ
 relume_status disparity_encode(struct lossy_words *out, float *step,
                                const struct relume_image *depth)
 {
+    const size_t pixels = (size_t)depth->width * (size_t)depth->height;
     const float least = 1.0f / nearest(depth) / MOST_STEPS;
     struct model *model = mem_array(1, sizeof *model);
-    uint16_t *rows = mem_array(2 * (size_t)depth->width, sizeof *rows);
+    uint16_t *steps = mem_array(pixels, sizeof *steps);
     struct entropy_writer w = entropy_write();
-    relume_status status = model && rows ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = model && steps ? RELUME_OK : RELUME_ENOMEM;
     *step = *step > least ? *step : least > 0.0f ? least : 1.0f;
     *out = (struct lossy_words){0};
     if (!status) {
+        for (size_t i = 0; i < pixels; i++)
+            steps[i] = steps_of(depth->data[i], *step);
         begin_model(model);
-        put_all(&w, model, rows, depth, *step);
+        put_all(&w, model, steps, depth);
         status = to_words(out, &w);
     }
     mem_free(w.byte);
     mem_free(model);
-    mem_free(rows);
+    mem_free(steps);
     return status;
 }
 
-relume_status disparity_decode(struct relume_image *depth, const struct lossy_words *words,
-                               float step)
+static relume_status decode_steps(uint16_t *steps, const struct relume_image *depth,
+                                  const struct lossy_words *words)
 {
-    if (words->count < HEAD_WORDS || words->word[WORD_MAGIC] != MAGIC ||
-        words->word[WORD_BYTES] > 4 * (words->count - HEAD_WORDS))
-        return RELUME_EDAMAGED;
     const size_t size = words->word[WORD_BYTES];
     struct model *model = mem_array(1, sizeof *model);
-    uint16_t *rows = mem_array(2 * (size_t)depth->width, sizeof *rows);
     unsigned char *byte = mem_array(size, 1);
-    relume_status status = model && rows && byte ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = model && byte ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {
         lossy_take_bytes(byte, words->word + HEAD_WORDS, size);
         if (crc32(0, byte, (uInt)size) != words->word[WORD_CRC])
@@ -231,10 +222,26 @@ relume_status disparity_decode(struct relume_image *depth, const struct lossy_wo
     if (!status) {
         struct entropy_reader r = entropy_read(byte, size);
         begin_model(model);
-        get_all(depth, &r, model, rows, step);
+        get_all(steps, &r, model, depth);
     }
     mem_free(model);
-    mem_free(rows);
     mem_free(byte);
+    return status;
+}
+
+relume_status disparity_decode(struct relume_image *depth, const struct lossy_words *words,
+                               float step)
+{
+    const size_t pixels = (size_t)depth->width * (size_t)depth->height;
+    if (words->count < HEAD_WORDS || words->word[WORD_MAGIC] != MAGIC ||
+        words->word[WORD_BYTES] > 4 * (words->count - HEAD_WORDS))
+        return RELUME_EDAMAGED;
+    uint16_t *steps = mem_array(pixels, sizeof *steps);
+    relume_status status = steps ? decode_steps(steps, depth, words) : RELUME_ENOMEM;
+    if (!status)
+        status = slopes_of_steps(depth, steps);
+    for (size_t i = 0; !status && i < pixels; i++)
+        depth->data[i] = steps[i] ? (float)(1.0 / ((double)depth->data[i] * step)) : INFINITY;
+    mem_free(steps);
     return status;
 }

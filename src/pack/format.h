@@ -85,4 +85,9 @@ extern const char *const format_book_kinds[3];
 // is, and which channel a plane.
 int format_plane(const struct relume_coder_info *info, int channel);
 
+// Depth along the viewing rays becomes that along the axis of a slab, or back: its inverse is linear
+// where the surface is a plane. Of other projections it stays.
+void format_turn_depth(struct relume_image *depth, const struct relume_geometry *g,
+                       const double uv[2], bool to_axis);
+
 #endif

@@ -220,6 +220,8 @@ relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, 
         status = disparity_decode(out, &words, v->depth_step);
     if (status == RELUME_EDAMAGED)
         status = reader_bad(p, name, "a sound depth map");
+    if (!status)
+        format_turn_depth(out, relume_pack_geometry(p, view), p->info.uv[view], false);
     mem_free(words.word);
     if (status)
         relume_image_destroy(out);

@@ -42,12 +42,22 @@ static relume_status words_rows(void *context, int row, int rows, void *samples)
 static struct lossy_words depth_words(struct writer *w, const struct relume_pack_view *view,
                                       float *step)
 {
+    const struct relume_pack_contents *c = w->contents;
     struct lossy_words made = {0}, kept = {0};
+    struct relume_image depth = {0};
     if (!view->depth || !(view->depth_step > 0.0f))
         return kept;
     *step = view->depth_step;
-    if (!disparity_encode(&made, step, view->depth))
+    relume_status status = relume_image_create(&depth, view->depth->width, view->depth->height, 1);
+    if (!status) {
+        memcpy(depth.data, view->depth->data,
+               (size_t)depth.width * (size_t)depth.height * sizeof *depth.data);
+        format_turn_depth(&depth, c->slabs ? &c->slab[view->slab] : &c->geometry, view->uv, true);
+        status = disparity_encode(&made, step, &depth);
+    }
+    if (!status)
         kept.word = arena_array(&w->arena, made.count, sizeof *kept.word);
+    relume_image_destroy(&depth);
     w->failed |= !kept.word;
     if (kept.word) {
         kept.count = made.count;

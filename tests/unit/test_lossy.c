@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "lossy/disparity.h"
+#include "lossy/slopes.h"
 
 #include <math.h>
 
@@ -317,8 +318,8 @@ static struct relume_image depth_map(int width, int height)
     return d;
 }
 
-// To half a step of the inverse, and float's rounding of it.
-static void test_depth_comes_back_within_half_a_step(void **state)
+// Half a step of rounding, half of smoothing, and float's rounding of the inverse.
+static void test_depth_comes_back_within_a_step(void **state)
 {
     static const int sizes[][2] = {{1, 1}, {7, 3}, {40, 33}};
     static const float steps[] = {0.01f, 1e-4f, 1e-12f};  // the last has too many steps
@@ -334,7 +335,7 @@ static void test_depth_comes_back_within_half_a_step(void **state)
         for (int k = 0; k < d.width * d.height; k++) {
             const double truth = 1.0 / d.data[k], found = 1.0 / back.data[k];
             assert_true(isinf(d.data[k]) == isinf(back.data[k]));
-            assert_true(fabs(truth - found) <= 0.5 * step + 1e-7 * truth);
+            assert_true(fabs(truth - found) <= step + 1e-7 * truth);
         }
         for (size_t count = 0; count < words.count; count++)
             assert_int_equal(
@@ -348,6 +349,53 @@ static void test_depth_comes_back_within_half_a_step(void **state)
     }
 }
 
+static void steps_of(struct relume_image *inverse, float (*surface)(int x, int y))
+{
+    uint16_t steps[64 * 48];
+    assert_int_equal(relume_image_create(inverse, 64, 48, 1), RELUME_OK);
+    for (int i = 0; i < 64 * 48; i++)
+        steps[i] = (uint16_t)lrintf(surface(i % 64, i / 64));
+    assert_int_equal(slopes_of_steps(inverse, steps), RELUME_OK);
+}
+
+static float slanted(int x, int y)
+{
+    return 100.0f + 0.13f * (float)x - 0.07f * (float)y;
+}
+
+// Whole steps are off by 0.29 of one (uniform between +-1/2: 1/sqrt 12); where they change is known
+// to a pixel, so slopes are better by as many pixels as a step is long, but at the picture's edges.
+static void test_a_slanted_plane_is_smooth(void **state)
+{
+    struct relume_image found;
+    double square = 0.0;
+    (void)state;
+    steps_of(&found, slanted);
+    for (int i = 0; i < 64 * 48; i++) {
+        const double miss = (double)(found.data[i] - slanted(i % 64, i / 64));
+        square += miss * miss;
+        assert_true(fabs(miss) < 1.0);
+    }
+    assert_true(sqrt(square / (64 * 48)) < 0.5 / sqrt(12.0));
+    relume_image_destroy(&found);
+}
+
+static float cliff(int x, int y)
+{
+    (void)y;
+    return x < 30 ? 0.0f : x < 40 ? 50.0f : 52.0f;
+}
+
+static void test_an_edge_stays_sharp(void **state)
+{
+    struct relume_image found;
+    (void)state;
+    steps_of(&found, cliff);
+    for (int i = 0; i < 64 * 48; i++)
+        assert_true(found.data[i] == cliff(i % 64, i / 64));
+    relume_image_destroy(&found);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -357,7 +405,9 @@ int main(void)
         cmocka_unit_test(test_a_damaged_tile_is_lost_alone),
         cmocka_unit_test(test_words_are_not_believed),
         cmocka_unit_test(test_a_group_is_predicted_from_its_anchor),
-        cmocka_unit_test(test_depth_comes_back_within_half_a_step),
+        cmocka_unit_test(test_depth_comes_back_within_a_step),
+        cmocka_unit_test(test_a_slanted_plane_is_smooth),
+        cmocka_unit_test(test_an_edge_stays_sharp),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -282,12 +282,55 @@ static void test_cancel(void **state)
     fail_msg("never done");
 }
 
+// How far the next camera of a slab sees a pixel moved, in pixels, by a wrong depth along its ray.
+static double parallax(const relume_pack *pack, int view, int pixel, double truth, double found)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const struct relume_geometry *g = relume_pack_geometry(pack, view);
+    const double size[2] = {(g->st_max[0] - g->st_min[0]) / info->width,
+                            (g->st_max[1] - g->st_min[1]) / info->height};
+    const double s = g->st_min[0] + (pixel % info->width + 0.5) * size[0] - info->uv[view][0];
+    const double t = g->st_max[1] - (pixel / info->width + 0.5) * size[1] - info->uv[view][1];
+    const double ahead = fabs(g->uv_z - g->st_z), whole = sqrt(s * s + t * t + ahead * ahead);
+    const double between = (info->views - 1) / (sqrt(info->views) - 1.0);
+    return fabs(1.0 / truth - 1.0 / found) * whole * between / fmin(size[0], size[1]);
+}
+
+// Coded depth: half a pixel at most, rounding and smoothing together; alone 1/64 of the usual.
+static void test_coded_depth(void **state)
+{
+    (void)state;
+    for (int views = 1; views <= 3; views += 2) {
+        const struct fixture f = {
+            .width = 16, .height = 9, .lights = 3, .views = views, .depth = true};
+        relume_pack *pack;
+        fixture_write(&f, folder);
+        CHECK_OK(fixture_encode(folder, path, &relume_basis_table, 0,
+                                relume_pack_encode_params(.psnr_db = 20.0)));
+        CHECK_OK(relume_pack_open(&pack, path, NULL));
+        for (int v = 0; v < views; v++) {
+            struct relume_image depth;
+            CHECK_OK(relume_pack_depth(&depth, pack, v));
+            for (int i = 0; i < f.width * f.height; i++) {
+                const double found = (double)depth.data[i];
+                assert_true(isinf(found) == !(i % 3));
+                if (i % 3 && views > 1)
+                    CHECK_NEAR(parallax(pack, v, i, 2.5, found), 0.0, 0.5);
+                else if (i % 3)
+                    CHECK_NEAR(found, 2.5, 2.5 / 64);
+            }
+            relume_image_destroy(&depth);
+        }
+        relume_pack_destroy(&pack);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trips), cmocka_unit_test(test_preview),
         cmocka_unit_test(test_own_preview), cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_cancel),      cmocka_unit_test(test_coded_depth),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -338,13 +338,12 @@ tutorials: cli samples
 figures: cli $B/samples/figures
 	@scripts/figures.sh $B build/figures docs/pictures
 
-# The reference of the library, build/docs/api/index.html; a public declaration without a comment is
+# The reference of the library, docs/api/index.html; a public declaration without a comment is
 # an error. Not part of make, since it needs Doxygen (make deps-docs).
 .PHONY: docs deps-docs
 docs:
-	@mkdir -p build/docs
 	@doxygen scripts/Doxyfile
-	@echo '  build/docs/api/index.html'
+	@echo "  docs/api/index.html"
 
 # ---------------------------------------------------------------- installing
 
@@ -352,4 +351,4 @@ install: all
 	scripts/install.sh $B $(DESTDIR)$(PREFIX) $(PREFIX)
 
 clean:
-	rm -rf build
+	rm -rf build docs/api

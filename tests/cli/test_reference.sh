@@ -9,14 +9,14 @@ if ! command -v doxygen >/dev/null 2>&1; then
 fi
 mkdir -p tree/include && cp -r "$TOP/scripts" tree/ && cp -r "$TOP/include/relume" tree/include/
 refer() { # the reference of the copied headers
-    (cd tree && mkdir -p build/docs && doxygen scripts/Doxyfile) >said.txt 2>&1
+    (cd tree && mkdir -p docs && doxygen scripts/Doxyfile) >said.txt 2>&1
 }
 if refer; then ok 'every public declaration is documented'; else
     not_ok 'every public declaration is documented' "$(grep warning said.txt | sed 's|.*/include/||' | head -n 5)"
 fi
-check 'pages are made' test -s tree/build/docs/api/index.html
+check 'pages are made' test -s tree/docs/api/index.html
 # a comment at the end of a line belongs to what is on it, also to each of several names
-page=$(ls tree/build/docs/api/structrelume__ball__camera.html tree/build/docs/api/*relume__ball__camera*.html 2>/dev/null | head -n 1)
+page=$(ls tree/docs/api/structrelume__ball__camera.html tree/build/docs/api/*relume__ball__camera*.html 2>/dev/null | head -n 1)
 check 'a comment at the end of a line is found' grep -q 'focal length in pixels' "$page"
 check 'one for two names is found twice' test "$(grep -c 'of the photographs' "$page")" -ge 2
 

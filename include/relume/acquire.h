@@ -64,7 +64,7 @@ struct relume_acquire_params {
 struct relume_acquired_photo {
     char *path;                      // as it was given
     float saturated, black;          // shares of the pixels
-    float likeness;                  // median to others, relume_edge_correlation; NaN: not measured
+    float similarity;                // median to others, relume_edge_correlation; NaN: not measured
     struct relume_ball_light light;  // by the first ball
     double sigma_deg;                // estimated error of the direction, degrees; 0: not known
     bool outlier;                    // contradicts its light and the others

@@ -61,8 +61,8 @@ RELUME_RESULT relume_status relume_ball_candidates(struct relume_ball *out, int 
                                                    const struct relume_ball_camera *camera,
                                                    const struct relume_ball_params *params);
 
-// What of a ball was seen. Constant names by relume_ball_sight_text.
-enum relume_ball_sight {
+// What of a ball was seen. Constant names by relume_ball_finding_text.
+enum relume_ball_finding {
     RELUME_BALL_SEEN = 0,
     RELUME_BALL_DARK,  // no highlight: no light reaches the ball, or the photograph is black
     RELUME_BALL_FULL,  // bright all over: overexposed, or no mirror
@@ -70,19 +70,19 @@ enum relume_ball_sight {
     RELUME_BALL_TWO,   // a second highlight of similar size; the larger one is taken
 };
 // A few words for people, never NULL.
-RELUME_API const char *relume_ball_sight_text(enum relume_ball_sight sight);
+RELUME_API const char *relume_ball_finding_text(enum relume_ball_finding finding);
 
 // Where the light of a ball comes from. Plain data.
 struct relume_ball_light {
-    enum relume_ball_sight sight;  // what was seen; a direction is only there for some of them
-    struct relume_vec3 direction;  // unit, world; zero when DARK or FULL
-    struct relume_vec3 origin;     // the point of the ball where it was read, in units of the
-                                   // ball's radius from its middle
-    double x, y;                   // the highlight, pixels
-    double sigma_deg;              // standard error of the direction, as far as the picture shows:
-                                   // of the outline and the spot; matte: of the fit
-    double spread_deg;             // mirror: how wide the lamp looks, RMS
-    float intensity[3];            // matte: value of a white surface facing the light; else 0
+    enum relume_ball_finding finding;  // what was seen; a direction is only there for some of them
+    struct relume_vec3 direction;      // unit, world; zero when DARK or FULL
+    struct relume_vec3 origin;         // the point of the ball where it was read, in units of the
+                                       // ball's radius from its middle
+    double x, y;                       // the highlight, pixels
+    double sigma_deg;    // standard error of the direction, as far as the picture shows:
+                         // of the outline and the spot; matte: of the fit
+    double spread_deg;   // mirror: how wide the lamp looks, RMS
+    float intensity[3];  // matte: value of a white surface facing the light; else 0
 };
 
 // The light of one photograph (linear, of the camera's size). RELUME_ENOMEM.

@@ -44,7 +44,7 @@ typedef struct relume_direction_mesh relume_direction_mesh;
 RELUME_RESULT relume_status relume_direction_mesh_create(relume_direction_mesh **out,
                                                          const struct relume_vec3 *directions,
                                                          int n, const struct relume_log *log);
-RELUME_API void relume_direction_mesh_destroy(relume_direction_mesh **dome);
+RELUME_API void relume_direction_mesh_destroy(relume_direction_mesh **mesh);
 
 // Which directions replace one, and how much each counts: barycentric weights, all > 0, sum 1.
 struct relume_direction_blend {
@@ -60,11 +60,11 @@ struct relume_direction_blend {
     double length;
 };
 // The three around a unit direction.
-RELUME_API struct relume_direction_blend relume_direction_mesh_at(const relume_direction_mesh *dome,
+RELUME_API struct relume_direction_blend relume_direction_mesh_at(const relume_direction_mesh *mesh,
                                                                   struct relume_vec3 d);
 // The triangles of directions that cover the sphere, `*n` of them, for clients that look directions
-// up themselves: corner n is the nadir, which is no measured direction. They belong to the dome.
-RELUME_API const int (*relume_direction_mesh_triangles(const relume_direction_mesh *dome,
+// up themselves: corner n is the nadir, which is no measured direction. They belong to the mesh.
+RELUME_API const int (*relume_direction_mesh_triangles(const relume_direction_mesh *mesh,
                                                        int *n))[3];
 
 // ---------------------------------------------------------------- the measured values

@@ -15,7 +15,7 @@ extern "C" {
 // ---------------------------------------------------------------- prefiltered maps
 
 // An environment as lobes see it. Never changes. Thread-safety: safe.
-typedef struct relume_prefiltered relume_prefiltered;
+typedef struct relume_prefiltered_maps relume_prefiltered_maps;
 
 enum {
     RELUME_PREFILTERED_EXPONENTS = 15,  // 2^(i / 2): 1, 1.41, 2, ... 128; the thesis ends at 32
@@ -23,7 +23,7 @@ enum {
 };
 
 // How an environment is prefiltered. Borrowed during the call.
-struct relume_prefiltered_params {
+struct relume_prefiltered_maps_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int height;  // of the maps, pixels; they are twice as wide; default 48, [4, 512]
@@ -32,20 +32,20 @@ struct relume_prefiltered_params {
     double rim;
     int threads;  // default: all cores
 };
-#define relume_prefiltered_params(...)                                                             \
-    (&(const struct relume_prefiltered_params){RELUME_SIZED(relume_prefiltered_params),            \
-                                               __VA_ARGS__})
+#define relume_prefiltered_maps_params(...)                                                        \
+    (&(const struct relume_prefiltered_maps_params){RELUME_SIZED(relume_prefiltered_maps_params),  \
+                                                    __VA_ARGS__})
 
 // `light` is an environment; its colour and rotation are taken over. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status
-relume_prefiltered_create(relume_prefiltered **out, const struct relume_light *light,
-                          const struct relume_prefiltered_params *params);
-RELUME_API void relume_prefiltered_destroy(relume_prefiltered **prefilter);
+relume_prefiltered_maps_create(relume_prefiltered_maps **out, const struct relume_light *light,
+                               const struct relume_prefiltered_maps_params *params);
+RELUME_API void relume_prefiltered_maps_destroy(relume_prefiltered_maps **prefiltered);
 
-// Plain arrays for other renderers; they belong to the prefilter. Maps are spherical (row 0 is up
+// Plain arrays for other renderers; they belong to the maps. Maps are spherical (row 0 is up
 // +y, the middle column -z, +x to its right, pixel centres at +0.5), so that bilinear lookups
 // repeat in columns and clamp in rows. E is the radiance of the environment.
-struct relume_prefiltered_info {
+struct relume_prefiltered_maps_info {
     int width, height;
     // [height][width][3]: the sum of E fall(n.l) dw / pi over n.l > 0, fall(z) being
     // min(z / rim, 1): what a value of 1 for all lights shows on a surface facing the direction n.
@@ -59,21 +59,24 @@ struct relume_prefiltered_info {
     // lobe is that at the rim of the same azimuth.
     const float *part;
 };
-// It and its arrays belong to the prefilter.
-RELUME_API const struct relume_prefiltered_info *relume_prefiltered_info(
-    const relume_prefiltered *prefilter);
+// It and its arrays belong to the maps.
+RELUME_API const struct relume_prefiltered_maps_info *relume_prefiltered_maps_info(
+    const relume_prefiltered_maps *prefiltered);
 
 // The maps in a unit direction of the world, `exponent` > 0.
-RELUME_API void relume_prefiltered_diffuse(float rgb[3], const relume_prefiltered *prefilter,
-                                           struct relume_vec3 normal);
+RELUME_API void relume_prefiltered_maps_diffuse(float rgb[3],
+                                                const relume_prefiltered_maps *prefiltered,
+                                                struct relume_vec3 normal);
 // The mean under a lobe about a unit direction, `exponent` > 0.
-RELUME_API void relume_prefiltered_specular(float rgb[3], const relume_prefiltered *prefilter,
-                                            struct relume_vec3 axis, double exponent);
+RELUME_API void relume_prefiltered_maps_specular(float rgb[3],
+                                                 const relume_prefiltered_maps *prefiltered,
+                                                 struct relume_vec3 axis, double exponent);
 // What a lobe height * max(0, axis.l)^exponent shows on a surface facing `normal`. `cosine`: values
 // do not include n.l.
-RELUME_API void relume_prefiltered_lobe(float rgb[3], const relume_prefiltered *prefilter,
-                                        struct relume_vec3 normal, struct relume_vec3 axis,
-                                        double exponent, bool cosine);
+RELUME_API void relume_prefiltered_maps_lobe(float rgb[3],
+                                             const relume_prefiltered_maps *prefiltered,
+                                             struct relume_vec3 normal, struct relume_vec3 axis,
+                                             double exponent, bool cosine);
 
 // ---------------------------------------------------------------- a material in one orientation
 
@@ -105,7 +108,7 @@ struct relume_btf_oriented_light_params {
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_oriented_light_create(
     relume_btf_oriented_light **out, const relume_btf_fitted *model,
-    const relume_prefiltered *prefilter, const struct relume_btf_frame *frame,
+    const relume_prefiltered_maps *prefiltered, const struct relume_btf_frame *frame,
     const struct relume_btf_oriented_light_params *params);
 RELUME_API void relume_btf_oriented_light_destroy(relume_btf_oriented_light **ambient);
 
@@ -136,11 +139,11 @@ struct relume_btf_light_lobe {
 // Never changes. Thread-safety: safe.
 typedef struct relume_btf_environment relume_btf_environment;
 
-// Some milliseconds. Model and prefilter must outlive it; the rim of the prefilter is the model's
+// Some milliseconds. Model and maps must outlive it; the rim of the maps is the model's
 // own. RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_btf_environment_create(relume_btf_environment **out,
-                                                          const relume_btf_fitted *model,
-                                                          const relume_prefiltered *prefilter);
+RELUME_RESULT relume_status
+relume_btf_environment_create(relume_btf_environment **out, const relume_btf_fitted *model,
+                              const relume_prefiltered_maps *prefiltered);
 RELUME_API void relume_btf_environment_destroy(relume_btf_environment **sky);
 // [lights]; they belong to the sky.
 RELUME_API const struct relume_btf_light_lobe *relume_btf_environment_cones(

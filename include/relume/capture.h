@@ -218,7 +218,7 @@ struct relume_table_params {
     const struct relume_log *log;
     struct relume_transfer display;  // values are coded by this curve; default: linear light
     int threads;                     // default: all cores
-    bool as_seen;  // near lights: values as each pixel sees them, only fall-off is divided out
+    bool keep_near;  // near lights: values as each pixel sees them, only fall-off is divided out
 };
 #define relume_table_params(...)                                                                   \
     (&(const struct relume_table_params){RELUME_SIZED(relume_table_params), __VA_ARGS__})
@@ -231,10 +231,10 @@ RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_c
 // those under distant lights from the manifest's directions. Asking for more rows than are left is
 // RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
-// The same, and in `seen`, of the same size, what near lights really show at each pixel: fall-off
+// The same, and in `near`, of the same size, what near lights really show at each pixel: fall-off
 // is divided out, directions are the pixel's own. Where lights are distant both are the same.
-RELUME_RESULT relume_status relume_table_read_seen(relume_table *table, int rows, float *out,
-                                                   float *seen);
+RELUME_RESULT relume_status relume_table_read_near(relume_table *table, int rows, float *out,
+                                                   float *near);
 // Whether the table's lights are near.
 RELUME_API bool relume_table_is_near(const relume_table *table);
 // Unit directions to the lights, from where the surface lies at a place of the picture (pixel

@@ -19,7 +19,7 @@ extern "C" {
 enum relume_framing {
     RELUME_FRAME_DEFAULT = 0,  // slab: EYE at the middle of the uv grid; else VIEW 0
     RELUME_FRAME_VIEW,         // a captured view at its own size (panoramas: unfolded)
-    RELUME_FRAME_EYE,          // slab: the window from `eye`; of several slabs what `aim` says
+    RELUME_FRAME_EYE,          // slab: the window from `eye`; of several slabs what `look_at` says
     RELUME_FRAME_LOOK,         // panorama: a perspective frame
 };
 
@@ -29,7 +29,7 @@ struct relume_camera {
     int view;                     // VIEW: its number
     struct relume_vec3 eye;
     struct relume_look_at
-        aim;      // EYE, several slabs: where it looks. Of one slab: all zero is the window
+        look_at;  // EYE, several slabs: where it looks. Of one slab: all zero is the window
     int through;  // EYE, several slabs: 1 + the slab whose st window it looks through
     struct relume_pan_tilt look;  // LOOK
     // Default: the view's own size, LOOK 1024 x 512; of one of them the other, by proportion.

@@ -85,7 +85,7 @@ struct relume_light_patch {
 
 enum { RELUME_LIGHT_PATCHES_MOST = 32 };  // along one side
 
-// How many facets a side an area light needs so that their sum is the integral to about 1 percent
+// How many patches a side an area light needs so that their sum is the integral to about 1 percent
 // at points at least `distance` away; in [1, RELUME_LIGHT_PATCHES_MOST].
 RELUME_API int relume_light_patch_side(const struct relume_light *area, double distance);
 
@@ -94,9 +94,9 @@ RELUME_API int relume_light_patch_side(const struct relume_light *area, double d
 RELUME_API void relume_light_patches(struct relume_light_patch *out,
                                      const struct relume_light *area, int side);
 
-// What a facet sends to `point`, as relume_light_at.
+// What a patch sends to `point`, as relume_light_at.
 RELUME_API bool relume_light_patch_at(struct relume_vec3 *towards, float rgb[3],
-                                      const struct relume_light_patch *facet,
+                                      const struct relume_light_patch *patch,
                                       struct relume_vec3 point);
 
 // The least distance from an area light of the positions in `surface` (three channels) that lie

@@ -8,8 +8,9 @@
 // that cover many texels show means of them: levels of detail of the model, where it has such.
 //
 // Under an environment a material shows what relume_btf_environment says, times the share of the
-// light that reaches the point, in each colour: of 64 lamps drawn from the environment, each times
-// n.l, what nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire 2018).
+// light that reaches the point, in each colour: of 64 light samples drawn from the environment,
+// each times n.l, what nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire
+// 2018).
 #ifndef RELUME_OBJECT_H
 #define RELUME_OBJECT_H
 
@@ -105,16 +106,16 @@ RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int p
 
 // A light as drawing takes it: from one direction at each point.
 struct relume_object_light {
-    bool is_patch;                    // of an area light: `facet`, not `light`, is what it sends
+    bool is_patch;                    // of an area light: `patch`, not `light`, is what it sends
     bool is_sky;                      // of an environment: where it arrives, not what it shows
     int number;                       // of the light that it is of
     struct relume_light light;        // never area or environment
-    struct relume_light_patch facet;  // of an area light
+    struct relume_light_patch patch;  // of an area light
 };
 
 enum { RELUME_OBJECT_LIGHTS_MOST = 64 };  // of one light
-// The lights in lamps, `*n` of them: areas in as many facets as the objects' distance asks for, at
-// most 36; environments in RELUME_OBJECT_LIGHTS_MOST directional lights
+// The lights as samples, `*n` of them: areas in as many patches as the objects' distance asks for,
+// at most 36; environments in RELUME_OBJECT_LIGHTS_MOST directional lights
 // (relume_environment_sample). `*out` is to be freed with relume_free(). RELUME_ENOMEM;
 // RELUME_EINVAL for a light that relume_light_check refuses.
 RELUME_RESULT relume_status relume_objects_lights(struct relume_object_light **out, int *n,
@@ -123,7 +124,7 @@ RELUME_RESULT relume_status relume_objects_lights(struct relume_object_light **o
 // What it sends to `point` and the unit direction towards it, as relume_light_at; `*distance` may
 // be infinite.
 RELUME_API bool relume_object_light_at(struct relume_vec3 *towards, float rgb[3], double *distance,
-                                       const struct relume_object_light *lamp,
+                                       const struct relume_object_light *light_sample,
                                        struct relume_vec3 point);
 
 // ---------------------------------------------------------------- pictures
@@ -134,16 +135,16 @@ struct relume_render_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int samples;      // rays along each side of a pixel, [1, 16]; default 1, through its middle
-    bool no_shadows;  // all lamps reach all points
+    bool no_shadows;  // all light samples reach all points
     int threads;      // default: all cores
 };
 #define relume_render_params(...)                                                                  \
     (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})
 
-// The window through which `eye` sees all of the objects (its aim: all zero is their middle, +y up
-// and the least square view that holds them). False as relume_slab_set_window.
+// The window through which `eye` sees all of the objects (`look_at`: all zero is their middle, +y
+// up and the least square view that holds them). False as relume_slab_set_window.
 RELUME_API bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
-                                      struct relume_vec3 eye, const struct relume_look_at *aim,
+                                      struct relume_vec3 eye, const struct relume_look_at *look_at,
                                       int width, int height);
 
 // Ray trace the objects as seen through the window before black, linear: the reference of all other
@@ -158,10 +159,10 @@ RELUME_RESULT relume_status relume_objects_render(struct relume_image *out,
 // The objects that stand in a renderer's scene from now on, borrowed until others are set or the
 // renderer is destroyed; NULL: none. relume_renderer_frame and _draw show them where they stand
 // before what the file's depth says, under the renderer's lights, and with their shadows on the
-// scene: each lamp is relit alone and reaches a point of the scene when no object lies between.
-// Scenes throw no shadows on objects. A pass shows the scene alone: leave it at colour. Rays,
-// single pixels and places are those of the scene. `params` are copied. RELUME_ENOMEM; then all is
-// as before. Frames also fail with RELUME_EINVAL (samples) and RELUME_EUNFIT (a file without
+// scene: each light sample is relit alone and reaches a point of the scene when no object lies
+// between. Scenes throw no shadows on objects. A pass shows the scene alone: leave it at colour.
+// Rays, single pixels and places are those of the scene. `params` are copied. RELUME_ENOMEM; then
+// all is as before. Frames also fail with RELUME_EINVAL (samples) and RELUME_EUNFIT (a file without
 // depth).
 RELUME_RESULT relume_status relume_renderer_set_objects(relume_renderer *renderer,
                                                         const relume_objects *objects,

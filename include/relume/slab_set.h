@@ -57,10 +57,10 @@ struct relume_look_at {
     double field_of_view_deg;
 };
 // Whether anything is not zero.
-RELUME_API bool relume_look_at_given(const struct relume_look_at *aim);
+RELUME_API bool relume_look_at_given(const struct relume_look_at *look_at);
 // False when the eye stands where it looks, looks along `up`, or something is not finite.
 RELUME_API bool relume_slab_set_window(struct relume_window *out, const relume_slab_set *slabs,
-                                       struct relume_vec3 eye, const struct relume_look_at *aim,
+                                       struct relume_vec3 eye, const struct relume_look_at *look_at,
                                        int width, int height);
 // The st window of a slab as seen from `eye` (world), as relume_slab_frame shows it.
 RELUME_API struct relume_window relume_slab_window(const struct relume_geometry *slab,

@@ -46,21 +46,21 @@ RELUME_API struct relume_window relume_planar_window(const struct relume_geometr
 
 // The ray of a place; `direction` is a unit vector.
 RELUME_API void relume_viewport_ray(struct relume_vec3 *origin, struct relume_vec3 *direction,
-                                    const struct relume_viewport *sight, double x, double y);
+                                    const struct relume_viewport *viewport, double x, double y);
 // Where the frame is seen from; of parallel rays, as far off as a screen is looked at.
-RELUME_API struct relume_vec3 relume_viewport_eye(const struct relume_viewport *sight);
+RELUME_API struct relume_vec3 relume_viewport_eye(const struct relume_viewport *viewport);
 // Where a point of the world appears, inside the frame or not; false behind the eye.
-RELUME_API bool relume_viewport_project(double xy[2], const struct relume_viewport *sight,
+RELUME_API bool relume_viewport_project(double xy[2], const struct relume_viewport *viewport,
                                         struct relume_vec3 point);
 // The solid angle of a pixel there.
-RELUME_API double relume_viewport_solid_angle(const struct relume_viewport *sight, double x,
+RELUME_API double relume_viewport_solid_angle(const struct relume_viewport *viewport, double x,
                                               double y);
 // Whether a surface at `surface`, in the line of sight to `point`, hides it: it is nearer by more
 // than a fiftieth of the distance. Positions that are not finite hide nothing.
-RELUME_API bool relume_viewport_hides(const struct relume_viewport *sight,
+RELUME_API bool relume_viewport_hides(const struct relume_viewport *viewport,
                                       struct relume_vec3 surface, struct relume_vec3 point);
 
-// ------------------------------------------------------------------ lamps in view
+// ------------------------------------------------------------------ visible lights
 
 // A light in the frame, shared out among the four pixels around its place.
 struct relume_visible_light {
@@ -75,14 +75,14 @@ enum { RELUME_VISIBLE_LIGHTS_MOST = 8192 };
 // picture is wide, but not in parallel rays; environments are left out. Of what `hides` says that
 // it hides at its place in the frame, nothing is seen; NULL: nothing hides.
 RELUME_API int relume_viewport_lights(
-    struct relume_visible_light *out, const struct relume_viewport *sight,
+    struct relume_visible_light *out, const struct relume_viewport *viewport,
     const struct relume_light *lights, int n,
     bool (*hides)(void *user, const double xy[2], struct relume_vec3 point), void *user);
 // Add `n` sources to a linear frame of three channels.
 RELUME_API void relume_visible_lights_draw(struct relume_image *frame,
                                            const struct relume_visible_light *sources, int n);
 
-// Add to `frame`, as relume_renderer_frame made it of the same camera, the renderer's lamps in
+// Add to `frame`, as relume_renderer_frame made it of the same camera, the renderer's lights in
 // view. The scene hides them where the file has depth. Returns how many sources were drawn in
 // `*seen` (may be NULL). RELUME_EINVAL, RELUME_EUNFIT, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_frame_visible_lights(struct relume_image *frame, int *seen,

@@ -84,7 +84,7 @@ struct relume_codes { void *coder; int domain; struct relume_transfer display;
 struct relume_look_at { bool aimed; struct relume_vec3 at; struct relume_vec3 up;
     double field_of_view_deg; };
 struct relume_pan_tilt { double pan_deg, tilt_deg, zoom; bool stereographic; };
-struct relume_camera { int framing; int view; struct relume_vec3 eye; struct relume_look_at aim;
+struct relume_camera { int framing; int view; struct relume_vec3 eye; struct relume_look_at look_at;
     int through; struct relume_pan_tilt look; int width, height; };
 struct relume_open_params { size_t struct_size; void *log; void *limits; bool allow_outside; bool sphere;
     int threads; void *reader; bool keep_going; };

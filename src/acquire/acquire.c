@@ -93,7 +93,7 @@ static relume_status fill_result(struct acquisition *s)
             .path = mem_text(from->path),
             .saturated = from->saturated,
             .black = from->black,
-            .likeness = from->likeness,
+            .similarity = from->similarity,
             .light = from->light,
             .sigma_deg = from->sigma_deg,
         };

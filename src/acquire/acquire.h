@@ -15,7 +15,7 @@ struct shot {
     char name[32];                 // of the image in the folder
     struct relume_exif notes;
     struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
-    float saturated, black, likeness;
+    float saturated, black, similarity;
     double sigma_deg;
     struct relume_ball_light light;  // of the first ball
     vec3 direction, position;

@@ -10,7 +10,7 @@
 #include <stdio.h>
 
 enum { PAIRS = 5, GRID = 1500 };
-static const double LIKE = 0.35, UNLIKE = 0.5;  // likeness: of one scene; share of the others'
+static const double SIMILAR = 0.35, UNLIKE = 0.5;  // similarity: of one scene; share of the others'
 static const float SATURATED = 0.02f, DARK = 0.999f;
 static const double FLAT = 0.004;   // least eigenvalue of the directions' mean square
 static const double LOWEST = 0.26;  // sine of the elevation from which light is wanted: 15 degrees
@@ -24,8 +24,8 @@ static double median(double *v, int n)
     return v[n / 2];
 }
 
-// The median likeness of a photograph to some of the others.
-static float likeness(const struct acquisition *s, int i)
+// The median similarity of a photograph to some of the others.
+static float similarity(const struct acquisition *s, int i)
 {
     double found[PAIRS];
     int n = 0;
@@ -45,12 +45,12 @@ static relume_status check_scene(struct acquisition *s)
     if (!all)
         return RELUME_ENOMEM;
     for (int i = 0; i < s->shots; i++)
-        all[i] = (double)(s->shot[i].likeness = likeness(s, i));
+        all[i] = (double)(s->shot[i].similarity = similarity(s, i));
     const double usual = median(all, s->shots);
     mem_free(all);
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && usual > LIKE && i < s->shots;) {
-        const double like = (double)s->shot[i].likeness;
+    for (int i = 0; !status && usual > SIMILAR && i < s->shots;) {
+        const double like = (double)s->shot[i].similarity;
         if (like >= UNLIKE * usual) {
             i++;
             continue;

@@ -67,8 +67,8 @@ relume_status acquire_load_balls(struct relume_image *out, const struct acquisit
 // What is wrong with how ball `b` shows the light; NULL when nothing is.
 static const char *objection(const struct relume_ball_light *l, bool matte)
 {
-    if (l->sight == RELUME_BALL_DARK || l->sight == RELUME_BALL_FULL)
-        return relume_ball_sight_text(l->sight);
+    if (l->finding == RELUME_BALL_DARK || l->finding == RELUME_BALL_FULL)
+        return relume_ball_finding_text(l->finding);
     return !matte && l->spread_deg > TOO_WIDE ? "highlight too large for a lamp; is the photograph "
                                                 "of the ball linear (--ball-transfer)?"
                                               : NULL;
@@ -259,7 +259,7 @@ static double place_ball(const struct acquisition *s, const struct relume_ball *
     return along * sin(ball->half_angle_rad);
 }
 
-struct sights {
+struct ball_lights {
     int n;
     struct relume_ball_light light[MOST_BALLS];
     vec3 origin[MOST_BALLS], direction[MOST_BALLS];
@@ -284,7 +284,7 @@ static relume_status look_all(const struct acquisition *s, struct relume_ball_li
 
 // What the balls tell of the lamp of photograph `i`; `why` the last of them does not.
 static relume_status gather(struct acquisition *s, int i, const struct relume_ball_light *light,
-                            struct sights *to, const char **why)
+                            struct ball_lights *to, const char **why)
 {
     relume_status status = RELUME_OK;
     to->n = 0;
@@ -301,17 +301,17 @@ static relume_status gather(struct acquisition *s, int i, const struct relume_ba
         to->light[to->n] = *l;
         to->origin[to->n] = vec3_along(middle, l->origin, radius);
         to->direction[to->n++] = l->direction;
-        if (l->sight == RELUME_BALL_RIM || l->sight == RELUME_BALL_TWO)
-            status = acquire_warn_alike(s, l->sight == RELUME_BALL_RIM ? ALIKE_RIM : ALIKE_TWO, 0.0,
-                                        "%s: %s of the ball at %.0f,%.0f", ball_photo(&s->shot[i]),
-                                        relume_ball_sight_text(l->sight), s->out->ball[b].x,
-                                        s->out->ball[b].y);
+        if (l->finding == RELUME_BALL_RIM || l->finding == RELUME_BALL_TWO)
+            status = acquire_warn_alike(
+                s, l->finding == RELUME_BALL_RIM ? ALIKE_RIM : ALIKE_TWO, 0.0,
+                "%s: %s of the ball at %.0f,%.0f", ball_photo(&s->shot[i]),
+                relume_ball_finding_text(l->finding), s->out->ball[b].x, s->out->ball[b].y);
     }
     return status;
 }
 
 // The mean direction; several balls tell its error by how they disagree.
-static void average(struct shot *shot, const struct sights *seen)
+static void average(struct shot *shot, const struct ball_lights *seen)
 {
     vec3 sum = vec3_of(0.0, 0.0, 0.0);
     double squares = 0.0, formal = 0.0;
@@ -330,7 +330,7 @@ static void average(struct shot *shot, const struct sights *seen)
         shot->intensity[c] = seen->light[0].intensity[c];
 }
 
-static relume_status locate(struct acquisition *s, int i, const struct sights *seen,
+static relume_status locate(struct acquisition *s, int i, const struct ball_lights *seen,
                             double *disagree)
 {
     struct shot *shot = &s->shot[i];
@@ -384,7 +384,7 @@ static bool is_mirror(const struct acquisition *s, const struct relume_ball_ligh
         first = first ? first : &l->direction;
         moves = fmax(moves, vec3_angle(*first, l->direction) * 180.0 / M_PI);
         shown++;
-        alone += l->sight != RELUME_BALL_TWO;
+        alone += l->finding != RELUME_BALL_TWO;
     }
     return s->shots - shown <= fmax((1.0 - SHOWN) * s->shots, 1.0) && alone >= ALONE * s->shots &&
            moves > MOVES;
@@ -408,7 +408,7 @@ static relume_status locate_all(struct acquisition *s, const struct relume_ball_
     double disagree = 0.0;
     relume_status status = RELUME_OK;
     for (int k = 0, i = 0; !status && k < shots; k++) {
-        struct sights seen;
+        struct ball_lights seen;
         const char *why;
         const struct relume_ball *ball = &s->out->ball[0];
         status = gather(s, i, light + (size_t)k * (size_t)s->out->balls, &seen, &why);

@@ -92,7 +92,7 @@ static double weigh(struct patch *p, int n, const double lamp[4], double *scratc
 static struct relume_ball_light fit(struct patch *p, int n, const struct relume_ball *ball,
                                     double *scratch)
 {
-    struct relume_ball_light light = {.sight = RELUME_BALL_DARK};
+    struct relume_ball_light light = {.finding = RELUME_BALL_DARK};
     double lamp[4], most = 0.0, clipped = 0.0, spread = 0.0;
     for (int i = 0; i < n; i++) {
         most = fmax(most, p[i].value);
@@ -100,7 +100,7 @@ static struct relume_ball_light fit(struct patch *p, int n, const struct relume_
     }
     if (n < LEAST || most < DARK)
         return light;
-    light.sight = RELUME_BALL_FULL;
+    light.finding = RELUME_BALL_FULL;
     if (clipped > 0.5 * n)
         return light;
     for (int round = 0; round < ROUNDS; round++) {
@@ -112,7 +112,7 @@ static struct relume_ball_light fit(struct patch *p, int n, const struct relume_
     double weight = 0.0;
     for (int i = 0; i < n; i++)
         weight += p[i].weight;
-    light.sight = weight > LEAST / 4.0 ? RELUME_BALL_SEEN : RELUME_BALL_RIM;
+    light.finding = weight > LEAST / 4.0 ? RELUME_BALL_SEEN : RELUME_BALL_RIM;
     light.direction = vec3_unit(l);
     // Misses are texture and bounced light rather than noise: a patch in ten counts.
     const double of_fit = spread / vec3_length(l) * sqrt(2.0 * 10.0 / fmax(weight, 1.0));
@@ -129,7 +129,7 @@ relume_status relume_ball_matte(struct relume_ball_light *out, const struct relu
                                 const struct relume_ball_camera *camera,
                                 const struct relume_image *photograph)
 {
-    *out = (struct relume_ball_light){.sight = RELUME_BALL_DARK};
+    *out = (struct relume_ball_light){.finding = RELUME_BALL_DARK};
     struct patch *patch = mem_array(MOST, sizeof *patch);
     double *scratch = mem_array(MOST, sizeof *scratch);
     const relume_status status = patch && scratch ? RELUME_OK : RELUME_ENOMEM;

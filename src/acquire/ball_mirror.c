@@ -15,14 +15,14 @@ static const double FULL = 0.15;         // share of the disc
 static const double SECOND = 0.1;        // of the first spot's light
 static const double PIXEL_SIGMA = 0.15;  // how well a spot's middle is told, pixels
 
-const char *relume_ball_sight_text(enum relume_ball_sight sight)
+const char *relume_ball_finding_text(enum relume_ball_finding finding)
 {
     static const char *const text[] = {
         [RELUME_BALL_SEEN] = "one highlight",   [RELUME_BALL_DARK] = "no highlight",
         [RELUME_BALL_FULL] = "bright all over", [RELUME_BALL_RIM] = "the highlight lies at the rim",
         [RELUME_BALL_TWO] = "two highlights",
     };
-    return (unsigned)sight < sizeof text / sizeof *text ? text[sight] : "unknown";
+    return (unsigned)finding < sizeof text / sizeof *text ? text[finding] : "unknown";
 }
 
 // The square of pixels around a ball, and which of them are lit and not looked at yet.
@@ -176,18 +176,18 @@ static struct relume_ball_light look(struct window *w, const struct relume_ball 
     const float peak = find_peak(w, ball, camera);
     w->threshold = 0.5f * peak;
     if (peak < DARK)
-        return (struct relume_ball_light){.sight = RELUME_BALL_DARK};
+        return (struct relume_ball_light){.finding = RELUME_BALL_DARK};
     if (mark_lit(w, ball, camera) > FULL)
-        return (struct relume_ball_light){.sight = RELUME_BALL_FULL};
+        return (struct relume_ball_light){.finding = RELUME_BALL_FULL};
     struct spot spot[2];
     find_spots(w, ball, camera, spot);
     if (!(spot[0].weight > 0.0))
-        return (struct relume_ball_light){.sight = RELUME_BALL_DARK};
+        return (struct relume_ball_light){.finding = RELUME_BALL_DARK};
     struct relume_ball_light light = describe(&spot[0], ball, camera);
     if (ball_distance(ball, camera, light.x, light.y) > (RIM - 1.0) * ball->radius)
-        light.sight = RELUME_BALL_RIM;
+        light.finding = RELUME_BALL_RIM;
     else if (spot[1].weight > SECOND * spot[0].weight)
-        light.sight = RELUME_BALL_TWO;
+        light.finding = RELUME_BALL_TWO;
     return light;
 }
 
@@ -196,7 +196,7 @@ relume_status relume_ball_mirror(struct relume_ball_light *out, const struct rel
                                  const struct relume_image *photograph)
 {
     struct window w;
-    *out = (struct relume_ball_light){.sight = RELUME_BALL_DARK};
+    *out = (struct relume_ball_light){.finding = RELUME_BALL_DARK};
     if (!cut_window(&w, ball, photograph))
         return RELUME_OK;
     const size_t pixels = (size_t)w.width * (size_t)w.height;

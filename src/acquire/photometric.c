@@ -47,7 +47,7 @@ static const float *sample_of(const struct fit *f, int light, size_t pixel)
     return f->samples + (size_t)light * f->stride + 3 * pixel;
 }
 
-static void aim(const struct fit *f, const struct pixel *p)
+static void set_directions(const struct fit *f, const struct pixel *p)
 {
     const int width = f->width;
     if (!f->is_near)
@@ -129,7 +129,7 @@ static void judge_lights(const struct fit *f, const struct pixel *p, vec3 g)
 static void fit_pixel(const struct fit *f, const struct pixel *p)
 {
     vec3 g;
-    aim(f, p);
+    set_directions(f, p);
     int n = gather(f, p);
     const struct lambert_sample *s = lambert_fit(&g, p->direction, p->sample, &n, f->params.plain);
     if (!s)
@@ -166,7 +166,7 @@ static relume_status fit_bands(struct fit *f)
     const int rows = f->rows;
     relume_status status = relume_table_open(
         &table, f->capture, f->view,
-        relume_table_params(.as_seen = true, .log = f->params.log, .threads = f->params.threads));
+        relume_table_params(.keep_near = true, .log = f->params.log, .threads = f->params.threads));
     for (f->row = 0; !status && f->row < f->height; f->row += rows) {
         f->rows = f->height - f->row < rows ? f->height - f->row : rows;
         f->stride = 3 * (size_t)f->rows * (size_t)f->width;

@@ -74,7 +74,7 @@ static void say_with_name(void *user, enum relume_level level, const char *text)
     log_line(n->log, level, "%s: %s %s", n->path, n->what, text);
 }
 
-relume_status btf_make_dome(relume_direction_mesh **out, const vec3 *directions, int n,
+relume_status btf_make_mesh(relume_direction_mesh **out, const vec3 *directions, int n,
                             const char *path, const char *what, const struct relume_log *log)
 {
     struct named_log named = {log, path, what};
@@ -97,9 +97,9 @@ relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, co
     b->path = path ? mem_text(path) : NULL;
     status = copy_parts(b, info) && !b->path == !path ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = btf_make_dome(&b->views, b->view, info->views, path, "view", log);
+        status = btf_make_mesh(&b->views, b->view, info->views, path, "view", log);
     if (!status)
-        status = btf_make_dome(&b->lights, b->light, info->lights, path, "light", log);
+        status = btf_make_mesh(&b->lights, b->light, info->lights, path, "light", log);
     if (!status)
         status = copy_image(&b->info.relief, &info->relief);
     if (!status)

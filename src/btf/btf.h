@@ -35,7 +35,7 @@ static inline const char *btf_name(const relume_btf *btf)
 relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, const char *path,
                         const struct relume_log *log);
 // relume_direction_mesh_create, with sentences that begin "PATH: WHAT "; `path` may be NULL.
-relume_status btf_make_dome(relume_direction_mesh **out, const vec3 *directions, int n,
+relume_status btf_make_mesh(relume_direction_mesh **out, const vec3 *directions, int n,
                             const char *path, const char *what, const struct relume_log *log);
 // Zeroed scratch memory as its values.
 relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *params);

@@ -20,7 +20,7 @@ static bool arrives(const relume_btf_oriented_light *a, const struct relume_envi
     const vec3 l = to_sample(&a->frame, cell->direction);
     if (!(l.z > 0.0))
         return false;
-    *blend = relume_direction_mesh_at(a->model->light_dome, l);
+    *blend = relume_direction_mesh_at(a->model->light_mesh, l);
     const double scale = a->model->without_cosine ? l.z : blend->rim;
     out->direction = blend->direction;
     for (int c = 0; c < 3; c++)
@@ -50,20 +50,20 @@ static relume_status make_own_maps(relume_btf_oriented_light *a,
     for (int i = 0; i < n && cosine; i++)
         for (int c = 0; c < 3; c++)
             cell[i].rgb[c] *= (float)cell[i].direction.z;
-    return prefilter_from_cells(&a->own, cell, n, HEIGHT, 0.0, threads);
+    return prefiltered_from_cells(&a->own, cell, n, HEIGHT, 0.0, threads);
 }
 
 static relume_status fill(relume_btf_oriented_light *a,
                           const struct relume_btf_oriented_light_params *p)
 {
-    const size_t most = (size_t)a->prefilter->cells;
+    const size_t most = (size_t)a->prefiltered->cells;
     struct relume_environment_cell *cell = mem_array(most, sizeof *cell);
     int n = 0;
     if (!cell)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < most; i++) {
         struct relume_direction_blend b;
-        if (arrives(a, &a->prefilter->cell[i], &b, &cell[n]))
+        if (arrives(a, &a->prefiltered->cell[i], &b, &cell[n]))
             add_cell(a, &cell[n++], &b);
     }
     const relume_status status =
@@ -74,7 +74,7 @@ static relume_status fill(relume_btf_oriented_light *a,
 
 relume_status relume_btf_oriented_light_create(
     relume_btf_oriented_light **out, const relume_btf_fitted *model,
-    const relume_prefiltered *prefilter, const struct relume_btf_frame *frame,
+    const relume_prefiltered_maps *prefiltered, const struct relume_btf_frame *frame,
     const struct relume_btf_oriented_light_params *params)
 {
     relume_btf_oriented_light *a = mem_zeroed(1, sizeof *a);
@@ -82,7 +82,7 @@ relume_status relume_btf_oriented_light_create(
     if (!a)
         return RELUME_ENOMEM;
     a->model = model;
-    a->prefilter = prefilter;
+    a->prefiltered = prefiltered;
     a->frame = *frame;
     a->weight = mem_zeroed(3 * (size_t)model->lights, sizeof *a->weight);
     const relume_status status = a->weight ? fill(a, params) : RELUME_ENOMEM;
@@ -95,7 +95,7 @@ relume_status relume_btf_oriented_light_create(
 void relume_btf_oriented_light_destroy(relume_btf_oriented_light **ambient)
 {
     if (*ambient) {
-        relume_prefiltered_destroy(&(*ambient)->own);
+        relume_prefiltered_maps_destroy(&(*ambient)->own);
         mem_free((*ambient)->weight);
     }
     mem_free(*ambient);
@@ -124,12 +124,12 @@ void ambient_lobe(const relume_btf_oriented_light *a, const float t[3], float ex
     const struct relume_btf_frame *f = &a->frame;
     double height = exp((double)exponent * log(length));
     if (a->own) {
-        relume_prefiltered_specular(rgb, a->own, u, exponent);
+        relume_prefiltered_maps_specular(rgb, a->own, u, exponent);
         height *= 2.0 / ((double)exponent + 1.0);
     } else {
         const vec3 axis =
             vec3_add(vec3_scale(f->right, u.x), vec3_along(vec3_scale(f->up, u.y), f->normal, u.z));
-        relume_prefiltered_lobe(rgb, a->prefilter, f->normal, axis, exponent, cosine);
+        relume_prefiltered_maps_lobe(rgb, a->prefiltered, f->normal, axis, exponent, cosine);
     }
     for (int c = 0; c < 3; c++)
         rgb[c] *= (float)height;
@@ -181,6 +181,6 @@ void relume_btf_oriented_light_evaluate(const relume_btf_oriented_light *ambient
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(view.z > 0.0))
         return;
-    const struct relume_direction_blend b = relume_direction_mesh_at(m->view_dome, view);
+    const struct relume_direction_blend b = relume_direction_mesh_at(m->view_mesh, view);
     ambient_blend(ambient, m, (size_t)y * (size_t)m->width + (size_t)x, &b, rgb);
 }

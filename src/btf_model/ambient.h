@@ -6,24 +6,24 @@
 
 #include <relume/btf_environment.h>
 
-struct relume_prefiltered {
+struct relume_prefiltered_maps {
     int width, height;
     double rim;
     float *diffuse, *specular, *part;
     struct relume_environment_cell *cell;  // in the world: E dw / pi
     int cells;
-    struct relume_prefiltered_info info;  // of the above
+    struct relume_prefiltered_maps_info info;  // of the above
 };
 
 // Maps of `cells`, a copy of which they keep; nothing is cut off at a horizon. RELUME_ENOMEM.
-relume_status prefilter_from_cells(relume_prefiltered **out,
-                                   const struct relume_environment_cell *cell, int cells,
-                                   int height, double rim, int threads);
+relume_status prefiltered_from_cells(relume_prefiltered_maps **out,
+                                     const struct relume_environment_cell *cell, int cells,
+                                     int height, double rim, int threads);
 
 struct relume_btf_oriented_light {
     const relume_btf_fitted *model;
-    const relume_prefiltered *prefilter;
-    relume_prefiltered *own;  // of this orientation, in the frame of the sample, or NULL
+    const relume_prefiltered_maps *prefiltered;
+    relume_prefiltered_maps *own;  // of this orientation, in the frame of the sample, or NULL
     struct relume_btf_frame frame;
     float *weight;     // [lights][3]
     float even[2][3];  // of a constant, and of n.l: ambient_even
@@ -42,7 +42,7 @@ void ambient_blend(const relume_btf_oriented_light *a, const relume_btf_fitted *
 
 struct relume_btf_environment {
     const relume_btf_fitted *model;
-    const relume_prefiltered *prefilter;
+    const relume_prefiltered_maps *prefiltered;
     struct relume_btf_light_lobe *cone;  // [lights]
 };
 

@@ -35,9 +35,9 @@ static relume_status prepare(struct judge *j, bool unseen)
     if (!j->view || !j->light || !j->pair || !j->error)
         return RELUME_ENOMEM;
     for (int v = 0; v < info->views; v++)
-        j->view[v] = relume_direction_mesh_at(j->model->view_dome, info->view[v]);
+        j->view[v] = relume_direction_mesh_at(j->model->view_mesh, info->view[v]);
     for (int l = 0; l < info->lights; l++)
-        j->light[l] = relume_direction_mesh_at(j->model->light_dome, info->light[l]);
+        j->light[l] = relume_direction_mesh_at(j->model->light_mesh, info->light[l]);
     for (int v = 0; v < info->views; v++)
         for (int l = 0; l < info->lights; l++) {
             const bool counts = !unseen || !is_known(&j->view[v]) || !is_known(&j->light[l]);

@@ -61,8 +61,8 @@ void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
     free_arrays(m);
     mem_free(m->prepared);
     relume_btf_fitted_destroy(&m->half);
-    relume_direction_mesh_destroy(&m->view_dome);
-    relume_direction_mesh_destroy(&m->light_dome);
+    relume_direction_mesh_destroy(&m->view_mesh);
+    relume_direction_mesh_destroy(&m->light_mesh);
     mem_free(m->view);
     mem_free(m->light);
     mem_free(m);
@@ -142,8 +142,8 @@ static relume_status copy_directions(relume_btf_fitted *m, const relume_btf *btf
     if (!m->view || !m->light)
         return RELUME_ENOMEM;
     const relume_status status =
-        relume_direction_mesh_create(&m->view_dome, m->view, m->views, log);
-    return status ? status : relume_direction_mesh_create(&m->light_dome, m->light, m->lights, log);
+        relume_direction_mesh_create(&m->view_mesh, m->view, m->views, log);
+    return status ? status : relume_direction_mesh_create(&m->light_mesh, m->light, m->lights, log);
 }
 
 relume_status model_make_arrays(relume_btf_fitted *m)
@@ -269,7 +269,7 @@ void model_settle(relume_btf_fitted *m)
         .lobes = m->lobes,
         .levels = 1,
         // layouts alone have no directions
-        .rim = m->light_dome ? mean_rim(m->light_dome) : 0.0,
+        .rim = m->light_mesh ? mean_rim(m->light_mesh) : 0.0,
     };
     for (int i = 0; i < m->arrays; i++) {
         const uint64_t bytes = npy_bytes(&m->array[i].npy);
@@ -334,8 +334,8 @@ void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(view.z > 0.0) || !(light.z > 0.0))
         return;
-    const struct model_blend at = {relume_direction_mesh_at(fitted->view_dome, view),
-                                   relume_direction_mesh_at(fitted->light_dome, light), view,
+    const struct model_blend at = {relume_direction_mesh_at(fitted->view_mesh, view),
+                                   relume_direction_mesh_at(fitted->light_mesh, light), view,
                                    light};
     model_blend(fitted, (size_t)y * (size_t)fitted->width + (size_t)x, &at, rgb);
 }

@@ -30,7 +30,7 @@ struct relume_btf_fitted {
     int texel_bytes, pair_bytes;      // of a row of bits, where the model has such
     bool without_cosine;
     vec3 *view, *light;
-    relume_direction_mesh *view_dome, *light_dome;
+    relume_direction_mesh *view_mesh, *light_mesh;
     struct model_array array[MODEL_ARRAYS];
     int arrays;
     void *prepared;                      // what the model's `prepare` made of them, or NULL

@@ -142,9 +142,9 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
         vec3_unit(vec3_of((double)float_from_half(normal[0]), (double)float_from_half(normal[1]),
                           (double)float_from_half(normal[2])));
     const struct relume_direction_blend v =
-        relume_direction_mesh_at(m->view_dome, vec3_upright(at->v, n));
+        relume_direction_mesh_at(m->view_mesh, vec3_upright(at->v, n));
     const vec3 turned = vec3_upright(at->l, n);
-    const struct relume_direction_blend l = relume_direction_mesh_at(m->light_dome, turned);
+    const struct relume_direction_blend l = relume_direction_mesh_at(m->light_mesh, turned);
     const double scale = scale_of(m, at->l, turned, &l);
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < v.count; i++)

@@ -154,9 +154,9 @@ static relume_status read_directions(relume_btf_fitted *m, const jvalue *root,
         status = btf_read_directions(jvalue_member(root, "light_directions"), r->json,
                                      "light_directions", &r->limits, &m->light, &m->lights, r->log);
     if (!status)
-        status = btf_make_dome(&m->view_dome, m->view, m->views, r->json, "view", r->log);
+        status = btf_make_mesh(&m->view_mesh, m->view, m->views, r->json, "view", r->log);
     return status ? status
-                  : btf_make_dome(&m->light_dome, m->light, m->lights, r->json, "light", r->log);
+                  : btf_make_mesh(&m->light_mesh, m->light, m->lights, r->json, "light", r->log);
 }
 
 static bool same_shape(const struct npy *a, const struct npy *b)

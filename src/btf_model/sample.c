@@ -55,8 +55,8 @@ void relume_btf_fitted_sample(const relume_btf_fitted *m, double x, double y, bo
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(view.z > 0.0) || !(light.z > 0.0))
         return;
-    const struct model_blend at = {relume_direction_mesh_at(m->view_dome, view),
-                                   relume_direction_mesh_at(m->light_dome, light), view, light};
+    const struct model_blend at = {relume_direction_mesh_at(m->view_mesh, view),
+                                   relume_direction_mesh_at(m->light_mesh, light), view, light};
     for (int i = 0; i < 4; i++) {
         float value[3];
         if (c.weight[i / 2][i % 2] == 0.0)

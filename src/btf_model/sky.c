@@ -19,7 +19,7 @@ static double exponent_of(double mean_cosine)
 
 static void add_direction(struct relume_btf_environment *s, vec3 d, double solid_angle)
 {
-    const struct relume_direction_blend b = relume_direction_mesh_at(s->model->light_dome, d);
+    const struct relume_direction_blend b = relume_direction_mesh_at(s->model->light_mesh, d);
     const double arrives = (s->model->without_cosine ? d.z : b.rim / b.length) * solid_angle / M_PI;
     for (int i = 0; i < b.count; i++) {
         struct relume_btf_light_lobe *cone = &s->cone[b.index[i]];
@@ -47,14 +47,14 @@ static void fill_cones(struct relume_btf_environment *s)
 
 relume_status relume_btf_environment_create(relume_btf_environment **out,
                                             const relume_btf_fitted *model,
-                                            const relume_prefiltered *prefilter)
+                                            const relume_prefiltered_maps *prefiltered)
 {
     relume_btf_environment *s = mem_zeroed(1, sizeof *s);
     *out = s;
     if (!s)
         return RELUME_ENOMEM;
     s->model = model;
-    s->prefilter = prefilter;
+    s->prefiltered = prefiltered;
     s->cone = mem_zeroed((size_t)model->lights, sizeof *s->cone);
     if (s->cone)
         fill_cones(s);
@@ -83,7 +83,7 @@ void relume_btf_environment_weight(float rgb[3], const relume_btf_environment *s
     const vec3 axis =
         vec3_add(vec3_scale(f->right, cone->axis.x),
                  vec3_along(vec3_scale(f->up, cone->axis.y), f->normal, cone->axis.z));
-    relume_prefiltered_specular(rgb, sky->prefilter, axis, cone->exponent);
+    relume_prefiltered_maps_specular(rgb, sky->prefiltered, axis, cone->exponent);
     for (int c = 0; c < 3; c++)
         rgb[c] *= (float)cone->weight;
 }
@@ -92,10 +92,11 @@ struct relume_btf_oriented_light sky_ambient(const relume_btf_environment *sky,
                                              const struct relume_btf_frame *frame)
 {
     const relume_btf_fitted *m = sky->model;
-    struct relume_btf_oriented_light a = {.model = m, .prefilter = sky->prefilter, .frame = *frame};
+    struct relume_btf_oriented_light a = {
+        .model = m, .prefiltered = sky->prefiltered, .frame = *frame};
     // the mean under a lobe of exponent 1 is the integral of n.l E / pi
-    relume_prefiltered_specular(a.even[1], sky->prefilter, frame->normal, 1.0);
-    relume_prefiltered_diffuse(a.even[0], sky->prefilter, frame->normal);
+    relume_prefiltered_maps_specular(a.even[1], sky->prefiltered, frame->normal, 1.0);
+    relume_prefiltered_maps_diffuse(a.even[0], sky->prefiltered, frame->normal);
     for (int c = 0; c < 3 && m->without_cosine; c++)
         a.even[0][c] = a.even[1][c];
     return a;

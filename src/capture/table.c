@@ -78,11 +78,11 @@ void relume_table_destroy(relume_table **table)
     mem_free(t);
 }
 
-static relume_status open_near(relume_table *t, struct relume_transfer display, bool as_seen)
+static relume_status open_near(relume_table *t, struct relume_transfer display, bool keep_near)
 {
     const struct relume_manifest *m = &t->capture->draft.m;
     relume_status status = near_view_open(&t->lamps, t->capture, t->view, t->log);
-    if (!status && !as_seen)
+    if (!status && !keep_near)
         status = distant_create(&t->distant, &t->lamps, m->directions, t->threads);
     if (!status && display.curve != RELUME_CURVE_LINEAR) {
         t->display = mem_array(1, sizeof *t->display);
@@ -125,7 +125,7 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
     t->near = near_view_applies(capture, view);
     t->bytes = !t->near;
     if (!status && t->near) {
-        status = open_near(t, to, p.as_seen);
+        status = open_near(t, to, p.keep_near);
         to.curve = RELUME_CURVE_LINEAR;
     }
     while (!status && t->open < lights) {
@@ -246,8 +246,8 @@ static relume_status check_lights(relume_table *table)
     return RELUME_OK;
 }
 
-// `seen` may be NULL.
-static relume_status read(relume_table *table, int rows, float *out, float *seen)
+// `near` may be NULL.
+static relume_status read(relume_table *table, int rows, float *out, float *near)
 {
     const int lights = table->capture->draft.m.lights;
     if (rows < 1 || rows > table->capture->height - table->row)
@@ -262,8 +262,8 @@ static relume_status read(relume_table *table, int rows, float *out, float *seen
     repair(table);
     if (table->near)
         thread_for(table->threads, (size_t)lights, level_light, table);
-    if (seen)
-        memcpy(seen, out,
+    if (near)
+        memcpy(near, out,
                3 * (size_t)lights * (size_t)rows * (size_t)table->capture->width * sizeof *out);
     return table->distant ? distant_resample(table->distant, table->row - rows, rows, out)
                           : RELUME_OK;
@@ -274,9 +274,9 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
     return read(table, rows, out, NULL);
 }
 
-relume_status relume_table_read_seen(relume_table *table, int rows, float *out, float *seen)
+relume_status relume_table_read_near(relume_table *table, int rows, float *out, float *near)
 {
-    return read(table, rows, out, seen);
+    return read(table, rows, out, near);
 }
 
 bool relume_table_is_near(const relume_table *table)

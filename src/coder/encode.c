@@ -255,7 +255,7 @@ static relume_status write_band(struct encoding *e, size_t pixels,
 static relume_status read_band(struct encoding *e)
 {
     e->rows = e->end - e->row < BAND_ROWS ? e->end - e->row : BAND_ROWS;
-    return e->near ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
+    return e->near ? relume_table_read_near(e->table, e->rows, e->samples, e->own)
                    : relume_table_fetch(e->table, e->rows);
 }
 

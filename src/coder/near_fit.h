@@ -23,7 +23,7 @@ relume_status near_fit_create(struct near_fit **out, const relume_coder *coder,
 void near_fit_destroy(struct near_fit **fit);
 
 // Coefficients of rows `row` to `row + rows` of the view: planes[plane][rows][x] of the samples
-// that relume_table_read_seen gives: `own` as fit, `guess` carried over. RELUME_ENOMEM.
+// that relume_table_read_near gives: `own` as fit, `guess` carried over. RELUME_ENOMEM.
 relume_status near_fit_apply(struct near_fit *fit, int row, int rows, const float *own,
                              const float *guess, float *planes);
 // What the coefficients of one pixel say of its own samples: out[light][rgb].

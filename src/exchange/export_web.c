@@ -137,10 +137,10 @@ static relume_status measure_folder(const struct maker *m, const char *path,
 }
 
 // One attempt: the folder is written and looked at.
-static relume_status attempt(struct maker *m, struct web_folder *w, double aim, const char *path,
+static relume_status attempt(struct maker *m, struct web_folder *w, double wanted, const char *path,
                              struct relume_export_report *report)
 {
-    relume_status status = aim > 0.0 ? search(m, true, aim) : RELUME_OK;
+    relume_status status = wanted > 0.0 ? search(m, true, wanted) : RELUME_OK;
     if (!status)
         status = encode_whole(m, w);
     if (!status)
@@ -159,15 +159,15 @@ static relume_status make_folder(struct maker *m, const char *path,
                                  struct relume_export_report *report)
 {
     const double target = m->e->params->psnr_db;
-    double aim = target;
+    double wanted = target;
     for (int i = 0; i <= CORRECTIONS && !(i > 0 && m->step < 1.01 * LEAST_STEP); i++) {
         struct web_folder w = {.plan = &m->plan, .planes = &m->planes};
-        const relume_status status = attempt(m, &w, aim, path, report);
+        const relume_status status = attempt(m, &w, wanted, path, report);
         const bool reached = !(target > 0.0) || report->psnr_db >= target;
         web_folder_free(&w);
         if (status || reached)
             return status;
-        aim += target - report->psnr_db + 0.01;
+        wanted += target - report->psnr_db + 0.01;
     }
     return log_fail(m->e->log, RELUME_EUNFIT,
                     "%s: %g dB cannot be reached in this format; the best is %.2f dB", m->path,

@@ -39,7 +39,7 @@ struct relume_rect relume_camera_rect(int frame[2], const struct relume_pack_inf
                                       const struct relume_camera *camera)
 {
     const bool look = camera->framing == RELUME_FRAME_LOOK;
-    const bool square = look || camera->aim.field_of_view_deg != 0.0;
+    const bool square = look || camera->look_at.field_of_view_deg != 0.0;
     const int own[2] = {look ? 1024 : info->width, look ? 512 : info->height};
     relume_frame_size(&frame[0], &frame[1], own, camera);
     return square ? (struct relume_rect){0, 0, frame[0], frame[1]}

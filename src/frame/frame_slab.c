@@ -71,7 +71,7 @@ relume_status frame_eye(relume_renderer *r, const struct relume_camera *camera,
         return log_fail(r->params.log, RELUME_EINVAL, "an eye needs a light slab; this file is %s",
                         relume_projection_name(r->info->geometry.projection));
     relume_status status = renderer_check_depth(r);
-    if (!status && (r->info->slabs || relume_look_at_given(&camera->aim)))
+    if (!status && (r->info->slabs || relume_look_at_given(&camera->look_at)))
         return frame_around(r, camera, out);
     if (!status)
         status = check_focus(r);

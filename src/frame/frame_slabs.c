@@ -16,7 +16,7 @@ static relume_status choose_window(struct relume_window *window, const relume_re
         *window = relume_slab_window(relume_slab_set_geometry(slabs, camera->through - 1), eye);
         return RELUME_OK;
     }
-    if (relume_slab_set_window(window, slabs, eye, &camera->aim, camera->width, camera->height))
+    if (relume_slab_set_window(window, slabs, eye, &camera->look_at, camera->width, camera->height))
         return RELUME_OK;
     return log_fail(
         r->params.log, RELUME_EINVAL,

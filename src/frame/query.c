@@ -209,13 +209,14 @@ relume_status relume_renderer_pixel(float rgb[3], relume_renderer *r,
                                     const struct relume_camera *camera, double x, double y)
 {
     int frame[2];
-    struct relume_viewport sight;
+    struct relume_viewport viewport;
     struct relume_ray ray;
     (void)relume_camera_rect(frame, r->info, camera);
-    const relume_status status = relume_frame_viewport(&sight, r->pack, camera, frame[0], frame[1]);
+    const relume_status status =
+        relume_frame_viewport(&viewport, r->pack, camera, frame[0], frame[1]);
     if (status)
         return status;
-    relume_viewport_ray(&ray.eye, &ray.direction, &sight, x, y);
+    relume_viewport_ray(&ray.eye, &ray.direction, &viewport, x, y);
     return relume_renderer_rays((float(*)[3])rgb, r, &ray, 1);
 }
 

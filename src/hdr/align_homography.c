@@ -20,7 +20,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { COARSE = 80, FINE = 1400, ROUNDS = 15, BAND = 16, PARAMETERS = 8, LIKENESS = 256 };
+enum { COARSE = 80, FINE = 1400, ROUNDS = 15, BAND = 16, PARAMETERS = 8, SIMILARITY_SIZE = 256 };
 static const double small_step = 1e-2;  // pixels in the corners: then a level is done
 static const double per_move = 2.0;     // share of the correlation that half a picture costs
 static const double most_shift = 0.12;  // of the longer side, tried on the coarsest level
@@ -341,11 +341,11 @@ static double mean(const struct relume_image *image)
     return sum / (double)samples;
 }
 
-static double likeness_of(const struct relume_image *dark, const struct relume_image *bright)
+static double similarity_of(const struct relume_image *dark, const struct relume_image *bright)
 {
     struct relume_image clipped = {0}, luma[2] = {{0}, {0}}, structure[2] = {{0}, {0}};
     struct ecc e = {.parameters = 0, .h = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    double likeness = -1.0;
+    double similarity = -1.0;
     relume_status status = tones_match(&clipped, dark, bright, 1);
     if (!status)
         status = structure_luma(&luma[0], &clipped, 1);
@@ -355,7 +355,7 @@ static double likeness_of(const struct relume_image *dark, const struct relume_i
         status = prepare(&e, structure, &luma[0], &luma[1], 1);
     if (!status) {
         const struct sums s = sum_all(&e, 1);
-        likeness = correlation_of(&s, &e);
+        similarity = correlation_of(&s, &e);
     }
     mem_free(e.band);
     relume_image_destroy(&clipped);
@@ -363,24 +363,24 @@ static double likeness_of(const struct relume_image *dark, const struct relume_i
         relume_image_destroy(&luma[i]);
         relume_image_destroy(&structure[i]);
     }
-    return likeness > -1.0 ? likeness : (double)NAN;
+    return similarity > -1.0 ? similarity : (double)NAN;
 }
 
 // The darker one is given the tones of the brighter one: it saturates where that does.
 double relume_edge_correlation(const struct relume_image *a, const struct relume_image *b)
 {
     struct pyramid pa = {0}, pb = {0};
-    double likeness = NAN;
+    double similarity = NAN;
     if (a->width != b->width || a->height != b->height || a->channels != 3 || b->channels != 3)
-        return likeness;
-    relume_status status = pyramid_make(&pa, a, LIKENESS, 1);
+        return similarity;
+    relume_status status = pyramid_make(&pa, a, SIMILARITY_SIZE, 1);
     if (!status)
-        status = pyramid_make(&pb, b, LIKENESS, 1);
+        status = pyramid_make(&pb, b, SIMILARITY_SIZE, 1);
     if (!status) {
         const struct relume_image *x = &pa.level[pa.levels - 1], *y = &pb.level[pb.levels - 1];
-        likeness = mean(x) < mean(y) ? likeness_of(x, y) : likeness_of(y, x);
+        similarity = mean(x) < mean(y) ? similarity_of(x, y) : similarity_of(y, x);
     }
     pyramid_free(&pa);
     pyramid_free(&pb);
-    return likeness;
+    return similarity;
 }

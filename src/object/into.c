@@ -14,7 +14,7 @@ struct shadows {
     const relume_objects *o;
     const struct relume_image *places, *lone;
     struct relume_image *sum;
-    const struct relume_object_light *lamps;
+    const struct relume_object_light *light_samples;
     int n;
     bool none;
 };
@@ -47,16 +47,16 @@ static vec3 scene_normal(const struct relume_image *places, size_t x, size_t y)
     return vec3_length(normal) > 0.0 ? vec3_unit(normal) : vec3_of(0, 0, 0);
 }
 
-// What a lamp among several of one light counts for in a pixel: its value times n.l.
-static double counts_for(const struct relume_object_light *lamp, vec3 towards, vec3 normal)
+// What a light sample among several of one light counts for in a pixel: its value times n.l.
+static double counts_for(const struct relume_object_light *light_sample, vec3 towards, vec3 normal)
 {
-    const float *rgb = lamp->is_patch ? lamp->facet.rgb : lamp->light.rgb;
+    const float *rgb = light_sample->is_patch ? light_sample->patch.rgb : light_sample->light.rgb;
     const bool unknown = vec3_length(normal) == 0.0;
     return (double)(rgb[0] + rgb[1] + rgb[2]) *
            (unknown ? 1.0 : fmax(vec3_dot(normal, towards), 0.0));
 }
 
-// The share of a light that reaches a point. One lamp does or does not.
+// The share of a light that reaches a point. One light sample does or does not.
 static double share(const struct shadows *s, vec3 point, vec3 normal)
 {
     double sent = 0.0, arrived = 0.0;
@@ -64,9 +64,9 @@ static double share(const struct shadows *s, vec3 point, vec3 normal)
         float unused[3];
         double distance;
         vec3 towards;
-        const struct relume_object_light *lamp = &s->lamps[i];
-        (void)relume_object_light_at(&towards, unused, &distance, lamp, point);
-        const double value = s->n > 1 ? counts_for(lamp, towards, normal) : 1.0;
+        const struct relume_object_light *light_sample = &s->light_samples[i];
+        (void)relume_object_light_at(&towards, unused, &distance, light_sample, point);
+        const double value = s->n > 1 ? counts_for(light_sample, towards, normal) : 1.0;
         sent += value;
         if (value > 0.0 && objects_reached(s->o, point, vec3_of(0, 0, 0), towards, distance))
             arrived += value;
@@ -96,21 +96,21 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
                                int threads)
 {
     struct relume_image lone = {0};
-    struct relume_object_light *lamps;
-    relume_status status = relume_objects_lights(&lamps, &s->n, s->o, light, 1);
+    struct relume_object_light *light_samples;
+    relume_status status = relume_objects_lights(&light_samples, &s->n, s->o, light, 1);
     if (status)
         return status;
     status = relume_renderer_set_lights(renderer, light, 1);
     if (!status)
         status = renderer_bare_frame(&lone, renderer, camera);
-    s->lamps = lamps;
+    s->light_samples = light_samples;
     s->lone = &lone;
     if (!status)
         thread_for(threads, (size_t)lone.height, add_row, s);
     relume_image_destroy(&lone);
-    mem_free(lamps);
+    mem_free(light_samples);
     s->lone = NULL;
-    s->lamps = NULL;
+    s->light_samples = NULL;
     return status;
 }
 
@@ -118,15 +118,15 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
 
 struct layered {
     const relume_objects *o;
-    const struct relume_viewport *sight;
+    const struct relume_viewport *viewport;
     const struct relume_image *scene, *places;
     const struct lighting *lighting;
 };
 
-static struct ray ray_of(const struct relume_viewport *sight, double x, double y)
+static struct ray ray_of(const struct relume_viewport *viewport, double x, double y)
 {
     struct ray ray;
-    relume_viewport_ray(&ray.origin, &ray.direction, sight, x, y);
+    relume_viewport_ray(&ray.origin, &ray.direction, viewport, x, y);
     return ray;
 }
 
@@ -136,8 +136,8 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
     const size_t pixel = 3 * ((size_t)y * (size_t)l->scene->width + (size_t)x);
     const float *p = l->places->data + pixel;
     struct surface_point point;
-    const struct ray ray = ray_of(l->sight, x, y), right = ray_of(l->sight, x + step, y),
-                     below = ray_of(l->sight, x, y + step);
+    const struct ray ray = ray_of(l->viewport, x, y), right = ray_of(l->viewport, x + step, y),
+                     below = ray_of(l->viewport, x, y + step);
     const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), ray.origin);
     memcpy(rgb, l->scene->data + pixel, 3 * sizeof *rgb);
     if (!objects_hit(&point, l->o, ray.origin, ray.direction) ||
@@ -183,7 +183,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     const struct relume_render_params *params = &in->params;
     struct relume_image places = {0}, scene = {0};
     struct lighting lighting = {0};
-    struct relume_viewport sight;
+    struct relume_viewport viewport;
     int n;
     const struct relume_light *own = relume_renderer_lights(&n, renderer);
     struct relume_light *lights = mem_copy(own, (size_t)n, sizeof *lights);
@@ -191,13 +191,13 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     relume_status status =
         lights ? relume_renderer_places(&places, renderer, camera) : RELUME_ENOMEM;
     if (!status)
-        status = relume_frame_viewport(&sight, relume_renderer_pack(renderer), camera, places.width,
-                                       places.height);
+        status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), camera,
+                                       places.width, places.height);
     if (!status)
         status = lighting_create(&lighting, objects, lights, n, params);
     if (!status)
         status = light_scene(&scene, &places, objects, renderer, camera, lights, n, params);
-    const struct layered layers = {objects, &sight, &scene, &places, &lighting};
+    const struct layered layers = {objects, &viewport, &scene, &places, &lighting};
     if (!status)
         status = layer(out, &layers, params);
     if (status)

@@ -1,4 +1,4 @@
-// lighting.c - all lights as objects meet them: lamps, and environments on each material
+// lighting.c - all lights as objects meet them: light samples, and environments on each material
 #include "base/memory.h"
 #include "object/object.h"
 
@@ -21,20 +21,20 @@ static double rim_of(const relume_objects *o, int material)
 }
 
 // The maps of an earlier material whose lowest lights are the same, or new ones.
-static relume_status find_prefilter(relume_prefiltered **out, struct sky_light *sky,
-                                    const relume_objects *o, int material,
-                                    const struct relume_light *light, int threads)
+static relume_status find_prefiltered(relume_prefiltered_maps **out, struct sky_light *sky,
+                                      const relume_objects *o, int material,
+                                      const struct relume_light *light, int threads)
 {
     const double rim = rim_of(o, material);
     for (int i = 0; i < material; i++)
-        if (sky->prefilter[i] && rim_of(o, i) == rim) {
-            *out = sky->prefilter[i];
+        if (sky->prefiltered[i] && rim_of(o, i) == rim) {
+            *out = sky->prefiltered[i];
             return RELUME_OK;
         }
-    const relume_status status =
-        relume_prefiltered_create(&sky->prefilter[material], light,
-                                  relume_prefiltered_params(.rim = rim, .threads = threads));
-    *out = sky->prefilter[material];
+    const relume_status status = relume_prefiltered_maps_create(
+        &sky->prefiltered[material], light,
+        relume_prefiltered_maps_params(.rim = rim, .threads = threads));
+    *out = sky->prefiltered[material];
     return status;
 }
 
@@ -42,27 +42,28 @@ static relume_status make_sky(struct sky_light *sky, const relume_objects *o,
                               const struct relume_light *light, int threads)
 {
     const size_t materials = (size_t)o->info.materials;
-    sky->prefilter = mem_zeroed(materials, sizeof *sky->prefilter);
+    sky->prefiltered = mem_zeroed(materials, sizeof *sky->prefiltered);
     sky->sky = mem_zeroed(materials, sizeof *sky->sky);
-    relume_status status = sky->prefilter && sky->sky ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = sky->prefiltered && sky->sky ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < o->info.materials && !status; i++) {
-        relume_prefiltered *prefilter;
+        relume_prefiltered_maps *prefiltered;
         if (!is_shown(o, i))
             continue;
-        status = find_prefilter(&prefilter, sky, o, i, light, threads);
+        status = find_prefiltered(&prefiltered, sky, o, i, light, threads);
         if (!status)
-            status = relume_btf_environment_create(&sky->sky[i], model_of(o, i), prefilter);
+            status = relume_btf_environment_create(&sky->sky[i], model_of(o, i), prefiltered);
     }
     return status;
 }
 
 // Lamps of a light follow one another, and lights in their order.
-static void find_lamps(struct sky_light *sky, const struct lighting *l, int light)
+static void find_samples(struct sky_light *sky, const struct lighting *l, int light)
 {
-    while (sky->first < l->lamps && l->lamp[sky->first].number < light)
+    while (sky->first < l->light_samples && l->light_sample[sky->first].number < light)
         sky->first++;
-    while (sky->first + sky->lamps < l->lamps && l->lamp[sky->first + sky->lamps].number == light)
-        sky->lamps++;
+    while (sky->first + sky->light_samples < l->light_samples &&
+           l->light_sample[sky->first + sky->light_samples].number == light)
+        sky->light_samples++;
 }
 
 relume_status lighting_create(struct lighting *out, const relume_objects *o,
@@ -71,7 +72,8 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
 {
     *out = (struct lighting){.materials = o->info.materials,
                              .no_shadows = params && params->no_shadows};
-    relume_status status = relume_objects_lights(&out->lamp, &out->lamps, o, lights, n);
+    relume_status status =
+        relume_objects_lights(&out->light_sample, &out->light_samples, o, lights, n);
     if (!status) {
         out->sky = mem_zeroed((size_t)n, sizeof *out->sky);
         status = out->sky ? RELUME_OK : RELUME_ENOMEM;
@@ -80,7 +82,7 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
         if (lights[i].kind != RELUME_LIGHT_ENVIRONMENT)
             continue;
         struct sky_light *sky = &out->sky[out->skies++];
-        find_lamps(sky, out, i);
+        find_samples(sky, out, i);
         status = make_sky(sky, o, &lights[i], params ? params->threads : 0);
     }
     return status;
@@ -89,14 +91,14 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
 void lighting_destroy(struct lighting *l)
 {
     for (int i = 0; i < l->skies; i++) {
-        for (int k = 0; k < l->materials && l->sky[i].prefilter && l->sky[i].sky; k++) {
+        for (int k = 0; k < l->materials && l->sky[i].prefiltered && l->sky[i].sky; k++) {
             relume_btf_environment_destroy(&l->sky[i].sky[k]);
-            relume_prefiltered_destroy(&l->sky[i].prefilter[k]);
+            relume_prefiltered_maps_destroy(&l->sky[i].prefiltered[k]);
         }
-        mem_free(l->sky[i].prefilter);
+        mem_free(l->sky[i].prefiltered);
         mem_free(l->sky[i].sky);
     }
     mem_free(l->sky);
-    mem_free(l->lamp);
-    *l = (struct lighting){.lamp = NULL};
+    mem_free(l->light_sample);
+    *l = (struct lighting){.light_sample = NULL};
 }

@@ -71,13 +71,13 @@ bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towa
 
 // An environment on each of the materials; what is not shown has none.
 struct sky_light {
-    int first, lamps;
-    relume_prefiltered **prefilter;  // [materials]; NULL also where it is that of another
-    relume_btf_environment **sky;    // [materials]
+    int first, light_samples;
+    relume_prefiltered_maps **prefiltered;  // [materials]; NULL also where it is that of another
+    relume_btf_environment **sky;           // [materials]
 };
 struct lighting {
-    struct relume_object_light *lamp;
-    int lamps;
+    struct relume_object_light *light_sample;
+    int light_samples;
     struct sky_light *sky;
     int skies;
     int materials;

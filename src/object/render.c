@@ -157,13 +157,13 @@ static void ask(float rgb[3], const relume_objects *o, const struct surface_poin
         relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, ray, rgb);
 }
 
-static void add_lamp(float rgb[3], const relume_objects *o, const struct surface_point *p,
-                     vec3 view, const struct relume_object_light *lamp, bool no_shadows)
+static void add_sample(float rgb[3], const relume_objects *o, const struct surface_point *p,
+                       vec3 view, const struct relume_object_light *light_sample, bool no_shadows)
 {
     float arriving[3], value[3];
     double distance;
     vec3 towards;
-    if (!relume_object_light_at(&towards, arriving, &distance, lamp, p->position))
+    if (!relume_object_light_at(&towards, arriving, &distance, light_sample, p->position))
         return;
     const vec3 light = local(p, towards);
     if (!(light.z > 0.0))
@@ -175,20 +175,21 @@ static void add_lamp(float rgb[3], const relume_objects *o, const struct surface
         rgb[c] += arriving[c] * value[c];
 }
 
-// Of what the lamps send, each by its cosine, the part that arrives.
+// Of what the light samples send, each by its cosine, the part that arrives.
 static void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
                          const struct lighting *l, const struct sky_light *sky)
 {
     float sent[3] = {0.0f, 0.0f, 0.0f}, arrived[3] = {0.0f, 0.0f, 0.0f};
-    for (int i = sky->first; i < sky->first + sky->lamps && !l->no_shadows; i++) {
-        const struct relume_light *lamp = &l->lamp[i].light;
-        const float cosine = (float)vec3_dot(lamp->direction, p->normal);
+    for (int i = sky->first; i < sky->first + sky->light_samples && !l->no_shadows; i++) {
+        const struct relume_light *light_sample = &l->light_sample[i].light;
+        const float cosine = (float)vec3_dot(light_sample->direction, p->normal);
         if (!(cosine > 0.0f))
             continue;
-        const bool reached = objects_reached(o, p->lifted, p->geometric, lamp->direction, INFINITY);
+        const bool reached =
+            objects_reached(o, p->lifted, p->geometric, light_sample->direction, INFINITY);
         for (int c = 0; c < 3; c++) {
-            sent[c] += cosine * lamp->rgb[c];
-            arrived[c] += reached ? cosine * lamp->rgb[c] : 0.0f;
+            sent[c] += cosine * light_sample->rgb[c];
+            arrived[c] += reached ? cosine * light_sample->rgb[c] : 0.0f;
         }
     }
     for (int c = 0; c < 3; c++)
@@ -214,9 +215,9 @@ void objects_shade(float rgb[3], const relume_objects *o, const struct surface_p
     vec3 view = local(p, towards_eye);
     view = vec3_unit(vec3_of(view.x, view.y, fmax(view.z, LOWEST)));
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int i = 0; i < lighting->lamps; i++)
-        if (!lighting->lamp[i].is_sky)
-            add_lamp(rgb, o, p, view, &lighting->lamp[i], lighting->no_shadows);
+    for (int i = 0; i < lighting->light_samples; i++)
+        if (!lighting->light_sample[i].is_sky)
+            add_sample(rgb, o, p, view, &lighting->light_sample[i], lighting->no_shadows);
     for (int i = 0; i < lighting->skies; i++)
         add_sky(rgb, o, p, view, lighting, &lighting->sky[i]);
 }
@@ -321,16 +322,16 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
 }
 
 bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
-                           struct relume_vec3 eye, const struct relume_look_at *aim, int width,
+                           struct relume_vec3 eye, const struct relume_look_at *look_at, int width,
                            int height)
 {
     const vec3 min = objects->info.min, max = objects->info.max;
     const vec3 middle = vec3_scale(vec3_add(min, max), 0.5);
     const double radius = 0.5 * vec3_length(vec3_sub(max, min));
-    const vec3 at = aim && aim->aimed ? aim->at : middle;
+    const vec3 at = look_at && look_at->aimed ? look_at->at : middle;
     const vec3 ahead = vec3_sub(at, eye);
     const double distance = vec3_length(ahead);
-    vec3 up = aim ? aim->up : vec3_of(0, 0, 0);
+    vec3 up = look_at ? look_at->up : vec3_of(0, 0, 0);
     if (!(distance > 0.0) || !isfinite(distance))
         return false;
     if (!(vec3_length(up) > 0.0))
@@ -344,7 +345,7 @@ bool relume_objects_window(struct relume_window *out, const relume_objects *obje
     // half the window at distance 1, along the shorter side; the ball about the objects fills it
     const double apart = fmax(vec3_length(vec3_sub(middle, eye)), 1.2 * radius);
     const double fits = 1.05 * radius / sqrt(apart * apart - radius * radius);
-    const double angle_deg = aim ? aim->field_of_view_deg : 0.0;
+    const double angle_deg = look_at ? look_at->field_of_view_deg : 0.0;
     const double pixel = angle_deg > 0.0 ? tan(angle_deg * M_PI / 360.0) / width
                                          : fits / (width < height ? width : height);
     const vec3 half_right = vec3_scale(right, distance * pixel * width);

@@ -1,4 +1,4 @@
-// area.c - area lights as sums over facets
+// area.c - area lights as sums over patches
 //
 // A point sees the area's radiance E as E / pi times the integral of basis x cos / distance^2 over
 // the area. Gauss-Legendre nodes converge to it like rho^-2n, where rho = exp(asinh(d / s)) for
@@ -44,7 +44,7 @@ static void gauss_legendre(double *node, double *weight, int n)
     }
 }
 
-static struct relume_light_patch facet(const struct relume_light *area, double a, double b,
+static struct relume_light_patch patch(const struct relume_light *area, double a, double b,
                                        double share)
 {
     const vec3 across = vec3_cross(area->u, area->v);
@@ -67,9 +67,9 @@ void relume_light_patches(struct relume_light_patch *out, const struct relume_li
         for (int j = 0; j < side; j++, out++) {
             const double r = sqrt(0.5 + 0.5 * node[i]), phi = 2.0 * M_PI * (j + 0.5) / side;
             if (area->disc)
-                *out = facet(area, r * cos(phi), r * sin(phi), weight[i] * M_PI / (2.0 * side));
+                *out = patch(area, r * cos(phi), r * sin(phi), weight[i] * M_PI / (2.0 * side));
             else
-                *out = facet(area, node[i], node[j], weight[i] * weight[j]);
+                *out = patch(area, node[i], node[j], weight[i] * weight[j]);
         }
 }
 

@@ -230,14 +230,14 @@ bool relume_light_at(struct relume_vec3 *towards, float rgb[3], const struct rel
 }
 
 bool relume_light_patch_at(struct relume_vec3 *towards, float rgb[3],
-                           const struct relume_light_patch *facet, struct relume_vec3 point)
+                           const struct relume_light_patch *patch, struct relume_vec3 point)
 {
     double distance;
-    if (!ray_to(towards, &distance, facet->position, point))
+    if (!ray_to(towards, &distance, patch->position, point))
         return false;
-    const double cosine = -vec3_dot(*towards, facet->normal);
+    const double cosine = -vec3_dot(*towards, patch->normal);
     const float f = (float)(cosine / (distance * distance));
     for (int c = 0; c < 3; c++)
-        rgb[c] = facet->rgb[c] * f;
+        rgb[c] = patch->rgb[c] * f;
     return cosine > 0.0;
 }

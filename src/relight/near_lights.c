@@ -17,17 +17,17 @@ enum { LANES = 64, LEAST_LANES = 4, MOST_FLOATS = 3 * RELUME_MOST_COEFFICIENTS *
 
 // ---------------------------------------------------------------- sources
 
-static int facet_side(const struct near_lights *near, const struct relume_light *area)
+static int patch_side(const struct near_lights *near, const struct relume_light *area)
 {
     return relume_light_patch_side(area, relume_area_distance(area, near->surface));
 }
 
 static void cut(struct near_source *to, const struct relume_light *area, int side)
 {
-    struct relume_light_patch facets[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
-    relume_light_patches(facets, area, side);
+    struct relume_light_patch patches[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
+    relume_light_patches(patches, area, side);
     for (int i = 0; i < side * side; i++)
-        to[i].facet = facets[i];
+        to[i].patch = patches[i];
 }
 
 relume_status near_lights_create(struct near_lights *near, const struct relume_light *lights, int n)
@@ -36,7 +36,7 @@ relume_status near_lights_create(struct near_lights *near, const struct relume_l
     size_t count = 0;
     for (int i = 0; side && i < n; i++) {
         if (lights[i].kind == RELUME_LIGHT_AREA)
-            side[i] = facet_side(near, &lights[i]);
+            side[i] = patch_side(near, &lights[i]);
         else
             side[i] = relume_light_is_near(lights[i].kind);
         count += (size_t)side[i] * (size_t)side[i];
@@ -72,7 +72,7 @@ static bool reaches(vec3 *towards, float rgb[3], const struct near_lights *near,
 {
     if (e->light)
         return relume_light_at(towards, rgb, e->light, point);
-    return relume_light_patch_at(towards, rgb, &e->facet, point) && is_captured(near, *towards);
+    return relume_light_patch_at(towards, rgb, &e->patch, point) && is_captured(near, *towards);
 }
 
 // Where the light is taken from, as with directional lights, and its share of what reaches a point.

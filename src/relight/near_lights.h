@@ -6,10 +6,10 @@
 
 #include <relume/relight.h>
 
-// A point-like light, or a facet of an area light.
+// A point-like light, or a patch of an area light.
 struct near_source {
     const struct relume_light *light;  // or NULL
-    struct relume_light_patch facet;
+    struct relume_light_patch patch;
 };
 
 struct near_lights {

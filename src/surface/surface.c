@@ -175,7 +175,7 @@ struct blend {
 static struct blend blend_of(const relume_btf_surface *s, const struct relume_btf_ray *ray)
 {
     const relume_btf_fitted *m = s->level[0].model;
-    struct blend b = {.at = {.view = relume_direction_mesh_at(m->view_dome, ray->view),
+    struct blend b = {.at = {.view = relume_direction_mesh_at(m->view_mesh, ray->view),
                              .v = ray->view,
                              .l = ray->light},
                       .ambient = ray->ambient};
@@ -184,7 +184,7 @@ static struct blend blend_of(const relume_btf_surface *s, const struct relume_bt
     else if (ray->sky)
         b.summed = ray->sky;
     else if (!ray->ambient)
-        b.at.light = relume_direction_mesh_at(m->light_dome, ray->light);
+        b.at.light = relume_direction_mesh_at(m->light_mesh, ray->light);
     return b;
 }
 

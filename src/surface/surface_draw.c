@@ -18,7 +18,7 @@ struct drawing {
     struct lens lens;
     const struct relume_light *lights;
     relume_btf_oriented_light **ambient;  // of each light, NULL: no environment
-    relume_prefiltered **prefilter;
+    relume_prefiltered_maps **prefiltered;
     int count;
     double unit;           // texels of a world unit
     double width, height;  // of the surface, texels
@@ -172,21 +172,21 @@ static relume_status make_ambient(struct drawing *d, int i, const struct relume_
     // the surface lies in the world as in its own frame
     const struct relume_btf_frame frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     const relume_btf_fitted *model = d->surface->level[0].model;
-    const relume_status status = relume_prefiltered_create(
-        &d->prefilter[i], &d->lights[i],
-        relume_prefiltered_params(.log = p->log, .rim = relume_btf_fitted_info(model)->rim,
-                                  .threads = p->threads));
+    const relume_status status = relume_prefiltered_maps_create(
+        &d->prefiltered[i], &d->lights[i],
+        relume_prefiltered_maps_params(.log = p->log, .rim = relume_btf_fitted_info(model)->rim,
+                                       .threads = p->threads));
     return status ? status
                   : relume_btf_oriented_light_create(
-                        &d->ambient[i], model, d->prefilter[i], &frame,
+                        &d->ambient[i], model, d->prefiltered[i], &frame,
                         relume_btf_oriented_light_params(.own_maps = true, .threads = p->threads));
 }
 
 static relume_status make_ambients(struct drawing *d, const struct relume_btf_draw_params *p)
 {
     d->ambient = mem_zeroed((size_t)d->count, sizeof *d->ambient);
-    d->prefilter = mem_zeroed((size_t)d->count, sizeof *d->prefilter);
-    relume_status status = d->ambient && d->prefilter ? RELUME_OK : RELUME_ENOMEM;
+    d->prefiltered = mem_zeroed((size_t)d->count, sizeof *d->prefiltered);
+    relume_status status = d->ambient && d->prefiltered ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < d->count && !status; i++)
         if (d->lights[i].kind == RELUME_LIGHT_ENVIRONMENT)
             status = make_ambient(d, i, p);
@@ -195,12 +195,12 @@ static relume_status make_ambients(struct drawing *d, const struct relume_btf_dr
 
 static void free_ambients(struct drawing *d)
 {
-    for (int i = 0; i < d->count && d->ambient && d->prefilter; i++) {
+    for (int i = 0; i < d->count && d->ambient && d->prefiltered; i++) {
         relume_btf_oriented_light_destroy(&d->ambient[i]);
-        relume_prefiltered_destroy(&d->prefilter[i]);
+        relume_prefiltered_maps_destroy(&d->prefiltered[i]);
     }
     mem_free(d->ambient);
-    mem_free(d->prefilter);
+    mem_free(d->prefiltered);
 }
 
 relume_status relume_btf_draw(struct relume_image *image, const relume_btf_surface *surface,

@@ -118,28 +118,28 @@ static double azimuth_column(const struct panorama *p, vec3 d)
 
 static vec3 cylinder_ray(const struct panorama *p, double x, double y)
 {
-    const struct relume_geometry *g = p->geometry;
+    const struct relume_geometry *c = p->geometry;
     const int rows = panorama_rows(p);
-    if (g->disc && y >= rows)
+    if (c->disc && y >= rows)
         return disc_ray(p, x, y);
-    const double h = g->v_max - y / rows * (g->v_max - g->v_min);
+    const double h = c->v_max - y / rows * (c->v_max - c->v_min);
     return vec3_unit(azimuth_ray(p, x, 1.0, h));
 }
 
 static bool cylinder_pixel(double xy[2], const struct panorama *p, vec3 d)
 {
-    const struct relume_geometry *g = p->geometry;
+    const struct relume_geometry *c = p->geometry;
     const double h = d.y / hypot(d.x, d.z);
-    const double slack = 1e-9 * (g->v_max - g->v_min);  // computed directions on the rim
-    const bool shown = h >= g->v_min - slack && h <= g->v_max + slack;
+    const double slack = 1e-9 * (c->v_max - c->v_min);  // computed directions on the rim
+    const bool shown = h >= c->v_min - slack && h <= c->v_max + slack;
     const int rows = panorama_rows(p);
-    if (!shown && g->disc) {
+    if (!shown && c->disc) {
         disc_pixel(xy, p, d);
         return true;
     }
     xy[0] = azimuth_column(p, d);
-    xy[1] = fmin(fmax((g->v_max - h) / (g->v_max - g->v_min), 0.0), 1.0) * rows;
-    if (g->disc)  // the disc's square begins at the last row's end
+    xy[1] = fmin(fmax((c->v_max - h) / (c->v_max - c->v_min), 0.0), 1.0) * rows;
+    if (c->disc)  // the disc's square begins at the last row's end
         xy[1] = fmin(xy[1], nextafter(rows, 0.0));
     return shown;
 }
@@ -152,14 +152,14 @@ void panorama_cylinder_texel(float rgb[3], const struct panorama *p, int face, i
 
 static double cylinder_texels(const struct panorama *p, vec3 d, vec3 step)
 {
-    const struct relume_geometry *g = p->geometry;
+    const struct relume_geometry *c = p->geometry;
     const double square = d.x * d.x + d.z * d.z, across = sqrt(square);
     const double h = d.y / across;
-    if (g->disc && !(h >= g->v_min && h <= g->v_max))
+    if (c->disc && !(h >= c->v_min && h <= c->v_max))
         return disc_texels(p, d, step);
     const double turn = (d.x * step.z - d.z * step.x) / square;
     const double rise = step.y / across - h * (d.x * step.x + d.z * step.z) / square;
-    return hypot(turn * p->width / (2.0 * M_PI), rise * panorama_rows(p) / (g->v_max - g->v_min));
+    return hypot(turn * p->width / (2.0 * M_PI), rise * panorama_rows(p) / (c->v_max - c->v_min));
 }
 
 // ---------------------------------------------------------------- sphere
@@ -303,18 +303,18 @@ static bool has_direction(vec3 d)
     return isfinite(d.x) && isfinite(d.y) && isfinite(d.z) && (d.x != 0 || d.y != 0 || d.z != 0);
 }
 
-// A look, with what is the same in all its pixels.
-struct gaze {
+// A camera, with what is the same in all its pixels.
+struct camera {
     vec3 right, up, ahead;
     bool stereographic;
     double pixel;  // of the plane before the eye, at distance 1
     double half_width, half_height;
 };
 
-static struct gaze gaze_of(struct relume_pan_tilt look, int width, int height)
+static struct camera camera_of(struct relume_pan_tilt look, int width, int height)
 {
     const double tilt = look.tilt_deg * M_PI / 180.0, pan = look.pan_deg * M_PI / 180.0;
-    return (struct gaze){
+    return (struct camera){
         .right = {cos(pan), 0.0, sin(pan)},
         .up = {-sin(tilt) * sin(pan), cos(tilt), sin(tilt) * cos(pan)},
         .ahead = {cos(tilt) * sin(pan), sin(tilt), -cos(tilt) * cos(pan)},
@@ -326,32 +326,32 @@ static struct gaze gaze_of(struct relume_pan_tilt look, int width, int height)
 }
 
 // Not of unit length. Stereographic: seen from the far end of a sphere's axis.
-static vec3 gaze_way(const struct gaze *g, double x, double y)
+static vec3 camera_way(const struct camera *c, double x, double y)
 {
-    const double a = (x - g->half_width) * g->pixel, b = (g->half_height - y) * g->pixel;
-    const double depth = g->stereographic ? 0.5 * (1.0 - a * a - b * b) : 1.0;
-    return vec3_along(vec3_along(vec3_scale(g->right, a), g->up, b), g->ahead, depth);
+    const double a = (x - c->half_width) * c->pixel, b = (c->half_height - y) * c->pixel;
+    const double depth = c->stereographic ? 0.5 * (1.0 - a * a - b * b) : 1.0;
+    return vec3_along(vec3_along(vec3_scale(c->right, a), c->up, b), c->ahead, depth);
 }
 
-static vec3 gaze_ray(const struct gaze *g, double x, double y)
+static vec3 camera_ray(const struct camera *c, double x, double y)
 {
-    return vec3_unit(gaze_way(g, x, y));
+    return vec3_unit(camera_way(c, x, y));
 }
 
 // How that goes on over a pixel, to the right and down.
-static void gaze_steps(vec3 step[2], const struct gaze *g, double x, double y)
+static void camera_steps(vec3 step[2], const struct camera *c, double x, double y)
 {
-    const double bent = g->stereographic ? g->pixel : 0.0;
-    const double a = (x - g->half_width) * bent, b = (g->half_height - y) * bent;
-    step[0] = vec3_scale(vec3_sub(g->right, vec3_scale(g->ahead, a)), g->pixel);
-    step[1] = vec3_scale(vec3_sub(vec3_scale(g->ahead, b), g->up), g->pixel);
+    const double bent = c->stereographic ? c->pixel : 0.0;
+    const double a = (x - c->half_width) * bent, b = (c->half_height - y) * bent;
+    step[0] = vec3_scale(vec3_sub(c->right, vec3_scale(c->ahead, a)), c->pixel);
+    step[1] = vec3_scale(vec3_sub(vec3_scale(c->ahead, b), c->up), c->pixel);
 }
 
 struct relume_vec3 relume_pan_tilt_ray(struct relume_pan_tilt look, int width, int height, double x,
                                        double y)
 {
-    const struct gaze g = gaze_of(look, width, height);
-    return gaze_ray(&g, x, y);
+    const struct camera c = camera_of(look, width, height);
+    return camera_ray(&c, x, y);
 }
 
 struct relume_vec3 relume_panorama_ray(const struct relume_geometry *geometry, int width,
@@ -413,7 +413,7 @@ bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry
 
 struct frame {
     const struct relume_image *out;
-    struct gaze gaze;
+    struct camera camera;
     struct panorama panorama;
     const struct layout *layout;
     float nothing;
@@ -423,10 +423,10 @@ struct frame {
 // The mean of what a pixel covers.
 static void draw_pixel(float rgb[3], const struct frame *f, double x, double y)
 {
-    const vec3 way = gaze_way(&f->gaze, x, y);
+    const vec3 way = camera_way(&f->camera, x, y);
     double texels[2] = {0.0, 0.0}, sum[3] = {0.0, 0.0, 0.0};
     vec3 step[2];
-    gaze_steps(step, &f->gaze, x, y);
+    camera_steps(step, &f->camera, x, y);
     for (int k = 0; k < 2 && !f->one; k++)
         texels[k] = f->layout->texels(&f->panorama, way, step[k]);
     const struct footprint across = footprint_of(texels[0], FOOTPRINT_MOST);
@@ -440,9 +440,9 @@ static void draw_pixel(float rgb[3], const struct frame *f, double x, double y)
     for (int j = 0; j < down.count; j++)
         for (int i = 0; i < across.count; i++) {
             float part[3];
-            sample(
-                part, &f->panorama, f->layout,
-                gaze_ray(&f->gaze, x + footprint_place(across, i), y + footprint_place(down, j)));
+            sample(part, &f->panorama, f->layout,
+                   camera_ray(&f->camera, x + footprint_place(across, i),
+                              y + footprint_place(down, j)));
             for (int c = 0; c < 3; c++)
                 sum[c] += (double)part[c];
         }
@@ -471,7 +471,7 @@ relume_status relume_panorama_frame(struct relume_image *out,
     const struct relume_view_params p = PARAMS(relume_view_params, params);
     struct frame frame = {
         .out = out,
-        .gaze = gaze_of(look, out->width, out->height),
+        .camera = camera_of(look, out->width, out->height),
         .panorama = {geometry, image->width, image->height, image->data, p.filter},
         .layout = layout,
         .nothing = p.nothing,

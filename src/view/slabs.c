@@ -147,15 +147,15 @@ static vec3 choose_up(vec3 wanted, vec3 ahead)
     return steep ? vec3_of(0, 0, ahead.y < 0.0 ? -1.0 : 1.0) : vec3_of(0, 1, 0);
 }
 
-bool relume_look_at_given(const struct relume_look_at *aim)
+bool relume_look_at_given(const struct relume_look_at *look_at)
 {
-    return aim->aimed || aim->field_of_view_deg != 0.0 || !is_zero(aim->up);
+    return look_at->aimed || look_at->field_of_view_deg != 0.0 || !is_zero(look_at->up);
 }
 
 bool relume_slab_set_window(struct relume_window *out, const relume_slab_set *slabs, vec3 eye,
-                            const struct relume_look_at *aim, int width, int height)
+                            const struct relume_look_at *look_at, int width, int height)
 {
-    const struct relume_look_at a = aim ? *aim : (struct relume_look_at){0};
+    const struct relume_look_at a = look_at ? *look_at : (struct relume_look_at){0};
     const vec3 at = a.aimed ? a.at : relume_slab_set_middle(slabs);
     const double distance = vec3_length(vec3_sub(at, eye));
     const vec3 ahead = vec3_unit(vec3_sub(at, eye));

@@ -46,7 +46,7 @@ struct trial {
     const relume_btf_fitted *model;
     const relume_btf_surface *surface;
     const struct relume_light *light;
-    const relume_prefiltered *prefilter;
+    const relume_prefiltered_maps *prefiltered;
     const relume_btf_environment *sky;
     struct relume_btf_frame frame;
     struct relume_vec3 view;
@@ -83,7 +83,7 @@ static void brute(const struct trial *t, double rgb[TEXELS][3])
 static void ambient(const struct trial *t, bool own, double rgb[TEXELS][3])
 {
     relume_btf_oriented_light *a;
-    must(relume_btf_oriented_light_create(&a, t->model, t->prefilter, &t->frame,
+    must(relume_btf_oriented_light_create(&a, t->model, t->prefiltered, &t->frame,
                                           relume_btf_oriented_light_params(.own_maps = own)),
          "ambient");
     for (int k = 0; k < TEXELS; k++) {
@@ -152,7 +152,7 @@ static void run(const char *sky, const char *folder)
     relume_environment *e;
     relume_btf_fitted *model;
     relume_btf_surface *surface;
-    relume_prefiltered *prefilter;
+    relume_prefiltered_maps *prefiltered;
     relume_btf_environment *any_way;
     must(relume_image_load(&map, sky, NULL), sky);
     must(relume_environment_create(&e, &map, NULL), sky);
@@ -161,15 +161,16 @@ static void run(const char *sky, const char *folder)
     const struct relume_btf_fitted_info *info = relume_btf_fitted_info(model);
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
-    must(relume_prefiltered_create(&prefilter, &light, relume_prefiltered_params(.rim = info->rim)),
+    must(relume_prefiltered_maps_create(&prefiltered, &light,
+                                        relume_prefiltered_maps_params(.rim = info->rim)),
          sky);
-    must(relume_btf_environment_create(&any_way, model, prefilter), folder);
+    must(relume_btf_environment_create(&any_way, model, prefiltered), folder);
     struct trial t = {
-        model,       surface,     &light, prefilter, any_way, frame_of(0), unit(0.28, 0, 0.96),
+        model,       surface,     &light, prefiltered, any_way, frame_of(0), unit(0.28, 0, 0.96),
         info->width, info->height};
     judge(&t, sky, folder);
     relume_btf_environment_destroy(&any_way);
-    relume_prefiltered_destroy(&prefilter);
+    relume_prefiltered_maps_destroy(&prefiltered);
     relume_btf_surface_destroy(&surface);
     relume_btf_fitted_destroy(&model);
     relume_environment_destroy(&e);

@@ -69,19 +69,19 @@ static void measure(struct objects_drawer *t, int width, int height)
     const struct relume_window window = {{0, 0, 4}, {-0.9, 0.9, 0}, {1.8, 0, 0}, {0, -1.8, 0}};
     const struct relume_light light = {.direction = {-0.4, 0.5, 0.8}, .rgb = {1, 1, 1}};
     const struct app_rectangle all = {0, 0, width, height};
-    struct sight sight;
+    struct frame_projection projection;
     GLuint array;
     gl->GenVertexArrays(1, &array);
     gl->BindVertexArray(array);
     need(objects_drawer_light(t, &light, 1));
-    if (!sight_of_window(&sight, &window, all, width, height, info->min, info->max))
+    if (!frame_projection_of_window(&projection, &window, all, width, height, info->min, info->max))
         exit(1);
     for (int m = 0; m < info->materials; m++) {
         struct times b = {.n = 0};
         const double end = now_s() + 2;
         for (int i = -1; i < FRAMES && (b.n < 2 || now_s() < end); i++) {
             const double start = now_s();
-            need(objects_drawer_shade(t, &sight, width, height, m));
+            need(objects_drawer_shade(t, &projection, width, height, m));
             gl->Finish();
             if (i >= 0)
                 times_add(&b, now_s() - start);

@@ -78,7 +78,7 @@ static void use(relume_pack *pack)
         {.framing = RELUME_FRAME_EYE, .eye = {0.5, 0.1, 3.0}, .width = 7, .height = 5},
         {.framing = RELUME_FRAME_EYE,
          .eye = {0.5, 0.1, 3.0},
-         .aim = {.field_of_view_deg = 40.0},
+         .look_at = {.field_of_view_deg = 40.0},
          .width = 7,
          .height = 5},
         {.framing = RELUME_FRAME_LOOK, .width = 9, .height = 4, .look = {30.0, 20.0, 1.5}},

@@ -4,7 +4,7 @@
 #include "fuzz.h"
 
 #include "app/observer.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "app/script.h"
 
 static const char *const words[] = {
@@ -30,7 +30,8 @@ static relume_status host_light(void *user, const char *spec, bool replace,
     if (made && replace)
         app->now.lights = 0;
     // pictures of a light are gone with the rig
-    if (made && made->light.kind < RELUME_LIGHT_SLIDE && !lamps_add(&app->now, &made->light, -1))
+    if (made && made->light.kind < RELUME_LIGHT_SLIDE &&
+        !light_list_add(&app->now, &made->light, -1))
         status = RELUME_ENOMEM;
     relume_rig_destroy(&rig);
     return status;

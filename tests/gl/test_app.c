@@ -5,10 +5,10 @@
 #include "app/frame_request.h"
 #include "app/gizmo.h"
 #include "app/keys.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "app/script.h"
 #include "program/say.h"
-#include "draw/lamps_seen.h"
+#include "draw/visible_lights.h"
 #include "owned.h"
 #include "session/options.h"
 #include "window/context.h"
@@ -381,10 +381,10 @@ static void the_light_turns_as_seen_in_a_panorama(void **state)
     (void)state;
     OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     app.now.camera.look = (struct relume_pan_tilt){90, 30, 1, false};
-    const struct relume_vec3 before = app_seen_light(&app, 0);
+    const struct relume_vec3 before = app_light_direction(&app, 0);
     assert_float_equal(before.x, 1, 1e-12);  // looking to +x, the light at +z is on the right
     drag(&app, APP_RIGHT, -256, 0);          // a quarter turn to the left: now behind the viewer
-    const struct relume_vec3 after = app_seen_light(&app, 0);
+    const struct relume_vec3 after = app_light_direction(&app, 0);
     assert_float_equal(after.x, 0, 1e-12);
     assert_float_equal(after.y, 0, 1e-12);
     assert_float_equal(after.z, 1, 1e-12);
@@ -434,7 +434,8 @@ static void escape_never_quits_unasked(void **state)
     assert_true(key(&app, APP_KEY_ESCAPE) && app.asks && !app.quit);
     assert_true(key(&app, APP_KEY_ESCAPE) && !app.asks && !app.quit);
     key(&app, APP_KEY_ESCAPE);
-    assert_true(key(&app, 'z') && !app.asks && app.now.lamp[0].solo);  // whoever goes on stays
+    assert_true(key(&app, 'z') && !app.asks &&
+                app.now.light_state[0].solo);  // whoever goes on stays
     assert_false(app.quit);
     key(&app, APP_KEY_ESCAPE);
     key(&app, APP_KEY_ENTER);
@@ -705,7 +706,7 @@ static relume_status host_light(void *user, const char *spec, bool replace,
     if (!status && replace)
         app->now.lights = 0;
     if (!status)
-        assert_true(lamps_add(&app->now, &relume_rig_entry(rig, 0)->light, -1));
+        assert_true(light_list_add(&app->now, &relume_rig_entry(rig, 0)->light, -1));
     relume_rig_destroy(&rig);
     return status;
 }
@@ -916,7 +917,7 @@ static void a_click_finds_the_surface(void **state)
     OWNED_APP app = make_app(RELUME_SLAB, true);
     memcpy(app.file.geometry.st_min, (double[]){-1, -1}, sizeof app.file.geometry.st_min);
     memcpy(app.file.geometry.st_max, (double[]){1, 1}, sizeof app.file.geometry.st_max);
-    struct lamp_scene scene = {
+    struct hiding_scene scene = {
         .source = {.user = uv, .surface = leaning_plane}, .uv = (const double(*)[2])uv, .views = 9};
     static const double eyes[][2] = {{0, 0}, {0.4, -0.2}, {-0.7, 0.45}};
     struct frame_request q = {0};
@@ -925,19 +926,19 @@ static void a_click_finds_the_surface(void **state)
         struct relume_vec3 p;
         app.now.camera.eye = eye;
         assert_int_equal(frame_request_make(&q, &app), RELUME_OK);
-        assert_true(lamps_surface(&p, &q, &scene, 300, 50));  // s = 0.5, t = 0.5
+        assert_true(visible_surface(&p, &q, &scene, 300, 50));  // s = 0.5, t = 0.5
         // a pixel of a view is 0.005 wide, and the plane leans by a tenth of that
         assert_float_equal(p.z, 0.2 + 0.1 * p.x, 2e-3);
         const double k = (3 - p.z) / 3;
         assert_float_equal(p.x, eye.x + k * (0.5 - eye.x), 1e-9);
         assert_float_equal(p.y, eye.y + k * (0.5 - eye.y), 1e-9);
     }
-    lamp_scene_forget(&scene);
+    hiding_scene_forget(&scene);
     scene.source.surface = NULL;
     struct relume_vec3 p;
-    assert_false(lamps_surface(&p, &q, &scene, 300, 50));
+    assert_false(visible_surface(&p, &q, &scene, 300, 50));
     frame_request_free(&q);
-    lamp_scene_forget(&scene);
+    hiding_scene_forget(&scene);
 }
 
 static void broken_scripts_name_the_line(void **state)
@@ -1047,17 +1048,17 @@ static void keys_change_the_selected_light(void **state)
     assert_true(s->light[1].direction.y > 0.05);
     struct relume_light shining[2];
     key(&app, APP_KEY_PAGE_UP);
-    assert_int_equal(lamps_shining(s, shining), 2);
+    assert_int_equal(light_list_shining(s, shining), 2);
     assert_float_equal(shining[1].rgb[0], exp2(0.25), 1e-6);
     key(&app, 'z');
-    assert_int_equal(lamps_shining(s, shining), 1);
+    assert_int_equal(light_list_shining(s, shining), 1);
     assert_float_equal(shining[0].rgb[0], exp2(0.25), 1e-6);
     key(&app, 'x');  // solo and off: dark
-    assert_int_equal(lamps_shining(s, shining), 0);
+    assert_int_equal(light_list_shining(s, shining), 0);
     key(&app, 'n');
     assert_int_equal(s->selected, 0);
     assert_true(key(&app, APP_KEY_DELETE));
-    assert_true(s->lights == 1 && s->lamp[0].off && s->light[0].direction.y > 0.05);
+    assert_true(s->lights == 1 && s->light_state[0].off && s->light[0].direction.y > 0.05);
     assert_false(key(&app, APP_KEY_DELETE));  // the last one stays
     for (int i = 1; i < APP_LIGHTS; i++)
         assert_true(key(&app, 'm'));
@@ -1270,11 +1271,11 @@ static void kinds_become_one_another(void **state)
     app.now.light[0].direction = from;
     app.now.light[0].rgb[1] = 7;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        lamps_change_kind(&app.now, 0, kinds[i], middle, 5);
+        light_list_change_kind(&app.now, 0, kinds[i], middle, 5);
         const struct relume_light *l = &app.now.light[0];
         assert_int_equal(relume_light_check(l, "light", &keep), RELUME_OK);
         assert_true(l->kind == kinds[i] && l->rgb[1] == 7);
-        assert_float_equal(vec3_dot(lamps_direction(l, middle), from), 1, 1e-12);
+        assert_float_equal(vec3_dot(light_list_direction(l, middle), from), 1, 1e-12);
         if (kinds[i] == RELUME_LIGHT_DIRECTIONAL)
             continue;
         assert_float_equal(l->position.x, 4, 1e-12);

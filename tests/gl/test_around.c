@@ -70,8 +70,8 @@ static void start_app(struct around *t)
                                   .uv_max = {columns[COLUMNS - 1], rows[ROWS - 1]},
                                   .around = t->slabs};
     struct relume_light light = lamp;
-    struct app_lamp shown = {.off = false};
-    const struct app_state start = {.light = &light, .lamp = &shown, .lights = 1};
+    struct app_light_state shown = {.off = false};
+    const struct app_state start = {.light = &light, .light_state = &shown, .lights = 1};
     assert_int_equal(app_start(&t->app, &file, &start, false, &fixture_log), RELUME_OK);
 }
 

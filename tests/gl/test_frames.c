@@ -17,10 +17,10 @@ static const double look_bound = 1e-3;
 static struct app make_app(const struct app_file *file, const struct relume_camera *camera)
 {
     struct relume_light light[LIGHTS];
-    struct app_lamp lamp[LIGHTS] = {{.off = false}};
+    struct app_light_state lamp[LIGHTS] = {{.off = false}};
     memcpy(light, lights, sizeof lights);
     const struct app_state start = {
-        .camera = *camera, .light = light, .lamp = lamp, .lights = LIGHTS};
+        .camera = *camera, .light = light, .light_state = lamp, .lights = LIGHTS};
     struct app app;
     assert_int_equal(app_start(&app, file, &start, false, &fixture_log), RELUME_OK);
     return app;

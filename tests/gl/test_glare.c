@@ -6,8 +6,8 @@
 #include "fixture.h"
 
 #include "app/observer.h"
-#include "app/lamps.h"
-#include "draw/lamps_seen.h"
+#include "app/light_list.h"
+#include "draw/visible_lights.h"
 #include "glare/gl_glare.h"
 #include "glare/glare.h"
 #include "glare/glare_view.h"
@@ -497,7 +497,7 @@ static void fields_of_view_follow_the_camera(void **state)
     app_release(&app);
 }
 
-static void words_change_the_gaze_or_nothing(void **state)
+static void words_change_the_observer_or_nothing(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"",       "maybe",    "magnify",    "magnify nan",
@@ -535,7 +535,7 @@ static void lamps_in_view_send_what_they_send(void **state)
     assert_int_equal(app_start(&app, &file, &start, true, NULL), RELUME_OK);
     struct frame_request q = {0};
     assert_int_equal(frame_request_make(&q, &app), RELUME_OK);
-    assert_int_equal(lamps_seen(seen, &q, lights, 3, NULL), 2);
+    assert_int_equal(visible_lights(seen, &q, lights, 3, NULL), 2);
     frame_request_free(&q);
     assert_float_equal(seen[0].x, 50, 1e-9);
     assert_float_equal(seen[0].y, 25, 1e-9);
@@ -581,7 +581,7 @@ int main(void)
         cmocka_unit_test_prestate(nothing_of_an_old_frame_stays, &library),
         cmocka_unit_test(without_compute_the_library_sees),
         cmocka_unit_test(fields_of_view_follow_the_camera),
-        cmocka_unit_test(words_change_the_gaze_or_nothing),
+        cmocka_unit_test(words_change_the_observer_or_nothing),
         cmocka_unit_test(lamps_in_view_send_what_they_send),
     };
     return cmocka_run_group_tests(tests, open_pairs, close_pairs);

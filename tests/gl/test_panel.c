@@ -2,7 +2,7 @@
 // against the library
 #include "fixture.h"
 
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "panel/draw_panel.h"
 #include "relit/enhancer.h"
 #include "session/inspect.h"
@@ -75,9 +75,9 @@ static void a_click_turns_the_light_off(void **state)
     OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
     assert_true(drag(panel, &app, 25, 49, 25, 49));
-    assert_true(app.now.lamp[0].off);
+    assert_true(app.now.light_state[0].off);
     assert_true(drag(panel, &app, 25, 49, 25, 49));
-    assert_false(app.now.lamp[0].off);
+    assert_false(app.now.light_state[0].off);
     panel_destroy(&panel);
 }
 

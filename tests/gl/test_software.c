@@ -2,7 +2,7 @@
 // work than the light that moved
 #include "fixture.h"
 
-#include "app/lamps.h"
+#include "app/light_list.h"
 
 enum { W = 23, H = 17, MANY = 40 };
 

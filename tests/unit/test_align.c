@@ -175,7 +175,7 @@ static void test_warp_is_exact_for_whole_shifts(void **state)
     relume_image_destroy(&valid);
 }
 
-static void test_likeness(void **state)
+static void test_similarity(void **state)
 {
     (void)state;
     const struct made_shot bright = {.time = 4, .noise = 1, .seed = 7};
@@ -335,7 +335,7 @@ int main(void)
         cmocka_unit_test(test_night),
         cmocka_unit_test(test_changing_light),
         cmocka_unit_test(test_warp_is_exact_for_whole_shifts),
-        cmocka_unit_test(test_likeness),
+        cmocka_unit_test(test_similarity),
         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_only_source_stays),
         cmocka_unit_test(test_anchor_and_threads),

@@ -107,7 +107,7 @@ static void brute(const relume_btf_fitted *m, const struct relume_light *light,
 }
 
 // The greatest error over two orientations and views, relative to the green that is right.
-static double worst(const relume_btf_fitted *m, const relume_prefiltered *prefilter,
+static double worst(const relume_btf_fitted *m, const relume_prefiltered_maps *prefiltered,
                     const struct relume_light *light, bool own_maps)
 {
     static const vec3 normals[] = {{0.0, 0.0, 1.0}, {0.3, 0.9, -0.2}};
@@ -120,7 +120,7 @@ static double worst(const relume_btf_fitted *m, const relume_prefiltered *prefil
         float got[3];
         double want[3];
         CHECK_OK(relume_btf_oriented_light_create(
-            &a, m, prefilter, &f, relume_btf_oriented_light_params(.own_maps = own_maps)));
+            &a, m, prefiltered, &f, relume_btf_oriented_light_params(.own_maps = own_maps)));
         relume_btf_oriented_light_evaluate(a, 0, 2, 1, view, got);
         brute(m, light, &f, 2, view, want);
         for (int c = 0; c < 3; c++)
@@ -131,7 +131,7 @@ static double worst(const relume_btf_fitted *m, const relume_prefiltered *prefil
 }
 
 // The same of a sky in any orientation.
-static double worst_sky(const relume_btf_fitted *m, const relume_prefiltered *prefilter,
+static double worst_sky(const relume_btf_fitted *m, const relume_prefiltered_maps *prefiltered,
                         const struct relume_light *light)
 {
     static const vec3 normals[] = {
@@ -140,7 +140,7 @@ static double worst_sky(const relume_btf_fitted *m, const relume_prefiltered *pr
     relume_btf_environment *sky;
     double most = 0.0;
     CHECK_OK(relume_btf_surface_create(&surface, m, NULL, NULL));
-    CHECK_OK(relume_btf_environment_create(&sky, m, prefilter));
+    CHECK_OK(relume_btf_environment_create(&sky, m, prefiltered));
     for (int k = 0; k < 4; k++) {
         const struct relume_btf_ray ray = {
             .view = vec3_unit(vec3_of(0.6, -0.3, 0.7)), .sky = sky, .frame = frame_of(normals[k])};
@@ -184,9 +184,10 @@ static void test_brute_force(void **state)
                                        .environment = e,
                                        .rotate_deg = 25.0,
                                        .rgb = {1.0f, 0.9f, 1.2f}};
-    relume_prefiltered *p;
+    relume_prefiltered_maps *p;
     // cosine of the lowest lights, 70 degrees from the pole; their ring of 12 is a polygon
-    CHECK_OK(relume_prefiltered_create(&p, &light, relume_prefiltered_params(.rim = 0.347)));
+    CHECK_OK(
+        relume_prefiltered_maps_create(&p, &light, relume_prefiltered_maps_params(.rim = 0.347)));
     for (int bare = 0; bare < 2; bare++) {
         relume_btf *btf = make(lambert_and_gloss, "coarse", bare);
         for (const struct relume_btf_model *const *k = relume_btf_models; *k; k++) {
@@ -210,7 +211,7 @@ static void test_brute_force(void **state)
         }
         relume_btf_destroy(&btf);
     }
-    relume_prefiltered_destroy(&p);
+    relume_prefiltered_maps_destroy(&p);
     relume_environment_destroy(&e);
 }
 
@@ -231,8 +232,9 @@ static void test_measured_lights(void **state)
                                        .environment = e,
                                        .rotate_deg = 25.0,
                                        .rgb = {1.0f, 0.9f, 1.2f}};
-    relume_prefiltered *p;  // the lowest lights stand 75 degrees from the pole
-    CHECK_OK(relume_prefiltered_create(&p, &light, relume_prefiltered_params(.rim = 0.257)));
+    relume_prefiltered_maps *p;  // the lowest lights stand 75 degrees from the pole
+    CHECK_OK(
+        relume_prefiltered_maps_create(&p, &light, relume_prefiltered_maps_params(.rim = 0.257)));
     for (int bare = 0; bare < 2; bare++) {
         relume_btf *btf = make(lambert_and_gloss, "bonn", bare);
         for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
@@ -244,7 +246,7 @@ static void test_measured_lights(void **state)
         }
         relume_btf_destroy(&btf);
     }
-    relume_prefiltered_destroy(&p);
+    relume_prefiltered_maps_destroy(&p);
     relume_environment_destroy(&e);
 }
 
@@ -254,9 +256,9 @@ static void check_furnace(const relume_btf *btf, const struct relume_light *ligh
 {
     const struct relume_btf_frame f = frame_of(vec3_of(0.5, -0.7, 0.3));
     const vec3 view = vec3_unit(vec3_of(0.2, 0.1, 0.9));
-    relume_prefiltered *p;
-    CHECK_OK(
-        relume_prefiltered_create(&p, light, relume_prefiltered_params(.height = 12, .rim = rim)));
+    relume_prefiltered_maps *p;
+    CHECK_OK(relume_prefiltered_maps_create(
+        &p, light, relume_prefiltered_maps_params(.height = 12, .rim = rim)));
     for (const struct relume_btf_model *const *k = relume_btf_models; *k; k++) {
         relume_btf_fitted *m = fit(btf, relume_btf_model_name(*k));
         relume_btf_oriented_light *a;
@@ -280,7 +282,7 @@ static void check_furnace(const relume_btf *btf, const struct relume_light *ligh
         relume_btf_oriented_light_destroy(&a);
         relume_btf_fitted_destroy(&m);
     }
-    relume_prefiltered_destroy(&p);
+    relume_prefiltered_maps_destroy(&p);
 }
 
 static void test_furnace(void **state)
@@ -308,31 +310,32 @@ static void test_even_sky(void **state)
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1.0f, 2.0f, 1.0f}};
     const vec3 n = vec3_unit(vec3_of(0.3, 0.2, -0.8));
-    relume_prefiltered *p;
+    relume_prefiltered_maps *p;
     float rgb[3];
-    CHECK_OK(relume_prefiltered_create(&p, &light,
-                                       relume_prefiltered_params(.height = 16, .threads = 2)));
-    relume_prefiltered_diffuse(rgb, p, n);
+    CHECK_OK(relume_prefiltered_maps_create(
+        &p, &light, relume_prefiltered_maps_params(.height = 16, .threads = 2)));
+    relume_prefiltered_maps_diffuse(rgb, p, n);
     CHECK_NEAR(rgb[0], 2.0, 0.01);  // cells at the horizon
     CHECK_NEAR(rgb[1], 4.0, 0.02);
     for (double exponent = 1.0; exponent < 33.0; exponent *= 1.7) {
-        relume_prefiltered_specular(rgb, p, n, exponent);
+        relume_prefiltered_maps_specular(rgb, p, n, exponent);
         CHECK_NEAR(rgb[0], 1.0, 0.005);  // lobes of 24 degrees over cells of 3.75
-        relume_prefiltered_lobe(rgb, p, n, n, exponent, false);
+        relume_prefiltered_maps_lobe(rgb, p, n, n, exponent, false);
         CHECK_NEAR(rgb[0] * (exponent + 1.0) / 2.0, 1.0, 0.005);
-        relume_prefiltered_lobe(rgb, p, n, n, exponent, true);
+        relume_prefiltered_maps_lobe(rgb, p, n, n, exponent, true);
         // between exponents the factor (e + 1) / (e + 2) is taken as linear in log2 e
         CHECK_NEAR(rgb[0] * (exponent + 2.0) / 2.0, 1.0, 0.01);
     }
     // a lobe along the horizon: one half arrives
     const vec3 across = vec3_unit(vec3_cross(n, vec3_of(0.0, 1.0, 0.0)));
-    relume_prefiltered_lobe(rgb, p, n, across, 4.0, false);
+    relume_prefiltered_maps_lobe(rgb, p, n, across, 4.0, false);
     CHECK_NEAR(rgb[0], 0.5 * 2.0 / 5.0, 0.002);
-    relume_prefiltered_destroy(&p);
-    assert_int_equal(relume_prefiltered_create(&p, &light, relume_prefiltered_params(.height = 2)),
-                     RELUME_EINVAL);
+    relume_prefiltered_maps_destroy(&p);
+    assert_int_equal(
+        relume_prefiltered_maps_create(&p, &light, relume_prefiltered_maps_params(.height = 2)),
+        RELUME_EINVAL);
     const struct relume_light other = {.kind = RELUME_LIGHT_DIRECTIONAL};
-    assert_int_equal(relume_prefiltered_create(&p, &other, NULL), RELUME_EINVAL);
+    assert_int_equal(relume_prefiltered_maps_create(&p, &other, NULL), RELUME_EINVAL);
     relume_environment_destroy(&e);
 }
 
@@ -358,19 +361,19 @@ static void test_spot(void **state)
         sent += (double)cell[i].rgb[0];
     const vec3 to = relume_environment_turn(vec3_unit(vec3_of(1.0, 0.5, -0.4)), 70.0);
     const vec3 side = vec3_unit(vec3_cross(to, vec3_of(0.0, 0.0, 1.0)));
-    relume_prefiltered *p;
-    CHECK_OK(relume_prefiltered_create(&p, &light, NULL));
+    relume_prefiltered_maps *p;
+    CHECK_OK(relume_prefiltered_maps_create(&p, &light, NULL));
     for (int i = 0; i < RELUME_PREFILTERED_EXPONENTS; i++)
         for (double angle = 0.0; angle < 1.0; angle += 0.3) {
             const double exponent = pow(2.0, 0.5 * i);
             const vec3 axis = vec3_add(vec3_scale(to, cos(angle)), vec3_scale(side, sin(angle)));
             float rgb[3];
-            relume_prefiltered_specular(rgb, p, axis, exponent);
+            relume_prefiltered_maps_specular(rgb, p, axis, exponent);
             // bilinear between pixels h = 3.75 degrees apart: h^2 e / 8 along rows and columns
             CHECK_NEAR(rgb[0] * 2.0 / (exponent + 1.0), sent * pow(cos(angle), exponent),
                        (0.003 + 0.0011 * exponent) * sent);
         }
-    relume_prefiltered_destroy(&p);
+    relume_prefiltered_maps_destroy(&p);
     relume_environment_destroy(&e);
 }
 

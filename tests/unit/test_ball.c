@@ -64,7 +64,7 @@ static void check_directions(struct made_scene s, double tolerance)
         struct relume_ball_light light;
         CHECK_OK(
             (s.matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball, &camera, &photo[i]));
-        assert_int_equal(light.sight, RELUME_BALL_SEEN);
+        assert_int_equal(light.finding, RELUME_BALL_SEEN);
         const double off = angle_deg(light.direction, lamp_direction(i));
         squares += off * off / LAMPS;
         // what is said of the error must hold, within three of its own size
@@ -180,7 +180,7 @@ static void lines_that_do_not_meet(void **state)
     CHECK_NEAR(sigma, 0.0, 1e-6);
 }
 
-static enum relume_ball_sight sight_of(struct made_scene s)
+static enum relume_ball_finding finding_of(struct made_scene s)
 {
     const struct relume_ball_camera camera = camera_of(&s);
     const struct relume_ball ball =
@@ -190,8 +190,8 @@ static enum relume_ball_sight sight_of(struct made_scene s)
     CHECK_OK(made_photograph(&photo, &s, 0.0));
     CHECK_OK(relume_ball_mirror(&light, &ball, &camera, &photo));
     relume_image_destroy(&photo);
-    assert_true(strlen(relume_ball_sight_text(light.sight)) > 3);
-    return light.sight;
+    assert_true(strlen(relume_ball_finding_text(light.finding)) > 3);
+    return light.finding;
 }
 
 // A window is a larger spot than the lamp, which has a tenth of its light and more: no light of one
@@ -212,7 +212,7 @@ static void a_larger_second(void **state)
             photo.data[k] = 1.0f;
     CHECK_OK(relume_ball_mirror(&light, &ball, &camera, &photo));
     relume_image_destroy(&photo);
-    assert_int_equal(light.sight, RELUME_BALL_TWO);
+    assert_int_equal(light.finding, RELUME_BALL_TWO);
 }
 
 static void bad_highlights(void **state)
@@ -224,19 +224,19 @@ static void bad_highlights(void **state)
                            .distant = true,
                            .brightness = 40.0,
                            .lamp = {0.3, 0.2, 1}};
-    assert_int_equal(sight_of(s), RELUME_BALL_SEEN);
+    assert_int_equal(finding_of(s), RELUME_BALL_SEEN);
     s.second = (struct relume_vec3){-0.5, 0.1, 1};
-    assert_int_equal(sight_of(s), RELUME_BALL_TWO);
+    assert_int_equal(finding_of(s), RELUME_BALL_TWO);
     s.second = (struct relume_vec3){0, 0, 0};
     s.brightness = 0.0;
     s.lamp = (struct relume_vec3){0, 0, -1};
-    assert_int_equal(sight_of(s), RELUME_BALL_DARK);
+    assert_int_equal(finding_of(s), RELUME_BALL_DARK);
     s.brightness = 40.0;
     s.lamp = (struct relume_vec3){0.42, 0, -1};
-    assert_int_equal(sight_of(s), RELUME_BALL_RIM);
+    assert_int_equal(finding_of(s), RELUME_BALL_RIM);
     s.matte = true;
     s.lamp = (struct relume_vec3){0, 0, 1};
-    assert_int_equal(sight_of(s), RELUME_BALL_FULL);
+    assert_int_equal(finding_of(s), RELUME_BALL_FULL);
 }
 
 static void no_ball(void **state)

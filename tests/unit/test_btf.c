@@ -48,14 +48,14 @@ static void test_sets(void **state)
     free(d);
 }
 
-static void check_dome(const char *name)
+static void check_mesh(const char *name)
 {
     int n;
     vec3 *d = set_directions(name, &n);
-    relume_direction_mesh *dome;
-    CHECK_OK(relume_direction_mesh_create(&dome, d, n, NULL));
+    relume_direction_mesh *mesh;
+    CHECK_OK(relume_direction_mesh_create(&mesh, d, n, NULL));
     for (int i = 0; i < n; i++) {
-        const struct relume_direction_blend b = relume_direction_mesh_at(dome, d[i]);
+        const struct relume_direction_blend b = relume_direction_mesh_at(mesh, d[i]);
         assert_int_equal(b.count, 1);
         assert_int_equal(b.index[0], i);
         CHECK_NEAR(b.weight[0], 1.0, 0.0);
@@ -65,7 +65,7 @@ static void check_dome(const char *name)
     for (int i = 0; i < 2000; i++) {
         vec3 q = test_direction(&seed);
         q.z = fabs(q.z);
-        const struct relume_direction_blend b = relume_direction_mesh_at(dome, q);
+        const struct relume_direction_blend b = relume_direction_mesh_at(mesh, q);
         vec3 mean = {0, 0, 0};
         double sum = 0.0;
         for (int k = 0; k < b.count; k++) {
@@ -81,25 +81,25 @@ static void check_dome(const char *name)
         CHECK_NEAR(atan2(q.y, q.x), atan2(b.direction.y, b.direction.x), 1e-6);
         CHECK_NEAR(b.rim * b.direction.z, q.z, 1e-7);
     }
-    relume_direction_mesh_destroy(&dome);
+    relume_direction_mesh_destroy(&mesh);
     free(d);
 }
 
-static void test_domes(void **state)
+static void test_meshes(void **state)
 {
     (void)state;
-    check_dome("bonn");
-    check_dome("dome");
-    check_dome("coarse");
+    check_mesh("bonn");
+    check_mesh("dome");
+    check_mesh("coarse");
     struct test_log log;
     test_log_init(&log);
-    relume_direction_mesh *dome;
+    relume_direction_mesh *mesh;
     const vec3 below[3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
-    assert_int_equal(relume_direction_mesh_create(&dome, below, 3, &log.log), RELUME_EUNFIT);
+    assert_int_equal(relume_direction_mesh_create(&mesh, below, 3, &log.log), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "direction 1"));
     const vec3 line[3] = {{0, 0, 1}, {0.6, 0, 0.8}, {-0.6, 0, 0.8}};
-    assert_int_equal(relume_direction_mesh_create(&dome, line, 3, &log.log), RELUME_EUNFIT);
-    assert_null(dome);
+    assert_int_equal(relume_direction_mesh_create(&mesh, line, 3, &log.log), RELUME_EUNFIT);
+    assert_null(mesh);
 }
 
 // Raw sizes of the thesis, Tab. 3.3.
@@ -477,7 +477,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sets),
-        cmocka_unit_test(test_domes),
+        cmocka_unit_test(test_meshes),
         cmocka_unit_test(test_sizes),
         cmocka_unit_test(test_reference),
         cmocka_unit_test(test_folder_round_trip),

@@ -112,13 +112,13 @@ static void test_frames(void **state)
 // What a Lambertian point of normal +z at the origin reflects: the form factor for E = 1.
 static double lambertian(const struct relume_light *area, int side)
 {
-    struct relume_light_patch facets[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
+    struct relume_light_patch patches[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
     double sum = 0.0;
-    relume_light_patches(facets, area, side);
+    relume_light_patches(patches, area, side);
     for (int i = 0; i < side * side; i++) {
         struct relume_vec3 towards;
         float rgb[3];
-        if (relume_light_patch_at(&towards, rgb, &facets[i], (struct relume_vec3){0, 0, 0}))
+        if (relume_light_patch_at(&towards, rgb, &patches[i], (struct relume_vec3){0, 0, 0}))
             sum += (double)rgb[1] * fmax(towards.z, 0.0);
     }
     return sum;
@@ -152,7 +152,7 @@ static void test_area_converges(void **state)
         // The promise of relume_light_patch_side.
         CHECK_NEAR(lambertian(&disc, side) * (1 + h * h), 1, 0.01);
         CHECK_NEAR(lambertian(&box, side) / (4 * corner(0.7, 1, h)), 1, 0.01);
-        if (h >= 0.4)  // and with all facets nearly the integral; values are floats
+        if (h >= 0.4)  // and with all patches nearly the integral; values are floats
             CHECK_NEAR(lambertian(&disc, RELUME_LIGHT_PATCHES_MOST) * (1 + h * h), 1, 1e-5);
     }
     assert_int_equal(relume_light_patch_side(&(struct relume_light){.u = {1}, .v = {0, 1}}, 1e-9),

@@ -379,7 +379,7 @@ static struct relume_light lights_of(int kind, const relume_ies *ies)
     return lights[kind];
 }
 
-// The grid is off by up to 1e-3 for light of value 1, lights here give up to 2; facets promise one
+// The grid is off by up to 1e-3 for light of value 1, lights here give up to 2; patches promise one
 // percent of at most 1, for components, whose triangles have creases under the light, of at most 4;
 // in the display domain what is dark is steeper by up to 2.3. Luminances are multiplied by colours
 // of at most 0.1.

@@ -71,7 +71,7 @@ static void fit(float *planes, const relume_capture *capture, const relume_coder
     for (int y = 0; y < BUMP_SIDE; y += height) {
         const int rows = BUMP_SIDE - y < height ? BUMP_SIDE - y : height;
         const size_t pixels = (size_t)rows * BUMP_SIDE;
-        CHECK_OK(relume_table_read_seen(table, rows, guess, samples));
+        CHECK_OK(relume_table_read_near(table, rows, guess, samples));
         if (own)
             CHECK_OK(near_fit_apply(seen, y, rows, samples, guess, band));
         else

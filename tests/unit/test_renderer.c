@@ -18,7 +18,7 @@ static const struct relume_camera cameras[] = {
     {.framing = RELUME_FRAME_EYE, .eye = {0.2, 0, 3.0}, .width = 40, .height = 30},
     {.framing = RELUME_FRAME_EYE,
      .eye = {0.2, 0, 3.0},
-     .aim = {.field_of_view_deg = 30.0},
+     .look_at = {.field_of_view_deg = 30.0},
      .width = 20,
      .height = 20},
 };

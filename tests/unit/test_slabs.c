@@ -670,10 +670,10 @@ static void eyes_look_where_they_are_told(void **state)
 {
     (void)state;
     struct relume_window w;
-    const struct relume_look_at aim = {
+    const struct relume_look_at look_at = {
         .aimed = true, .at = {0, 1, 0}, .up = {1, 0, 0}, .field_of_view_deg = 90};
     const vec3 eye = {0, 1, 2};
-    assert_true(relume_slab_set_window(&w, c.slabs, eye, &aim, 200, 100));
+    assert_true(relume_slab_set_window(&w, c.slabs, eye, &look_at, 200, 100));
     const vec3 middle = ray_of(&w, 0.5, 0.5), side = ray_of(&w, 1, 0.5), top = ray_of(&w, 0.5, 0);
     assert_true(fabs(middle.x) < 1e-12 && fabs(middle.y) < 1e-12 && middle.z < 0);
     CHECK_NEAR(side.y / side.z, 1, 1e-12);  // up is +x, so right is -y; half of 90 degrees

@@ -316,10 +316,10 @@ static void test_ambient(void **state)
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1.0f, 1.0f, 1.0f}};
     const struct relume_btf_frame frame = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    relume_prefiltered *p;
+    relume_prefiltered_maps *p;
     relume_btf_oriented_light *a;
     relume_btf_surface *s;
-    CHECK_OK(relume_prefiltered_create(&p, &light, NULL));
+    CHECK_OK(relume_prefiltered_maps_create(&p, &light, NULL));
     CHECK_OK(relume_btf_oriented_light_create(&a, m, p, &frame, NULL));
     CHECK_OK(relume_btf_surface_create(&s, m, NULL, NULL));
     const struct relume_btf_ray under = {.view = ray.view, .ambient = a};
@@ -341,7 +341,7 @@ static void test_ambient(void **state)
     assert_true(total > 0.0f);
     relume_btf_surface_destroy(&s);
     relume_btf_oriented_light_destroy(&a);
-    relume_prefiltered_destroy(&p);
+    relume_prefiltered_maps_destroy(&p);
     relume_environment_destroy(&e);
     relume_btf_fitted_destroy(&m);
     relume_btf_destroy(&btf);

@@ -1,7 +1,7 @@
 // aim.c - where lights come from, as the viewer sees it
 #include "app/aim.h"
 
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "app/orbit.h"
 #include "common/vec.h"
 
@@ -20,10 +20,10 @@ struct app_axes app_frame_axes(const struct app *app)
     };
 }
 
-struct relume_vec3 app_seen_light(const struct app *app, int light)
+struct relume_vec3 app_light_direction(const struct app *app, int light)
 {
     const struct app_axes a = app_frame_axes(app);
-    const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
+    const struct relume_vec3 d = light_list_direction(&app->now.light[light], app_middle(app));
     return (struct relume_vec3){vec3_dot(d, a.right), vec3_dot(d, a.up), vec3_dot(d, a.back)};
 }
 
@@ -35,20 +35,20 @@ void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
         seen.x * a.right.y + seen.y * a.up.y + seen.z * a.back.y,
         seen.x * a.right.z + seen.y * a.up.z + seen.z * a.back.z,
     };
-    lamps_aim(&app->now, light, world, app_middle(app));
+    light_list_aim(&app->now, light, world, app_middle(app));
 }
 
 void app_point_light(struct app *app, int light, double x, double y)
 {
     const double r = fmax(hypot(x, y), 1);
-    const double side = app_seen_light(app, light).z < 0 ? -1 : 1;
+    const double side = app_light_direction(app, light).z < 0 ? -1 : 1;
     const double z = sqrt(fmax(1 - (x * x + y * y) / (r * r), 0));
     app_aim_light(app, light, (struct relume_vec3){x / r, y / r, side * z});
 }
 
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)
 {
-    const struct relume_vec3 seen = app_seen_light(app, app->now.selected);
+    const struct relume_vec3 seen = app_light_direction(app, app->now.selected);
     const double yaw = yaw_deg * M_PI / 180;
     const double pitch = pitch_deg * M_PI / 180;
     const double y = seen.y * cos(pitch) - seen.z * sin(pitch);

@@ -7,7 +7,7 @@
 struct app_axes app_frame_axes(const struct app *app);
 
 // The direction of `light` as the viewer sees it: x right, y up, z towards the viewer.
-struct relume_vec3 app_seen_light(const struct app *app, int light);
+struct relume_vec3 app_light_direction(const struct app *app, int light);
 // Let it come from there (unit). Near lights move on a sphere about app_middle.
 void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
 // Let it come from (x, y) of a unit ball seen from the front, on the half that it came from.

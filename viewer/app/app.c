@@ -1,7 +1,7 @@
 // app.c - the state of the viewer: how it begins, ends, and answers
 #include "app/app.h"
 
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "app/orbit.h"
 #include "program/say.h"
 #include "common/vec.h"
@@ -52,7 +52,7 @@ static relume_status check_around(const struct relume_camera *camera, const stru
     struct relume_window window;
     if (!file->around || camera->framing != RELUME_FRAME_EYE)
         return RELUME_OK;
-    if (!relume_slab_set_window(&window, file->around, eye, &camera->aim, file->width,
+    if (!relume_slab_set_window(&window, file->around, eye, &camera->look_at, file->width,
                                 file->height))
         return say(log, RELUME_EINVAL,
                    "--eye: expected a point away from what it looks at; found %g,%g,%g", eye.x,
@@ -87,7 +87,7 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
                    "--focus: expected a plane in front of the cameras at z = %g; found z = %g",
                    file->geometry.uv_z, start->focus_z);
     struct app_state *s = &app->start;
-    if (!lamps_copy(s, start))
+    if (!light_list_copy(s, start))
         return RELUME_ENOMEM;
     s->camera = camera;
     if (!s->focused)
@@ -98,7 +98,7 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     if (s->white <= 0.0)
         s->white = RELUME_TONE_WHITE;
     const struct relume_light front = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
-    if ((!s->lights && !lamps_add(s, &front, -1)) || !lamps_copy(&app->now, s)) {
+    if ((!s->lights && !light_list_add(s, &front, -1)) || !light_list_copy(&app->now, s)) {
         app_release(app);
         return RELUME_ENOMEM;
     }
@@ -110,8 +110,8 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
 
 void app_release(struct app *app)
 {
-    lamps_release(&app->start);
-    lamps_release(&app->now);
+    light_list_release(&app->start);
+    light_list_release(&app->now);
 }
 
 const char *const app_dock_names[APP_DOCKS + 1] = {"over", "left", "right", NULL};
@@ -133,7 +133,7 @@ void app_arrange(struct app *app)
 
 void app_reset(struct app *app)
 {
-    (void)lamps_copy(&app->now, &app->start);
+    (void)light_list_copy(&app->now, &app->start);
     app_stand_still(app);
 }
 

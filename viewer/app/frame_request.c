@@ -3,7 +3,7 @@
 
 #include "app/app.h"
 #include "app/fov.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "app/orbit.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ static relume_status take_lights(struct frame_request *q, const struct app_state
         q->light = light;
         q->room = now->lights;
     }
-    q->lights = lamps_shining(now, q->light);
+    q->lights = light_list_shining(now, q->light);
     return RELUME_OK;
 }
 
@@ -29,7 +29,7 @@ static void take_ball(struct frame_request *q, const struct app *app)
     if (!q->ball)
         return;
     q->ball_place = gizmo_ball(app);
-    q->ball_light = app_seen_light(app, app->now.selected);
+    q->ball_light = app_light_direction(app, app->now.selected);
     memcpy(q->ball_rgb, app->now.light[app->now.selected].rgb, sizeof q->ball_rgb);
 }
 

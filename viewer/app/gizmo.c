@@ -2,7 +2,7 @@
 #include "app/gizmo.h"
 
 #include "app/aim.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "app/orbit.h"
 #include "common/vec.h"
 
@@ -208,7 +208,7 @@ bool gizmo_of(struct gizmo *out, const struct app *app, int light)
 {
     double xy[2];
     if (!is_near(app, light)) {
-        *out = on_disc(app, app_seen_light(app, light));
+        *out = on_disc(app, app_light_direction(app, light));
         return true;
     }
     if (!gizmo_place(xy, app, app->now.light[light].position))

@@ -2,7 +2,7 @@
 #include "app/keys.h"
 
 #include "app/app.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 
 #include <relume/tone.h>
 
@@ -267,34 +267,35 @@ static bool press_add(struct app *app, int key)
 {
     (void)key;
     const struct relume_light light = {.direction = app_frame_axes(app).back, .rgb = {1, 1, 1}};
-    return lamps_add(&app->now, &light, -1);
+    return light_list_add(&app->now, &light, -1);
 }
 
 static bool press_remove(struct app *app, int key)
 {
     (void)key;
-    return lamps_remove(&app->now, app->now.selected);
+    return light_list_remove(&app->now, app->now.selected);
 }
 
 static bool press_off(struct app *app, int key)
 {
     (void)key;
-    struct app_lamp *lamp = &app->now.lamp[app->now.selected];
-    lamp->off = !lamp->off;
+    struct app_light_state *light = &app->now.light_state[app->now.selected];
+    light->off = !light->off;
     return true;
 }
 
 static bool press_solo(struct app *app, int key)
 {
     (void)key;
-    struct app_lamp *lamp = &app->now.lamp[app->now.selected];
-    lamp->solo = !lamp->solo;
+    struct app_light_state *light = &app->now.light_state[app->now.selected];
+    light->solo = !light->solo;
     return true;
 }
 
 static bool press_stops(struct app *app, int key)
 {
-    app->now.lamp[app->now.selected].stops += key == APP_KEY_PAGE_UP ? stop_step : -stop_step;
+    app->now.light_state[app->now.selected].stops +=
+        key == APP_KEY_PAGE_UP ? stop_step : -stop_step;
     return true;
 }
 
@@ -308,7 +309,7 @@ static bool press_turn(struct app *app, int key)
 
 static bool press_preset(struct app *app, int key)
 {
-    lamps_arrange(&app->now, &lamp_presets[key - '1'], app_pole_y(app));
+    light_list_arrange(&app->now, &light_presets[key - '1'], app_pole_y(app));
     return true;
 }
 

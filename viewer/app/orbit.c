@@ -15,8 +15,8 @@ bool orbit_is(const struct app *app)
 // What the eye goes around.
 static struct relume_vec3 target_of(const struct app *app)
 {
-    const struct relume_look_at *aim = &app->now.camera.aim;
-    return aim->aimed ? aim->at : relume_slab_set_middle(app->file.around);
+    const struct relume_look_at *look_at = &app->now.camera.look_at;
+    return look_at->aimed ? look_at->at : relume_slab_set_middle(app->file.around);
 }
 
 static void put_eye(struct app *app, struct relume_vec3 d)

@@ -15,7 +15,7 @@ struct app_rectangle app_picture(const struct app *app)
     if (s->camera.framing == RELUME_FRAME_LOOK)
         return (struct app_rectangle){0, 0, app->width, app->height};
     struct relume_rect at = {0, 0, app->width, app->height};
-    if (s->camera.aim.field_of_view_deg == 0.0)
+    if (s->camera.look_at.field_of_view_deg == 0.0)
         at = relume_rect_fit(app->file.width, app->file.height, app->width, app->height);
     const double middle[2] = {0.5 * app->width, 0.5 * app->height};
     const double left = middle[0] + s->shift[0] + (at.left - middle[0]) * s->zoom;
@@ -26,7 +26,7 @@ struct app_rectangle app_picture(const struct app *app)
 bool app_window(const struct app *app, struct relume_window *window)
 {
     return relume_slab_set_window(window, app->file.around, app->now.camera.eye,
-                                  &app->now.camera.aim, app->width, app->height);
+                                  &app->now.camera.look_at, app->width, app->height);
 }
 
 bool app_pole_y(const struct app *app)

@@ -72,7 +72,7 @@ struct app_file {
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.
-struct app_lamp {
+struct app_light_state {
     bool off, solo;
     double stops;  // its value is multiplied by 2^stops
     int entry;     // of the rig that it came from; -1: none
@@ -91,7 +91,7 @@ enum app_split {
     APP_SPLITS
 };
 
-// What can be reset. A copy by value shares its lights: see lamps_copy.
+// What can be reset. A copy by value shares its lights: see light_list_copy.
 struct app_state {
     struct relume_camera camera;              // framing is never DEFAULT
     double zoom;                              // of the picture; 1 fits the frame
@@ -101,11 +101,11 @@ struct app_state {
     double focus_z;  // slab: the plane in focus; of a free eye how far before what it looks at ...
     bool focused;    // ... at the start; else the st plane
     double exposure_ev;
-    bool auto_exposure;          // on top of exposure_ev
-    int tone;                    // place in relume_tones
-    double white;                // as relume_tone_params
-    struct relume_light *light;  // [lights], with room for more
-    struct app_lamp *lamp;       // by light
+    bool auto_exposure;                   // on top of exposure_ev
+    int tone;                             // place in relume_tones
+    double white;                         // as relume_tone_params
+    struct relume_light *light;           // [lights], with room for more
+    struct app_light_state *light_state;  // by light
     int lights, room;
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner

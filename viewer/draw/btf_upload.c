@@ -138,7 +138,7 @@ static relume_status upload_measured(struct btf_material *m, const struct gl *gl
 // As btf.glsl.
 enum { CELLS = 32, PROBES = 5, TEXELS = 6 };
 
-struct dome_list {
+struct mesh_list {
     const struct relume_vec3 *point;
     int points;
     const int (*triangle)[3];
@@ -157,18 +157,18 @@ static struct relume_vec3 unfolded(double x, double y)
     return vec3_unit((struct relume_vec3){fx, fy, z});
 }
 
-static struct relume_vec3 corner_of(const struct dome_list *d, int triangle, int corner)
+static struct relume_vec3 corner_of(const struct mesh_list *d, int triangle, int corner)
 {
     const int i = d->triangle[triangle][corner % 3];
     return i < d->points ? d->point[i] : (struct relume_vec3){0, 0, -1};
 }
 
-static struct relume_vec3 across(const struct dome_list *d, int triangle, int corner)
+static struct relume_vec3 across(const struct mesh_list *d, int triangle, int corner)
 {
     return vec3_cross(corner_of(d, triangle, corner + 1), corner_of(d, triangle, corner + 2));
 }
 
-static int triangle_at(const struct dome_list *d, struct relume_vec3 direction)
+static int triangle_at(const struct mesh_list *d, struct relume_vec3 direction)
 {
     int best = 0;
     double most = -INFINITY;
@@ -185,7 +185,7 @@ static int triangle_at(const struct dome_list *d, struct relume_vec3 direction)
     return best;
 }
 
-static bool add_triangle(struct dome_list *d, int triangle)
+static bool add_triangle(struct mesh_list *d, int triangle)
 {
     if (d->used == d->room) {
         const size_t room = d->room ? 2 * d->room : 4096;
@@ -209,7 +209,7 @@ static bool add_triangle(struct dome_list *d, int triangle)
 
 // Probes over the cell and its border find what it meets; of a triangle that slips between them no
 // direction is far from one that is listed.
-static bool fill_cell(struct dome_list *d, int cell)
+static bool fill_cell(struct mesh_list *d, int cell)
 {
     int found[PROBES * PROBES], count = 0;
     for (int i = 0; i < PROBES * PROBES; i++) {
@@ -231,16 +231,16 @@ static bool fill_cell(struct dome_list *d, int cell)
 }
 
 // Textures `i` and `i + 1`: the cells, and their triangles.
-static relume_status upload_dome(struct btf_material *m, const struct gl *gl, int i,
+static relume_status upload_mesh(struct btf_material *m, const struct gl *gl, int i,
                                  const struct relume_vec3 *direction, int n,
                                  const struct relume_log *log)
 {
-    relume_direction_mesh *dome;
-    relume_status status = relume_direction_mesh_create(&dome, direction, n, log);
+    relume_direction_mesh *mesh;
+    relume_status status = relume_direction_mesh_create(&mesh, direction, n, log);
     if (status)
         return status;
-    struct dome_list d = {.point = direction, .points = n};
-    d.triangle = relume_direction_mesh_triangles(dome, &d.triangles);
+    struct mesh_list d = {.point = direction, .points = n};
+    d.triangle = relume_direction_mesh_triangles(mesh, &d.triangles);
     d.cell = malloc(CELLS * CELLS * sizeof *d.cell);
     status = d.cell ? RELUME_OK : RELUME_ENOMEM;
     for (int c = 0; c < CELLS * CELLS && !status; c++)
@@ -253,7 +253,7 @@ static relume_status upload_dome(struct btf_material *m, const struct gl *gl, in
             fill(m, gl, i + 1, GL_RGBA32F, d.used * TEXELS, d.used * sizeof *d.texel, d.texel, log);
     free(d.cell);
     free(d.texel);
-    relume_direction_mesh_destroy(&dome);
+    relume_direction_mesh_destroy(&mesh);
     return status;
 }
 
@@ -326,9 +326,9 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
     m->rim = relume_btf_fitted_info(info->model)->rim;
     relume_status status = upload_level(m, gl, material, 0, log);
     if (!status)
-        status = upload_dome(m, gl, BTF_UNIT_DOMES, d.view, m->level->counts[0], log);
+        status = upload_mesh(m, gl, BTF_UNIT_MESHES, d.view, m->level->counts[0], log);
     if (!status)
-        status = upload_dome(m, gl, BTF_UNIT_DOMES + 2, d.light, m->level->counts[1], log);
+        status = upload_mesh(m, gl, BTF_UNIT_MESHES + 2, d.light, m->level->counts[1], log);
     for (int i = 1; i < info->levels && !status; i++)
         status = upload_level(m, gl, material, i, log);
     if (status)
@@ -340,12 +340,13 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
 
 static relume_status upload_cones(struct btf_material *m, const struct gl *gl,
                                   const relume_btf_fitted *model,
-                                  const relume_prefiltered *prefilter, const struct relume_log *log)
+                                  const relume_prefiltered_maps *prefiltered,
+                                  const struct relume_log *log)
 {
     relume_btf_environment *sky;
     const int lights = m->level->counts[1];
     const struct relume_vec3 *light = relume_btf_fitted_directions(model).light;
-    relume_status status = relume_btf_environment_create(&sky, model, prefilter);
+    relume_status status = relume_btf_environment_create(&sky, model, prefiltered);
     if (status)
         return status;
     const struct relume_btf_light_lobe *cone = relume_btf_environment_cones(sky);
@@ -367,15 +368,16 @@ static relume_status upload_cones(struct btf_material *m, const struct gl *gl,
 
 relume_status btf_need_table(struct btf_material *m, const struct gl *gl,
                              const struct relume_object_material *from,
-                             const relume_prefiltered *prefilter, const struct relume_log *log)
+                             const relume_prefiltered_maps *prefiltered,
+                             const struct relume_log *log)
 {
     enum { PARTS = 2 * RELUME_PREFILTERED_EXPONENTS * RELUME_PREFILTERED_STEPS };
     if (m->table)
         return RELUME_OK;
     if (!m->shader->lobes)
-        return upload_cones(m, gl, relume_btf_surface_info(from->surface)->model, prefilter, log);
+        return upload_cones(m, gl, relume_btf_surface_info(from->surface)->model, prefiltered, log);
     return fill_buffer(m, gl, &m->table, &m->table_buffer, GL_R32F, PARTS, PARTS * sizeof(float),
-                       relume_prefiltered_info(prefilter)->part, log);
+                       relume_prefiltered_maps_info(prefiltered)->part, log);
 }
 
 void btf_release(struct btf_material *m, const struct gl *gl)
@@ -392,8 +394,8 @@ void btf_release(struct btf_material *m, const struct gl *gl)
 void btf_use(const struct btf_material *m, const struct gl *gl, int level)
 {
     for (int i = 0; i < BTF_BUFFERS; i++) {
-        const bool dome = i >= BTF_UNIT_DOMES && i < BTF_UNIT_DOMES + BTF_DOMES;
-        const GLuint texture = m->level[dome ? 0 : level].texture[i];
+        const bool mesh = i >= BTF_UNIT_MESHES && i < BTF_UNIT_MESHES + BTF_MESHES;
+        const GLuint texture = m->level[mesh ? 0 : level].texture[i];
         if (texture)
             texture_use(gl, i, GL_TEXTURE_BUFFER, texture);
     }

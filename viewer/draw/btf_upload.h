@@ -8,7 +8,7 @@
 
 #include <relume/object.h>
 
-enum { BTF_ARRAYS = 5, BTF_DOMES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_DOMES + 1, BTF_LEVELS = 17 };
+enum { BTF_ARRAYS = 5, BTF_MESHES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_MESHES + 1, BTF_LEVELS = 17 };
 
 // How a model is drawn.
 struct btf_shader {
@@ -23,19 +23,19 @@ const struct btf_shader *btf_shader_find(const char *model);
 
 // Texture units of its programs.
 enum {
-    BTF_UNIT_DOMES = BTF_ARRAYS,
-    BTF_UNIT_MAP = BTF_UNIT_DOMES + BTF_DOMES,
+    BTF_UNIT_MESHES = BTF_ARRAYS,
+    BTF_UNIT_MAP = BTF_UNIT_MESHES + BTF_MESHES,
     BTF_UNIT_PLACE,
     BTF_UNIT_NORMAL,
     BTF_UNIT_TANGENT,
     BTF_UNIT_FOOTPRINT,
     BTF_UNIT_SHADOW,
     BTF_UNIT_PICTURE,
-    BTF_UNIT_SKY = BTF_UNIT_SHADOW,  // of programs that know no lamp
+    BTF_UNIT_SKY = BTF_UNIT_SHADOW,  // of programs that know no light sample
     BTF_UNIT_TABLE = BTF_UNIT_PICTURE,
 };
 
-// A level of detail; those after the first have no domes of their own.
+// A level of detail; those after the first have no meshes of their own.
 struct btf_level {
     GLuint texture[BTF_BUFFERS], buffer[BTF_BUFFERS];
     int width, height, area, counts[4], map[4];  // as btf.glsl
@@ -60,6 +60,7 @@ void btf_use(const struct btf_material *material, const struct gl *gl, int level
 // RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status btf_need_table(struct btf_material *material, const struct gl *gl,
                              const struct relume_object_material *from,
-                             const relume_prefiltered *prefilter, const struct relume_log *log);
+                             const relume_prefiltered_maps *prefiltered,
+                             const struct relume_log *log);
 
 #endif

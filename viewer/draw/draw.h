@@ -6,7 +6,7 @@
 
 #include "app/gizmo.h"
 #include "app/place.h"
-#include "draw/lamps_seen.h"
+#include "draw/visible_lights.h"
 #include "gl/program.h"
 #include "gl/target.h"
 
@@ -32,7 +32,7 @@ void draw_picture(const struct program *program, const struct gl *gl, const stru
                   const struct target *view);
 
 // A slab from an eye.
-struct slab_seen {
+struct slab_inputs {
     const relume_slab *slab;
     const struct relume_geometry *geometry;
     struct relume_vec3 eye;
@@ -43,12 +43,12 @@ struct slab_seen {
 // The quadralinear basis, or the nearest camera.
 extern const struct fragment draw_slab_fragment;
 void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
-               const struct slab_seen *seen, bool nearest);
+               const struct slab_inputs *in, bool nearest);
 // Each camera where it sees the surface: `disparity` are textures by view number, of the views that
 // are there, `range` the least and the greatest value in any of them.
 extern const struct fragment draw_slab_depth_fragment;
 void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
-                     const struct slab_seen *seen, const GLuint *disparity, const double range[2]);
+                     const struct slab_inputs *in, const GLuint *disparity, const double range[2]);
 // Make four views between which a cell lies, and their disparities if there are any, samplers 0 to
 // 3 and 4 to 7. Views of weight 0 were not relit: another one of the cell stands in. False when
 // none was.
@@ -56,11 +56,11 @@ bool draw_use_cell(const struct gl *gl, const struct target *const *views, const
                    const int cell[4]);
 
 // What slab_window.glsl and its shaders know of the window: `at` are picture, st and eye.
-void draw_use_window(const struct gl *gl, const struct place *place, const struct slab_seen *seen,
+void draw_use_window(const struct gl *gl, const struct place *place, const struct slab_inputs *in,
                      const GLint at[3]);
 
 // Several slabs through a window of the world, which the place's picture shows.
-struct slabs_seen {
+struct slabs_inputs {
     const relume_slab_set *slabs;
     const struct relume_window *window;
     const struct target *const *views;  // relit, by view number; NULL where they have no weight
@@ -73,16 +73,16 @@ struct slabs_seen {
 // divides.
 extern const struct fragment draw_slabs_fragment;
 void draw_slabs(const struct program *program, const struct gl *gl, const struct place *place,
-                const struct slabs_seen *seen, bool nearest);
+                const struct slabs_inputs *in, bool nearest);
 extern const struct fragment draw_slabs_depth_fragment;
 void draw_slabs_depth(const struct program *program, const struct gl *gl, const struct place *place,
-                      const struct slabs_seen *seen);
+                      const struct slabs_inputs *in);
 
 // Through an aperture: adds weighted values and their weights (alpha) to a black target, which
 // draw_mean then divides. `aperture` and `focus` as relume_view_params.
 extern const struct fragment draw_slab_lens_fragment;
 void draw_slab_lens(const struct program *program, const struct gl *gl, const struct place *place,
-                    const struct slab_seen *seen, double aperture, double focus);
+                    const struct slab_inputs *in, double aperture, double focus);
 extern const struct fragment draw_mean_fragment;
 void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
                const struct target *sum);

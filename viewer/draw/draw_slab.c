@@ -87,7 +87,7 @@ struct cells {
     const struct program *program;
     const struct gl *gl;
     const struct place *place;
-    const struct slab_seen *seen;
+    const struct slab_inputs *in;
     struct relume_slab_grid grid;
     const GLuint *disparity;  // [views], or NULL
 };
@@ -96,7 +96,7 @@ static struct app_rectangle pixels_of(const struct cells *c, const struct strip 
                                       const struct strip *down)
 {
     const struct app_rectangle *p = &c->place->picture;
-    const struct relume_geometry *g = c->seen->geometry;
+    const struct relume_geometry *g = c->in->geometry;
     const double per_s = (p->right - p->left) / (g->st_max[0] - g->st_min[0]);
     const double per_t = (p->bottom - p->top) / (g->st_max[1] - g->st_min[1]);
     return (struct app_rectangle){
@@ -113,17 +113,17 @@ static void set_parts(const struct cells *c, const int view[4])
     float first[4][2] = {{0}};
     int any = -1;
     for (int i = 0; i < 4; i++)
-        any = c->seen->views[view[i]] ? view[i] : any;
-    for (int i = 0; c->seen->part && any >= 0 && i < 4; i++) {
-        const struct relume_rect *at = &c->seen->part[c->seen->views[view[i]] ? view[i] : any];
+        any = c->in->views[view[i]] ? view[i] : any;
+    for (int i = 0; c->in->part && any >= 0 && i < 4; i++) {
+        const struct relume_rect *at = &c->in->part[c->in->views[view[i]] ? view[i] : any];
         first[i][0] = (float)at->left;
         first[i][1] = (float)at->top;
     }
     const GLint *at = c->program->at;
     c->gl->Uniform4f(at[FIRST_LOW], first[0][0], first[0][1], first[1][0], first[1][1]);
     c->gl->Uniform4f(at[FIRST_HIGH], first[2][0], first[2][1], first[3][0], first[3][1]);
-    c->gl->Uniform2f(at[WHOLE], c->seen->part ? (float)c->seen->size[0] : 0.0f,
-                     c->seen->part ? (float)c->seen->size[1] : 0.0f);
+    c->gl->Uniform2f(at[WHOLE], c->in->part ? (float)c->in->size[0] : 0.0f,
+                     c->in->part ? (float)c->in->size[1] : 0.0f);
 }
 
 static void draw_cell(const struct cells *c, const struct strip *across, const struct strip *down)
@@ -133,28 +133,28 @@ static void draw_cell(const struct cells *c, const struct strip *across, const s
     const int *high = &grid->view[(size_t)down->high * (size_t)grid->columns];
     const int view[4] = {low[across->low], low[across->high], high[across->low],
                          high[across->high]};
-    (void)draw_use_cell(c->gl, c->seen->views, c->disparity, view);
+    (void)draw_use_cell(c->gl, c->in->views, c->disparity, view);
     set_parts(c, view);
     c->gl->Uniform4f(c->program->at[CELL], (float)grid->u[across->low], (float)grid->v[down->low],
                      (float)grid->u[across->high], (float)grid->v[down->high]);
     draw_rectangle(c->gl, c->program, c->place, pixels_of(c, across, down));
 }
 
-static double reach_of(const struct slab_seen *seen)
+static double reach_of(const struct slab_inputs *in)
 {
-    const struct relume_geometry *g = seen->geometry;
-    return (g->uv_z - seen->eye.z) / (g->st_z - seen->eye.z);
+    const struct relume_geometry *g = in->geometry;
+    return (g->uv_z - in->eye.z) / (g->st_z - in->eye.z);
 }
 
-void draw_use_window(const struct gl *gl, const struct place *place, const struct slab_seen *seen,
+void draw_use_window(const struct gl *gl, const struct place *place, const struct slab_inputs *in,
                      const GLint at[3])
 {
-    const struct relume_geometry *g = seen->geometry;
+    const struct relume_geometry *g = in->geometry;
     const struct app_rectangle *p = &place->picture;
     gl->Uniform4f(at[0], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
     gl->Uniform4f(at[1], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
                   (float)g->st_max[1]);
-    gl->Uniform3f(at[2], (float)seen->eye.x, (float)seen->eye.y, (float)reach_of(seen));
+    gl->Uniform3f(at[2], (float)in->eye.x, (float)in->eye.y, (float)reach_of(in));
 }
 
 static void set_uniforms(const struct cells *c)
@@ -164,41 +164,41 @@ static void set_uniforms(const struct cells *c)
     gl->UseProgram(c->program->id);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(at[VIEW_00 + i], i);
-    draw_use_window(gl, c->place, c->seen, at + PICTURE);
+    draw_use_window(gl, c->place, c->in, at + PICTURE);
     gl->Uniform1f(at[EXPOSURE], c->place->exposure);
 }
 
 static void draw_cells(const struct cells *c)
 {
-    const struct relume_geometry *g = c->seen->geometry;
+    const struct relume_geometry *g = c->in->geometry;
     const struct relume_slab_grid *grid = &c->grid;
-    const double reach = reach_of(c->seen);
+    const double reach = reach_of(c->in);
     const double s[2] = {g->st_min[0], g->st_max[0]};
     const double t[2] = {g->st_min[1], g->st_max[1]};
     struct strip across, down;
     for (int j = 0; j == 0 || j < grid->rows - 1; j++) {
-        if (!find_strip(&down, grid->v, grid->rows, j, c->seen->eye.y, reach, t))
+        if (!find_strip(&down, grid->v, grid->rows, j, c->in->eye.y, reach, t))
             continue;
         for (int i = 0; i == 0 || i < grid->columns - 1; i++)
-            if (find_strip(&across, grid->u, grid->columns, i, c->seen->eye.x, reach, s))
+            if (find_strip(&across, grid->u, grid->columns, i, c->in->eye.x, reach, s))
                 draw_cell(c, &across, &down);
     }
 }
 
 void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
-               const struct slab_seen *seen, bool nearest)
+               const struct slab_inputs *in, bool nearest)
 {
-    const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), NULL};
+    const struct cells cells = {program, gl, place, in, relume_slab_grid(in->slab), NULL};
     set_uniforms(&cells);
     gl->Uniform1i(program->at[NEAREST], nearest);
     draw_cells(&cells);
 }
 
 void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
-                     const struct slab_seen *seen, const GLuint *disparity, const double range[2])
+                     const struct slab_inputs *in, const GLuint *disparity, const double range[2])
 {
-    const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), disparity};
-    const double nearest = fmin(range[1], relume_slab_eye_disparity(seen->slab, seen->eye));
+    const struct cells cells = {program, gl, place, in, relume_slab_grid(in->slab), disparity};
+    const double nearest = fmin(range[1], relume_slab_eye_disparity(in->slab, in->eye));
     set_uniforms(&cells);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);

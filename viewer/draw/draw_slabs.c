@@ -47,7 +47,7 @@ struct turned {
     const struct program *program;
     const struct gl *gl;
     const struct place *place;
-    const struct slabs_seen *seen;
+    const struct slabs_inputs *in;
     const struct relume_geometry *geometry;
     const relume_slab *slab;
     struct relume_slab_grid grid;
@@ -56,17 +56,17 @@ struct turned {
 };
 
 static struct turned turn(const struct program *program, const struct gl *gl,
-                          const struct place *place, const struct slabs_seen *seen, int slab)
+                          const struct place *place, const struct slabs_inputs *in, int slab)
 {
-    const struct relume_geometry *g = relume_slab_set_geometry(seen->slabs, slab);
-    const struct relume_window *w = seen->window;
+    const struct relume_geometry *g = relume_slab_set_geometry(in->slabs, slab);
+    const struct relume_window *w = in->window;
     struct turned t = {
         .program = program,
         .gl = gl,
         .place = place,
-        .seen = seen,
+        .in = in,
         .geometry = g,
-        .slab = relume_slab_set_slab(seen->slabs, slab),
+        .slab = relume_slab_set_slab(in->slabs, slab),
         .eye = relume_pose_local(&g->pose, w->eye),
         .corner = relume_pose_turn_back(&g->pose, vec3_sub(w->corner, w->eye)),
         .right = relume_pose_turn_back(&g->pose, w->right),
@@ -124,9 +124,9 @@ static bool find_rectangle(struct app_rectangle *out, const struct turned *t, co
     const struct app_rectangle *p = &t->place->picture;
     const double width = p->right - p->left, height = p->bottom - p->top;
     struct part part = {{0, 0}, {1, 1}};
-    if (!t->seen->others)
+    if (!t->in->others)
         bound(&part, t, g->st_min, g->st_max, g->st_z);
-    if (!t->seen->passed && fabs(t->eye.z - g->uv_z) > 1e-3 * fabs(g->uv_z - g->st_z))
+    if (!t->in->passed && fabs(t->eye.z - g->uv_z) > 1e-3 * fabs(g->uv_z - g->st_z))
         bound(&part, t, low, high, g->uv_z);
     *out = (struct app_rectangle){
         .left = fmax(p->left, p->left + part.min[0] * width - 1),
@@ -143,7 +143,7 @@ static void set_here(const struct turned *t, const int cell[4])
 {
     float here[4];
     for (int i = 0; i < 4; i++)
-        here[i] = t->seen->views[cell[i]] ? 1 : 0;
+        here[i] = t->in->views[cell[i]] ? 1 : 0;
     t->gl->Uniform4f(t->program->at[HERE], here[0], here[1], here[2], here[3]);
 }
 
@@ -158,10 +158,10 @@ static void draw_cell(const struct turned *t, int column, int row)
     const double low[2] = {grid->u[column] - t->slack, grid->v[row] - t->slack};
     const double high[2] = {grid->u[right] + t->slack, grid->v[below] + t->slack};
     struct app_rectangle rectangle;
-    if (!draw_use_cell(t->gl, t->seen->views, t->seen->disparity, cell) ||
+    if (!draw_use_cell(t->gl, t->in->views, t->in->disparity, cell) ||
         !find_rectangle(&rectangle, t, low, high))
         return;
-    if (t->seen->disparity)
+    if (t->in->disparity)
         set_here(t, cell);
     t->gl->Uniform4f(t->program->at[CELL], (float)grid->u[column], (float)grid->v[row],
                      (float)grid->u[right], (float)grid->v[below]);
@@ -195,7 +195,7 @@ static void draw_slab_cells(const struct turned *t)
 }
 
 static void begin(const struct program *program, const struct gl *gl, const struct place *place,
-                  const struct slabs_seen *seen)
+                  const struct slabs_inputs *in)
 {
     const struct app_rectangle *p = &place->picture;
     gl->UseProgram(program->id);
@@ -203,21 +203,21 @@ static void begin(const struct program *program, const struct gl *gl, const stru
         gl->Uniform1i(program->at[VIEW_00 + i], i);
     gl->Uniform4f(program->at[PICTURE], (float)p->left, (float)p->top, (float)p->right,
                   (float)p->bottom);
-    gl->Uniform1i(program->at[BESIDE], seen->passed != NULL);
+    gl->Uniform1i(program->at[BESIDE], in->passed != NULL);
     gl->Uniform1i(program->at[PASSED], 8);
-    if (seen->passed)
-        texture_use(gl, 8, GL_TEXTURE_2D, seen->passed->texture);
+    if (in->passed)
+        texture_use(gl, 8, GL_TEXTURE_2D, in->passed->texture);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
 }
 
 void draw_slabs(const struct program *program, const struct gl *gl, const struct place *place,
-                const struct slabs_seen *seen, bool nearest)
+                const struct slabs_inputs *in, bool nearest)
 {
-    begin(program, gl, place, seen);
+    begin(program, gl, place, in);
     gl->Uniform1i(program->at[NEAREST], nearest);
-    for (int i = 0; i < relume_slab_set_count(seen->slabs); i++) {
-        const struct turned t = turn(program, gl, place, seen, i);
+    for (int i = 0; i < relume_slab_set_count(in->slabs); i++) {
+        const struct turned t = turn(program, gl, place, in, i);
         draw_slab_cells(&t);
     }
     gl->Disable(GL_BLEND);
@@ -229,10 +229,10 @@ static void set_range(const struct turned *t)
     double farthest = (double)INFINITY, nearest = -(double)INFINITY;
     for (int i = 0; i < t->grid.columns * t->grid.rows; i++) {
         const int view = t->grid.view[i];
-        if (!t->seen->views[view])
+        if (!t->in->views[view])
             continue;
-        farthest = fmin(farthest, t->seen->range[view][0]);
-        nearest = fmax(nearest, t->seen->range[view][1]);
+        farthest = fmin(farthest, t->in->range[view][0]);
+        nearest = fmax(nearest, t->in->range[view][1]);
     }
     t->gl->Uniform2f(t->program->at[EXTENT], (float)farthest, (float)nearest);
     nearest = fmin(nearest, relume_slab_eye_disparity(t->slab, t->eye));
@@ -240,13 +240,13 @@ static void set_range(const struct turned *t)
 }
 
 void draw_slabs_depth(const struct program *program, const struct gl *gl, const struct place *place,
-                      const struct slabs_seen *seen)
+                      const struct slabs_inputs *in)
 {
-    begin(program, gl, place, seen);
+    begin(program, gl, place, in);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
-    for (int i = 0; i < relume_slab_set_count(seen->slabs); i++) {
-        const struct turned t = turn(program, gl, place, seen, i);
+    for (int i = 0; i < relume_slab_set_count(in->slabs); i++) {
+        const struct turned t = turn(program, gl, place, in, i);
         set_range(&t);
         draw_slab_cells(&t);
     }

@@ -44,7 +44,7 @@ static const char *const btf_uniforms[] = {
     "sky_rgb",
     "sky_table",
     "some_lights",
-    SHINE_NAMES,
+    LIGHT_NAMES,
     SHADOW_NAMES,
 };
 enum { SURFACE_CLIP, SURFACE_PART, SURFACE_COUNT };
@@ -67,14 +67,15 @@ static const char *const over_uniforms[] = {"rectangle", "frame_size", "place", 
 enum {
     CAST_SCENE = DRAW_OWN,
     CAST_LONE,
-    CAST_LAMPS,
+    CAST_SAMPLES,
     CAST_OF,
-    CAST_LAMP,
+    CAST_SAMPLE,
     CAST_SHADOW,
     CAST_COUNT = CAST_SHADOW + SHADOW_UNIFORMS
 };
-static const char *const cast_uniforms[] = {"rectangle", "frame_size", "scene", "lone",
-                                            "lamps",     "count",      "lamp",  SHADOW_NAMES};
+static const char *const cast_uniforms[] = {"rectangle",    "frame_size",    "scene",
+                                            "lone",         "light_samples", "count",
+                                            "light_sample", SHADOW_NAMES};
 
 // Where OpenGL is software, a smaller map and no finer grid.
 enum { SHADOW_SIDE = 2048, SHADOW_SIDE_SOFTWARE = 1024, FINER = 2 };
@@ -197,7 +198,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
     t->gl->DeleteBuffers(1, &t->indices);
     free(t->program);
     free(t->material);
-    relume_free(t->lamp);
+    relume_free(t->light_sample);
     free(t->light);
     *t = (struct objects_drawer){0};
 }
@@ -294,8 +295,8 @@ relume_status objects_drawer_light(struct objects_drawer *t, const struct relume
     memcpy(light, lights, (size_t)n * sizeof *light);
     t->light = light;
     t->lights = n;
-    relume_free(t->lamp);
-    return relume_objects_lights(&t->lamp, &t->lamps, t->objects, lights, n);
+    relume_free(t->light_sample);
+    return relume_objects_lights(&t->light_sample, &t->light_samples, t->objects, lights, n);
 }
 
 // ---------------------------------------------------------------- passes
@@ -309,7 +310,7 @@ static void draw_all(void *context, const float clip[16])
                         GL_UNSIGNED_INT, NULL);
 }
 
-void objects_drawer_draw_shadow(struct objects_drawer *t, int lamp)
+void objects_drawer_draw_shadow(struct objects_drawer *t, int light_sample)
 {
     GLint before = 0;
     t->shadow.layers = 0;
@@ -318,11 +319,11 @@ void objects_drawer_draw_shadow(struct objects_drawer *t, int lamp)
     t->gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &before);
     t->gl->BindVertexArray(t->array);
     t->gl->UseProgram(t->depth.id);
-    shadow_map_fill(&t->shadow, &t->lamp[lamp], t->middle, t->radius, draw_all, t);
+    shadow_map_fill(&t->shadow, &t->light_sample[light_sample], t->middle, t->radius, draw_all, t);
     t->gl->BindVertexArray((GLuint)before);
 }
 
-static void draw_surface(struct objects_drawer *t, const struct sight *sight)
+static void draw_surface(struct objects_drawer *t, const struct frame_projection *projection)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
@@ -335,7 +336,7 @@ static void draw_surface(struct objects_drawer *t, const struct sight *sight)
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->Enable(GL_DEPTH_TEST);
     gl->UseProgram(t->surface.id);
-    gl->UniformMatrix4fv(t->surface.at[SURFACE_CLIP], 1, GL_FALSE, sight->clip);
+    gl->UniformMatrix4fv(t->surface.at[SURFACE_CLIP], 1, GL_FALSE, projection->clip);
     for (int i = 0; i < info->parts; i++) {
         const struct relume_object_part *part = &info->part[i];
         gl->Uniform1i(t->surface.at[SURFACE_PART], i);
@@ -353,8 +354,8 @@ static void set_uniforms(const struct objects_drawer *t, const struct program *p
     const GLint *at = program->at;
     for (int i = 0; i < BTF_ARRAYS; i++)
         gl->Uniform1i(at[ARRAYS + i], i);
-    for (int i = 0; i < BTF_DOMES; i++)
-        gl->Uniform1i(at[DOMES + i], BTF_UNIT_DOMES + i);
+    for (int i = 0; i < BTF_MESHES; i++)
+        gl->Uniform1i(at[MESHES + i], BTF_UNIT_MESHES + i);
     gl->Uniform1i(at[PLACE], BTF_UNIT_PLACE);
     gl->Uniform1i(at[NORMAL], BTF_UNIT_NORMAL);
     gl->Uniform1i(at[TANGENT], BTF_UNIT_TANGENT);
@@ -365,7 +366,8 @@ static void set_uniforms(const struct objects_drawer *t, const struct program *p
     texture_use(gl, BTF_UNIT_TANGENT, GL_TEXTURE_2D, t->tangent.texture);
     texture_use(gl, BTF_UNIT_FOOTPRINT, GL_TEXTURE_2D, t->footprint.texture);
     gl->Uniform1i(at[PART], part);
-    gl->Uniform4f(at[EYE], t->sight.eye[0], t->sight.eye[1], t->sight.eye[2], t->sight.eye[3]);
+    gl->Uniform4f(at[EYE], t->projection.eye[0], t->projection.eye[1], t->projection.eye[2],
+                  t->projection.eye[3]);
     gl->Uniform2i(at[FINEST], m->level->width, m->level->height);
     gl->Uniform1i(at[LEVELS], m->levels);
     gl->Uniform1i(at[BILINEAR], relume_objects_info(t->objects)->part[part].bilinear);
@@ -377,8 +379,8 @@ static void set_uniforms(const struct objects_drawer *t, const struct program *p
 // texels at each of up to eight places.
 static int lights_at_once(const struct btf_level *l)
 {
-    enum { MOST_ROUNDS = 60000, PLACES = 4 * 8, DOME_ROUNDS = 16 };
-    const int rounds = PLACES * (DOME_ROUNDS + 3 * l->counts[2]);
+    enum { MOST_ROUNDS = 60000, PLACES = 4 * 8, MESH_ROUNDS = 16 };
+    const int rounds = PLACES * (MESH_ROUNDS + 3 * l->counts[2]);
     return rounds < MOST_ROUNDS ? MOST_ROUNDS / rounds : 1;
 }
 
@@ -412,14 +414,15 @@ static void draw_levels(const struct objects_drawer *t, const struct program *pr
     }
 }
 
-// A lamp as a light: a facet is an area light's piece, its normal the axis.
-static struct relume_light light_of(const struct relume_object_light *lamp)
+// A light sample as a light: a patch is an area light's piece, its normal the axis.
+static struct relume_light light_of(const struct relume_object_light *light_sample)
 {
-    struct relume_light light = lamp->light;
-    if (!lamp->is_patch)
+    struct relume_light light = light_sample->light;
+    if (!light_sample->is_patch)
         return light;
-    light = (struct relume_light){.kind = RELUME_LIGHT_AREA, .position = lamp->facet.position};
-    memcpy(light.rgb, lamp->facet.rgb, sizeof light.rgb);
+    light =
+        (struct relume_light){.kind = RELUME_LIGHT_AREA, .position = light_sample->patch.position};
+    memcpy(light.rgb, light_sample->patch.rgb, sizeof light.rgb);
     return light;
 }
 
@@ -436,19 +439,19 @@ static relume_status use_material(const struct program **out, struct objects_dra
     return RELUME_OK;
 }
 
-static relume_status shade_part(struct objects_drawer *t, int part, int material, int lamp)
+static relume_status shade_part(struct objects_drawer *t, int part, int material, int light_sample)
 {
     const struct program *program;
     const struct gl *gl = t->gl;
     relume_status status = use_material(&program, t, part, material, false);
     if (status)
         return status;
-    const struct relume_light light = light_of(&t->lamp[lamp]);
+    const struct relume_light light = light_of(&t->light_sample[light_sample]);
     gl->Uniform1i(program->at[PICTURE], BTF_UNIT_PICTURE);
     status = light_uniforms_set(&t->uniforms, program->at + LIGHT, BTF_UNIT_PICTURE, &light);
-    if (t->lamp[lamp].is_patch) {
-        const struct relume_vec3 n = t->lamp[lamp].facet.normal;
-        gl->Uniform3f(program->at[LIGHT + SHINE_AXIS], (float)n.x, (float)n.y, (float)n.z);
+    if (t->light_sample[light_sample].is_patch) {
+        const struct relume_vec3 n = t->light_sample[light_sample].patch.normal;
+        gl->Uniform3f(program->at[LIGHT + LIGHT_AXIS], (float)n.x, (float)n.y, (float)n.z);
     }
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, program->at + SHADOW, BTF_UNIT_SHADOW);
     if (!status)
@@ -468,7 +471,7 @@ relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int m
         status = sky_maps_find(&map, &t->maps, light, m->rim);
     if (!status)
         status = btf_need_table(m, gl, &relume_objects_info(t->objects)->material[material],
-                                map->prefilter, t->log);
+                                map->prefiltered, t->log);
     if (!status)
         status = use_material(&program, t, part, material, true);
     if (status)
@@ -484,34 +487,35 @@ relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int m
     return RELUME_OK;
 }
 
-static relume_status add_lamp(struct objects_drawer *t, int lamp, int only)
+static relume_status add_sample(struct objects_drawer *t, int light_sample, int only)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
     relume_status status = RELUME_OK;
-    objects_drawer_draw_shadow(t, lamp);
+    objects_drawer_draw_shadow(t, light_sample);
     target_resume(&t->shaded, gl);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
     for (int i = 0; i < info->parts && !status; i++)
-        status = shade_part(t, i, only >= 0 ? only : info->part[i].material, lamp);
+        status = shade_part(t, i, only >= 0 ? only : info->part[i].material, light_sample);
     gl->Disable(GL_BLEND);
     return status;
 }
 
-relume_status objects_drawer_shade(struct objects_drawer *t, const struct sight *sight, int width,
-                                   int height, int only)
+relume_status objects_drawer_shade(struct objects_drawer *t,
+                                   const struct frame_projection *projection, int width, int height,
+                                   int only)
 {
     const struct gl *gl = t->gl;
     relume_status status = need_targets(t, width, height);
     if (status)
         return status;
-    t->sight = *sight;
-    draw_surface(t, sight);
+    t->projection = *projection;
+    draw_surface(t, projection);
     target_begin(&t->shaded, gl);
-    for (int i = 0; i < t->lamps && !status; i++)
-        if (!t->lamp[i].is_sky)
-            status = add_lamp(t, i, only);
+    for (int i = 0; i < t->light_samples && !status; i++)
+        if (!t->light_sample[i].is_sky)
+            status = add_sample(t, i, only);
     for (int i = 0; i < t->lights && !status; i++)
         if (t->light[i].kind == RELUME_LIGHT_ENVIRONMENT)
             status = objects_drawer_add_sky(t, i, only);
@@ -548,7 +552,8 @@ void objects_drawer_over(const struct objects_drawer *t, const struct place *pla
     gl->Uniform1i(at[OVER_SCENE], 2);
     gl->Uniform1i(at[IN_SCENE], scene != 0);
     gl->Uniform1i(at[GRID], t->grid);
-    gl->Uniform4f(at[OVER_EYE], t->sight.eye[0], t->sight.eye[1], t->sight.eye[2], t->sight.eye[3]);
+    gl->Uniform4f(at[OVER_EYE], t->projection.eye[0], t->projection.eye[1], t->projection.eye[2],
+                  t->projection.eye[3]);
     gl->Uniform1f(at[EXPOSURE], place->exposure);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -556,39 +561,40 @@ void objects_drawer_over(const struct objects_drawer *t, const struct place *pla
     gl->Disable(GL_BLEND);
 }
 
-// A lamp of several: its direction times its value and 0, or its place and its value.
-static void put_lamp(float to[4], const struct relume_object_light *lamp)
+// A light sample of several: its direction times its value and 0, or its place and its value.
+static void put_sample(float to[4], const struct relume_object_light *light_sample)
 {
-    const float *rgb = lamp->is_patch ? lamp->facet.rgb : lamp->light.rgb;
-    const struct relume_vec3 at = lamp->is_patch ? lamp->facet.position : lamp->light.direction;
-    const float value = rgb[0] + rgb[1] + rgb[2], scale = lamp->is_patch ? 1.0f : value;
+    const float *rgb = light_sample->is_patch ? light_sample->patch.rgb : light_sample->light.rgb;
+    const struct relume_vec3 at =
+        light_sample->is_patch ? light_sample->patch.position : light_sample->light.direction;
+    const float value = rgb[0] + rgb[1] + rgb[2], scale = light_sample->is_patch ? 1.0f : value;
     to[0] = scale * (float)at.x;
     to[1] = scale * (float)at.y;
     to[2] = scale * (float)at.z;
-    to[3] = lamp->is_patch ? value : 0.0f;
+    to[3] = light_sample->is_patch ? value : 0.0f;
 }
 
-// A single lamp counts whole.
-static void use_lamps(const struct objects_drawer *t, int lamp)
+// A single light sample counts whole.
+static void use_samples(const struct objects_drawer *t, int light_sample)
 {
     float at[RELUME_OBJECT_LIGHTS_MOST][4];
-    const int n = t->lamps > 1 ? t->lamps : 0;
+    const int n = t->light_samples > 1 ? t->light_samples : 0;
     for (int i = 0; i < n; i++)
-        put_lamp(at[i], &t->lamp[i]);
+        put_sample(at[i], &t->light_sample[i]);
     t->gl->Uniform1i(t->cast.at[CAST_OF], n);
-    t->gl->Uniform1i(t->cast.at[CAST_LAMP], lamp);
+    t->gl->Uniform1i(t->cast.at[CAST_SAMPLE], light_sample);
     if (n)
-        t->gl->Uniform4fv(t->cast.at[CAST_LAMPS], n, at[0]);
+        t->gl->Uniform4fv(t->cast.at[CAST_SAMPLES], n, at[0]);
 }
 
-void objects_drawer_cast(struct objects_drawer *t, const struct place *place, int lamp,
+void objects_drawer_cast(struct objects_drawer *t, const struct place *place, int light_sample,
                          GLuint scene, const struct target *lone)
 {
     const struct gl *gl = t->gl;
     GLint before = 0, viewport[4];
     gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
     gl->GetIntegerv(GL_VIEWPORT, viewport);
-    objects_drawer_draw_shadow(t, lamp);
+    objects_drawer_draw_shadow(t, light_sample);
     gl->BindFramebuffer(GL_FRAMEBUFFER, (GLuint)before);
     gl->Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
     gl->UseProgram(t->cast.id);
@@ -596,7 +602,7 @@ void objects_drawer_cast(struct objects_drawer *t, const struct place *place, in
     texture_use(gl, 1, GL_TEXTURE_2D, lone->texture);
     gl->Uniform1i(t->cast.at[CAST_SCENE], 0);
     gl->Uniform1i(t->cast.at[CAST_LONE], 1);
-    use_lamps(t, lamp);
+    use_samples(t, light_sample);
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, t->cast.at + CAST_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);

@@ -1,9 +1,9 @@
 // objects_drawer.h - objects covered with measured materials, on the GPU
 //
-// Their surface is drawn once into textures of places and frames; then every lamp adds what each
-// material shows of it, with a shadow map of its own. So the work of a lamp is that of the pixels
-// that show something, and any number of lamps will do. An environment adds what is looked up in
-// its prefiltered maps, times the share of its lamps that arrives.
+// Their surface is drawn once into textures of places and frames; then every light sample adds what
+// each material shows of it, with a shadow map of its own. So the work of a light sample is that of
+// the pixels that show something, and any number of light samples will do. An environment adds what
+// is looked up in its prefiltered maps, times the share of its light samples that arrives.
 #ifndef VIEWER_OBJECTS_DRAWER_H
 #define VIEWER_OBJECTS_DRAWER_H
 
@@ -19,10 +19,11 @@ void objects_drawer_destroy(struct objects_drawer *drawer);
 relume_status objects_drawer_light(struct objects_drawer *drawer, const struct relume_light *lights,
                                    int n);
 
-// Light the objects as seen in a frame of width x height, with all lamps, into things->shaded;
-// `only` >= 0: with all parts in this material. RELUME_ESYSTEM, RELUME_ENOMEM.
-relume_status objects_drawer_shade(struct objects_drawer *drawer, const struct sight *sight,
-                                   int width, int height, int only);
+// Light the objects as seen in a frame of width x height, with all light samples, into
+// drawer->shaded; `only` >= 0: with all parts in this material. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status objects_drawer_shade(struct objects_drawer *drawer,
+                                   const struct frame_projection *projection, int width, int height,
+                                   int only);
 // What was shaded becomes the other, and the other way round.
 void objects_drawer_swap(struct objects_drawer *drawer);
 // What was shaded over the target in use, of the same frame, or its difference from the other;
@@ -30,9 +31,10 @@ void objects_drawer_swap(struct objects_drawer *drawer);
 void objects_drawer_over(const struct objects_drawer *drawer, const struct place *place,
                          GLuint scene, bool difference);
 
-// The shadow of one lamp on the scene: adds to the target in use what `lone` shows, where the lamp
-// reaches `scene`, times the lamp's share of the light of all lamps.
-void objects_drawer_cast(struct objects_drawer *drawer, const struct place *place, int lamp,
+// The shadow of one light sample on the scene: adds to the target in use what `lone` shows, where
+// the light sample reaches `scene`, times the light sample's share of the light of all light
+// samples.
+void objects_drawer_cast(struct objects_drawer *drawer, const struct place *place, int light_sample,
                          GLuint scene, const struct target *lone);
 
 // The graphics memory of a material; 0 while it was not shown.

@@ -7,8 +7,8 @@
 // Uniforms of the programs of models.
 enum {
     ARRAYS = DRAW_OWN,
-    DOMES = ARRAYS + BTF_ARRAYS,
-    PLACE = DOMES + BTF_DOMES,
+    MESHES = ARRAYS + BTF_ARRAYS,
+    PLACE = MESHES + BTF_MESHES,
     NORMAL,
     TANGENT,
     FOOTPRINT,
@@ -31,12 +31,12 @@ enum {
     SKY_TABLE,
     SOME_LIGHTS,
     LIGHT,
-    SHADOW = LIGHT + SHINE_UNIFORMS,
+    SHADOW = LIGHT + LIGHT_UNIFORMS,
     BTF_COUNT = SHADOW + SHADOW_UNIFORMS
 };
 
-// The shadow map of a lamp; it takes over the target.
-void objects_drawer_draw_shadow(struct objects_drawer *t, int lamp);
+// The shadow map of a light sample; it takes over the target.
+void objects_drawer_draw_shadow(struct objects_drawer *t, int light_sample);
 void objects_drawer_draw_whole(const struct gl *gl, const struct program *program,
                                const struct place *place);
 // What a part shows of an environment, into the target in use.

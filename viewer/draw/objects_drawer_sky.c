@@ -40,7 +40,7 @@ static relume_status show(struct objects_drawer *t, const struct relume_light *l
 static void add_share(struct objects_drawer *t, int number)
 {
     const struct gl *gl = t->gl;
-    const struct relume_light *lamp = &t->lamp[number].light;
+    const struct relume_light *light_sample = &t->light_sample[number].light;
     const struct place whole = {.width = t->sent.width, .height = t->sent.height};
     objects_drawer_draw_shadow(t, number);
     gl->BindFramebuffer(GL_FRAMEBUFFER, t->share_buffer);
@@ -50,9 +50,10 @@ static void add_share(struct objects_drawer *t, int number)
     texture_use(gl, 1, GL_TEXTURE_2D, t->normal.texture);
     gl->Uniform1i(t->share.at[SHARE_PLACE], 0);
     gl->Uniform1i(t->share.at[SHARE_NORMAL], 1);
-    gl->Uniform3f(t->share.at[TOWARDS], (float)lamp->direction.x, (float)lamp->direction.y,
-                  (float)lamp->direction.z);
-    gl->Uniform3f(t->share.at[SHARE_RGB], lamp->rgb[0], lamp->rgb[1], lamp->rgb[2]);
+    gl->Uniform3f(t->share.at[TOWARDS], (float)light_sample->direction.x,
+                  (float)light_sample->direction.y, (float)light_sample->direction.z);
+    gl->Uniform3f(t->share.at[SHARE_RGB], light_sample->rgb[0], light_sample->rgb[1],
+                  light_sample->rgb[2]);
     shadow_map_use(&t->shadow, gl, t->share.at + SHARE_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
@@ -66,8 +67,8 @@ static void find_share(struct objects_drawer *t, int number)
     gl->BindFramebuffer(GL_FRAMEBUFFER, t->share_buffer);
     gl->ClearColor(0, 0, 0, 0);
     gl->Clear(GL_COLOR_BUFFER_BIT);
-    for (int i = 0; i < t->lamps && !t->no_shadows; i++)
-        if (t->lamp[i].number == number)
+    for (int i = 0; i < t->light_samples && !t->no_shadows; i++)
+        if (t->light_sample[i].number == number)
             add_share(t, i);
 }
 

@@ -5,7 +5,7 @@
 #include "draw/btf_upload.h"
 #include "draw/draw.h"
 #include "draw/shadow_map.h"
-#include "draw/sight.h"
+#include "draw/frame_projection.h"
 #include "draw/sky_maps.h"
 
 struct objects_drawer_program {
@@ -32,11 +32,11 @@ struct objects_drawer {
     GLuint surface_buffer, depth_texture, share_buffer;
     int grid;
     bool no_shadows;
-    struct relume_object_light *lamp;  // of the present frame, and its lights
-    int lamps;
+    struct relume_object_light *light_sample;  // of the present frame, and its lights
+    int light_samples;
     struct relume_light *light;
     int lights;
-    struct sight sight;
+    struct frame_projection projection;
     struct relume_vec3 middle;
     double radius;
 };

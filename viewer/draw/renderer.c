@@ -52,7 +52,7 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     r->part = calloc((size_t)views, sizeof *r->part);
     r->relit = calloc((size_t)views, sizeof *r->relit);
     r->backdrop =
-        (struct lamp_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
+        (struct hiding_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
     relume_status status = r->uv && r->needed && r->part && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
@@ -119,7 +119,7 @@ void renderer_destroy(struct renderer *r)
     relighter_destroy(&r->relighter);
     enhancer_destroy(&r->enhancer);
     glare_end(&r->glare);
-    lamp_scene_forget(&r->backdrop);
+    hiding_scene_forget(&r->backdrop);
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
@@ -206,28 +206,28 @@ static bool takes_depth(const struct renderer *r, const struct frame_request *q)
 }
 
 static relume_status draw_lens(struct renderer *r, const struct frame_request *q,
-                               const struct place *place, const struct slab_seen *seen)
+                               const struct place *place, const struct slab_inputs *in)
 {
     relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
     if (status)
         return status;
     target_begin(&r->sum, r->gl);
-    draw_slab_lens(&r->slab_lens, r->gl, place, seen, q->view.aperture, q->view.focus);
+    draw_slab_lens(&r->slab_lens, r->gl, place, in, q->view.aperture, q->view.focus);
     target_resume(&r->frame, r->gl);
     draw_mean(&r->mean, r->gl, place, &r->sum);
     return RELUME_OK;
 }
 
-// The mean of `seen`, by way of `sum`, added to what `onto` holds.
+// The mean of `in`, by way of `sum`, added to what `onto` holds.
 static void add_mean(struct renderer *r, const struct frame_request *q, const struct place *place,
-                     const struct target *onto, const struct slabs_seen *seen,
+                     const struct target *onto, const struct slabs_inputs *in,
                      const struct target *sum)
 {
     target_begin(sum, r->gl);
-    if (seen->disparity)
-        draw_slabs_depth(&r->slabs_depth, r->gl, place, seen);
+    if (in->disparity)
+        draw_slabs_depth(&r->slabs_depth, r->gl, place, in);
     else
-        draw_slabs(&r->slabs, r->gl, place, seen,
+        draw_slabs(&r->slabs, r->gl, place, in,
                    q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
     target_resume(onto, r->gl);
     r->gl->Enable(GL_BLEND);
@@ -251,21 +251,21 @@ static relume_status add_around(struct renderer *r, const struct frame_request *
                                 const struct place *place, const struct target *onto,
                                 const struct relume_window *window, bool by_depth)
 {
-    struct slabs_seen seen = {
+    struct slabs_inputs in = {
         .slabs = r->around,
         .window = window,
         .views = r->relit,
         .disparity = by_depth ? r->depths.texture : NULL,
         .range = (const double(*)[2])r->depths.range,
     };
-    seen.others = has_others(r, window);
-    add_mean(r, q, place, onto, &seen, &r->sum);
-    if (!seen.others)
+    in.others = has_others(r, window);
+    add_mean(r, q, place, onto, &in, &r->sum);
+    if (!in.others)
         return RELUME_OK;
     const relume_status status = renderer_prepare(&r->beside, r, place->width, place->height);
-    seen.passed = &r->sum;
+    in.passed = &r->sum;
     if (!status)
-        add_mean(r, q, place, onto, &seen, &r->beside);
+        add_mean(r, q, place, onto, &in, &r->beside);
     return status;
 }
 
@@ -311,7 +311,7 @@ static relume_status draw_around(struct renderer *r, const struct frame_request 
 static relume_status draw_framed_eye(struct renderer *r, const struct frame_request *q,
                                      const struct place *place)
 {
-    const struct slab_seen seen = {r->grid,
+    const struct slab_inputs in = {r->grid,
                                    &r->geometry,
                                    q->camera.eye,
                                    r->relit,
@@ -325,9 +325,9 @@ static relume_status draw_framed_eye(struct renderer *r, const struct frame_requ
     if (r->around)
         return draw_around(r, q, place);
     if (takes_lens(q))
-        return draw_lens(r, q, place, &seen);
+        return draw_lens(r, q, place, &in);
     if (!takes_depth(r, q)) {
-        draw_slab(&r->slab, r->gl, place, &seen,
+        draw_slab(&r->slab, r->gl, place, &in,
                   q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
         return RELUME_OK;
     }
@@ -336,7 +336,7 @@ static relume_status draw_framed_eye(struct renderer *r, const struct frame_requ
                                      ? depths_use_parts(&r->depths, r->needed, r->part, range)
                                      : depths_use(&r->depths, r->needed, range);
     if (!status)
-        draw_slab_depth(&r->slab_depth, r->gl, place, &seen, r->depths.texture, range);
+        draw_slab_depth(&r->slab_depth, r->gl, place, &in, r->depths.texture, range);
     return status;
 }
 
@@ -499,7 +499,7 @@ static relume_status draw_lights_in_view(struct renderer *r, const struct frame_
     struct relume_visible_light *sources = malloc(RELUME_VISIBLE_LIGHTS_MOST * sizeof *sources);
     if (!sources)
         return RELUME_ENOMEM;
-    const int n = lamps_seen(sources, q, q->light, q->lights, &r->backdrop);
+    const int n = visible_lights(sources, q, q->light, q->lights, &r->backdrop);
     draw_sources(&r->source, r->gl, place, sources, n);
     free(sources);
     return RELUME_OK;

@@ -92,19 +92,20 @@ static bool find_window(struct relume_window *w, const struct renderer *r,
     return r->geometry.projection <= RELUME_SLAB;
 }
 
-static bool find_sight(struct sight *out, const struct renderer *r, const struct frame_request *q,
-                       const struct place *place)
+static bool find_projection(struct frame_projection *out, const struct renderer *r,
+                            const struct frame_request *q, const struct place *place)
 {
     const struct relume_objects_info *info = relume_objects_info(r->drawer.objects);
     const struct relume_geometry *g = &r->geometry;
     struct relume_window window;
     if (g->projection == RELUME_PLANAR && !g->perspective) {
-        sight_of_plane(out, g->window_min, g->window_max, place->picture, place->width,
-                       place->height, info->min, info->max);
+        frame_projection_of_plane(out, g->window_min, g->window_max, place->picture, place->width,
+                                  place->height, info->min, info->max);
         return true;
     }
-    return find_window(&window, r, q) && sight_of_window(out, &window, place->picture, place->width,
-                                                         place->height, info->min, info->max);
+    return find_window(&window, r, q) &&
+           frame_projection_of_window(out, &window, place->picture, place->width, place->height,
+                                      info->min, info->max);
 }
 
 // ---------------------------------------------------------------- the scene
@@ -163,7 +164,7 @@ static relume_status light_scene(struct renderer *r, const struct frame_request 
         if (!status)
             status = objects_drawer_light(&r->drawer, &lights[i], 1);
         target_resume(&r->lit, r->gl);
-        for (int k = 0; k < r->drawer.lamps && !status; k++)
+        for (int k = 0; k < r->drawer.light_samples && !status; k++)
             objects_drawer_cast(&r->drawer, place, k, r->scene.texture, &r->frame);
     }
     swap(&r->frame, &r->lit);
@@ -195,12 +196,13 @@ static relume_status draw_scene(struct renderer *r, const struct frame_request *
 
 // Objects in their materials, or all in one; `ms` is what it took where the panel shows it.
 static relume_status shade(struct renderer *r, const struct frame_request *q,
-                           const struct sight *sight, int only, double *ms)
+                           const struct frame_projection *projection, int only, double *ms)
 {
     if (q->timed)
         r->gl->Finish();
     const double start = 1e3 * now_s();
-    const relume_status status = objects_drawer_shade(&r->drawer, sight, q->width, q->height, only);
+    const relume_status status =
+        objects_drawer_shade(&r->drawer, projection, q->width, q->height, only);
     if (q->timed)
         r->gl->Finish();
     *ms = 1e3 * now_s() - start;
@@ -221,17 +223,18 @@ static void draw_split(const struct renderer *r, const struct place *place, GLui
     gl->Disable(GL_SCISSOR_TEST);
 }
 
-static relume_status draw_things(struct renderer *r, const struct frame_request *q,
-                                 const struct place *place, const struct sight *sight)
+static relume_status draw_objects(struct renderer *r, const struct frame_request *q,
+                                  const struct place *place,
+                                  const struct frame_projection *projection)
 {
     const GLuint scene = r->stage ? 0 : r->scene.texture;
     const bool both = q->split != APP_SPLIT_NONE;
     relume_status status = RELUME_OK;
     if (both)
-        status = shade(r, q, sight, q->other, &r->objects_drawer_ms[1]);
+        status = shade(r, q, projection, q->other, &r->objects_drawer_ms[1]);
     objects_drawer_swap(&r->drawer);
     if (!status)
-        status = shade(r, q, sight, -1, &r->objects_drawer_ms[0]);
+        status = shade(r, q, projection, -1, &r->objects_drawer_ms[0]);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
@@ -248,12 +251,12 @@ relume_status renderer_draw_objects(struct renderer *r, const struct frame_reque
                                     const struct place *place, const struct relume_light *lights,
                                     int count)
 {
-    struct sight sight;
-    const bool seen = find_sight(&sight, r, q, place);
+    struct frame_projection projection;
+    const bool seen = find_projection(&projection, r, q, place);
     r->gl->BindVertexArray(r->vertices);
     relume_status status = draw_scene(r, q, place, lights, count, seen);
     if (status || !seen || q->pass != RELUME_PASS_COLOUR)
         return status;
     status = objects_drawer_light(&r->drawer, lights, count);
-    return status ? status : draw_things(r, q, place, &sight);
+    return status ? status : draw_objects(r, q, place, &projection);
 }

@@ -48,8 +48,8 @@ struct renderer {
     struct depth_source place_source;
     struct target scene, lit, *place;
     double
-        objects_drawer_ms[2];    // what the objects took in the last frame, and in another material
-    struct lamp_scene backdrop;  // that hides lights
+        objects_drawer_ms[2];  // what the objects took in the last frame, and in another material
+    struct hiding_scene backdrop;  // that hides lights
 };
 
 #endif

@@ -1,4 +1,4 @@
-// shadow_map.c - what a lamp sees of the objects: depths, for shadow.glsl
+// shadow_map.c - what a light sample sees of the objects: depths, for shadow.glsl
 #include "draw/shadow_map.h"
 
 #include "program/say.h"
@@ -95,15 +95,15 @@ static void aim_cube(struct shadow_map *map, struct relume_vec3 eye, double reac
     }
 }
 
-static void aim(struct shadow_map *map, const struct relume_object_light *lamp,
+static void aim(struct shadow_map *map, const struct relume_object_light *light_sample,
                 struct relume_vec3 middle, double radius)
 {
-    const bool near = lamp->is_patch || relume_light_is_near(lamp->light.kind);
-    const struct relume_vec3 at = !near            ? lamp->light.direction
-                                  : lamp->is_patch ? lamp->facet.position
-                                                   : lamp->light.position;
+    const bool near = light_sample->is_patch || relume_light_is_near(light_sample->light.kind);
+    const struct relume_vec3 at = !near                    ? light_sample->light.direction
+                                  : light_sample->is_patch ? light_sample->patch.position
+                                                           : light_sample->light.position;
     const float place[4] = {(float)at.x, (float)at.y, (float)at.z, near ? 1.0f : 0.0f};
-    memcpy(map->lamp, place, sizeof map->lamp);
+    memcpy(map->light, place, sizeof map->light);
     map->layers = 1;
     if (!near) {
         const struct view v = look(middle, vec3_scale(at, -1.0));
@@ -123,12 +123,12 @@ static void aim(struct shadow_map *map, const struct relume_object_light *lamp,
     map->texel = (float)(2.0 * tangent / map->side);
 }
 
-void shadow_map_fill(struct shadow_map *map, const struct relume_object_light *lamp,
+void shadow_map_fill(struct shadow_map *map, const struct relume_object_light *light_sample,
                      struct relume_vec3 middle, double radius,
                      void (*draw)(void *context, const float clip[16]), void *context)
 {
     const struct gl *gl = map->gl;
-    aim(map, lamp, middle, radius);
+    aim(map, light_sample, middle, radius);
     gl->BindFramebuffer(GL_FRAMEBUFFER, map->framebuffer);
     gl->Viewport(0, 0, map->side, map->side);
     gl->Enable(GL_DEPTH_TEST);
@@ -148,6 +148,6 @@ void shadow_map_use(const struct shadow_map *map, const struct gl *gl, const GLi
         return;
     texture_use(gl, unit, GL_TEXTURE_2D_ARRAY, map->texture);
     gl->UniformMatrix4fv(at[SHADOW_CLIP], map->layers, GL_FALSE, map->clip[0]);
-    gl->Uniform4f(at[SHADOW_LAMP], map->lamp[0], map->lamp[1], map->lamp[2], map->lamp[3]);
+    gl->Uniform4f(at[SHADOW_LIGHT], map->light[0], map->light[1], map->light[2], map->light[3]);
     gl->Uniform1f(at[SHADOW_TEXEL], map->texel);
 }

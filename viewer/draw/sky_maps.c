@@ -11,7 +11,7 @@
 // One below the other: the diffuse map, then those of the exponents.
 static relume_status upload(struct sky_map *map, const struct gl *gl, const struct relume_log *log)
 {
-    const struct relume_prefiltered_info *i = relume_prefiltered_info(map->prefilter);
+    const struct relume_prefiltered_maps_info *i = relume_prefiltered_maps_info(map->prefiltered);
     const size_t plane = 3 * (size_t)i->width * (size_t)i->height;
     float *texels = malloc((RELUME_PREFILTERED_EXPONENTS + 1) * plane * sizeof *texels);
     if (!texels)
@@ -28,7 +28,7 @@ static relume_status upload(struct sky_map *map, const struct gl *gl, const stru
 static void destroy(struct sky_map *map, const struct gl *gl)
 {
     gl->DeleteTextures(1, &map->texture);
-    relume_prefiltered_destroy(&map->prefilter);
+    relume_prefiltered_maps_destroy(&map->prefiltered);
     free(map);
 }
 
@@ -46,8 +46,8 @@ relume_status sky_maps_find(const struct sky_map **out, struct sky_maps *maps,
                                        .rgb = {1.0f, 1.0f, 1.0f}};
     map->of = light->environment;
     map->rim = rim;
-    relume_status status = relume_prefiltered_create(
-        &map->prefilter, &plain, relume_prefiltered_params(.log = maps->log, .rim = rim));
+    relume_status status = relume_prefiltered_maps_create(
+        &map->prefiltered, &plain, relume_prefiltered_maps_params(.log = maps->log, .rim = rim));
     if (!status)
         status = upload(map, maps->gl, maps->log);
     if (status) {

@@ -10,7 +10,7 @@
 struct sky_map {
     const relume_environment *of;
     double rim;
-    relume_prefiltered *prefilter;
+    relume_prefiltered_maps *prefiltered;
     GLuint texture;  // sky.glsl
     struct sky_map *next;
 };

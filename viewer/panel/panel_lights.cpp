@@ -19,18 +19,19 @@ static bool list_row(app_state *s, int i)
     bool changed = false;
     char label[64];
     ImGui::PushID(i);
-    bool on = !s->lamp[i].off;
+    bool on = !s->light_state[i].off;
     if (panel_box("##on", &on, "whether this light shines")) {
-        s->lamp[i].off = !on;
+        s->light_state[i].off = !on;
         changed = true;
     }
     ImGui::SameLine();
-    changed |= panel_box("##solo", &s->lamp[i].solo, "solo: only the lights marked here shine");
+    changed |=
+        panel_box("##solo", &s->light_state[i].solo, "solo: only the lights marked here shine");
     ImGui::SameLine();
     ImGui::ColorButton("##colour", colour_of(s->light[i]), ImGuiColorEditFlags_NoTooltip);
     panel_tip("the colour of this light; select it to change that below");
     ImGui::SameLine();
-    std::snprintf(label, sizeof label, "%d %s", i + 1, lamps_kind_words(s->light[i].kind));
+    std::snprintf(label, sizeof label, "%d %s", i + 1, light_list_kind_words(s->light[i].kind));
     if (ImGui::Selectable(label, s->selected == i)) {
         s->selected = i;
         changed = true;
@@ -92,7 +93,7 @@ static bool ball(app *app, float side)
     draw->AddCircle(middle, radius, IM_COL32(130, 130, 138, 255), 48);
     const int first = gizmo_first(app);
     for (int i = first; i < s->lights && i < first + GIZMOS; i++) {
-        const relume_vec3 d = app_seen_light(app, i);
+        const relume_vec3 d = app_light_direction(app, i);
         const ImVec2 dot(middle.x + radius * (float)d.x, middle.y - radius * (float)d.y);
         draw->AddCircleFilled(dot, 0.045f * side, panel_mark_colour(s->light[i], d.z < 0));
         if (i == s->selected)
@@ -116,7 +117,7 @@ static bool edit_vector(const char *label, relume_vec3 *v, const char *what)
 
 static bool flip_side(app *app)
 {
-    relume_vec3 d = app_seen_light(app, app->now.selected);
+    relume_vec3 d = app_light_direction(app, app->now.selected);
     bool behind = d.z < 0;
     if (!panel_box("from behind", &behind, "the half of the ball that cannot be seen"))
         return false;
@@ -129,20 +130,20 @@ static bool flip_side(app *app)
 static bool edit_geometry(relume_light *light)
 {
     const relume_light was = *light;
-    const unsigned fields = lamps_fields(light->kind);
+    const unsigned fields = light_list_fields(light->kind);
     bool changed = false;
-    if (fields & LAMP_TURN)
+    if (fields & LIGHT_FIELD_TURN)
         changed |= panel_slider("rotation", &light->rotate_deg, -180, 180, "%.1f deg",
                                 "turns the surroundings about the vertical axis");
-    if (fields & LAMP_PLACE)
+    if (fields & LIGHT_FIELD_PLACE)
         changed |= edit_vector("position", &light->position,
                                "x, y, z in world units: drag sideways, or Ctrl+click and type");
-    if (fields & LAMP_AXIS)
+    if (fields & LIGHT_FIELD_AXIS)
         changed |= edit_vector("axis", &light->direction, "x, y, z of where it shines to");
-    if (fields & LAMP_ANGLE)
+    if (fields & LIGHT_FIELD_ANGLE)
         changed |= panel_slider("half angle", &light->half_angle_deg, 0.5, 89.5, "%.1f deg",
                                 "from the axis to the edge of its cone");
-    if (fields & LAMP_EDGES) {
+    if (fields & LIGHT_FIELD_EDGES) {
         changed |= edit_vector("half edge u", &light->u,
                                "x, y, z from the middle to the middle of one side");
         changed |= edit_vector("half edge v", &light->v,
@@ -160,17 +161,17 @@ static bool choose_kind(app *app)
                                               RELUME_LIGHT_SPOT, RELUME_LIGHT_AREA};
     app_state *s = &app->now;
     const relume_light_kind now = s->light[s->selected].kind;
-    if (!app->near_lights || !(lamps_fields(now) & LAMP_CHANGE))
+    if (!app->near_lights || !(light_list_fields(now) & LIGHT_FIELD_CHANGE))
         return false;
     const int was = (int)(std::find(kinds, std::end(kinds), now) - kinds);
     int chosen = was;
     if (!panel_choice(
             "kind", &chosen, (int)std::size(kinds),
-            [](int i) { return lamps_kind_words(kinds[i]); },
+            [](int i) { return light_list_kind_words(kinds[i]); },
             "far away, a point, a cone or a glowing rectangle") ||
         chosen == was)
         return false;
-    lamps_change_kind(s, s->selected, kinds[chosen], app_middle(app), 1.5 * app_reach(app));
+    light_list_change_kind(s, s->selected, kinds[chosen], app_middle(app), 1.5 * app_reach(app));
     return true;
 }
 
@@ -178,19 +179,19 @@ static bool edit_light(panel *panel, app *app)
 {
     app_state *s = &app->now;
     relume_light *light = &s->light[s->selected];
-    app_lamp *lamp = &s->lamp[s->selected];
+    app_light_state *state = &s->light_state[s->selected];
     bool changed = ball(app, ball_units * panel->scale);
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::Text("light %d", s->selected + 1);
-    ImGui::TextUnformatted(lamps_kind_words(light->kind));
+    ImGui::TextUnformatted(light_list_kind_words(light->kind));
     changed |= flip_side(app);
     changed |= ImGui::ColorEdit3("colour", light->rgb,
                                  ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_Float |
                                      ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoTooltip);
     panel_tip("the colour of this light: click to choose one");
     ImGui::EndGroup();
-    changed |= panel_slider("stops", &lamp->stops, -8, 8, "%+.2f",
+    changed |= panel_slider("stops", &state->stops, -8, 8, "%+.2f",
                             "brightness of this light: +1 doubles it, -1 halves it");
     changed |= choose_kind(app);
     return changed | edit_geometry(light);
@@ -213,11 +214,11 @@ static bool light_buttons(panel *panel, app *app)
     ImGui::SameLine();
     if (panel_button("save rig", "save these lights as a rig file, which --rig reads"))
         app->wish = APP_WISH_SAVE_RIG;
-    for (const lamp_preset *p = lamp_presets; p->name; p++) {
-        if (p != lamp_presets)
+    for (const light_preset *p = light_presets; p->name; p++) {
+        if (p != light_presets)
             ImGui::SameLine();
         if (panel_button(p->name, p->what)) {
-            lamps_arrange(&app->now, p, app_pole_y(app));
+            light_list_arrange(&app->now, p, app_pole_y(app));
             changed = true;
         }
     }
@@ -260,7 +261,7 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
 bool panel_lights(panel *panel, app *app, const panel_facts *facts)
 {
     bool changed = list_lights(panel, &app->now);
-    const int near = lamps_near(&app->now);
+    const int near = light_list_near(&app->now);
     if (app->now.lights > rows_most || near)
         ImGui::Text("%d light%s, %d near", app->now.lights, relume_plural(app->now.lights), near);
     ImGui::Separator();

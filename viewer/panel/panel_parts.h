@@ -7,7 +7,7 @@
 extern "C" {
 #include "app/gizmo.h"
 #include "app/keys.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 }
 
 #include <imgui.h>

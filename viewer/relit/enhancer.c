@@ -24,7 +24,7 @@ enum {
     PASS,
     TOWARDS_GIVEN,
     LIGHTS,
-    LAMPS,
+    LIGHT_ROWS,
     STRENGTH,
     RANGE,
     STEP,
@@ -33,7 +33,7 @@ enum {
 static const char *const uniforms[] = {
     "rectangle", "frame_size", "view",      "normals", "albedos",
     "details",   "towards",    "reference", "pass",    "towards_given",
-    "lights",    "lamps",      "strength",  "range",   "step_of",
+    "lights",    "light_rows", "strength",  "range",   "step_of",
 };
 // Texture units, by their uniform
 enum {
@@ -43,9 +43,9 @@ enum {
     UNIT_DETAILS,
     UNIT_TOWARDS,
     UNIT_REFERENCE,
-    UNIT_LAMPS
+    UNIT_LIGHTS
 };
-enum { LAMPS_WIDE = 512 };
+enum { LIGHTS_WIDE = 512 };
 
 relume_status enhancer_create(struct enhancer *e, const struct gl *gl,
                               const struct code_source *source,
@@ -58,7 +58,7 @@ relume_status enhancer_create(struct enhancer *e, const struct gl *gl,
     if (!e->view)
         return RELUME_ENOMEM;
     gl->GenVertexArrays(1, &e->vertices);
-    gl->GenTextures(1, &e->lamps);
+    gl->GenTextures(1, &e->light_rows);
     return program_create(&e->program, gl, "enhance.frag", uniforms, COUNT, log);
 }
 
@@ -88,7 +88,7 @@ void enhancer_destroy(struct enhancer *e)
         relume_image_destroy(&v->normals);
     }
     target_destroy(&e->grid, e->gl);
-    e->gl->DeleteTextures(1, &e->lamps);
+    e->gl->DeleteTextures(1, &e->light_rows);
     e->gl->DeleteTextures(RELUME_MOST_SLABS, e->towards);
     e->gl->DeleteVertexArrays(1, &e->vertices);
     program_destroy(&e->program, e->gl);
@@ -274,8 +274,8 @@ static relume_status prepare(struct enhancer *e, int view, const struct target *
 static relume_status set_lights(const struct enhancer *e, const struct relume_light *lights, int n)
 {
     const struct gl *gl = e->gl;
-    const int rows = 2 * (n / LAMPS_WIDE + 1);
-    float(*texel)[3] = calloc((size_t)rows * LAMPS_WIDE, sizeof *texel);
+    const int rows = 2 * (n / LIGHTS_WIDE + 1);
+    float(*texel)[3] = calloc((size_t)rows * LIGHTS_WIDE, sizeof *texel);
     int count = 0;
     if (!texel)
         return RELUME_ENOMEM;
@@ -283,19 +283,19 @@ static relume_status set_lights(const struct enhancer *e, const struct relume_li
         const struct relume_vec3 d = vec3_unit(lights[i].direction);
         if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
             continue;
-        float *direction = texel[2 * (count / LAMPS_WIDE) * LAMPS_WIDE + count % LAMPS_WIDE];
+        float *direction = texel[2 * (count / LIGHTS_WIDE) * LIGHTS_WIDE + count % LIGHTS_WIDE];
         direction[0] = (float)d.x;
         direction[1] = (float)d.y;
         direction[2] = (float)d.z;
-        memcpy(direction + 3 * LAMPS_WIDE, lights[i].rgb, sizeof lights[i].rgb);
+        memcpy(direction + 3 * LIGHTS_WIDE, lights[i].rgb, sizeof lights[i].rgb);
         count++;
     }
-    texture_use(gl, UNIT_LAMPS, GL_TEXTURE_2D, e->lamps);
+    texture_use(gl, UNIT_LIGHTS, GL_TEXTURE_2D, e->light_rows);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, LAMPS_WIDE, rows, 0, GL_RGB, GL_FLOAT, texel);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, LIGHTS_WIDE, rows, 0, GL_RGB, GL_FLOAT, texel);
     texture_settings(gl, GL_TEXTURE_2D);
     gl->Uniform1i(e->program.at[LIGHTS], count);
-    gl->Uniform1i(e->program.at[LAMPS], UNIT_LAMPS);
+    gl->Uniform1i(e->program.at[LIGHT_ROWS], UNIT_LIGHTS);
     free(texel);
     return RELUME_OK;
 }

@@ -30,7 +30,7 @@ struct enhancer {
     const relume_capture *capture;  // to compare with, or NULL
     struct program program;
     GLuint vertices;
-    GLuint lamps;
+    GLuint light_rows;
     GLuint towards[RELUME_MOST_SLABS];  // vectors to the eye of a panorama (the first), or of
                                         // several slabs; 0: not made yet
     struct enhanced_view *view;

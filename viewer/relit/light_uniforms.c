@@ -35,8 +35,8 @@ void light_uniforms_upload(const struct gl *gl, int unit, GLuint texture, GLint 
 }
 
 // Every half degree; the file's own angles are rarely finer.
-static relume_status upload_lamp(const struct gl *gl, int unit, GLuint texture,
-                                 const relume_ies *ies)
+static relume_status upload_ies(const struct gl *gl, int unit, GLuint texture,
+                                const relume_ies *ies)
 {
     enum { ACROSS = 721, DOWN = 361 };
     float *texels = malloc((size_t)ACROSS * DOWN * sizeof *texels);
@@ -78,7 +78,7 @@ static relume_status upload_light(const struct light_uniforms *s, int unit, GLui
                                   const struct relume_light *light)
 {
     if (light->kind == RELUME_LIGHT_IES)
-        return upload_lamp(s->gl, unit, texture, light->ies);
+        return upload_ies(s->gl, unit, texture, light->ies);
     return upload_slide(s, unit, texture,
                         light->kind == RELUME_LIGHT_SLIDE ? light->image
                                                           : relume_gonio_map(light->gonio));
@@ -111,18 +111,18 @@ relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int 
 {
     const struct gl *gl = s->gl;
     const relume_status status = key_of(l) ? use_picture(s, unit, l) : RELUME_OK;
-    gl->Uniform1i(at[SHINE_KIND], (GLint)l->kind);
-    gl->Uniform3f(at[SHINE_RGB], l->rgb[0], l->rgb[1], l->rgb[2]);
-    gl->Uniform1i(at[SHINE_NOFALL], l->nofall);
-    gl_set_vec3(gl, at[SHINE_POSITION], l->position);
-    gl->Uniform1f(at[SHINE_HALF_ANGLE], (float)(l->half_angle_deg * (M_PI / 180.0)));
+    gl->Uniform1i(at[LIGHT_KIND], (GLint)l->kind);
+    gl->Uniform3f(at[LIGHT_RGB], l->rgb[0], l->rgb[1], l->rgb[2]);
+    gl->Uniform1i(at[LIGHT_NOFALL], l->nofall);
+    gl_set_vec3(gl, at[LIGHT_POSITION], l->position);
+    gl->Uniform1f(at[LIGHT_HALF_ANGLE], (float)(l->half_angle_deg * (M_PI / 180.0)));
     if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA &&
         l->kind != RELUME_LIGHT_ENVIRONMENT) {
         struct relume_vec3 right, up;
         relume_light_frame(&right, &up, l->direction);
-        gl_set_vec3(gl, at[SHINE_AXIS], vec3_unit(l->direction));
-        gl_set_vec3(gl, at[SHINE_RIGHT], right);
-        gl_set_vec3(gl, at[SHINE_UP], up);
+        gl_set_vec3(gl, at[LIGHT_AXIS], vec3_unit(l->direction));
+        gl_set_vec3(gl, at[LIGHT_RIGHT], right);
+        gl_set_vec3(gl, at[LIGHT_UP], up);
     }
     return status;
 }

@@ -13,22 +13,23 @@ struct light_uniforms_picture;
 struct light_uniforms {
     const struct gl *gl;
     const struct relume_log *log;
-    struct light_uniforms_picture *picture;  // what slides and lamps need, by their pointers
+    struct light_uniforms_picture
+        *picture;  // what slides and photometric lights need, by their pointers
 };
 
 // The uniforms of a light, one after the other.
 enum light_uniforms_uniform {
-    SHINE_KIND,
-    SHINE_RGB,
-    SHINE_NOFALL,
-    SHINE_POSITION,
-    SHINE_AXIS,
-    SHINE_RIGHT,
-    SHINE_UP,
-    SHINE_HALF_ANGLE,
-    SHINE_UNIFORMS
+    LIGHT_KIND,
+    LIGHT_RGB,
+    LIGHT_NOFALL,
+    LIGHT_POSITION,
+    LIGHT_AXIS,
+    LIGHT_RIGHT,
+    LIGHT_UP,
+    LIGHT_HALF_ANGLE,
+    LIGHT_UNIFORMS
 };
-#define SHINE_NAMES                                                                                \
+#define LIGHT_NAMES                                                                                \
     "light.kind", "light.rgb", "light.nofall", "light.position", "light.axis", "light.right",      \
         "light.up", "light.half_angle"
 
@@ -36,7 +37,7 @@ enum light_uniforms_uniform {
 // to texture unit `unit`. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int unit,
                                  const struct relume_light *light);
-// Pictures and lamps may have gone: forget what was kept of them.
+// Pictures and photometric files may have gone: forget what was kept of them.
 void light_uniforms_forget(struct light_uniforms *s);
 
 // Fill a texture with floats, by way of texture unit `unit`.

@@ -25,7 +25,7 @@ enum uniform {
     INDICES,
     VECTORS,
     LIGHT,
-    FACETS = LIGHT + SHINE_UNIFORMS,
+    PATCHES = LIGHT + LIGHT_UNIFORMS,
     HEMISPHERE,
     POLE_Y,
     ZONE_EVERYWHERE,
@@ -46,7 +46,7 @@ enum uniform {
 static const char *const uniforms[] = {
     "rectangle",   "frame_size", "codes",           "picture",       "surface",
     "grid",        "triangles",  "triangle_count",  "grid_rows",     "tiles",
-    "affine",      "indices",    "vectors",         SHINE_NAMES,     "facets",
+    "affine",      "indices",    "vectors",         LIGHT_NAMES,     "patches",
     "hemisphere",  "pole_y",     "zone_everywhere", "zone_right",    "zone_up",
     "zone_facing", "zone_axis",  "zone_border",     "form",          "coefficients",
     "layers",      "books",      "coded",           "display.curve", "display.gamma",
@@ -74,7 +74,7 @@ relume_status nearby_create(struct nearby *near, const struct gl *gl, const stru
     *near = (struct nearby){.gl = gl, .log = log, .uniforms = {.gl = gl, .log = log}};
     gl->GenTextures(1, &near->grid);
     gl->GenTextures(1, &near->triangles);
-    gl->GenTextures(1, &near->facets);
+    gl->GenTextures(1, &near->patches);
     gl->GenTextures(1, &near->border);
     return program_create(&near->program, gl, "near.frag", uniforms, UNIFORMS, log);
 }
@@ -91,7 +91,7 @@ void nearby_destroy(struct nearby *near)
     nearby_forget(near);
     near->gl->DeleteTextures(1, &near->grid);
     near->gl->DeleteTextures(1, &near->triangles);
-    near->gl->DeleteTextures(1, &near->facets);
+    near->gl->DeleteTextures(1, &near->patches);
     near->gl->DeleteTextures(1, &near->border);
     program_destroy(&near->program, near->gl);
     *near = (struct nearby){0};
@@ -369,22 +369,22 @@ static void put_vec3(float *texel, struct relume_vec3 v)
 }
 
 // Rows: position, normal, radiance. Sets `n`, how many there are.
-static void use_facets(const struct nearby *near, const struct nearby_view *view,
-                       const struct relume_light *light, int *n)
+static void use_patches(const struct nearby *near, const struct nearby_view *view,
+                        const struct relume_light *light, int *n)
 {
-    struct relume_light_patch facet[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
+    struct relume_light_patch patch[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
     float texels[3][RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST][3];
     const int side = relume_light_patch_side(light, relume_area_distance(light, &view->surface));
-    relume_light_patches(facet, light, side);
+    relume_light_patches(patch, light, side);
     *n = side * side;
     for (int i = 0; i < *n; i++) {
-        put_vec3(texels[0][i], facet[i].position);
-        put_vec3(texels[1][i], facet[i].normal);
-        memcpy(texels[2][i], facet[i].rgb, sizeof facet[i].rgb);
+        put_vec3(texels[0][i], patch[i].position);
+        put_vec3(texels[1][i], patch[i].normal);
+        memcpy(texels[2][i], patch[i].rgb, sizeof patch[i].rgb);
     }
     for (int row = 1; row < 3; row++)
         memmove(&texels[0][0][0] + row * *n * 3, texels[row], (size_t)*n * sizeof *texels[row]);
-    light_uniforms_upload(near->gl, UNIT_PICTURE, near->facets, GL_RGB32F, GL_RGB, *n, 3,
+    light_uniforms_upload(near->gl, UNIT_PICTURE, near->patches, GL_RGB32F, GL_RGB, *n, 3,
                           &texels[0][0][0]);
 }
 
@@ -392,10 +392,10 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
                                const struct relume_light *l)
 {
     const GLint *at = near->program.at;
-    int facets = 0;
+    int patches = 0;
     if (l->kind == RELUME_LIGHT_AREA)
-        use_facets(near, view, l, &facets);
-    near->gl->Uniform1i(at[FACETS], facets);
+        use_patches(near, view, l, &patches);
+    near->gl->Uniform1i(at[PATCHES], patches);
     return light_uniforms_set(&near->uniforms, at + LIGHT, UNIT_PICTURE, l);
 }
 

@@ -19,7 +19,7 @@ struct nearby {
     GLuint triangles;      // between its nodes, and where to begin to look for one
     int triangle_count;    // 0: the nodes are a grid
     int grid_rows, tiles;  // its rows above the tiles of divided cells
-    GLuint facets;         // a column for each facet of the area light in use
+    GLuint patches;        // a column for each patch of the area light in use
     GLuint border;         // of the captured zone, by azimuth
     struct light_uniforms uniforms;
 };
@@ -43,7 +43,7 @@ struct nearby_codes {
 // `gl` and `log` must outlive it. RELUME_ESYSTEM.
 relume_status nearby_create(struct nearby *near, const struct gl *gl, const struct relume_log *log);
 void nearby_destroy(struct nearby *near);
-// Pictures and lamps may have gone: forget what was kept of them.
+// Pictures and photometric files may have gone: forget what was kept of them.
 void nearby_forget(struct nearby *near);
 
 // Takes over `surface`, also on failure. RELUME_ENOMEM, RELUME_ESYSTEM.

@@ -2,7 +2,7 @@
 #include "session/options.h"
 
 #include "app/keys.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "program/options.h"
 #include "program/say.h"
 
@@ -77,11 +77,12 @@ static const struct option options[] = {
         65535),
     POINT("--eye", start.camera.eye, "x,y,z",
           "slab: look from there; default the middle of the cameras"),
-    POINT("--look-at", start.camera.aim.at, "x,y,z",
+    POINT("--look-at", start.camera.look_at.at, "x,y,z",
           "--eye: where it looks; default the middle of the object"),
-    POINT("--up", start.camera.aim.up, "x,y,z", "--eye: what is up in the picture; default 0,1,0"),
+    POINT("--up", start.camera.look_at.up, "x,y,z",
+          "--eye: what is up in the picture; default 0,1,0"),
     NUMBER(
-        "--fov", start.camera.aim.field_of_view_deg, "DEG",
+        "--fov", start.camera.look_at.field_of_view_deg, "DEG",
         "--eye: horizontal field of view; default the slabs' windows, of objects alone all of them",
         0.01, 179),
     NUMBER("--pan", start.camera.look.pan_deg, "DEG", "panorama: turn right", -36000, 36000),
@@ -212,7 +213,7 @@ void options_help(void)
          "        light SPEC            add SPEC                         rig FILE\n"
          "        open FILE: another relume file, objects, or a material for --mesh\n"
          "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
-         "        glare sources on|off: lamps in view\n"
+         "        glare sources on|off: visible lights\n"
          "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
          "        set gain|highlight|exponent|radius|exposure|aperture|focus|pan|tilt|zoom X\n"
          "        set eye X Y Z         set range LOW HIGH               pass NAME\n"
@@ -236,7 +237,7 @@ static bool asks_for_help(int argc, char **argv)
 void options_release(struct options *o)
 {
     relume_rig_destroy(&o->rig);
-    lamps_release(&o->start);
+    light_list_release(&o->start);
 }
 
 static bool is_description(const char *path)
@@ -290,13 +291,13 @@ static relume_status choose_camera(struct options *o, const struct command_line 
                       : eye   ? RELUME_FRAME_EYE
                       : looks ? RELUME_FRAME_LOOK
                               : RELUME_FRAME_DEFAULT;
-    camera->aim.aimed = option_given(line, &camera->aim.at);
+    camera->look_at.aimed = option_given(line, &camera->look_at.at);
     camera->width = o->size[0];
     camera->height = o->size[1];
     look->stereographic = o->projection != PERSPECTIVE;
     look->tilt_deg = o->projection == PLANET && !tilt ? -90.0 : look->tilt_deg;
     look->zoom = o->projection == PLANET && !zoom ? 0.5 : look->zoom;
-    if (relume_look_at_given(&camera->aim) && !eye)
+    if (relume_look_at_given(&camera->look_at) && !eye)
         return say(log, RELUME_EINVAL, "--look-at, --up and --fov need --eye");
     return RELUME_OK;
 }

@@ -1,7 +1,7 @@
 // record.c - moving pictures: what moves in them
 #include "session/record.h"
 
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "app/orbit.h"
 #include "program/say.h"
 #include "common/vec.h"
@@ -28,17 +28,17 @@ static void pose_sweep(struct app *app, double part)
 {
     const bool pole_y = app_pole_y(app);
     const int light = app->now.selected;
-    const struct relume_vec3 from =
-        lamps_direction(&app->start.light[light < app->start.lights ? light : 0], app_middle(app));
+    const struct relume_vec3 from = light_list_direction(
+        &app->start.light[light < app->start.lights ? light : 0], app_middle(app));
     const double height = asin(clamp(pole_y ? from.y : from.z, -1, 1)) * 180 / M_PI;
     const double elevation = clamp(height, lowest_deg, highest_deg) * M_PI / 180;
     const double azimuth = 2 * M_PI * part;
     const double x = cos(elevation) * cos(azimuth);
     const double y = cos(elevation) * sin(azimuth);
     const double z = sin(elevation);
-    lamps_aim(&app->now, light,
-              pole_y ? (struct relume_vec3){x, z, -y} : (struct relume_vec3){x, y, z},
-              app_middle(app));
+    light_list_aim(&app->now, light,
+                   pole_y ? (struct relume_vec3){x, z, -y} : (struct relume_vec3){x, y, z},
+                   app_middle(app));
 }
 
 // As far as all sides of the grid allow.

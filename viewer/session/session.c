@@ -2,7 +2,7 @@
 #include "session/session.h"
 
 #include "app/events.h"
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "program/say.h"
 
 #include <math.h>
@@ -172,7 +172,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (status)
         return status;
     struct app_file file = describe(pack);
-    status = find_slabs(&around, pack, relume_look_at_given(&start->camera.aim), s->log);
+    status = find_slabs(&around, pack, relume_look_at_given(&start->camera.look_at), s->log);
     file.around = around;
     file.objects = s->objects;
     if (!status)
@@ -324,10 +324,10 @@ static void keep_window(struct app *app, const struct app *was)
 static relume_status keep_lights(struct app_state *to, const struct app_state *from)
 {
     struct app_state state = {0};
-    if (!lamps_copy(&state, from))
+    if (!light_list_copy(&state, from))
         return RELUME_ENOMEM;
     to->light = state.light;
-    to->lamp = state.lamp;
+    to->light_state = state.light_state;
     to->lights = state.lights;
     to->room = state.room;
     to->selected = state.selected;
@@ -337,8 +337,8 @@ static relume_status keep_lights(struct app_state *to, const struct app_state *f
 // It is not known where they would stand.
 static void drop_near_lights(struct app *app)
 {
-    lamps_drop_near(&app->start);
-    lamps_drop_near(&app->now);
+    light_list_drop_near(&app->start);
+    light_list_drop_near(&app->now);
 }
 
 static relume_status replace(struct session *s, const char *path, bool *opened)
@@ -358,7 +358,7 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
     s->listens = true;
     *opened = !status && !session_open(s, path, &start, true);
     s->listens = false;
-    lamps_release(&start);
+    light_list_release(&start);
     if (s->told[0])
         session_say(s, "%s", s->told);
     if (!*opened)

@@ -2,7 +2,7 @@
 // shines
 #include "session/session.h"
 
-#include "app/lamps.h"
+#include "app/light_list.h"
 #include "program/say.h"
 
 #include <math.h>
@@ -14,9 +14,9 @@ static relume_status too_many(const struct session *s)
     return say(s->log, RELUME_EINVAL, "lights: expected at most %d; found more", APP_LIGHTS);
 }
 
-static struct app_lamp lamp_of(const struct relume_rig_entry *e, int entry)
+static struct app_light_state state_of(const struct relume_rig_entry *e, int entry)
 {
-    return (struct app_lamp){
+    return (struct app_light_state){
         .off = !e->on || !(e->intensity > 0),
         .solo = e->solo,
         .stops = e->intensity > 0 ? log2(e->intensity) : 0,
@@ -24,7 +24,7 @@ static struct app_lamp lamp_of(const struct relume_rig_entry *e, int entry)
     };
 }
 
-// To have been refused by lamps_add.
+// To have been refused by light_list_add.
 static relume_status refused(const struct session *s, const struct app_state *to)
 {
     return to->lights < APP_LIGHTS ? RELUME_ENOMEM : too_many(s);
@@ -34,9 +34,9 @@ static relume_status append_entries(const struct session *s, struct app_state *t
 {
     for (int i = first; i < relume_rig_count(s->rig); i++) {
         const struct relume_rig_entry *e = relume_rig_entry(s->rig, i);
-        if (!lamps_add(to, &e->light, i))
+        if (!light_list_add(to, &e->light, i))
             return refused(s, to);
-        to->lamp[to->selected] = lamp_of(e, i);
+        to->light_state[to->selected] = state_of(e, i);
     }
     return RELUME_OK;
 }
@@ -88,8 +88,8 @@ relume_status session_map(struct session *s, const char *path)
     if (status || !replaces)
         return status;
     now->light[old].environment = now->light[now->selected].environment;
-    now->lamp[old].entry = now->lamp[now->selected].entry;
-    (void)lamps_remove(now, now->selected);
+    now->light_state[old].entry = now->light_state[now->selected].entry;
+    (void)light_list_remove(now, now->selected);
     now->selected = old;
     return RELUME_OK;
 }
@@ -97,7 +97,7 @@ relume_status session_map(struct session *s, const char *path)
 const char *session_map_in_use(const struct session *s)
 {
     const struct app_state *now = &s->app.now;
-    const int entry = now->lamp[now->selected].entry;
+    const int entry = now->light_state[now->selected].entry;
     return now->light[now->selected].kind == RELUME_LIGHT_ENVIRONMENT && entry >= 0
                ? relume_rig_entry(s->rig, entry)->file
                : NULL;
@@ -144,17 +144,17 @@ static const char *words_of(enum relume_light_kind kind)
 
 static relume_status store_light(const struct session *s, relume_rig *rig, int light)
 {
-    const struct app_lamp *lamp = &s->app.now.lamp[light];
+    const struct app_light_state *state = &s->app.now.light_state[light];
     const struct relume_light *l = &s->app.now.light[light];
     const struct relume_rig_entry *from =
-        lamp->entry >= 0 ? relume_rig_entry(s->rig, lamp->entry) : NULL;
+        state->entry >= 0 ? relume_rig_entry(s->rig, state->entry) : NULL;
     relume_status status = relume_rig_add(rig, from ? from->spec : words_of(l->kind), NULL, s->log);
     if (status)
         return status;
     struct relume_rig_entry e = *relume_rig_entry(rig, light);
-    e.on = !lamp->off;
-    e.solo = lamp->solo;
-    e.intensity = exp2(lamp->stops);
+    e.on = !state->off;
+    e.solo = state->solo;
+    e.intensity = exp2(state->stops);
     e.name = from ? from->name : e.name;
     e.light = *l;
     return relume_rig_set(rig, light, &e, s->log);

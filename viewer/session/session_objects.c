@@ -102,11 +102,11 @@ static void fit_view(struct relume_camera *camera, const struct session *s)
     const int width = camera->width ? camera->width : SIDE;
     const int height = camera->width ? camera->height : SIDE;
     struct relume_window w;
-    if (camera->aim.field_of_view_deg != 0.0 ||
-        !relume_objects_window(&w, s->objects, camera->eye, &camera->aim, width, height))
+    if (camera->look_at.field_of_view_deg != 0.0 ||
+        !relume_objects_window(&w, s->objects, camera->eye, &camera->look_at, width, height))
         return;
     const double half = 0.5 * vec3_length(w.right) / relume_window_distance(&w);
-    camera->aim.field_of_view_deg = 2.0 * atan(half) * (180.0 / 3.14159265358979323846);
+    camera->look_at.field_of_view_deg = 2.0 * atan(half) * (180.0 / 3.14159265358979323846);
 }
 
 relume_status session_open_stage(struct session *s, const struct app_state *start)

@@ -2,7 +2,7 @@
 #include "app/events.h"
 #include "session/session.h"
 
-#include "app/lamps.h"
+#include "app/light_list.h"
 
 #include <stdio.h>
 
@@ -24,11 +24,11 @@ relume_status session_record_begin(struct session *s, enum record_kind kind, con
 {
     struct recording *r = &s->recording;
     struct recording made = {.kind = kind, .frames = frames};
-    if (!lamps_copy(&made.before, &s->app.now))
+    if (!light_list_copy(&made.before, &s->app.now))
         return RELUME_ENOMEM;
     const relume_status status = film_open(&made.film, path, RECORD_RATE, false, s->log);
     if (status) {
-        lamps_release(&made.before);
+        light_list_release(&made.before);
         return status;
     }
     snprintf(made.path, sizeof made.path, "%s", path);
@@ -40,7 +40,7 @@ relume_status session_record_begin(struct session *s, enum record_kind kind, con
 
 static void put_back(struct session *s)
 {
-    lamps_release(&s->app.now);
+    light_list_release(&s->app.now);
     s->app.now = s->recording.before;
     s->app.recording = false;
     s->recording = (struct recording){.film = NULL};

@@ -134,7 +134,7 @@ static relume_status wish_focus(struct session *s)
     if (status)
         return status;
     const bool known =
-        lamps_surface(&p, &s->request, &s->renderer.backdrop, app->cursor[0], app->cursor[1]);
+        visible_surface(&p, &s->request, &s->renderer.backdrop, app->cursor[0], app->cursor[1]);
     if (!known && app->file.around) {
         session_say(s, "nothing to focus on there; click on the object");
         return RELUME_OK;

@@ -10,7 +10,7 @@ uniform sampler2D reference;
 uniform int pass;             // enum relume_pass
 uniform bool towards_given;   // else +z
 uniform int lights;
-uniform sampler2D lamps;      // 512 lights in two rows: unit directions, values; then the next ones
+uniform sampler2D light_rows;      // 512 lights in two rows: unit directions, values; then the next ones
 uniform vec4 strength;        // gain, specular, exponent
 uniform vec4 range;           // struct relume_pass_range
 uniform int step_of;          // every so many pixels of the view are drawn
@@ -36,12 +36,12 @@ vec3 vector_at(sampler2D image, ivec2 at)
 
 vec3 direction(int light)
 {
-    return vector_at(lamps, ivec2(light & 511, 2 * (light >> 9)));
+    return vector_at(light_rows, ivec2(light & 511, 2 * (light >> 9)));
 }
 
 vec3 value(int light)
 {
-    return vector_at(lamps, ivec2(light & 511, 2 * (light >> 9) + 1));
+    return vector_at(light_rows, ivec2(light & 511, 2 * (light >> 9) + 1));
 }
 
 // As codes (n + 1) / 2 once the screen's curve is applied; black where there is no normal.

@@ -7,7 +7,7 @@
 #include "cube.glsl"
 #include "light.glsl"
 
-uniform int facets;  // of an area light: `picture` has a column for each: position, normal, radiance
+uniform int patches;  // of an area light: `picture` has a column for each: position, normal, radiance
 
 uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
 uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer
@@ -37,13 +37,13 @@ out vec4 color;
 
 // ---------------------------------------------------------------- what arrives
 
-bool facet_at(out vec3 towards, out vec3 rgb, int facet, vec3 point)
+bool patch_at(out vec3 towards, out vec3 rgb, int index, vec3 point)
 {
-    vec3 normal = texelFetch(picture, ivec2(facet, 1), 0).xyz;
+    vec3 normal = texelFetch(picture, ivec2(index, 1), 0).xyz;
     float distance;
-    bool arrives = ray_to(towards, distance, texelFetch(picture, ivec2(facet, 0), 0).xyz, point);
+    bool arrives = ray_to(towards, distance, texelFetch(picture, ivec2(index, 0), 0).xyz, point);
     float cosine = -dot(towards, normal);
-    rgb = texelFetch(picture, ivec2(facet, 2), 0).rgb * cosine / (distance * distance);
+    rgb = texelFetch(picture, ivec2(index, 2), 0).rgb * cosine / (distance * distance);
     return arrives && cosine > 0.0;
 }
 
@@ -260,8 +260,8 @@ void main()
     vec3 sum = vec3(0.0), towards, rgb;
     if (point.a > 0.0 && light.kind != AREA && light_at(towards, rgb, point.xyz))
         sum = rgb * reflectance(at, towards);
-    for (int i = 0; point.a > 0.0 && i < facets; i++)
-        if (facet_at(towards, rgb, i, point.xyz))
+    for (int i = 0; point.a > 0.0 && i < patches; i++)
+        if (patch_at(towards, rgb, i, point.xyz))
             sum += rgb * reflectance(at, towards);
     color = vec4(sum, 1.0);
 }

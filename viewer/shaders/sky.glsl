@@ -1,5 +1,5 @@
 // Prefiltered maps of an environment: one below the other the diffuse one and those of exponents
-// 2^(i / 2). Twins: prefilter.c, sky.c.
+// 2^(i / 2). Twins: prefiltered_maps.c, sky.c.
 uniform sampler2D sky;
 uniform float sky_turn;  // of the environment, radians
 uniform vec3 sky_rgb;

@@ -4,7 +4,7 @@
 #include <math.h>
 
 enum { THUMB = 320 };
-static const double least_likeness = 0.15;
+static const double least_similarity = 0.15;
 static const double at_the_ends = 0.995;  // share of samples black or saturated: shows nothing
 static const double clear_ratio = 1.4, clear_codes = 0.02;  // longer must not be darker
 
@@ -63,23 +63,24 @@ static relume_status check_scene(struct bracket *b, const int *order, const bool
                                  const struct hdr_options *o)
 {
     struct relume_image thumb[MAX_BRACKET] = {{0}};
-    double likeness[MAX_BRACKET];
+    double similarity[MAX_BRACKET];
     relume_status status = RELUME_OK;
     int foreign = -1;
     for (int i = 0; !status && i < b->n; i++)
         status = shrink(&thumb[i], &b->codes[order[i]]);
     for (int i = 0; i < b->n; i++)
-        likeness[i] = (double)NAN;
+        similarity[i] = (double)NAN;
     for (int i = 0; !status && i < b->n; i++)
         for (int j = i + 1; j < b->n && j <= i + 2; j++) {
             if (blank[order[i]] || blank[order[j]])
                 continue;
             const double l = relume_edge_correlation(&thumb[i], &thumb[j]);
-            likeness[i] = fmax(likeness[i], l);
-            likeness[j] = fmax(likeness[j], l);
+            similarity[i] = fmax(similarity[i], l);
+            similarity[j] = fmax(similarity[j], l);
         }
     for (int i = 0; !status && b->n > 1 && i < b->n; i++)
-        if (likeness[i] < least_likeness && (foreign < 0 || likeness[i] < likeness[foreign]))
+        if (similarity[i] < least_similarity &&
+            (foreign < 0 || similarity[i] < similarity[foreign]))
             foreign = i;
     for (int i = 0; i < b->n; i++)
         relume_image_destroy(&thumb[i]);
@@ -91,10 +92,10 @@ static relume_status check_scene(struct bracket *b, const int *order, const bool
         return data_error(
             "%s: shows another scene than the other exposures, or the camera moved (similarity "
             "%.2f; expected %.2f or more); leave it out, or try --align or --skip-bad",
-            path, likeness[foreign], least_likeness);
+            path, similarity[foreign], least_similarity);
     announce(&o->args, RELUME_WARNING,
              "%s: shows another scene than the other exposures (similarity %.2f); left out", path,
-             likeness[foreign]);
+             similarity[foreign]);
     bracket_drop(b, order[foreign]);
     if (!b->aligned)
         b->anchor = relume_align_anchor(b->codes, b->n);

@@ -37,8 +37,8 @@ static relume_status find_window(struct relume_window *out, const int size[2],
     const struct relume_vec3 before = {0.5 * (i->min.x + i->max.x),
                                        0.5 * (i->min.y + i->max.y) + 0.6 * extent,
                                        0.5 * (i->min.z + i->max.z) + 1.8 * extent};
-    const struct relume_look_at aim = {given(o, &o->look_at), o->look_at, o->up, o->fov};
-    if (relume_objects_window(out, objects, given(o, &o->eye) ? o->eye : before, &aim, size[0],
+    const struct relume_look_at look_at = {given(o, &o->look_at), o->look_at, o->up, o->fov};
+    if (relume_objects_window(out, objects, given(o, &o->eye) ? o->eye : before, &look_at, size[0],
                               size[1]))
         return RELUME_OK;
     return usage_error("--eye: expected a point away from --look-at, and not straight above or "

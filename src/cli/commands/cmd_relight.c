@@ -151,7 +151,7 @@ static relume_status parse_camera(const struct relight_options *o, struct relume
         .height = o->size[1],
     };
     if (eye)
-        camera->aim = (struct relume_look_at){given(o, &o->look_at), o->look_at, o->up, o->fov};
+        camera->look_at = (struct relume_look_at){given(o, &o->look_at), o->look_at, o->up, o->fov};
     if (look)
         camera->look = pan_tilt(o);
     return RELUME_OK;
@@ -231,8 +231,8 @@ static double field_of_view(const struct relume_pack_info *info, const struct re
         const double pixel = hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
         return 2.0 * atan(0.5 * pixel * frame->width) * 180.0 / M_PI;
     }
-    if (camera->framing == RELUME_FRAME_EYE && camera->aim.field_of_view_deg > 0.0)
-        return camera->aim.field_of_view_deg;
+    if (camera->framing == RELUME_FRAME_EYE && camera->look_at.field_of_view_deg > 0.0)
+        return camera->look_at.field_of_view_deg;
     double width = g->window_max[0] - g->window_min[0], distance = 0.0;
     int size[2];
     if (g->projection == RELUME_SLAB) {
@@ -335,7 +335,7 @@ static relume_status render(const struct relight_options *o, const struct relume
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);
-    const bool free_eye = info->slabs || relume_look_at_given(&camera->aim);
+    const bool free_eye = info->slabs || relume_look_at_given(&camera->look_at);
     const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
     params.once = true;
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);

@@ -111,12 +111,12 @@ static relume_status read_directions(struct relume_vec3 **out, int *n, const cha
                                      const struct synth_options *o)
 {
     struct prefix_log about;
-    relume_direction_mesh *dome = NULL;
+    relume_direction_mesh *mesh = NULL;
     relume_status status = relume_captured_lights_read(out, n, file, o->args.log);
     if (!status)
         status =
-            relume_direction_mesh_create(&dome, *out, *n, prefix_log(&about, o->args.log, file));
-    relume_direction_mesh_destroy(&dome);
+            relume_direction_mesh_create(&mesh, *out, *n, prefix_log(&about, o->args.log, file));
+    relume_direction_mesh_destroy(&mesh);
     return status;
 }
 

@@ -1,8 +1,8 @@
-// What all models share: a pixel of the surface, the lamp of the pass, and the measured directions
+// What all models share: a pixel of the surface, the light sample of the pass, the measured directions
 // around any direction. Before it: view_grid and light_grid (struct relume_btf_model); after it:
 // model_eval, or, where OWN_BLEND is defined, model_blend; where LOBES is, also model_lit.
 //
-// Compiled twice: for a lamp, and with SKY defined for an environment. Each level of detail is a
+// Compiled twice: for light samples, and with SKY defined for an environment. Each level of detail is a
 // pass of its own, which adds its part of what lies between two levels.
 #include "texels.glsl"
 #include "cube.glsl"
@@ -48,7 +48,7 @@ int cell_of(vec3 d)
 // Twin: relume_direction_mesh_at. A cell lists the triangles that directions in it can meet, each as six
 // texels: for each corner the vector along which its weight grows and its number (-1: the nadir),
 // then where the corners are.
-Blend dome_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)
+Blend mesh_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)
 {
     ivec2 list = texelFetch(cells, cell_of(d)).xy;
     vec3 best = vec3(1.0, 0.0, 0.0);
@@ -219,8 +219,8 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 
 #else
 
-// Twin: relume_object_light_at. A facet's place and normal are those of the light.
-bool lamp_at(out vec3 towards, out vec3 rgb, vec3 point)
+// Twin: relume_object_light_at. A patch's place and normal are those of the light.
+bool sample_at(out vec3 towards, out vec3 rgb, vec3 point)
 {
     if (light.kind == DIRECTIONAL) {
         towards = light.axis;
@@ -236,11 +236,11 @@ bool lamp_at(out vec3 towards, out vec3 rgb, vec3 point)
     return arrives && cosine > 0.0;
 }
 
-// Twin: add_lamp.
+// Twin: add_sample.
 vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 {
     vec3 towards, arriving;
-    if (!lamp_at(towards, arriving, point))
+    if (!sample_at(towards, arriving, point))
         return vec3(0.0);
     vec3 l = towards * frame;
     if (l.z <= 0.0)
@@ -249,7 +249,7 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
     if (seen <= 0.0)
         return vec3(0.0);
     l = normalize(l);
-    Blend by_light = dome_at(light_cells, light_triangles, l);
+    Blend by_light = mesh_at(light_cells, light_triangles, l);
     float scale = without_cosine ? l.z : by_light.rim / (light_grid ? by_light.size : 1.0);
     return arriving * seen * scale * mean_of(p, v, by_light, frame);
 }
@@ -270,5 +270,5 @@ void main()
     mat3 frame = mat3(tt.xyz, sign(at.w) * cross(ns.xyz, tt.xyz), ns.xyz);
     vec3 v = normalize(eye.xyz - eye.w * at.xyz) * frame;
     v = normalize(vec3(v.xy, max(v.z, 1e-3)));
-    color = vec4(lit(at.xyz, ns.xyz, p, dome_at(view_cells, view_triangles, v), frame), 1.0);
+    color = vec4(lit(at.xyz, ns.xyz, p, mesh_at(view_cells, view_triangles, v), frame), 1.0);
 }

@@ -10,9 +10,9 @@ uniform samplerBuffer array2;          // mean [views][lights]
 vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)
 {
     vec3 n = normalize(texelFetch(array1, texel).xyz);
-    Blend bv = dome_at(view_cells, view_triangles, upright(v, n));
+    Blend bv = mesh_at(view_cells, view_triangles, upright(v, n));
     vec3 turned = upright(l, n);
-    Blend bl = dome_at(light_cells, light_triangles, turned);
+    Blend bl = mesh_at(light_cells, light_triangles, turned);
     float scale = without_cosine ? max(turned.z, 0.0) / max(l.z, 1e-6) : bl.rim / bl.size;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++)

@@ -1,11 +1,11 @@
 #version 330 core
-// What one lamp alone shows of a scene, where no object keeps it off. Twin: share (into.c).
+// What one light sample alone shows of a scene, where no object keeps it off. Twin: share (into.c).
 #include "cube.glsl"
 #include "shadow.glsl"
 uniform sampler2D scene;  // positions
 uniform sampler2D lone;
-uniform vec4 lamps[64];  // of the light: direction times value, 0; or place, value
-uniform int count, lamp;  // 0: the light is a single lamp
+uniform vec4 light_samples[64];  // of the light: direction times value, 0; or place, value
+uniform int count, light_sample;  // 0: the light is one sample
 out vec4 color;
 
 vec3 place_at(ivec2 pixel)
@@ -47,8 +47,9 @@ void main()
         vec3 normal = scene_normal(pixel);
         sent = 0.0;
         for (int i = 0; i < count; i++)
-            sent += counts_for(lamps[i], point.xyz, normal);
-        weight = sent > 0.0 ? counts_for(lamps[lamp], point.xyz, normal) / sent : weight;
+            sent += counts_for(light_samples[i], point.xyz, normal);
+        weight = sent > 0.0 ? counts_for(light_samples[light_sample], point.xyz, normal) / sent
+                            : weight;
     }
     float seen = point.a > 0.0 && sent > 0.0 ? reached(point.xyz, vec3(0.0)) : 1.0;
     color = vec4(weight * seen * texelFetch(lone, pixel, 0).rgb, 1.0);

@@ -1,5 +1,5 @@
 #version 330 core
-// What a lamp of an environment sends to a surface, and what of it arrives. Twin: share_of_sky.
+// What a light sample of an environment sends to a surface, and what of it arrives. Twin: share_of_sky.
 #include "cube.glsl"
 #include "shadow.glsl"
 uniform sampler2D place, normal_s;

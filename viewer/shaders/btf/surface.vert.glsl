@@ -1,5 +1,5 @@
 #version 330 core
-// Objects as the eye, or a lamp, sees them.
+// Objects as the eye, or a light sample, sees them.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 tangent;

@@ -1,4 +1,4 @@
-// sight.c - the ray of a pixel and the pixel of a point, for every kind of frame
+// viewport.c - the ray of a pixel and the pixel of a point, for every kind of frame
 #include <relume/viewport.h>
 
 #include "math/vec.h"
@@ -15,7 +15,7 @@ struct relume_window relume_planar_window(const struct relume_geometry *g)
     };
 }
 
-static void sight_of_view(struct relume_viewport *s, const relume_pack *pack, int view)
+static void viewport_of_view(struct relume_viewport *s, const relume_pack *pack, int view)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     s->geometry = *relume_pack_geometry(pack, view);
@@ -32,8 +32,8 @@ static void sight_of_view(struct relume_viewport *s, const relume_pack *pack, in
     }
 }
 
-static relume_status sight_of_eye(struct relume_viewport *s, const relume_pack *pack,
-                                  const struct relume_camera *camera)
+static relume_status viewport_of_eye(struct relume_viewport *s, const relume_pack *pack,
+                                     const struct relume_camera *camera)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     relume_slab_set *slabs;
@@ -44,13 +44,14 @@ static relume_status sight_of_eye(struct relume_viewport *s, const relume_pack *
         return status;
     const vec3 eye =
         camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slab_set_eye(slabs, 0);
-    const bool window = !info->slabs && !relume_look_at_given(&camera->aim);
+    const bool window = !info->slabs && !relume_look_at_given(&camera->look_at);
     const int through = window ? 1 : camera->through;
     bool sees = true;
     if (through > 0 && through <= relume_slab_set_count(slabs))
         s->window = relume_slab_window(relume_slab_set_geometry(slabs, through - 1), eye);
     else
-        sees = relume_slab_set_window(&s->window, slabs, eye, &camera->aim, s->width, s->height);
+        sees =
+            relume_slab_set_window(&s->window, slabs, eye, &camera->look_at, s->width, s->height);
     relume_slab_set_destroy(&slabs);
     return sees ? RELUME_OK : RELUME_EINVAL;
 }
@@ -79,9 +80,9 @@ relume_status relume_frame_viewport(struct relume_viewport *out, relume_pack *pa
     if (camera->framing == RELUME_FRAME_LOOK)
         out->kind = RELUME_VIEWPORT_PANORAMA;
     else if (camera->framing == RELUME_FRAME_EYE || (slab && camera->framing != RELUME_FRAME_VIEW))
-        return sight_of_eye(out, pack, camera);
+        return viewport_of_eye(out, pack, camera);
     else
-        sight_of_view(out, pack, view);
+        viewport_of_view(out, pack, view);
     return RELUME_OK;
 }
 

@@ -1,4 +1,5 @@
-// dome.c - three measured directions for any direction: the convex hull of the set and the nadir
+// direction_mesh.c - three measured directions for any direction: the convex hull of the set and
+// the nadir
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/hull.h"
@@ -82,13 +83,13 @@ static bool weigh(const vec3 across[3], vec3 d, double weight[3])
 }
 
 // The triangle that `d` meets: the one whose smallest weight is largest, for rays through edges.
-static int search(const relume_direction_mesh *dome, vec3 d, double weight[3])
+static int search(const relume_direction_mesh *mesh, vec3 d, double weight[3])
 {
     int best = 0;
     double most = -INFINITY;
-    for (int i = 0; i < dome->triangles && most < NOTHING; i++) {
+    for (int i = 0; i < mesh->triangles && most < NOTHING; i++) {
         double w[3];
-        if (!weigh(dome->across[i], d, w))
+        if (!weigh(mesh->across[i], d, w))
             continue;
         const double least = fmin(w[0], fmin(w[1], w[2]));
         if (least > most) {
@@ -102,20 +103,20 @@ static int search(const relume_direction_mesh *dome, vec3 d, double weight[3])
 
 // The same from the triangle at the middle of the cell, by the edge that `d` lies behind; what the
 // ray only grazes is searched for, so that the answer does not depend on the way.
-static const struct hull_triangle *find(const relume_direction_mesh *dome, vec3 d, double weight[3])
+static const struct hull_triangle *find(const relume_direction_mesh *mesh, vec3 d, double weight[3])
 {
-    int i = dome->start[cell_of(d)];
-    for (int step = 0; step < MOST_STEPS && weigh(dome->across[i], d, weight); step++) {
+    int i = mesh->start[cell_of(d)];
+    for (int step = 0; step < MOST_STEPS && weigh(mesh->across[i], d, weight); step++) {
         const int least = weight[0] < weight[1]   ? weight[0] < weight[2] ? 0 : 2
                           : weight[1] < weight[2] ? 1
                                                   : 2;
         if (weight[least] >= NOTHING)
-            return &dome->triangle[i];
+            return &mesh->triangle[i];
         if (weight[least] > -NOTHING)
             break;
-        i = dome->beside[i][least];
+        i = mesh->beside[i][least];
     }
-    return &dome->triangle[search(dome, d, weight)];
+    return &mesh->triangle[search(mesh, d, weight)];
 }
 
 static relume_status prepare_find(relume_direction_mesh *d)
@@ -161,65 +162,65 @@ relume_status relume_direction_mesh_create(relume_direction_mesh **out,
     return status;
 }
 
-void relume_direction_mesh_destroy(relume_direction_mesh **dome)
+void relume_direction_mesh_destroy(relume_direction_mesh **mesh)
 {
-    if (*dome) {
-        mem_free((*dome)->point);
-        mem_free((*dome)->triangle);
-        mem_free((*dome)->across);
-        mem_free((*dome)->beside);
-        mem_free((*dome)->start);
+    if (*mesh) {
+        mem_free((*mesh)->point);
+        mem_free((*mesh)->triangle);
+        mem_free((*mesh)->across);
+        mem_free((*mesh)->beside);
+        mem_free((*mesh)->start);
     }
-    mem_free(*dome);
-    *dome = NULL;
+    mem_free(*mesh);
+    *mesh = NULL;
 }
 
-const int (*relume_direction_mesh_triangles(const relume_direction_mesh *dome, int *n))[3]
+const int (*relume_direction_mesh_triangles(const relume_direction_mesh *mesh, int *n))[3]
 {
-    *n = dome->triangles;
-    return (const int(*)[3])dome->triangle;
+    *n = mesh->triangles;
+    return (const int(*)[3])mesh->triangle;
 }
 
-static void keep_real(struct relume_direction_blend *b, const relume_direction_mesh *dome,
+static void keep_real(struct relume_direction_blend *b, const relume_direction_mesh *mesh,
                       const struct hull_triangle *t, const double weight[3])
 {
     for (int c = 0; c < 3; c++)
-        if (t->corner[c] != dome->n && weight[c] > NOTHING) {
+        if (t->corner[c] != mesh->n && weight[c] > NOTHING) {
             b->index[b->count] = t->corner[c];
             b->weight[b->count++] = weight[c];
         }
     for (int c = 0; c < 3 && b->count == 0; c++)  // straight down: any of the rim will do
-        if (t->corner[c] != dome->n) {
+        if (t->corner[c] != mesh->n) {
             b->index[b->count] = t->corner[c];
             b->weight[b->count++] = 1.0;
         }
 }
 
-static bool has_nadir(const relume_direction_mesh *dome, const struct hull_triangle *t)
+static bool has_nadir(const relume_direction_mesh *mesh, const struct hull_triangle *t)
 {
-    return t->corner[0] == dome->n || t->corner[1] == dome->n || t->corner[2] == dome->n;
+    return t->corner[0] == mesh->n || t->corner[1] == mesh->n || t->corner[2] == mesh->n;
 }
 
-struct relume_direction_blend relume_direction_mesh_at(const relume_direction_mesh *dome,
+struct relume_direction_blend relume_direction_mesh_at(const relume_direction_mesh *mesh,
                                                        struct relume_vec3 d)
 {
     struct relume_direction_blend b = {.direction = d, .rim = 1.0, .length = 1.0};
     double weight[3] = {1.0, 0.0, 0.0}, sum = 0.0;
     vec3 middle = {0.0, 0.0, 0.0};
-    const struct hull_triangle *t = find(dome, d, weight);
-    keep_real(&b, dome, t, weight);
+    const struct hull_triangle *t = find(mesh, d, weight);
+    keep_real(&b, mesh, t, weight);
     for (int i = 0; i < b.count; i++)
         sum += b.weight[i];
     for (int i = 0; i < b.count; i++) {
         b.weight[i] /= sum;
-        middle = vec3_along(middle, dome->point[b.index[i]], b.weight[i]);
+        middle = vec3_along(middle, mesh->point[b.index[i]], b.weight[i]);
     }
     if (b.count == 1)
-        middle = dome->point[b.index[0]];
+        middle = mesh->point[b.index[0]];
     b.length = vec3_length(middle);
-    if (b.count == 1 || has_nadir(dome, t)) {
+    if (b.count == 1 || has_nadir(mesh, t)) {
         b.direction = vec3_unit(middle);
-        b.rim = has_nadir(dome, t) ? fmin(fmax(d.z, 0.0) / b.direction.z, 1.0) : 1.0;
+        b.rim = has_nadir(mesh, t) ? fmin(fmax(d.z, 0.0) / b.direction.z, 1.0) : 1.0;
     }
     return b;
 }

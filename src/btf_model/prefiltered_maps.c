@@ -1,4 +1,5 @@
-// prefilter.c - an environment under lobes of all directions and eleven exponents (thesis, 9.4)
+// prefiltered_maps.c - an environment under lobes of all directions and eleven exponents
+// (thesis, 9.4)
 //
 // Kept are means under lobes, not sums: a sum falls with the exponent as 1 / (e + 1), and linear
 // interpolation of it errs even under a uniform sky. The factor n.l, which the thesis takes at the
@@ -69,7 +70,7 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
 // ---------------------------------------------------------------- maps
 
 struct filtering {
-    relume_prefiltered *p;
+    relume_prefiltered_maps *p;
     float (*power)[LANES];  // [TABLE + 1]: (i / TABLE)^e
 };
 
@@ -92,7 +93,7 @@ static inline void add_lobes(struct sums *restrict sums, const float low[restric
 
 static void filter_pixel(const struct filtering *f, vec3 d, struct sums *sums)
 {
-    const relume_prefiltered *p = f->p;
+    const relume_prefiltered_maps *p = f->p;
     for (int i = 0; i < p->cells; i++) {
         const struct relume_environment_cell *cell = &p->cell[i];
         const double z = vec3_dot(d, cell->direction);
@@ -111,7 +112,7 @@ static void filter_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct filtering *f = context;
-    relume_prefiltered *p = f->p;
+    relume_prefiltered_maps *p = f->p;
     const size_t width = (size_t)p->width, plane = width * (size_t)p->height;
     for (size_t x = 0; x < width; x++) {
         struct sums sums = {.diffuse = {0.0f}};
@@ -126,7 +127,7 @@ static void filter_row(void *context, size_t row, int worker)
     }
 }
 
-static relume_status filter(relume_prefiltered *p, int threads)
+static relume_status filter(relume_prefiltered_maps *p, int threads)
 {
     struct filtering f = {p, mem_zeroed(TABLE + 1, sizeof *f.power)};
     if (!f.power)
@@ -186,7 +187,7 @@ static void parts_of_lobes(double axis, double rim, double even[EXPONENTS],
 }
 
 // A whole lobe has the integral 2 pi / (e + 1).
-static void fill_parts(relume_prefiltered *p)
+static void fill_parts(relume_prefiltered_maps *p)
 {
     for (int i = 0; i < STEPS; i++) {
         double even[EXPONENTS], cosine[EXPONENTS];
@@ -202,26 +203,27 @@ static void fill_parts(relume_prefiltered *p)
 // ---------------------------------------------------------------- making one
 
 static relume_status check(const struct relume_light *light,
-                           const struct relume_prefiltered_params *p)
+                           const struct relume_prefiltered_maps_params *p)
 {
     if (light->kind != RELUME_LIGHT_ENVIRONMENT)
-        return log_fail(p->log, RELUME_EINVAL, "prefilter: expected an environment; found '%s'",
+        return log_fail(p->log, RELUME_EINVAL,
+                        "prefiltered maps: expected an environment; found '%s'",
                         relume_light_kind_name(light->kind));
     if (p->height && (p->height < 4 || p->height > 512))
-        return log_fail(p->log, RELUME_EINVAL, "prefilter: expected a height of 4 to 512; found %d",
-                        p->height);
+        return log_fail(p->log, RELUME_EINVAL,
+                        "prefiltered maps: expected a height of 4 to 512; found %d", p->height);
     if (!(p->rim >= 0.0 && p->rim <= 1.0))
-        return log_fail(p->log, RELUME_EINVAL, "prefilter: expected a rim of 0 to 1; found %g",
-                        p->rim);
+        return log_fail(p->log, RELUME_EINVAL,
+                        "prefiltered maps: expected a rim of 0 to 1; found %g", p->rim);
     return relume_light_check(light, "environment", p->log);
 }
 
-relume_status prefilter_from_cells(relume_prefiltered **out,
-                                   const struct relume_environment_cell *cell, int cells,
-                                   int height, double rim, int threads)
+relume_status prefiltered_from_cells(relume_prefiltered_maps **out,
+                                     const struct relume_environment_cell *cell, int cells,
+                                     int height, double rim, int threads)
 {
     *out = NULL;
-    relume_prefiltered *p = mem_zeroed(1, sizeof *p);
+    relume_prefiltered_maps *p = mem_zeroed(1, sizeof *p);
     if (!p)
         return RELUME_ENOMEM;
     p->height = height;
@@ -233,8 +235,8 @@ relume_status prefilter_from_cells(relume_prefiltered **out,
     p->specular = mem_zeroed(EXPONENTS * plane, sizeof *p->specular);
     p->part = mem_zeroed((size_t)2 * EXPONENTS * STEPS, sizeof *p->part);
     p->cell = mem_copy(cell, (size_t)cells, sizeof *cell);
-    p->info =
-        (struct relume_prefiltered_info){p->width, p->height, p->diffuse, p->specular, p->part};
+    p->info = (struct relume_prefiltered_maps_info){p->width, p->height, p->diffuse, p->specular,
+                                                    p->part};
     relume_status status =
         p->diffuse && p->specular && p->part && p->cell ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {
@@ -242,32 +244,34 @@ relume_status prefilter_from_cells(relume_prefiltered **out,
         status = filter(p, threads);
     }
     if (status)
-        relume_prefiltered_destroy(&p);
+        relume_prefiltered_maps_destroy(&p);
     *out = p;
     return status;
 }
 
-relume_status relume_prefiltered_create(relume_prefiltered **out, const struct relume_light *light,
-                                        const struct relume_prefiltered_params *params)
+relume_status relume_prefiltered_maps_create(relume_prefiltered_maps **out,
+                                             const struct relume_light *light,
+                                             const struct relume_prefiltered_maps_params *params)
 {
-    const struct relume_prefiltered_params p = PARAMS_WORK(relume_prefiltered_params, params);
+    const struct relume_prefiltered_maps_params p =
+        PARAMS_WORK(relume_prefiltered_maps_params, params);
     *out = NULL;
     relume_status status = check(light, &p);
     if (status)
         return status;
     struct relume_environment_cell *cell =
         mem_zeroed((size_t)CELL_COLUMNS * CELL_ROWS, sizeof *cell);
-    status = cell ? prefilter_from_cells(out, cell, gather(cell, light),
-                                         p.height ? p.height : USUAL_HEIGHT, p.rim, p.threads)
+    status = cell ? prefiltered_from_cells(out, cell, gather(cell, light),
+                                           p.height ? p.height : USUAL_HEIGHT, p.rim, p.threads)
                   : RELUME_ENOMEM;
     mem_free(cell);
     return status;
 }
 
-void relume_prefiltered_destroy(relume_prefiltered **prefilter)
+void relume_prefiltered_maps_destroy(relume_prefiltered_maps **prefiltered)
 {
-    relume_prefiltered *p = *prefilter;
-    *prefilter = NULL;
+    relume_prefiltered_maps *p = *prefiltered;
+    *prefiltered = NULL;
     if (!p)
         return;
     mem_free(p->diffuse);
@@ -277,7 +281,8 @@ void relume_prefiltered_destroy(relume_prefiltered **prefilter)
     mem_free(p);
 }
 
-const struct relume_prefiltered_info *relume_prefiltered_info(const relume_prefiltered *p)
+const struct relume_prefiltered_maps_info *relume_prefiltered_maps_info(
+    const relume_prefiltered_maps *p)
 {
     return &p->info;
 }
@@ -285,8 +290,8 @@ const struct relume_prefiltered_info *relume_prefiltered_info(const relume_prefi
 // ---------------------------------------------------------------- lookups
 
 // Columns repeat, rows end at the poles.
-static void add_map(const relume_prefiltered *p, const float *map, const double at[2], float weight,
-                    float rgb[3])
+static void add_map(const relume_prefiltered_maps *p, const float *map, const double at[2],
+                    float weight, float rgb[3])
 {
     const struct bilinear b = bilinear_at(at[0] * p->width - 0.5, at[1] * p->height - 0.5, p->width,
                                           p->height, EDGE_WRAPPED);
@@ -304,8 +309,8 @@ static int layer_of(double exponent, float *part)
     return low;
 }
 
-void relume_prefiltered_diffuse(float rgb[3], const relume_prefiltered *p,
-                                struct relume_vec3 normal)
+void relume_prefiltered_maps_diffuse(float rgb[3], const relume_prefiltered_maps *p,
+                                     struct relume_vec3 normal)
 {
     double at[2];
     place_of(normal, at);
@@ -313,8 +318,8 @@ void relume_prefiltered_diffuse(float rgb[3], const relume_prefiltered *p,
     add_map(p, p->diffuse, at, 1.0f, rgb);
 }
 
-void relume_prefiltered_specular(float rgb[3], const relume_prefiltered *p, struct relume_vec3 axis,
-                                 double exponent)
+void relume_prefiltered_maps_specular(float rgb[3], const relume_prefiltered_maps *p,
+                                      struct relume_vec3 axis, double exponent)
 {
     double at[2];
     float part;
@@ -327,7 +332,8 @@ void relume_prefiltered_specular(float rgb[3], const relume_prefiltered *p, stru
     add_map(p, map + plane, at, part, rgb);
 }
 
-static float part_at(const relume_prefiltered *p, double cosine, double exponent, bool with_cosine)
+static float part_at(const relume_prefiltered_maps *p, double cosine, double exponent,
+                     bool with_cosine)
 {
     float part;
     const int low = layer_of(exponent, &part);
@@ -340,10 +346,11 @@ static float part_at(const relume_prefiltered *p, double cosine, double exponent
     return a + part * (b - a);
 }
 
-void relume_prefiltered_lobe(float rgb[3], const relume_prefiltered *p, struct relume_vec3 normal,
-                             struct relume_vec3 axis, double exponent, bool cosine)
+void relume_prefiltered_maps_lobe(float rgb[3], const relume_prefiltered_maps *p,
+                                  struct relume_vec3 normal, struct relume_vec3 axis,
+                                  double exponent, bool cosine)
 {
-    relume_prefiltered_specular(rgb, p, axis, exponent);
+    relume_prefiltered_maps_specular(rgb, p, axis, exponent);
     const float scale =
         (float)(2.0 / (exponent + 1.0)) * part_at(p, vec3_dot(normal, axis), exponent, cosine);
     for (int c = 0; c < 3; c++)

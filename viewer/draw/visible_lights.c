@@ -1,9 +1,9 @@
-// lamps_seen.c - the lights that are in view of the app's frame (viewport.h)
-#include "draw/lamps_seen.h"
+// visible_lights.c - the lights that are in view of the app's frame (viewport.h)
+#include "draw/visible_lights.h"
 
 #include "common/vec.h"
 
-void lamp_scene_forget(struct lamp_scene *s)
+void hiding_scene_forget(struct hiding_scene *s)
 {
     relume_image_destroy(&s->surface);
     s->known = false;
@@ -11,7 +11,7 @@ void lamp_scene_forget(struct lamp_scene *s)
 
 // ---------------------------------------------------------------- the frame
 
-static int nearest_view(const struct frame_request *q, const struct lamp_scene *s)
+static int nearest_view(const struct frame_request *q, const struct hiding_scene *s)
 {
     int best = q->camera.framing == RELUME_FRAME_VIEW ? q->camera.view : 0;
     const struct relume_vec3 eye = q->camera.eye;
@@ -27,7 +27,8 @@ static int nearest_view(const struct frame_request *q, const struct lamp_scene *
 }
 
 // Of a captured picture; a slab's as it looks from `eye`.
-static struct relume_viewport sight_of_picture(const struct app_file *file, struct relume_vec3 eye)
+static struct relume_viewport viewport_of_picture(const struct app_file *file,
+                                                  struct relume_vec3 eye)
 {
     const struct relume_geometry *g = &file->geometry;
     struct relume_viewport s = {.width = file->width, .height = file->height, .geometry = *g};
@@ -42,7 +43,7 @@ static struct relume_viewport sight_of_picture(const struct app_file *file, stru
     return s;
 }
 
-static struct relume_vec3 camera_of(const struct frame_request *q, const struct lamp_scene *s,
+static struct relume_vec3 camera_of(const struct frame_request *q, const struct hiding_scene *s,
                                     int view)
 {
     const bool slab = s && q->file->geometry.projection == RELUME_SLAB;
@@ -51,13 +52,13 @@ static struct relume_vec3 camera_of(const struct frame_request *q, const struct 
 }
 
 // False where the eye sees nothing.
-static bool sight_of(struct relume_viewport *out, const struct frame_request *q,
-                     const struct lamp_scene *s)
+static bool viewport_of(struct relume_viewport *out, const struct frame_request *q,
+                        const struct hiding_scene *s)
 {
     const struct relume_camera *camera = &q->camera;
     const struct app_rectangle r = q->picture;
     const bool free = camera->framing == RELUME_FRAME_EYE;
-    *out = sight_of_picture(q->file, free ? camera->eye : camera_of(q, s, camera->view));
+    *out = viewport_of_picture(q->file, free ? camera->eye : camera_of(q, s, camera->view));
     if (q->file->around && !q->has_window)
         return false;
     if (q->has_window)
@@ -78,13 +79,13 @@ static bool sight_of(struct relume_viewport *out, const struct frame_request *q,
 
 // The view that best knows what lies on the way to `p`, and the place in [0, 1] where it shows it.
 static bool find_view(int *view, double at[2], const struct frame_request *q,
-                      const struct lamp_scene *s, struct relume_vec3 eye, struct relume_vec3 p)
+                      const struct hiding_scene *s, struct relume_vec3 eye, struct relume_vec3 p)
 {
     const struct app_file *f = q->file;
     if (q->has_window)
         return relume_slab_set_nearest(view, at, f->around, eye, vec3_sub(p, eye));
     *view = nearest_view(q, s);
-    const struct relume_viewport picture = sight_of_picture(f, camera_of(q, s, *view));
+    const struct relume_viewport picture = viewport_of_picture(f, camera_of(q, s, *view));
     if (!relume_viewport_project(at, &picture, p))
         return false;
     at[0] /= f->width;
@@ -92,11 +93,11 @@ static bool find_view(int *view, double at[2], const struct frame_request *q,
     return true;
 }
 
-static bool need_surface(struct lamp_scene *s, int view)
+static bool need_surface(struct hiding_scene *s, int view)
 {
     if (s->known && s->view == view)
         return s->surface.data != NULL;
-    lamp_scene_forget(s);
+    hiding_scene_forget(s);
     s->known = true;
     s->view = view;
     return s->source.surface && !s->source.surface(&s->surface, s->source.user, view);
@@ -104,8 +105,8 @@ static bool need_surface(struct lamp_scene *s, int view)
 
 struct looking {
     const struct frame_request *request;
-    struct lamp_scene *scene;
-    struct relume_viewport sight;
+    struct hiding_scene *scene;
+    struct relume_viewport viewport;
 };
 
 // What the view shows where it sees the point `p`; false where that is not known.
@@ -114,7 +115,7 @@ static bool surface_near(struct relume_vec3 *out, const struct looking *l, struc
     const struct relume_image *image = &l->scene->surface;
     double at[2];
     int view;
-    if (!find_view(&view, at, l->request, l->scene, relume_viewport_eye(&l->sight), p) ||
+    if (!find_view(&view, at, l->request, l->scene, relume_viewport_eye(&l->viewport), p) ||
         !need_surface(l->scene, view))
         return false;
     const double x = floor(at[0] * image->width), y = floor(at[1] * image->height);
@@ -130,28 +131,28 @@ static bool hidden(void *user, const double xy[2], struct relume_vec3 p)
     const struct looking *l = user;
     struct relume_vec3 surface;
     (void)xy;
-    return surface_near(&surface, l, p) && relume_viewport_hides(&l->sight, surface, p);
+    return surface_near(&surface, l, p) && relume_viewport_hides(&l->viewport, surface, p);
 }
 
-int lamps_seen(struct relume_visible_light *out, const struct frame_request *q,
-               const struct relume_light *lights, int n, struct lamp_scene *scene)
+int visible_lights(struct relume_visible_light *out, const struct frame_request *q,
+                   const struct relume_light *lights, int n, struct hiding_scene *scene)
 {
     struct looking l = {.request = q, .scene = scene};
-    if (!sight_of(&l.sight, q, scene))
+    if (!viewport_of(&l.viewport, q, scene))
         return 0;
-    return relume_viewport_lights(out, &l.sight, lights, n, scene ? hidden : NULL, &l);
+    return relume_viewport_lights(out, &l.viewport, lights, n, scene ? hidden : NULL, &l);
 }
 
 // A view beside the eye sees another place of the surface; its depth is a better guess, and so on.
-bool lamps_surface(struct relume_vec3 *out, const struct frame_request *q, struct lamp_scene *scene,
-                   double x, double y)
+bool visible_surface(struct relume_vec3 *out, const struct frame_request *q,
+                     struct hiding_scene *scene, double x, double y)
 {
     enum { ROUNDS = 8 };
     struct looking l = {.request = q, .scene = scene};
     struct relume_vec3 from, ray;
-    if (!sight_of(&l.sight, q, scene))
+    if (!viewport_of(&l.viewport, q, scene))
         return false;
-    relume_viewport_ray(&from, &ray, &l.sight, x, y);
+    relume_viewport_ray(&from, &ray, &l.viewport, x, y);
     double t = vec3_dot(vec3_sub(q->middle, from), ray);
     for (int i = 0; i < ROUNDS; i++) {
         const struct relume_vec3 p = {from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};

@@ -11,7 +11,7 @@ static const struct relume_window window = {
     .eye = {1, 2, 3}, .corner = {-0.5, 3, 1}, .right = {2.5, 0, 0.2}, .down = {0, -1.25, 0.1}};
 static const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL, .center = {1, 2, 3}};
 
-static const struct relume_viewport sights[] = {
+static const struct relume_viewport viewports[] = {
     {.kind = RELUME_VIEWPORT_PERSPECTIVE, .width = WIDE, .height = HIGH, .window = window},
     {.kind = RELUME_VIEWPORT_PERSPECTIVE,
      .width = WIDE,
@@ -42,20 +42,20 @@ static const struct relume_viewport sights[] = {
      .high = 15,
      .geometry = sphere},
 };
-enum { SIGHTS = sizeof sights / sizeof *sights };
+enum { VIEWPORTS = sizeof viewports / sizeof *viewports };
 
 // A point on the ray of a place appears there.
 static void check_places(void **state)
 {
     (void)state;
-    for (int i = 0; i < SIGHTS; i++)
+    for (int i = 0; i < VIEWPORTS; i++)
         for (int k = 0; k < 60; k++) {
             const double x = 5.5 + k * 7 % 29 + 0.013 * k, y = 3.5 + k * 5 % 9 + 0.007 * k;
             struct relume_vec3 from, ray;
             double xy[2];
-            relume_viewport_ray(&from, &ray, &sights[i], x, y);
+            relume_viewport_ray(&from, &ray, &viewports[i], x, y);
             CHECK_NEAR(ray.x * ray.x + ray.y * ray.y + ray.z * ray.z, 1.0, 1e-12);
-            assert_true(relume_viewport_project(xy, &sights[i], vec3_along(from, ray, 0.5 + k)));
+            assert_true(relume_viewport_project(xy, &viewports[i], vec3_along(from, ray, 0.5 + k)));
             CHECK_NEAR(xy[0], x, 1e-8);
             CHECK_NEAR(xy[1], y, 1e-8);
         }
@@ -66,11 +66,11 @@ static void check_behind(void **state)
     double xy[2];
     (void)state;
     struct relume_vec3 from, ray;
-    relume_viewport_ray(&from, &ray, &sights[0], 20, 10);
-    assert_false(relume_viewport_project(xy, &sights[0], vec3_sub(from, ray)));
-    assert_false(relume_viewport_project(xy, &sights[0], from));
-    relume_viewport_ray(&from, &ray, &sights[3], 20, 10);
-    assert_false(relume_viewport_project(xy, &sights[3], vec3_sub(from, ray)));
+    relume_viewport_ray(&from, &ray, &viewports[0], 20, 10);
+    assert_false(relume_viewport_project(xy, &viewports[0], vec3_sub(from, ray)));
+    assert_false(relume_viewport_project(xy, &viewports[0], from));
+    relume_viewport_ray(&from, &ray, &viewports[3], 20, 10);
+    assert_false(relume_viewport_project(xy, &viewports[3], vec3_sub(from, ray)));
 }
 
 // The area that a pixel's corners span on the unit sphere, to second order in its size.
@@ -93,14 +93,15 @@ static void check_solid_angles(void **state)
     const int exact[] = {0, 1, 3, 4};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 9; k++) {
-            const struct relume_viewport *s = &sights[exact[i]];
+            const struct relume_viewport *s = &viewports[exact[i]];
             const double x = 4 + 4 * k, y = 3 + 1.5 * k;
             CHECK_NEAR(relume_viewport_solid_angle(s, x, y) / spanned(s, x, y), 1.0, 1e-4);
         }
     // on the horizon of a sphere; a screen's pixels are all as its middle's
-    CHECK_NEAR(relume_viewport_solid_angle(&sights[5], 7, 10), pow(2.0 * M_PI / WIDE, 2.0), 1e-12);
-    CHECK_NEAR(relume_viewport_solid_angle(&sights[2], 0, 0),
-               relume_viewport_solid_angle(&sights[2], 30, 15), 1e-15);
+    CHECK_NEAR(relume_viewport_solid_angle(&viewports[5], 7, 10), pow(2.0 * M_PI / WIDE, 2.0),
+               1e-12);
+    CHECK_NEAR(relume_viewport_solid_angle(&viewports[2], 0, 0),
+               relume_viewport_solid_angle(&viewports[2], 30, 15), 1e-15);
     const struct relume_viewport screen = {
         .kind = RELUME_VIEWPORT_PARALLEL,
         .width = WIDE,
@@ -218,8 +219,8 @@ static void check_hiding(void **state)
     assert_false(relume_viewport_hides(&ahead, (struct relume_vec3){1, 2, -1e30}, lamp));
     assert_false(relume_viewport_hides(&ahead, (struct relume_vec3){NAN, 2, 0}, lamp));
     const struct relume_vec3 below = {0, 2, -1}, above = {0, 2, 5}, level = {0, 2, 0.3};
-    assert_true(relume_viewport_hides(&sights[2], level, below));
-    assert_false(relume_viewport_hides(&sights[2], level, above));
+    assert_true(relume_viewport_hides(&viewports[2], level, below));
+    assert_false(relume_viewport_hides(&viewports[2], level, above));
 }
 
 int main(void)

@@ -1,4 +1,4 @@
-// lamps.c - lights in lamps: whatever shines from more than one direction becomes several
+// light_samples.c - lights as samples: whatever shines from more than one direction becomes several
 #include "base/memory.h"
 #include "object/object.h"
 
@@ -35,11 +35,11 @@ static int count_of(const relume_objects *o, const struct relume_light *light)
 static relume_status fill(struct relume_object_light *to, int n, const relume_objects *o,
                           const struct relume_light *light, int number)
 {
-    struct relume_light_patch facet[MOST_SIDE * MOST_SIDE];
+    struct relume_light_patch patch[MOST_SIDE * MOST_SIDE];
     struct relume_light sky[SKY];
     relume_status status = RELUME_OK;
     if (light->kind == RELUME_LIGHT_AREA)
-        relume_light_patches(facet, light, side_of(o, light));
+        relume_light_patches(patch, light, side_of(o, light));
     if (light->kind == RELUME_LIGHT_ENVIRONMENT)
         status = relume_environment_sample(sky, SKY, light, 0);
     for (int i = 0; i < n && !status; i++) {
@@ -47,7 +47,7 @@ static relume_status fill(struct relume_object_light *to, int n, const relume_ob
                                              .is_sky = light->kind == RELUME_LIGHT_ENVIRONMENT,
                                              .number = number};
         if (to[i].is_patch)
-            to[i].facet = facet[i];
+            to[i].patch = patch[i];
         else
             to[i].light = light->kind == RELUME_LIGHT_ENVIRONMENT ? sky[i] : *light;
         if (to[i].light.kind == RELUME_LIGHT_DIRECTIONAL && !to[i].is_patch)
@@ -68,32 +68,34 @@ relume_status relume_objects_lights(struct relume_object_light **out, int *n,
             return RELUME_EINVAL;
         total += (size_t)count_of(objects, &lights[i]);
     }
-    struct relume_object_light *lamps = mem_array(total, sizeof *lamps);
-    relume_status status = lamps ? RELUME_OK : RELUME_ENOMEM;
+    struct relume_object_light *light_samples = mem_array(total, sizeof *light_samples);
+    relume_status status = light_samples ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < count && !status; i++) {
         const int own = count_of(objects, &lights[i]);
-        status = fill(lamps + at, own, objects, &lights[i], i);
+        status = fill(light_samples + at, own, objects, &lights[i], i);
         at += (size_t)own;
     }
     if (status)
-        mem_free(lamps);
+        mem_free(light_samples);
     else
-        *out = lamps, *n = (int)total;
+        *out = light_samples, *n = (int)total;
     return status;
 }
 
 bool relume_object_light_at(struct relume_vec3 *towards, float rgb[3], double *distance,
-                            const struct relume_object_light *lamp, struct relume_vec3 point)
+                            const struct relume_object_light *light_sample,
+                            struct relume_vec3 point)
 {
     *distance = INFINITY;
-    if (!lamp->is_patch && !relume_light_is_near(lamp->light.kind)) {
-        *towards = lamp->light.direction;
+    if (!light_sample->is_patch && !relume_light_is_near(light_sample->light.kind)) {
+        *towards = light_sample->light.direction;
         for (int c = 0; c < 3; c++)
-            rgb[c] = lamp->light.rgb[c];
+            rgb[c] = light_sample->light.rgb[c];
         return true;
     }
-    const vec3 from = lamp->is_patch ? lamp->facet.position : lamp->light.position;
+    const vec3 from =
+        light_sample->is_patch ? light_sample->patch.position : light_sample->light.position;
     *distance = vec3_length(vec3_sub(from, point));
-    return lamp->is_patch ? relume_light_patch_at(towards, rgb, &lamp->facet, point)
-                          : relume_light_at(towards, rgb, &lamp->light, point);
+    return light_sample->is_patch ? relume_light_patch_at(towards, rgb, &light_sample->patch, point)
+                                  : relume_light_at(towards, rgb, &light_sample->light, point);
 }

@@ -1,5 +1,5 @@
-// sight.c - where objects stand in the frame: a matrix for OpenGL, and the eye
-#include "draw/sight.h"
+// frame_projection.c - where objects stand in the frame: a matrix for OpenGL, and the eye
+#include "draw/frame_projection.h"
 
 #include "common/vec.h"
 
@@ -26,8 +26,9 @@ static struct relume_vec3 sum(struct relume_vec3 a, double s, struct relume_vec3
 
 // A point p has p - eye = a right + b down + c (corner - eye): it is seen at (a, b) / c of the
 // picture, c counts the distance in distances of the window.
-bool sight_of_window(struct sight *out, const struct relume_window *w, struct app_rectangle picture,
-                     int width, int height, struct relume_vec3 min, struct relume_vec3 max)
+bool frame_projection_of_window(struct frame_projection *out, const struct relume_window *w,
+                                struct app_rectangle picture, int width, int height,
+                                struct relume_vec3 min, struct relume_vec3 max)
 {
     const struct relume_vec3 ahead = vec3_sub(w->corner, w->eye);
     const struct relume_vec3 normal = vec3_cross(w->right, w->down);
@@ -60,9 +61,9 @@ bool sight_of_window(struct sight *out, const struct relume_window *w, struct ap
     return true;
 }
 
-void sight_of_plane(struct sight *out, const double window_min[2], const double window_max[2],
-                    struct app_rectangle picture, int width, int height, struct relume_vec3 min,
-                    struct relume_vec3 max)
+void frame_projection_of_plane(struct frame_projection *out, const double window_min[2],
+                               const double window_max[2], struct app_rectangle picture, int width,
+                               int height, struct relume_vec3 min, struct relume_vec3 max)
 {
     const double across = (picture.right - picture.left) / (window_max[0] - window_min[0]);
     const double down = (picture.bottom - picture.top) / (window_max[1] - window_min[1]);

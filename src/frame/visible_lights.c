@@ -1,4 +1,4 @@
-// lamps.c - lights that stand in the frame, so that they can dazzle
+// visible_lights.c - lights that stand in the frame, so that they can dazzle
 #include <relume/viewport.h>
 
 #include "base/memory.h"
@@ -6,12 +6,12 @@
 #include "math/bilinear.h"
 
 static const double far_away = 1e6;  // of directional lights, in widths of the picture
-enum { FACETS = 8 };                 // of an area light, along one side
+enum { PATCHES = 8 };                // of an area light, along one side
 
 // ---------------------------------------------------------------- finding
 
 struct finding {
-    const struct relume_viewport *sight;
+    const struct relume_viewport *viewport;
     vec3 eye;
     bool (*hides)(void *user, const double xy[2], vec3 point);
     void *user;
@@ -29,11 +29,11 @@ static void add(struct finding *f, vec3 point, const float rgb[3])
 {
     double xy[2];
     if (f->n == RELUME_VISIBLE_LIGHTS_MOST || !(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) ||
-        !relume_viewport_project(xy, f->sight, point) || !in_frame(f->sight, xy) ||
+        !relume_viewport_project(xy, f->viewport, point) || !in_frame(f->viewport, xy) ||
         (f->hides && f->hides(f->user, xy, point)))
         return;
     struct relume_visible_light *const s = &f->out[f->n++];
-    const double solid = relume_viewport_solid_angle(f->sight, xy[0], xy[1]);
+    const double solid = relume_viewport_solid_angle(f->viewport, xy[0], xy[1]);
     *s = (struct relume_visible_light){.x = xy[0], .y = xy[1]};
     for (int c = 0; c < 3; c++)
         s->rgb[c] = (float)fmin(M_PI * (double)rgb[c] / solid, 1e30);
@@ -41,30 +41,30 @@ static void add(struct finding *f, vec3 point, const float rgb[3])
 
 static void add_area(struct finding *f, const struct relume_light *light)
 {
-    struct relume_light_patch facets[FACETS * FACETS];
+    struct relume_light_patch patches[PATCHES * PATCHES];
     vec3 towards;
     float rgb[3];
-    relume_light_patches(facets, light, FACETS);
-    for (int i = 0; i < FACETS * FACETS; i++)
-        if (relume_light_patch_at(&towards, rgb, &facets[i], f->eye))
-            add(f, facets[i].position, rgb);
+    relume_light_patches(patches, light, PATCHES);
+    for (int i = 0; i < PATCHES * PATCHES; i++)
+        if (relume_light_patch_at(&towards, rgb, &patches[i], f->eye))
+            add(f, patches[i].position, rgb);
 }
 
 static void add_distant(struct finding *f, const struct relume_light *light)
 {
-    const bool window = f->sight->kind == RELUME_VIEWPORT_PERSPECTIVE;
-    const double wide = window ? vec3_length(f->sight->window.right) : 1.0;
+    const bool window = f->viewport->kind == RELUME_VIEWPORT_PERSPECTIVE;
+    const double wide = window ? vec3_length(f->viewport->window.right) : 1.0;
     const vec3 towards = vec3_unit(light->direction);
-    if (f->sight->kind != RELUME_VIEWPORT_PARALLEL)
+    if (f->viewport->kind != RELUME_VIEWPORT_PARALLEL)
         add(f, vec3_along(f->eye, towards, far_away * wide), light->rgb);
 }
 
-int relume_viewport_lights(struct relume_visible_light *out, const struct relume_viewport *sight,
+int relume_viewport_lights(struct relume_visible_light *out, const struct relume_viewport *viewport,
                            const struct relume_light *lights, int n,
                            bool (*hides)(void *user, const double xy[2], struct relume_vec3 point),
                            void *user)
 {
-    struct finding f = {sight, relume_viewport_eye(sight), hides, user, out, 0};
+    struct finding f = {viewport, relume_viewport_eye(viewport), hides, user, out, 0};
     for (int i = 0; i < n; i++) {
         vec3 towards;
         float rgb[3];
@@ -101,7 +101,7 @@ void relume_visible_lights_draw(struct relume_image *frame,
 // ---------------------------------------------------------------- a frame
 
 struct scene {
-    const struct relume_viewport *sight;
+    const struct relume_viewport *viewport;
     struct relume_image places;
 };
 
@@ -112,7 +112,7 @@ static bool hidden(void *user, const double xy[2], vec3 point)
     const int y = index_clamped(relume_whole(xy[1]), s->places.height);
     const float *const at = s->places.data + 3 * ((size_t)y * (size_t)s->places.width + (size_t)x);
     const vec3 surface = vec3_of((double)at[0], (double)at[1], (double)at[2]);
-    return !isnan(surface.x) && relume_viewport_hides(s->sight, surface, point);
+    return !isnan(surface.x) && relume_viewport_hides(s->viewport, surface, point);
 }
 
 relume_status relume_frame_visible_lights(struct relume_image *frame, int *seen,
@@ -123,14 +123,14 @@ relume_status relume_frame_visible_lights(struct relume_image *frame, int *seen,
     const struct relume_frame_params params = r->params;
     struct relume_frame_params sharp = params;
     struct relume_camera sized = *camera;
-    struct relume_viewport sight;
-    struct scene scene = {.sight = &sight};
+    struct relume_viewport viewport;
+    struct scene scene = {.viewport = &viewport};
     struct relume_visible_light *sources = NULL;
     sharp.aperture = sharp.focus = 0.0;
     sized.width = frame->width;
     sized.height = frame->height;
     relume_status status =
-        relume_frame_viewport(&sight, r->pack, camera, frame->width, frame->height);
+        relume_frame_viewport(&viewport, r->pack, camera, frame->width, frame->height);
     r->params = sharp;
     if (!status && r->info->has_depth)
         status = relume_renderer_places(&scene.places, r, &sized);
@@ -138,7 +138,7 @@ relume_status relume_frame_visible_lights(struct relume_image *frame, int *seen,
     if (!status && !(sources = mem_array(RELUME_VISIBLE_LIGHTS_MOST, sizeof *sources)))
         status = RELUME_ENOMEM;
     const int count = status ? 0
-                             : relume_viewport_lights(sources, &sight, r->lights, r->light_count,
+                             : relume_viewport_lights(sources, &viewport, r->lights, r->light_count,
                                                       scene.places.data ? hidden : NULL, &scene);
     relume_visible_lights_draw(frame, sources, count);
     if (seen)

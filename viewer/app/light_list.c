@@ -1,5 +1,5 @@
-// lamps.c - the list of lights: what shines, add and remove, arrangements
-#include "app/lamps.h"
+// light_list.c - the list of lights: what shines, add and remove, arrangements
+#include "app/light_list.h"
 
 #include "common/vec.h"
 
@@ -9,27 +9,27 @@
 static bool any_solo(const struct app_state *state)
 {
     for (int i = 0; i < state->lights; i++)
-        if (state->lamp[i].solo)
+        if (state->light_state[i].solo)
             return true;
     return false;
 }
 
-static double factor_of(const struct app_lamp *lamp, bool solo)
+static double factor_of(const struct app_light_state *light, bool solo)
 {
-    return lamp->off || (solo && !lamp->solo) ? 0.0 : exp2(lamp->stops);
+    return light->off || (solo && !light->solo) ? 0.0 : exp2(light->stops);
 }
 
-double lamps_factor(const struct app_state *state, int light)
+double light_list_factor(const struct app_state *state, int light)
 {
-    return factor_of(&state->lamp[light], any_solo(state));
+    return factor_of(&state->light_state[light], any_solo(state));
 }
 
-int lamps_shining(const struct app_state *state, struct relume_light *out)
+int light_list_shining(const struct app_state *state, struct relume_light *out)
 {
     const bool solo = any_solo(state);
     int n = 0;
     for (int i = 0; i < state->lights; i++) {
-        const double factor = factor_of(&state->lamp[i], solo);
+        const double factor = factor_of(&state->light_state[i], solo);
         if (factor == 0.0)
             continue;
         out[n] = state->light[i];
@@ -40,12 +40,13 @@ int lamps_shining(const struct app_state *state, struct relume_light *out)
     return n;
 }
 
-int lamps_near(const struct app_state *state)
+int light_list_near(const struct app_state *state)
 {
     const bool solo = any_solo(state);
     int n = 0;
     for (int i = 0; i < state->lights; i++)
-        n += factor_of(&state->lamp[i], solo) != 0.0 && relume_light_is_near(state->light[i].kind);
+        n += factor_of(&state->light_state[i], solo) != 0.0 &&
+             relume_light_is_near(state->light[i].kind);
     return n;
 }
 
@@ -56,42 +57,43 @@ static bool make_room(struct app_state *state, int room)
     struct relume_light *light = realloc(state->light, (size_t)room * sizeof *light);
     if (light)
         state->light = light;
-    struct app_lamp *lamp = light ? realloc(state->lamp, (size_t)room * sizeof *lamp) : NULL;
-    if (!lamp)
+    struct app_light_state *own =
+        light ? realloc(state->light_state, (size_t)room * sizeof *own) : NULL;
+    if (!own)
         return false;
-    state->lamp = lamp;
+    state->light_state = own;
     state->room = room;
     return true;
 }
 
-bool lamps_copy(struct app_state *to, const struct app_state *from)
+bool light_list_copy(struct app_state *to, const struct app_state *from)
 {
     struct app_state made = *from;
     made.light = NULL;
-    made.lamp = NULL;
+    made.light_state = NULL;
     if (!make_room(&made, from->lights ? from->lights : 1)) {
-        lamps_release(&made);
+        light_list_release(&made);
         return false;
     }
     for (int i = 0; i < from->lights; i++) {
         made.light[i] = from->light[i];
-        made.lamp[i] = from->lamp[i];
+        made.light_state[i] = from->light_state[i];
     }
-    lamps_release(to);
+    light_list_release(to);
     *to = made;
     return true;
 }
 
-void lamps_release(struct app_state *state)
+void light_list_release(struct app_state *state)
 {
     free(state->light);
-    free(state->lamp);
+    free(state->light_state);
     state->light = NULL;
-    state->lamp = NULL;
+    state->light_state = NULL;
     state->lights = state->room = 0;
 }
 
-bool lamps_add(struct app_state *state, const struct relume_light *light, int entry)
+bool light_list_add(struct app_state *state, const struct relume_light *light, int entry)
 {
     const struct relume_light copy = *light;  // it may stand in the list that moves
     if (state->lights == APP_LIGHTS ||
@@ -99,35 +101,36 @@ bool lamps_add(struct app_state *state, const struct relume_light *light, int en
         return false;
     state->selected = state->lights++;
     state->light[state->selected] = copy;
-    state->lamp[state->selected] = (struct app_lamp){.entry = entry};
+    state->light_state[state->selected] = (struct app_light_state){.entry = entry};
     return true;
 }
 
-bool lamps_remove(struct app_state *state, int light)
+bool light_list_remove(struct app_state *state, int light)
 {
     if (state->lights < 2)
         return false;
     const size_t behind = (size_t)(state->lights - 1 - light);
     memmove(&state->light[light], &state->light[light + 1], behind * sizeof *state->light);
-    memmove(&state->lamp[light], &state->lamp[light + 1], behind * sizeof *state->lamp);
+    memmove(&state->light_state[light], &state->light_state[light + 1],
+            behind * sizeof *state->light_state);
     state->lights--;
     if (state->selected >= state->lights || state->selected > light)
         state->selected--;
     return true;
 }
 
-void lamps_drop_near(struct app_state *state)
+void light_list_drop_near(struct app_state *state)
 {
     for (int i = state->lights - 1; i >= 0; i--)
-        if (relume_light_is_near(state->light[i].kind) && !lamps_remove(state, i)) {
+        if (relume_light_is_near(state->light[i].kind) && !light_list_remove(state, i)) {
             state->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
-            state->lamp[0] = (struct app_lamp){.entry = -1};
+            state->light_state[0] = (struct app_light_state){.entry = -1};
         }
 }
 
 // ---------------------------------------------------------------- directions
 
-struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
+struct relume_vec3 light_list_direction(const struct relume_light *light, struct relume_vec3 middle)
 {
     const double turn = light->rotate_deg * M_PI / 180;
     struct relume_vec3 d = light->direction;
@@ -156,7 +159,7 @@ static struct relume_vec3 turned(struct relume_vec3 v, struct relume_vec3 from,
 static void aim_near(struct relume_light *l, struct relume_vec3 direction,
                      struct relume_vec3 middle)
 {
-    const struct relume_vec3 was = lamps_direction(l, middle);
+    const struct relume_vec3 was = light_list_direction(l, middle);
     const double far = vec3_length(vec3_sub(l->position, middle));
     l->position = (struct relume_vec3){
         middle.x + far * direction.x,
@@ -168,8 +171,8 @@ static void aim_near(struct relume_light *l, struct relume_vec3 direction,
     l->v = turned(l->v, was, direction);
 }
 
-void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
-               struct relume_vec3 middle)
+void light_list_aim(struct app_state *state, int light, struct relume_vec3 direction,
+                    struct relume_vec3 middle)
 {
     struct relume_light *l = &state->light[light];
     if (l->kind == RELUME_LIGHT_DIRECTIONAL)
@@ -180,11 +183,11 @@ void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
         aim_near(l, direction, middle);
 }
 
-void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
-                       struct relume_vec3 middle, double far)
+void light_list_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
+                            struct relume_vec3 middle, double far)
 {
     struct relume_light *l = &state->light[light];
-    const struct relume_vec3 d = lamps_direction(l, middle);
+    const struct relume_vec3 d = light_list_direction(l, middle);
     const struct relume_vec3 pole =
         fabs(d.y) < 0.9 ? (struct relume_vec3){0, 1, 0} : (struct relume_vec3){0, 0, 1};
     const struct relume_vec3 side = vec3_cross(d, pole);
@@ -201,7 +204,7 @@ void lamps_change_kind(struct app_state *state, int light, enum relume_light_kin
     memcpy(made.rgb, l->rgb, sizeof made.rgb);
     made.nofall &= kind != RELUME_LIGHT_AREA;
     *l = made;
-    state->lamp[light].entry = -1;
+    state->light_state[light].entry = -1;
 }
 
 // ---------------------------------------------------------------- kinds
@@ -210,29 +213,30 @@ static const struct {
     const char *words;
     unsigned fields;
 } kinds[] = {
-    [RELUME_LIGHT_DIRECTIONAL] = {"directional", LAMP_CHANGE},
-    [RELUME_LIGHT_ENVIRONMENT] = {"environment", LAMP_TURN},
-    [RELUME_LIGHT_POINT] = {"point", LAMP_PLACE | LAMP_CHANGE},
-    [RELUME_LIGHT_SPOT] = {"spot", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE | LAMP_CHANGE},
-    [RELUME_LIGHT_SLIDE] = {"slide", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE},
-    [RELUME_LIGHT_AREA] = {"area", LAMP_PLACE | LAMP_EDGES | LAMP_CHANGE},
-    [RELUME_LIGHT_IES] = {"ies", LAMP_PLACE | LAMP_AXIS},
-    [RELUME_LIGHT_GONIO] = {"gonio", LAMP_PLACE | LAMP_AXIS},
+    [RELUME_LIGHT_DIRECTIONAL] = {"directional", LIGHT_FIELD_CHANGE},
+    [RELUME_LIGHT_ENVIRONMENT] = {"environment", LIGHT_FIELD_TURN},
+    [RELUME_LIGHT_POINT] = {"point", LIGHT_FIELD_PLACE | LIGHT_FIELD_CHANGE},
+    [RELUME_LIGHT_SPOT] = {"spot", LIGHT_FIELD_PLACE | LIGHT_FIELD_AXIS | LIGHT_FIELD_ANGLE |
+                                       LIGHT_FIELD_CHANGE},
+    [RELUME_LIGHT_SLIDE] = {"slide", LIGHT_FIELD_PLACE | LIGHT_FIELD_AXIS | LIGHT_FIELD_ANGLE},
+    [RELUME_LIGHT_AREA] = {"area", LIGHT_FIELD_PLACE | LIGHT_FIELD_EDGES | LIGHT_FIELD_CHANGE},
+    [RELUME_LIGHT_IES] = {"ies", LIGHT_FIELD_PLACE | LIGHT_FIELD_AXIS},
+    [RELUME_LIGHT_GONIO] = {"gonio", LIGHT_FIELD_PLACE | LIGHT_FIELD_AXIS},
 };
 
-const char *lamps_kind_words(enum relume_light_kind kind)
+const char *light_list_kind_words(enum relume_light_kind kind)
 {
     return kinds[kind].words;
 }
 
-unsigned lamps_fields(enum relume_light_kind kind)
+unsigned light_list_fields(enum relume_light_kind kind)
 {
     return kinds[kind].fields;
 }
 
 // ---------------------------------------------------------------- arrangements
 
-const struct lamp_preset lamp_presets[] = {
+const struct light_preset light_presets[] = {
     {"raking", "one light from the left, 12 degrees above the picture", 1, {180}, {12}},
     {"double raking",
      "two lights from the left and from above, 12 degrees",
@@ -247,7 +251,7 @@ const struct lamp_preset lamp_presets[] = {
     {NULL, NULL, 0, {0}, {0}},
 };
 
-void lamps_arrange(struct app_state *state, const struct lamp_preset *preset, bool pole_y)
+void light_list_arrange(struct app_state *state, const struct light_preset *preset, bool pole_y)
 {
     state->lights = 0;
     for (int i = 0; i < preset->lights; i++) {
@@ -261,7 +265,7 @@ void lamps_arrange(struct app_state *state, const struct lamp_preset *preset, bo
             .direction = pole_y ? (struct relume_vec3){x, z, -y} : (struct relume_vec3){x, y, z},
             .rgb = {value, value, value},
         };
-        lamps_add(state, &light, -1);
+        light_list_add(state, &light, -1);
     }
     state->selected = 0;
 }

@@ -1,8 +1,8 @@
-// lamps_seen.h - the lights that are in view of a frame (viewport.h)
+// visible_lights.h - the lights that are in view of a frame (viewport.h)
 //
 // The surface hides what lies behind it, as the nearest view knows it.
-#ifndef VIEWER_LAMPS_SEEN_H
-#define VIEWER_LAMPS_SEEN_H
+#ifndef VIEWER_VISIBLE_LIGHTS_H
+#define VIEWER_VISIBLE_LIGHTS_H
 
 #include "app/frame_request.h"
 #include "relit/loader.h"
@@ -10,7 +10,7 @@
 #include <relume/viewport.h>
 
 // Where views stand, and where their pixels lie. `source` and `uv` must outlive it.
-struct lamp_scene {
+struct hiding_scene {
     struct code_source source;
     const double (*uv)[2];  // [views], of a slab
     int views;
@@ -18,15 +18,15 @@ struct lamp_scene {
     bool known;
     struct relume_image surface;  // no data: nothing is known of the view
 };
-void lamp_scene_forget(struct lamp_scene *scene);
+void hiding_scene_forget(struct hiding_scene *scene);
 
 // As relume_viewport_lights. Without `scene` nothing is hidden.
-int lamps_seen(struct relume_visible_light *out, const struct frame_request *request,
-               const struct relume_light *lights, int n, struct lamp_scene *scene);
+int visible_lights(struct relume_visible_light *out, const struct frame_request *request,
+                   const struct relume_light *lights, int n, struct hiding_scene *scene);
 
 // The surface that the frame shows at (x, y), as the nearest view knows it; false where nothing is
 // known.
-bool lamps_surface(struct relume_vec3 *out, const struct frame_request *request,
-                   struct lamp_scene *scene, double x, double y);
+bool visible_surface(struct relume_vec3 *out, const struct frame_request *request,
+                     struct hiding_scene *scene, double x, double y);
 
 #endif

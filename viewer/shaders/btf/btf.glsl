@@ -1,4 +1,4 @@
-// What all models share: a pixel of the surface, the light sample of the pass, the measured directions
+// What all models share: a pixel of the surface, the light sample of the pass, measured directions
 // around any direction. Before it: view_grid and light_grid (struct relume_btf_model); after it:
 // model_eval, or, where OWN_BLEND is defined, model_blend; where LOBES is, also model_lit.
 //

@@ -209,12 +209,17 @@ relume_status outfile_open(outfile **out, const char *path, const struct relume_
     return status;
 }
 
+// From so many bytes on the disk begins at once, so that little is left to wait for at the end.
+enum { LARGE = 1 << 16 };
+
 relume_status outfile_write(outfile *f, const void *bytes, size_t size, off_t offset)
 {
     errno = 0;
     const bool good = f->kind == GIVEN
                           ? f->writer.write(f->writer.user, bytes, size, (uint64_t)offset)
                           : scratch_write(f->fd, bytes, size, offset);
+    if (good && f->kind != GIVEN && size >= LARGE)
+        (void)sync_file_range(f->fd, offset, (off_t)size, SYNC_FILE_RANGE_WRITE);
     return good ? RELUME_OK : fail(f, "writing failed");
 }
 

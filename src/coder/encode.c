@@ -27,18 +27,19 @@ struct encoding {
     int lights, width, height, planes;
     int row, rows;  // of the band in progress
     relume_table *table;
-    struct near_fit *near;  // or NULL: lights are distant, or the coder wants distant ones
-    float *samples;         // [lights][rows][x][3], with `near`
-    float *own;             // the same as pixels really saw them
-    float *values;          // [planes][rows][x]
-    struct range *chunk;    // [chunks of a band][planes]
-    float *work;            // [workers][coder_work]
-    void *packed[2];        // [rows][planes][x]: one is filled while the other is written
-    int filling;
-    struct thread_task writing;
-    const void *write_from;
-    size_t write_bytes;
-    off_t write_at;
+    struct near_fit *near;       // or NULL: lights are distant, or the coder wants distant ones
+    float *samples;              // [lights][rows][x][3], with `near`
+    float *own;                  // the same as pixels really saw them
+    float *values;               // [planes][rows][x]
+    struct range *chunk;         // [chunks of a band][planes]
+    float *work;                 // [workers][coder_work]
+    float *piece;                // [workers][4][lights][PIECE], for measuring
+    struct measured *sums;       // [pieces of the band's rows]
+    double *shown;               // [the same][lights]
+    int measured[BAND_ROWS];     // rows of the band that are looked at
+    struct thread_task packing;  // of a band while the next one is read
+    int packed_row, packed_rows;
+    void *packed;     // [rows][planes][x]
     int write_error;  // errno of a write that failed
     struct relume_image mask;
     const char *const *images;  // [lights], for messages
@@ -57,6 +58,14 @@ struct encoding {
     int threads;
 };
 
+// What measuring adds up of a piece of a row; pieces are added in their order.
+struct measured {
+    double error, root_sum;
+    size_t count, lit;
+};
+
+enum { PIECE = 512 };  // pixels of a row that are measured together
+
 static bool is_inside(const struct relume_image *mask, size_t pixel)
 {
     return !mask->data || mask->data[pixel] > 0.5f;
@@ -73,9 +82,8 @@ static void apply_mask(const struct encoding *e, size_t first, size_t n)
                 e->values[p * pixels + x] = 0.0f;
 }
 
-static struct range band_range(const struct encoding *e, size_t plane)
+static struct range band_range(const struct encoding *e, size_t plane, size_t pixels)
 {
-    const size_t pixels = (size_t)e->rows * (size_t)e->width;
     struct range r = e->chunk[plane];
     for (size_t k = 1; k * CODER_CHUNK < pixels; k++)
         r = range_join(r, e->chunk[k * (size_t)e->planes + plane]);
@@ -113,15 +121,15 @@ static void pack_plane(void *context, size_t plane, int worker)
 {
     (void)worker;
     struct encoding *e = context;
-    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    const size_t width = (size_t)e->width, pixels = (size_t)e->packed_rows * width;
     const float *v = e->values + plane * pixels;
-    const struct range r = band_range(e, plane);
-    e->out->band[(size_t)(e->row / BAND_ROWS) * (size_t)e->planes + plane] = r;
+    const struct range r = band_range(e, plane, pixels);
+    e->out->band[(size_t)(e->packed_row / BAND_ROWS) * (size_t)e->planes + plane] = r;
     e->total[plane] = range_join(e->total[plane], r);
-    for (int y = 0; y < e->rows; y++) {
+    for (int y = 0; y < e->packed_rows; y++) {
         const size_t at = ((size_t)y * (size_t)e->planes + plane) * width;
-        coefficients_wait(e->out, (int)plane, e->row, v + (size_t)y * width, width,
-                          (char *)e->packed[e->filling] + at * coefficients_waiting(e->out));
+        coefficients_wait(e->out, (int)plane, e->packed_row, v + (size_t)y * width, width,
+                          (char *)e->packed + at * coefficients_waiting(e->out));
     }
 }
 
@@ -135,10 +143,12 @@ static bool is_measured(const relume_coefficients *c, int row)
 }
 
 // Black says nothing of what is typical.
-static void add_root(struct encoding *e, double sample)
+static void add_sample(struct measured *m, double sample, double difference)
 {
-    e->root_sum += sample > 0.0 ? sqrt(sample) : 0.0;
-    e->lit_count += sample > 0.0;
+    m->error += difference * difference;
+    m->root_sum += sample > 0.0 ? sqrt(sample) : 0.0;
+    m->lit += sample > 0.0;
+    m->count++;
 }
 
 // The squared difference on a display.
@@ -151,105 +161,127 @@ static double shown_difference(const struct encoding *e, float a, float b)
     return d * d;
 }
 
-// What the basis cannot express, on a row of the band.
-static relume_status measure_fit(struct encoding *e, int row)
+static size_t pieces_of(const struct encoding *e)
+{
+    return ((size_t)e->width + PIECE - 1) / PIECE;
+}
+
+// What the basis cannot express, on a piece of a row.
+static void measure_fit(const struct encoding *e, int row, size_t first, size_t n, float *work,
+                        struct measured *m, double *shown)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
-    const size_t size = (size_t)e->lights * width;
-    float *again = mem_array(4 * size, sizeof *again);
-    if (!again)
-        return RELUME_ENOMEM;
-    float *seen = again + size;
+    const size_t at = (size_t)row * width + first, size = (size_t)e->lights * n;
+    float *again = work, *seen = work + size;
     for (size_t i = 0; i < (size_t)e->lights; i++)
-        relume_table_planes(e->table, (int)i, (size_t)row * width, width, seen + i * width, size);
+        relume_table_planes(e->table, (int)i, at, n, seen + i * n, size);
     for (int c = 0; c < 3; c++) {
-        captured_predict(&e->captured, e->coder, c, e->values + (size_t)row * width, pixels, width,
-                         again);
+        captured_predict(&e->captured, e->coder, c, e->values + at, pixels, n, again);
         for (size_t i = 0; i < (size_t)e->lights; i++)
-            for (size_t x = 0; x < width; x++)
-                if (is_inside(&e->mask, (size_t)(e->row + row) * width + x)) {
-                    const double sample = (double)seen[(size_t)c * size + i * width + x];
-                    const double d = sample - (double)again[i * width + x];
-                    e->row_error[e->row + row] += d * d;
-                    e->shown_error[i] += shown_difference(e, (float)sample, again[i * width + x]);
-                    add_root(e, sample);
-                    e->error_count++;
+            for (size_t x = 0; x < n; x++)
+                if (is_inside(&e->mask, (size_t)e->row * width + at + x)) {
+                    const float sample = seen[(size_t)c * size + i * n + x];
+                    add_sample(m, (double)sample, (double)sample - (double)again[i * n + x]);
+                    shown[i] += shown_difference(e, sample, again[i * n + x]);
                 }
     }
-    mem_free(again);
-    return RELUME_OK;
 }
 
 // The same of near lights: a pixel in 8.
-static relume_status measure_near(struct encoding *e, int row)
+static void measure_near(const struct encoding *e, int row, size_t first, size_t n, float *again,
+                         struct measured *m, double *shown)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
-    float *again = mem_array(3 * (size_t)e->lights, sizeof *again);
-    if (!again)
-        return RELUME_ENOMEM;
-    for (size_t x = 0; x < width; x += 8) {
+    for (size_t x = first; x < first + n; x += 8) {
         const size_t at = (size_t)row * width + x;
         if (!is_inside(&e->mask, (size_t)e->row * width + at))
             continue;
         near_fit_predict(e->near, (int)x, e->row + row, e->values + at, pixels, again);
         for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
-            const double sample = (double)e->own[(i / 3 * pixels + at) * 3 + i % 3];
-            const double d = sample - (double)again[i];
-            e->row_error[e->row + row] += d * d;
-            e->shown_error[i / 3] += shown_difference(e, (float)sample, again[i]);
-            add_root(e, sample);
-            e->error_count++;
+            const float sample = e->own[(i / 3 * pixels + at) * 3 + i % 3];
+            add_sample(m, (double)sample, (double)sample - (double)again[i]);
+            shown[i / 3] += shown_difference(e, sample, again[i]);
         }
     }
-    mem_free(again);
-    return RELUME_OK;
+}
+
+static void measure_piece(void *context, size_t item, int worker)
+{
+    struct encoding *e = context;
+    const size_t pieces = pieces_of(e), lights = (size_t)e->lights;
+    const size_t first = item % pieces * PIECE, left = (size_t)e->width - first;
+    const size_t n = left < PIECE ? left : PIECE;
+    const int row = e->measured[item / pieces];
+    float *work = e->piece + (size_t)worker * 4 * lights * PIECE;
+    double *shown = e->shown + item * lights;
+    e->sums[item] = (struct measured){0};
+    memset(shown, 0, lights * sizeof *shown);
+    (e->near ? measure_near : measure_fit)(e, row, first, n, work, &e->sums[item], shown);
+}
+
+// On those rows of the band that the report looks at, or on all of them.
+static void measure_band(struct encoding *e, bool every)
+{
+    const size_t pieces = pieces_of(e), lights = (size_t)e->lights;
+    size_t rows = 0;
+    for (int y = 0; y < e->rows; y++)
+        if (every || is_measured(e->out, e->row + y))
+            e->measured[rows++] = y;
+    thread_for(e->threads, rows * pieces, measure_piece, e);
+    for (size_t k = 0; k < rows * pieces; k++) {
+        e->row_error[e->row + e->measured[k / pieces]] += e->sums[k].error;
+        e->root_sum += e->sums[k].root_sum;
+        e->error_count += e->sums[k].count;
+        e->lit_count += e->sums[k].lit;
+        for (size_t i = 0; i < lights; i++)
+            e->shown_error[i] += e->shown[k * lights + i];
+    }
 }
 
 // Ranges and steps are differences of coefficients, which must not overflow.
 static relume_status check_size(const struct encoding *e, const struct relume_encode_params *p)
 {
     const float most = FLT_MAX / 4.0f;
-    const struct range *r = e->out->band + (size_t)(e->row / BAND_ROWS) * (size_t)e->planes;
+    const struct range *r = e->out->band + (size_t)(e->packed_row / BAND_ROWS) * (size_t)e->planes;
     bool fits = true;
-    for (int i = 0; i < e->planes; i++)
+    for (int i = 0; i < (e->packed_rows ? e->planes : 0); i++)
         fits &= r[i].min >= -most && r[i].min <= r[i].max && r[i].max <= most;
     if (fits)
         return RELUME_OK;
     return log_fail(p->log, RELUME_ELIMIT,
                     "%s: rows %d to %d are too bright to be stored; expected values of at most %g: "
                     "lower the exposure",
-                    e->images[0], e->row, e->row + e->rows - 1, (double)most);
+                    e->images[0], e->packed_row, e->packed_row + e->packed_rows - 1, (double)most);
 }
 
-static void write_packed(void *context)
+static void pack_band(void *context)
 {
     struct encoding *e = context;
-    if (!scratch_write(e->out->fd, e->write_from, e->write_bytes, e->write_at))
+    const size_t n = (size_t)e->packed_rows * (size_t)e->width * (size_t)e->planes;
+    thread_for(e->threads, (size_t)e->planes, pack_plane, e);
+    if (!scratch_write(e->out->fd, e->packed, n * coefficients_waiting(e->out),
+                       coefficients_offset(e->out, e->packed_row)))
         e->write_error = errno;
 }
 
-static relume_status finish_writing(struct encoding *e, const struct relume_encode_params *p)
+// The band just encoded goes to the scratch file while the next one is read.
+static void start_packing(struct encoding *e)
 {
-    thread_wait(&e->writing);
-    if (!e->write_error)
-        return RELUME_OK;
-    return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
-                    p->scratch ? p->scratch : "$TMPDIR", strerror(e->write_error));
+    e->packed_row = e->row;
+    e->packed_rows = e->rows;
+    if (thread_count(e->threads) > 1)
+        thread_start(&e->packing, pack_band, e);
+    else
+        pack_band(e);
 }
 
-// Send the band just packed to the scratch file while the next one is read.
-static relume_status write_band(struct encoding *e, size_t pixels,
-                                const struct relume_encode_params *p)
+static relume_status finish_packing(struct encoding *e, const struct relume_encode_params *p)
 {
-    const relume_status status = finish_writing(e, p);
-    if (status)
-        return status;
-    e->write_from = e->packed[e->filling];
-    e->write_bytes = pixels * (size_t)e->planes * coefficients_waiting(e->out);
-    e->write_at = coefficients_offset(e->out, e->row);
-    e->filling ^= 1;
-    thread_start(&e->writing, write_packed, e);
-    return RELUME_OK;
+    thread_wait(&e->packing);
+    if (!e->write_error)
+        return check_size(e, p);
+    return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
+                    p->scratch ? p->scratch : "$TMPDIR", strerror(e->write_error));
 }
 
 static relume_status read_band(struct encoding *e)
@@ -263,21 +295,16 @@ static relume_status encode_band(struct encoding *e, const struct relume_encode_
 {
     relume_status status = read_band(e);
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
+    if (!status)
+        status = finish_packing(e, p);
     if (!status && e->near)
         status = near_fit_apply(e->near, e->row, e->rows, e->own, e->samples, e->values);
     if (status)
         return status;
     thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
-    for (int y = 0; !status && y < e->rows; y++)
-        if (is_measured(e->out, e->row + y))
-            status = e->near ? measure_near(e, y) : measure_fit(e, y);
-    if (status)
-        return status;
-    thread_for(e->threads, (size_t)e->planes, pack_plane, e);
-    status = check_size(e, p);
-    if (status)
-        return status;
-    return write_band(e, pixels, p);
+    measure_band(e, false);
+    start_packing(e);
+    return RELUME_OK;
 }
 
 static void say_repaired(struct encoding *e, int light, size_t pixels, const struct relume_log *log)
@@ -332,63 +359,116 @@ static relume_status encode_bands(struct encoding *e, const relume_capture *capt
     near_fit_destroy(&e->near);
     relume_table_destroy(&e->table);
     if (!status)
-        return finish_writing(e, p);
-    thread_wait(&e->writing);
+        return finish_packing(e, p);
+    thread_wait(&e->packing);
     return status;
 }
 
-// One row of all planes as it waits and as it will be stored.
-static relume_status read_row(const relume_coefficients *c, int row, uint16_t *waiting,
-                              uint16_t *codes, float *before, float *after)
+// What storing costs on a row.
+struct stored {
+    double square, shown;
+    size_t count;
+    relume_status status;
+};
+
+// One worker's.
+struct stored_row {
+    uint16_t *waiting, *codes;  // [planes][x], [x]
+    float *before, *after;      // [planes][x]: as it waits, as it will be stored
+    float *wanted, *again;      // [lights][x]: of them
+};
+
+struct storage {
+    const struct encoding *e;
+    relume_coefficients *c;
+    struct stored *row;       // [height]
+    struct stored_row *work;  // [workers]
+};
+
+static bool alloc_row(struct stored_row *w, size_t width, size_t planes, size_t lights)
+{
+    w->waiting = mem_array(planes * width, sizeof *w->waiting);
+    w->codes = mem_array(width, sizeof *w->codes);
+    w->before = mem_array(2 * planes * width, sizeof *w->before);
+    w->wanted = mem_array(2 * lights * width, sizeof *w->wanted);
+    w->after = w->before + planes * width;
+    w->again = w->wanted + lights * width;
+    return w->waiting && w->codes && w->before && w->wanted;
+}
+
+static void free_row(struct stored_row *w)
+{
+    mem_free(w->waiting);
+    mem_free(w->codes);
+    mem_free(w->before);
+    mem_free(w->wanted);
+}
+
+static relume_status read_row(const relume_coefficients *c, int row, const struct stored_row *w)
 {
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    const relume_status status = coefficients_values(c, row, waiting, before);
+    const relume_status status = coefficients_values(c, row, w->waiting, w->before);
     for (size_t p = 0; !status && p < planes; p++) {
-        coefficients_quantise(c, (int)p, row, waiting + p * width, width, codes);
-        codes_restore(after + p * width, c->info.storage, codes, 0, width, c->scale[p],
+        coefficients_quantise(c, (int)p, row, w->waiting + p * width, width, w->codes);
+        codes_restore(w->after + p * width, c->info.storage, w->codes, 0, width, c->scale[p],
                       c->offset[p]);
     }
     return status;
 }
 
+static void compare_row(void *context, size_t item, int worker)
+{
+    const struct storage *s = context;
+    const struct encoding *e = s->e;
+    const struct stored_row *w = &s->work[worker];
+    struct stored *r = &s->row[item];
+    const size_t width = (size_t)e->width, size = (size_t)e->lights * width;
+    if (!is_measured(s->c, (int)item))
+        return;
+    r->status = read_row(s->c, (int)item, w);
+    for (int channel = 0; !r->status && channel < 3; channel++) {
+        captured_predict(&e->captured, e->coder, channel, w->before, width, width, w->wanted);
+        captured_predict(&e->captured, e->coder, channel, w->after, width, width, w->again);
+        for (size_t i = 0; i < size; i++)
+            if (is_inside(&e->mask, item * width + i % width)) {
+                const double d = (double)w->wanted[i] - (double)w->again[i];
+                r->square += d * d;
+                r->shown += shown_difference(e, w->wanted[i], w->again[i]);
+                r->count++;
+            }
+    }
+}
+
+static relume_status add_rows(relume_coefficients *c, struct encoding *e, const struct stored *row)
+{
+    struct stored all = {0};
+    for (int y = 0; y < e->height && !all.status; y++) {
+        all.status = row[y].status;
+        all.square += row[y].square;
+        all.shown += row[y].shown;
+        all.count += row[y].count;
+    }
+    c->report.store_rms = all.count ? sqrt(all.square / (double)all.count) : 0.0;
+    e->stored_error = all.shown / (all.count ? (double)all.count : 1.0);
+    return all.status;
+}
+
 // What storing cost, over the captured lights, on the same rows.
 static relume_status measure_storage(relume_coefficients *c, struct encoding *e)
 {
-    const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    const size_t size = (size_t)e->lights * width;
-    uint16_t *waiting = mem_array(planes * width, sizeof *waiting);
-    uint16_t *codes = mem_array(width, sizeof *codes);
-    float *before = mem_array(planes * width, sizeof *before);
-    float *after = mem_array(planes * width, sizeof *after);
-    float *wanted = mem_array(size, sizeof *wanted), *stored = mem_array(size, sizeof *stored);
-    relume_status status =
-        waiting && codes && before && after && wanted && stored ? RELUME_OK : RELUME_ENOMEM;
-    double sum = 0.0;
-    size_t count = 0;
-    for (int row = 0; !status && row < e->height; row++) {
-        if (!is_measured(c, row))
-            continue;
-        status = read_row(c, row, waiting, codes, before, after);
-        for (int channel = 0; !status && channel < 3; channel++) {
-            captured_predict(&e->captured, e->coder, channel, before, width, width, wanted);
-            captured_predict(&e->captured, e->coder, channel, after, width, width, stored);
-            for (size_t i = 0; i < size; i++)
-                if (is_inside(&e->mask, (size_t)row * width + i % width)) {
-                    const double d = (double)wanted[i] - (double)stored[i];
-                    sum += d * d;
-                    e->stored_error += shown_difference(e, wanted[i], stored[i]);
-                    count++;
-                }
-        }
-    }
-    c->report.store_rms = count ? sqrt(sum / (double)count) : 0.0;
-    e->stored_error /= count ? (double)count : 1.0;
-    mem_free(waiting);
-    mem_free(codes);
-    mem_free(before);
-    mem_free(after);
-    mem_free(wanted);
-    mem_free(stored);
+    const int workers = thread_count(e->threads);
+    struct storage s = {e, c, mem_zeroed((size_t)e->height, sizeof *s.row),
+                        mem_zeroed((size_t)workers, sizeof *s.work)};
+    bool good = s.row && s.work;
+    for (int i = 0; good && i < workers; i++)
+        good = alloc_row(&s.work[i], (size_t)e->width, (size_t)e->planes, (size_t)e->lights);
+    if (good)
+        thread_for(e->threads, (size_t)e->height, compare_row, &s);
+    const relume_status status = good ? add_rows(c, e, s.row) : RELUME_ENOMEM;
+    for (int i = 0; s.work && i < workers; i++)
+        free_row(&s.work[i]);
+    mem_free(s.work);
+    mem_free(s.row);
     return status;
 }
 
@@ -447,10 +527,14 @@ static relume_status alloc_encoder(struct encoding *e, const relume_capture *cap
     e->values = mem_array(planes * band, sizeof *e->values);
     e->chunk = mem_array((band + CODER_CHUNK - 1) / CODER_CHUNK * planes, sizeof *e->chunk);
     e->work = mem_array((size_t)thread_count(e->threads) * coder_work(e->coder), sizeof *e->work);
-    for (int i = 0; i < 2; i++)
-        e->packed[i] = mem_array(planes * band, coefficients_waiting(e->out));
+    e->piece = mem_array((size_t)thread_count(e->threads) * 4 * (size_t)e->lights,
+                         PIECE * sizeof *e->piece);
+    e->sums = mem_array(BAND_ROWS * pieces_of(e), sizeof *e->sums);
+    e->shown = mem_array(BAND_ROWS * pieces_of(e) * (size_t)e->lights, sizeof *e->shown);
+    e->packed = mem_array(planes * band, coefficients_waiting(e->out));
     e->total = mem_array(planes, sizeof *e->total);
-    if (!e->values || !e->chunk || !e->work || !e->packed[0] || !e->packed[1] || !e->total)
+    if (!e->values || !e->chunk || !e->work || !e->piece || !e->sums || !e->shown || !e->packed ||
+        !e->total)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
@@ -464,8 +548,10 @@ static void free_encoder(struct encoding *e)
     mem_free(e->values);
     mem_free(e->chunk);
     mem_free(e->work);
-    mem_free(e->packed[0]);
-    mem_free(e->packed[1]);
+    mem_free(e->piece);
+    mem_free(e->sums);
+    mem_free(e->shown);
+    mem_free(e->packed);
     mem_free(e->total);
     mem_free(e->row_error);
     mem_free(e->shown_error);
@@ -599,6 +685,7 @@ relume_status encode_finish_rows(relume_coefficients *c, const struct relume_ima
         .height = c->info.height,
         .planes = c->info.planes,
         .display = coded ? display : (struct relume_transfer){.curve = RELUME_CURVE_LINEAR},
+        .threads = p->threads,
         .root_sum = c->some.root_sum,
         .error_count = c->some.error_count,
         .lit_count = c->some.lit_count,
@@ -626,10 +713,10 @@ static relume_status judge_band(struct encoding *e, bool every, const struct enc
     relume_status status = read_band(e);
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
     for (int y = 0; !status && y < e->rows; y++)
-        if (every || is_measured(e->out, e->row + y)) {
+        if (every || is_measured(e->out, e->row + y))
             values->row(values->user, e->row + y, e->values + (size_t)y * (size_t)e->width, pixels);
-            status = e->near ? measure_near(e, y) : measure_fit(e, y);
-        }
+    if (!status)
+        measure_band(e, every);
     return status;
 }
 

@@ -68,27 +68,12 @@ struct range range_join(struct range a, struct range b)
     return (struct range){b.min < a.min ? b.min : a.min, b.max > a.max ? b.max : a.max};
 }
 
-// Running extremes side by side: compilers keep them in vector registers.
+// Of two zeros either may come first: the one without a sign is kept.
 struct range range_of(const float *v, size_t n)
 {
-    enum { LANES = 16 };
-    float min[LANES], max[LANES];
-    for (int i = 0; i < LANES; i++) {
-        min[i] = FLT_MAX;
-        max[i] = -FLT_MAX;
-    }
-    size_t x = 0;
-    for (; x + LANES <= n; x += LANES)
-        for (size_t i = 0; i < LANES; i++) {
-            min[i] = v[x + i] < min[i] ? v[x + i] : min[i];
-            max[i] = v[x + i] > max[i] ? v[x + i] : max[i];
-        }
     struct range r = {FLT_MAX, -FLT_MAX};
-    for (int i = 0; i < LANES; i++)
-        r = range_join(r, (struct range){min[i], max[i]});
-    for (; x < n; x++)
-        r = range_join(r, (struct range){v[x], v[x]});
-    return r;
+    kernels_choose(0)->unpack->range(v, n, &r.min, &r.max);
+    return (struct range){r.min + 0.0f, r.max + 0.0f};
 }
 
 struct range range_settle(struct range r)
@@ -234,10 +219,7 @@ void coefficients_wait(const relume_coefficients *c, int plane, int row, const f
     if (c->info.storage == RELUME_STORE_FLOAT)
         memcpy(to, values, n * sizeof *values);
     else if (c->info.storage != RELUME_STORE_HALF)
-        for (size_t x = 0; x < n; x++) {
-            const float code = (values[x] - r.min) * scale + 0.5f;
-            words[x] = (uint16_t)(int)(code > 0.0f ? code : 0.0f);
-        }
+        kernels_choose(0)->unpack->words(values, n, r.min, scale, words);
     else if (c->coarse)
         for (size_t x = 0; x < n; x++)
             words[x] = coarse_half(values[x] / over);

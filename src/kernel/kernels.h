@@ -36,12 +36,18 @@ struct nearest_kernels {
     void (*measure)(double distance[TILE], const float *point, const float *tile, int dim);
 };
 
-// Pixels of bytes to planes of floats, waiting numbers to codes: equal bits in every set.
+// Pixels of bytes to planes of floats, these to waiting numbers, and those to codes: equal bits in
+// every set.
 struct unpack_kernels {
     // r[i] = in[3 i] / 255 and so on for i in [0, n), rounded once
     void (*thirds)(const uint8_t *in, size_t n, float *r, float *g, float *b);
     // out[i] = in[i] * a + b cut off at 0 and 255, towards zero
     void (*codes)(const uint16_t *in, size_t n, float a, float b, uint8_t *out);
+    // out[i] = (in[i] - least) * scale + 0.5 towards zero; 0 where that is negative or not a
+    // number. It is below 65536 elsewhere.
+    void (*words)(const float *in, size_t n, float least, float scale, uint16_t *out);
+    // The extremes of in[i] and of what they were; numbers that are none count for nothing.
+    void (*range)(const float *in, size_t n, float *min, float *max);
 };
 
 // The chromatic sum of the eye's pattern.
@@ -77,6 +83,8 @@ void look_up_c(uint32_t *out, size_t n, const uint16_t *index, const uint32_t *t
 void look_up_avx2(uint32_t *out, size_t n, const uint16_t *index, const uint32_t *table);
 void measure_avx2(double distance[TILE], const float *point, const float *tile, int dim);
 extern const struct nearest_kernels nearest_c, nearest_avx2, nearest_avx512, nearest_neon;
+void words_c(const float *in, size_t n, float least, float scale, uint16_t *out);
+void range_c(const float *in, size_t n, float *min, float *max);
 extern const struct unpack_kernels unpack_c, unpack_avx2, unpack_neon;
 extern const struct psf_kernels psf_c, psf_avx2, psf_avx512;
 

@@ -135,5 +135,5 @@ static void codes(const uint16_t *in, size_t n, float a, float b, uint8_t *out)
 
 const struct dot_kernels dot_neon = {dot_bytes, dot_words, dot_halves, dot_floats};
 const struct nearest_kernels nearest_neon = {scan, measure};
-const struct unpack_kernels unpack_neon = {thirds, codes};
+const struct unpack_kernels unpack_neon = {thirds, codes, words_c, range_c};
 #endif

@@ -18,4 +18,20 @@ static void codes(const uint16_t *in, size_t n, float a, float b, uint8_t *out)
     }
 }
 
-const struct unpack_kernels unpack_c = {thirds, codes};
+void words_c(const float *in, size_t n, float least, float scale, uint16_t *out)
+{
+    for (size_t i = 0; i < n; i++) {
+        const float v = (in[i] - least) * scale + 0.5f;
+        out[i] = (uint16_t)(int)(v > 0.0f ? v : 0.0f);
+    }
+}
+
+void range_c(const float *in, size_t n, float *min, float *max)
+{
+    for (size_t i = 0; i < n; i++) {
+        *min = in[i] < *min ? in[i] : *min;
+        *max = in[i] > *max ? in[i] : *max;
+    }
+}
+
+const struct unpack_kernels unpack_c = {thirds, codes, words_c, range_c};

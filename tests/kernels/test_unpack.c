@@ -48,11 +48,55 @@ static void test_codes(void **state)
             }
 }
 
+static void test_words(void **state)
+{
+    (void)state;
+    static float in[MOST + 1];
+    uint16_t out[MOST + 1], want[MOST];
+    uint32_t seed = 5;
+    for (int i = 0; i <= MOST; i++)
+        in[i] = -3.0f + 7.0f * test_uniform(&seed);
+    in[3] = NAN;
+    in[40] = -4.0f;  // below the least
+    for (int s = 0; sets[s]; s++)
+        for (size_t n = 0; n <= MOST; n += n < 70 ? 1 : 265) {
+            out[n] = 42;
+            sets[s]->unpack->words(in + 1, n, -3.0f, 65535.0f / 7.0f, out);
+            words_c(in + 1, n, -3.0f, 65535.0f / 7.0f, want);
+            assert_memory_equal(out, want, n * sizeof *out);
+            assert_int_equal(out[n], 42);
+        }
+    assert_int_equal(want[2], 0);
+    assert_int_equal(want[39], 0);
+}
+
+static void test_range(void **state)
+{
+    (void)state;
+    static float in[MOST + 1];
+    uint32_t seed = 6;
+    for (int i = 0; i <= MOST; i++)
+        in[i] = -3.0f + 7.0f * test_uniform(&seed);
+    in[2] = NAN;
+    for (int s = 0; sets[s]; s++)
+        for (size_t n = 0; n <= MOST; n += n < 70 ? 1 : 265)
+            for (size_t at = 0; at < n; at += n < 70 ? 1 : 7) {  // the extremes at every place
+                float min = 0.5f, max = 0.25f;
+                const float kept = in[at];
+                in[at] = at % 2 ? -9.0f : 9.0f;
+                sets[s]->unpack->range(in, n, &min, &max);
+                assert_true(at % 2 ? min == -9.0f && max < 4.0f : max == 9.0f && min >= -3.0f);
+                in[at] = kept;
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thirds),
         cmocka_unit_test(test_codes),
+        cmocka_unit_test(test_words),
+        cmocka_unit_test(test_range),
     };
     return cmocka_run_group_tests(tests, find_sets, NULL);
 }

@@ -111,11 +111,15 @@ struct relume_scale_params {
     enum relume_filter filter;
     bool wrap;  // the left border goes on at the right one
     int tiles;  // that many pictures side by side do not mix at their borders; default 1
+    // What of the image becomes the picture, pixels: left, top, width, height; default: all of it.
+    // Not with `wrap` and `tiles`. Pixels beside it count where a mean reaches them.
+    double from[4];
 };
 #define relume_scale_params(...)                                                                   \
     (&(const struct relume_scale_params){RELUME_SIZED(relume_scale_params), __VA_ARGS__})
 
-// Create `*out`: the whole of `image` in another size. The same size gives the same values.
+// Create `*out`: the whole of `image`, or a part, in another size. The same size gives the same
+// values.
 // RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_image_scale(struct relume_image *out,
                                                const struct relume_image *image, int width,

@@ -25,6 +25,22 @@ enum relume_compression {
 RELUME_RESULT relume_status relume_compression_parse(enum relume_compression *out,
                                                      const char *name);
 
+// Large views are kept at half, a quarter, ... of their size too, so that a smaller picture of all
+// is soon there.
+enum { RELUME_MOST_LEVELS = 16 };
+enum relume_pyramid {
+    RELUME_PYRAMID_DEFAULT = 0,  // views of more than 16 megapixels, but not of slabs
+    RELUME_PYRAMID_YES,
+    RELUME_PYRAMID_NO,
+};
+// The reduced levels of a view, each half of the one before. The first pixel of one covers the
+// first 2 x 2 of the one before; of an odd side the last covers what is left.
+struct relume_pack_levels {
+    int levels;
+    relume_coefficients *level[RELUME_MOST_LEVELS];
+    struct relume_image share[RELUME_MOST_LEVELS];  // of each pixel, within the mask; or empty
+};
+
 // What goes into a file beside the coefficients. Borrowed.
 struct relume_pack_view {
     const relume_coefficients *coefficients;
@@ -35,7 +51,10 @@ struct relume_pack_view {
     // Codebooks instead of planes: all views or none, as many books in each. Views that have the
     // same ones share them in the file when all do.
     const relume_books *books;
-    const uint16_t *const *index;  // [books] -> [height][width], as relume_books_assign
+    const uint16_t *const *index;             // [books] -> [height][width], as relume_books_assign
+    const struct relume_pack_levels *levels;  // NULL: none. All views have as many. With them the
+                                              // view is kept in tiles, of which a reader takes
+                                              // those that it needs
     // The planes coded with loss, in place of what `coefficients` hold, of all views or none: words
     // of docs/format.md, "Coded planes". `coefficients` are of RELUME_STORE_12.
     const uint32_t *coded;
@@ -66,9 +85,10 @@ struct relume_pack_contents {
     int views;
     const struct relume_pack_view *view;  // [views]
     struct relume_encode_report report;   // over all views; NaN: not known
-    // The picture of the first part, for ordinary EXR viewers, of the views' size: fill linear
-    // rgb[rows][width][3] from `row` on, and return what failed. Called from several threads. NULL:
-    // black. relume_pack_preview makes one.
+    // The picture of the first part, for ordinary EXR viewers, of the views' size, or where they
+    // have reduced levels, of that of relume_pack_shown: fill linear rgb[rows][width][3] from `row`
+    // on, and return what failed. Called from several threads. NULL: black. relume_pack_preview
+    // makes one.
     relume_status (*preview)(void *user, int row, int rows, float *rgb);
     void *preview_user;                     // of `preview`
     const struct relume_pack_share *share;  // NULL: all of it
@@ -78,6 +98,21 @@ struct relume_pack_contents {
 // themselves (struct relume_pack_contents) as its user. Always in plain C, so that files do not
 // depend on the processor. RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb);
+
+// Which level the first part shows, 0: the view itself.
+RELUME_API int relume_pack_shown(const struct relume_pack_view *view);
+
+// The reduced levels of `view`, made of its coefficients, for its `levels`; none where `pyramid`
+// asks for none. What is used of `contents` is what all of a file has in common, and of `params`
+// log, step, threads and scratch. RELUME_EUNFIT with a sentence where YES cannot be had: slabs,
+// luminance coefficients, planes coded with loss. RELUME_EIO, RELUME_ENOMEM. End with
+// relume_pack_levels_destroy.
+RELUME_RESULT relume_status relume_pack_reduce(struct relume_pack_levels *out,
+                                               const struct relume_pack_contents *contents,
+                                               const struct relume_pack_view *view,
+                                               enum relume_pyramid pyramid,
+                                               const struct relume_encode_params *params);
+RELUME_API void relume_pack_levels_destroy(struct relume_pack_levels *levels);
 
 // How relume files are written and opened. Borrowed during the call; an open pack goes on using
 // `log` and what `reader` reads from.
@@ -117,6 +152,7 @@ struct relume_pack_encode_params {
                                               // those of this struct
     bool share;                               // one set of codebooks for all views
     bool no_depth;                            // leave depth out: no near lights, no views by depth
+    enum relume_pyramid pyramid;              // reduced levels of large views
     // With loss: as few bytes as reproduce the captured images at this PSNR (that of
     // relume_evaluation.psnr_pooled_db), or as good as so many bytes of the file for each pixel of
     // each view allow. At most one of the two; 0: without loss. `storage`, `step`, `compression`
@@ -194,6 +230,8 @@ struct relume_pack_info {
     int slabs;  // around an object, each with its own pose; 0: `geometry` is all there is
     const struct relume_geometry *slab;  // [slabs]; the first is `geometry`
     int width, height;                   // of each view
+    int levels;                          // reduced ones of each view
+    int tile;  // side of the tiles that views are kept in, 0: runs of rows
     int views;
     const double (*uv)[2];  // [views]; slab: camera places
     const int *slab_of;     // [views]; several slabs: which one; else NULL
@@ -219,6 +257,12 @@ RELUME_RESULT relume_status relume_pack_codes(const struct relume_codes **out, r
 // dropped. RELUME_EINVAL where the rectangle does not lie within the view.
 RELUME_RESULT relume_status relume_pack_codes_part(struct relume_codes_part *out, relume_pack *pack,
                                                    int view, const struct relume_rect *rect);
+// The size of a view at a level: 0 is the view itself, 1 .. info.levels are reduced.
+RELUME_API void relume_pack_level_size(int *width, int *height, const relume_pack *pack, int level);
+// A rectangle of a view at a level, of whose pixels it is counted; else as relume_pack_codes_part.
+RELUME_RESULT relume_status relume_pack_codes_level(struct relume_codes_part *out,
+                                                    relume_pack *pack, int view, int level,
+                                                    const struct relume_rect *rect);
 // Forget the codes of one view to save memory.
 RELUME_API void relume_pack_drop(relume_pack *pack, int view);
 // Depth or mask of a view, one channel; empty when it has none. The caller destroys it.

@@ -67,7 +67,7 @@ struct relume_decision { int domain; int storage; double psnr_db; double unseen_
 struct relume_pack_params { size_t struct_size; void *log; void *limits; int compression; int threads; void *reader;
     void *writer; bool keep_going; };
 struct relume_pack_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int compression;
-    int threads; void *books; bool share; bool no_depth; double psnr_db, bytes_per_pixel; void *writer;
+    int threads; void *books; bool share; bool no_depth; int pyramid; double psnr_db, bytes_per_pixel; void *writer;
     int part, parts; void *options; bool free_storage; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
     size_t repaired; int black_images; };
@@ -75,7 +75,7 @@ struct relume_encode_report { double fit_rms; double store_rms; double steps_rms
     struct relume_encode_census census; };
 struct relume_pack_info { int version; void *coder; int domain; struct relume_transfer display;
     int storage; char *compression; struct relume_geometry geometry; int slabs; void *slab;
-    int width, height; int views; void *uv; void *slab_of; bool has_depth, has_mask;
+    int width, height; int levels; int tile; int views; void *uv; void *slab_of; bool has_depth, has_mask;
     int coefficients, planes; int books; int codes; bool shared;
     struct relume_encode_report report; uint64_t file_bytes; };
 struct relume_codes { void *coder; int domain; struct relume_transfer display;

@@ -12,6 +12,7 @@
 
 struct material {
     struct relume_pack_view *view;
+    struct relume_pack_levels *levels;  // [views]
     relume_coefficients **coefficients;
     struct relume_image *depth, *mask;    // [views]
     relume_books **books;                 // [views], or the first for all
@@ -26,6 +27,8 @@ struct material {
 static void destroy(struct material *m)
 {
     for (int i = 0; i < m->views; i++) {
+        if (m->levels)
+            relume_pack_levels_destroy(&m->levels[i]);
         if (m->coefficients)
             relume_coefficients_destroy(&m->coefficients[i]);
         if (m->depth)
@@ -44,6 +47,7 @@ static void destroy(struct material *m)
     mem_free(m->report);
     mem_free(m->index);
     mem_free(m->view);
+    mem_free(m->levels);
     mem_free(m->coefficients);
     mem_free(m->depth);
     mem_free(m->mask);
@@ -68,6 +72,7 @@ static bool create(struct material *m, int views, const struct encode_share *sha
     m->row = share->row;
     m->rows = share->rows;
     m->view = mem_zeroed(n, sizeof *m->view);
+    m->levels = mem_zeroed(n, sizeof *m->levels);
     m->coefficients = mem_zeroed(n, sizeof *m->coefficients);
     m->depth = mem_zeroed(n, sizeof *m->depth);
     m->mask = mem_zeroed(n, sizeof *m->mask);
@@ -75,8 +80,8 @@ static bool create(struct material *m, int views, const struct encode_share *sha
     m->index = mem_zeroed(n * RELUME_MOST_BOOKS, sizeof *m->index);
     m->words = mem_zeroed(n, sizeof *m->words);
     m->report = mem_zeroed(n, sizeof *m->report);
-    return m->report && m->words && m->view && m->coefficients && m->depth && m->mask && m->books &&
-           m->index;
+    return m->report && m->words && m->view && m->levels && m->coefficients && m->depth &&
+           m->mask && m->books && m->index;
 }
 
 static relume_status encode_view(struct material *m, int i, const relume_coder *coder,
@@ -215,6 +220,21 @@ static relume_status make_books(struct material *m, const struct relume_manifest
     return status;
 }
 
+static relume_status reduce_views(const struct material *m,
+                                  const struct relume_pack_contents *contents,
+                                  const struct relume_pack_encode_params *p, const char *path)
+{
+    relume_status status = RELUME_OK;
+    for (int i = m->first; !status && !m->rows && i < m->end; i++) {
+        status = relume_pack_reduce(&m->levels[i], contents, &m->view[i], p->pyramid,
+                                    relume_encode_params(.log = p->log, .step = p->step,
+                                                         .threads = p->threads,
+                                                         .scratch = p->writer ? NULL : path));
+        m->view[i].levels = m->levels[i].levels ? &m->levels[i] : NULL;
+    }
+    return status;
+}
+
 static relume_status write_material(const struct material *m, const relume_capture *capture,
                                     const relume_coder *coder,
                                     const struct relume_encode_report *report, const char *path,
@@ -255,9 +275,12 @@ static relume_status write_material(const struct material *m, const relume_captu
         if (m->rows || m->first > m->views / 2 || m->views / 2 >= m->end)
             contents.preview = NULL;
     }
-    return relume_pack_write(&contents, path,
-                             relume_pack_params(.log = p->log, .compression = p->compression,
-                                                .threads = p->threads, .writer = p->writer));
+    const relume_status status = reduce_views(m, &contents, p, path);
+    return status
+               ? status
+               : relume_pack_write(&contents, path,
+                                   relume_pack_params(.log = p->log, .compression = p->compression,
+                                                      .threads = p->threads, .writer = p->writer));
 }
 
 // ---------------------------------------------------------------- with loss

@@ -55,7 +55,11 @@ relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb)
     const struct relume_pack_contents *c = contents;
     const struct relume_pack_view *view = &c->view[c->views / 2];
     const struct relume_light light = {.direction = front_of(c, view->slab), .rgb = {1, 1, 1}};
-    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
+    const int level = relume_pack_shown(view);
+    const relume_coefficients *coefficients =
+        level ? view->levels->level[level - 1] : view->coefficients;
+    const struct relume_image *mask = level ? &view->levels->share[level - 1] : view->mask;
+    const struct relume_coefficients_info *info = relume_coefficients_info(coefficients);
     const size_t width = (size_t)info->width, pixels = (size_t)rows * width;
     struct relume_image out = {info->width, rows, 3, rgb};
     struct relume_codes codes = {
@@ -69,15 +73,15 @@ relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb)
     const uint16_t *index[RELUME_MOST_BOOKS];
     void *memory = NULL;
     relume_status status = RELUME_OK;
-    if (view->books)
+    if (view->books && !level)
         point_to_books(&codes, index, view, row);
     else
-        status = read_planes(&codes, &memory, view->coefficients, row);
+        status = read_planes(&codes, &memory, coefficients, row);
     if (!status)
         status = relume_relight(&out, &codes, &light, 1,
                                 relume_relight_params(.threads = 1, .cpu_off = ~0u));
-    for (size_t i = 0; view->mask && i < pixels; i++)
-        if (!(view->mask->data[(size_t)row * width + i] > 0.5f))
+    for (size_t i = 0; mask && mask->data && i < pixels; i++)
+        if (!(mask->data[(size_t)row * width + i] > 0.5f))
             memset(rgb + 3 * i, 0, 3 * sizeof *rgb);
     mem_free(memory);
     return status;

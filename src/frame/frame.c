@@ -8,7 +8,7 @@
 #include <string.h>
 
 // Positions have no mean: the nearest texel's.
-static struct relume_scale_params scaling(const relume_renderer *r)
+struct relume_scale_params frame_scaling(const relume_renderer *r)
 {
     const struct relume_geometry *g = &r->info->geometry;
     const bool round = g->projection == RELUME_CYLINDRICAL || g->projection == RELUME_SPHERICAL;
@@ -20,60 +20,10 @@ static struct relume_scale_params scaling(const relume_renderer *r)
                                         .tiles = g->projection == RELUME_CUBE ? 6 : 1};
 }
 
-// A view that is drawn once and made smaller is read, relit and narrowed band by band: no more of
-// it is there at once. The same picture bit by bit, since both axes are scaled one after the other.
-// Not of coded planes, whose tiles would be decoded again for every band.
-static bool takes_bands(const relume_renderer *r, const struct relume_camera *camera)
-{
-    bool barred = !strcmp(r->info->compression, "av1");
-    for (int i = 0; i < r->light_count; i++)
-        barred |= relume_light_is_near(r->lights[i].kind);
-    return r->params.once && r->shown == SHOWN_LIGHT && !barred && renderer_goes_by_texels(r) &&
-           camera->width < r->info->width;
-}
-
-static relume_status narrow_band(struct relume_image *tall, relume_renderer *r, int view,
-                                 const struct relume_rect *band)
-{
-    const struct relume_scale_params params = scaling(r);
-    const size_t row = 3 * (size_t)tall->width;
-    struct relume_image relit = {0}, narrow = {0};
-    relume_status status = frame_rows(&relit, r, view, band);
-    if (!status)
-        status = relume_image_scale(&narrow, &relit, tall->width, band->height, &params);
-    if (!status)
-        memcpy(tall->data + row * (size_t)band->top, narrow.data,
-               row * (size_t)band->height * sizeof *tall->data);
-    relume_image_destroy(&relit);
-    relume_image_destroy(&narrow);
-    return status;
-}
-
-static relume_status scale_bands(relume_renderer *r, const struct relume_camera *camera,
-                                 struct relume_image *out)
-{
-    enum { BAND = 256 };
-    const struct relume_scale_params params = scaling(r);
-    const int height = r->info->height;
-    struct relume_image tall;
-    relume_status status = relume_image_create(&tall, camera->width, height, 3);
-    for (int y = 0; !status && y < height; y += BAND) {
-        const struct relume_rect band = {0, y, r->info->width,
-                                         y + BAND < height ? BAND : height - y};
-        status = narrow_band(&tall, r, camera->view, &band);
-        if (!status && !log_progress(r->params.log, "relighting", (double)y / height))
-            status = RELUME_ECANCEL;
-    }
-    if (!status)
-        status = relume_image_scale(out, &tall, camera->width, camera->height, &params);
-    relume_image_destroy(&tall);
-    return status;
-}
-
 static relume_status scale_view(const relume_renderer *r, const struct relume_camera *camera,
                                 const struct relume_image *view, struct relume_image *out)
 {
-    const struct relume_scale_params params = scaling(r);
+    const struct relume_scale_params params = frame_scaling(r);
     return relume_image_scale(out, view, camera->width, camera->height, &params);
 }
 
@@ -102,8 +52,9 @@ static relume_status render_view(relume_renderer *r, const struct relume_camera 
     const bool whole = is_whole_view(r, camera);
     if (whole && r->shown == SHOWN_LIGHT)
         return renderer_relight(r, camera->view, out);
-    if (takes_bands(r, camera))
-        return scale_bands(r, camera, out);
+    const struct relume_rect all = {0, 0, r->info->width, r->info->height};
+    if (frame_detail_suits(r, &all, camera->width, camera->height))
+        return frame_detail(out, r, camera->view, &all, camera->width, camera->height);
     const relume_status status = renderer_need(r, camera->view);
     if (status || !whole)
         return status ? status : scale_view(r, camera, view, out);

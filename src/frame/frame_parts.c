@@ -184,7 +184,7 @@ relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int f
 
 // ---------------------------------------------------------------- a part of a view
 
-relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view,
+relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view, int level,
                          const struct relume_rect *rect)
 {
     struct relume_codes_part part;
@@ -193,7 +193,7 @@ relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view,
                                        .lights = r->lights,
                                        .count = r->light_count,
                                        .log = r->said ? NULL : r->params.log};
-    relume_status status = relume_pack_codes_part(&part, r->pack, view, rect);
+    relume_status status = relume_pack_codes_level(&part, r->pack, view, level, rect);
     if (!status)
         status = relume_relighter_relight(out, r->relighter, &relit);
     relume_codes_part_destroy(&part);

@@ -114,9 +114,18 @@ relume_status frame_around(relume_renderer *r, const struct relume_camera *camer
 // and no parts, where they are most of the views. Draw with frame_parts_params then.
 relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int frame[2],
                           bool by_depth);
-// A rectangle of a view under distant lights, of which nothing is kept; `out` is created.
-relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view,
+// A rectangle of a view, or of a reduced level, under distant lights, of which nothing is kept;
+// `out` is created.
+relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view, int level,
                          const struct relume_rect *rect);
+// Pictures of a view in another size.
+struct relume_scale_params frame_scaling(const relume_renderer *r);
+// A rectangle of a view, smaller, band by band: whether that saves reading or memory and shows what
+// the frame asks for; `out` is created (detail.c).
+bool frame_detail_suits(const relume_renderer *r, const struct relume_rect *rect, int width,
+                        int height);
+relume_status frame_detail(struct relume_image *out, relume_renderer *r, int view,
+                           const struct relume_rect *rect, int width, int height);
 struct relume_view_params frame_parts_params(const relume_renderer *r, bool by_depth);
 
 // ---------------------------------------------------------------- one ray

@@ -64,6 +64,14 @@ static const exr_pixel_type_t pixel_types[] = {
     [EXR_SAMPLE_FLOAT] = EXR_PIXEL_FLOAT,
 };
 
+static int tiles_across(int width, int tile)
+{
+    return (width + tile - 1) / tile;
+}
+
+// Of a strip of tiles, filled by one thread at a time.
+enum { STRIP_ROWS = 16 };
+
 // The core prints errors itself unless a handler takes them; the sentences are ours.
 static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
@@ -94,6 +102,8 @@ struct writing {
     relume_status io;  // what the stream saw
     const struct exr_part *part;
     int index, block_rows;
+    int tile_row;  // of tiles: the row of them that is written, ...
+    char *strip;   // ... and its samples
     pthread_mutex_t lock;
     pthread_cond_t turn;
     int next_block;
@@ -136,10 +146,14 @@ static exr_result_t declare_part(exr_context_t exr, const struct exr_part *p,
     const exr_attr_box2i_t display = window_of(first), data = window_of(p);
     const exr_attr_v2f_t centre = {.x = 0.0f};
     int index;
-    exr_result_t r = exr_add_part(exr, p->name, EXR_STORAGE_SCANLINE, &index);
+    exr_result_t r =
+        exr_add_part(exr, p->name, p->tile ? EXR_STORAGE_TILED : EXR_STORAGE_SCANLINE, &index);
     if (!r)
         r = exr_initialize_required_attr(exr, index, &display, &data, 1.0f, &centre, 1.0f,
                                          EXR_LINEORDER_INCREASING_Y, codecs[p->codec].exr);
+    if (!r && p->tile)
+        r = exr_set_tile_descriptor(exr, index, (uint32_t)p->tile, (uint32_t)p->tile,
+                                    EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN);
     for (int i = 0; !r && i < p->channels; i++)
         r = exr_add_channel(exr, index, p->channel[i], pixel_types[p->sample],
                             EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
@@ -222,11 +236,22 @@ static void end_turn(struct writing *w, int block, relume_status status)
     pthread_mutex_unlock(&w->lock);
 }
 
-static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int row, void *turn)
+// Of a part, by the number of the block.
+static exr_result_t written_chunk(exr_chunk_info_t *out, const struct writing *w,
+                                  const struct exr_part *part, int index, int block)
+{
+    const int across = part->tile ? tiles_across(part->width, part->tile) : 1;
+    return part->tile
+               ? exr_write_tile_chunk_info(w->exr, index, block % across, block / across, 0, 0, out)
+               : exr_write_scanline_chunk_info(w->exr, index, block * codecs[part->codec].rows,
+                                               out);
+}
+
+static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int block, void *turn)
 {
     exr_encode_pipeline_t *pipeline = &p->exr;
     exr_chunk_info_t chunk;
-    if (exr_write_scanline_chunk_info(w->exr, w->index, row, &chunk))
+    if (written_chunk(&chunk, w, w->part, w->index, block))
         return RELUME_ENOMEM;
     if (pipeline->channels) {
         if (exr_encoding_update(w->exr, w->index, &chunk, pipeline))
@@ -260,27 +285,84 @@ static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int
                : RELUME_ENOMEM;
 }
 
+// The samples of a tile out of the strip of its row.
+static void cut_tile(char *to, const struct writing *w, int column, int rows)
+{
+    const struct exr_part *p = w->part;
+    const size_t sample = exr_sample_bytes(p->sample), width = (size_t)p->width;
+    const size_t left = (size_t)column * (size_t)p->tile, tile = (size_t)p->tile;
+    const size_t n = (width - left < tile ? width - left : tile) * sample;
+    const char *from = w->strip + left * sample;
+    for (size_t i = 0; i < (size_t)rows * (size_t)p->channels; i++, to += n, from += width * sample)
+        memcpy(to, from, n);
+}
+
 static void write_block(void *context, size_t item, int worker)
 {
     struct writing *w = context;
-    const int row = (int)item * w->block_rows;
+    const int first = w->tile_row * w->block_rows;
+    const int row = w->part->tile ? first : (int)item * w->block_rows;
     const int left = w->part->height - row;
     const int rows = left < w->block_rows ? left : w->block_rows;
+    const int across = w->part->tile ? tiles_across(w->part->width, w->part->tile) : 0;
     struct pipeline *pipeline = &w->pipelines[worker];
-    struct block_turn turn = {w, (int)item};
+    struct block_turn turn = {w, w->tile_row * across + (int)item};
 
-    relume_status status = prepare_pipeline(w, pipeline, row, &turn);
-    if (!status)
+    relume_status status = prepare_pipeline(w, pipeline, turn.block, &turn);
+    if (!status && w->part->tile)
+        cut_tile(pipeline->exr.packed_buffer, w, (int)item, rows);
+    else if (!status)
         status = w->part->rows(w->part->context, row, rows, pipeline->exr.packed_buffer);
     // samples are sound: what fails without the stream is memory, which zlib's callers name
     // otherwise
     if (!status && exr_encoding_run(w->exr, w->index, &pipeline->exr))
         status = w->io ? w->io : RELUME_ENOMEM;
-    end_turn(w, (int)item, status);
+    end_turn(w, turn.block, status);
 }
 
-static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int row,
+// A few rows of the strip.
+static void fill_strip(void *context, size_t item, int worker)
+{
+    struct writing *w = context;
+    const struct exr_part *p = w->part;
+    const int row = w->tile_row * p->tile + (int)item * STRIP_ROWS, end = row + STRIP_ROWS;
+    const int limit = w->tile_row * p->tile + p->tile;
+    const int last = limit < p->height ? limit : p->height;
+    const size_t bytes = (size_t)p->width * (size_t)p->channels * exr_sample_bytes(p->sample);
+    (void)worker;
+    const relume_status status = row < last
+                                     ? p->rows(p->context, row, (end < last ? end : last) - row,
+                                               w->strip + item * STRIP_ROWS * bytes)
+                                     : RELUME_OK;
+    pthread_mutex_lock(&w->lock);
+    if (!w->status)
+        w->status = status;
+    pthread_mutex_unlock(&w->lock);
+}
+
+static void write_tiles(struct writing *w, int threads)
+{
+    const struct exr_part *p = w->part;
+    const size_t row = (size_t)p->width * (size_t)p->channels * exr_sample_bytes(p->sample);
+    w->strip = mem_array((size_t)p->tile, row);
+    if (!w->strip)
+        w->status = RELUME_ENOMEM;
+    for (w->tile_row = 0; !w->status && w->tile_row * p->tile < p->height; w->tile_row++) {
+        thread_for(threads, ((size_t)p->tile + STRIP_ROWS - 1) / STRIP_ROWS, fill_strip, w);
+        if (!w->status)
+            thread_for(threads, (size_t)tiles_across(p->width, p->tile), write_block, w);
+    }
+    mem_free(w->strip);
+}
+
+static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int block,
                                  void **packed, size_t *room, const struct relume_log *log);
+
+static int blocks_of(const struct exr_part *p)
+{
+    const int rows = p->tile ? p->tile : codecs[p->codec].rows;
+    return (p->height + rows - 1) / rows * (p->tile ? tiles_across(p->width, p->tile) : 1);
+}
 
 // Blocks go from file to file as they are.
 static relume_status copy_part(struct writing *w, const struct exr_part *part, int index,
@@ -288,10 +370,17 @@ static relume_status copy_part(struct writing *w, const struct exr_part *part, i
 {
     void *packed = NULL;
     size_t room = 0;
-    for (int row = 0; !w->status && row < part->height; row += codecs[part->codec].rows) {
-        exr_chunk_info_t chunk;
-        w->status = read_packed(part->from, part->from_part, &chunk, row, &packed, &room, log);
-        if (!w->status && exr_write_scanline_chunk(w->exr, index, row, packed, chunk.packed_size))
+    const int across = part->tile ? tiles_across(part->width, part->tile) : 1;
+    for (int block = 0; !w->status && block < blocks_of(part); block++) {
+        exr_chunk_info_t chunk, to;
+        w->status = read_packed(part->from, part->from_part, &chunk, block, &packed, &room, log);
+        exr_result_t e = w->status ? 0 : written_chunk(&to, w, part, index, block);
+        if (!w->status && !e && part->tile)
+            e = exr_write_tile_chunk(w->exr, index, block % across, block / across, 0, 0, packed,
+                                     chunk.packed_size);
+        else if (!w->status && !e)
+            e = exr_write_scanline_chunk(w->exr, index, to.start_y, packed, chunk.packed_size);
+        if (!w->status && e)
             w->status = w->io ? w->io : RELUME_ENOMEM;
     }
     mem_free(packed);
@@ -305,14 +394,16 @@ static relume_status write_part(struct writing *w, const struct exr_part *part, 
         return copy_part(w, part, index, log);
     w->part = part;
     w->index = index;
-    w->block_rows = codecs[part->codec].rows;
+    w->block_rows = part->tile ? part->tile : codecs[part->codec].rows;
+    w->tile_row = 0;
     w->next_block = 0;
     w->pipelines = mem_zeroed((size_t)threads, sizeof *w->pipelines);
     if (!w->pipelines)
         return RELUME_ENOMEM;
-    const size_t blocks =
-        ((size_t)part->height + (size_t)w->block_rows - 1) / (size_t)w->block_rows;
-    thread_for(threads, blocks, write_block, w);
+    if (part->tile)
+        write_tiles(w, threads);
+    else
+        thread_for(threads, (size_t)blocks_of(part), write_block, w);
     for (int i = 0; i < threads; i++) {
         exr_encoding_destroy(w->exr, &w->pipelines[i].exr);
         piz_destroy(&w->pipelines[i].piz);
@@ -381,6 +472,17 @@ static int64_t stream_size(exr_const_context_t context, void *user)
     return (int64_t)((exr_file *)user)->in.size;
 }
 
+struct relume_rect exr_overlap(const struct relume_rect *at, const struct relume_rect *rect)
+{
+    const int left = at->left > rect->left ? at->left : rect->left;
+    const int top = at->top > rect->top ? at->top : rect->top;
+    const int right = at->left + at->width, bottom = at->top + at->height;
+    const int most_right = rect->left + rect->width, most_bottom = rect->top + rect->height;
+    const struct relume_rect both = {left, top, (right < most_right ? right : most_right) - left,
+                                     (bottom < most_bottom ? bottom : most_bottom) - top};
+    return both.width > 0 && both.height > 0 ? both : (struct relume_rect){left, top, 0, 0};
+}
+
 uint64_t exr_bytes(const exr_file *file)
 {
     return file->in.size;
@@ -415,7 +517,7 @@ static relume_status check_bytes(const exr_file *file, const struct relume_limit
                             "damaged, or made to fill memory",
                             file->path, i, part.width, part.height, part.channels,
                             (unsigned long long)size);
-        if (bytes > most)
+        if (bytes > most && !part.tile)  // of tiles no more is read than what is asked for
             return log_fail(log, RELUME_ELIMIT,
                             "%s: part %d of %d x %d pixels and %d channels takes %llu MB; expected "
                             "at most %llu MB (--max-memory)",
@@ -425,7 +527,26 @@ static relume_status check_bytes(const exr_file *file, const struct relume_limit
     return RELUME_OK;
 }
 
-// Everything later code relies on: scanlines, channels, a size within the limits.
+// The side of square tiles without reduced levels; 0: scanlines; -1: anything else.
+static int tile_of(const exr_file *file, int part)
+{
+    exr_storage_t storage;
+    uint32_t side[2];
+    exr_tile_level_mode_t levels;
+    exr_tile_round_mode_t round;
+    if (exr_get_storage(file->exr, part, &storage))
+        return -1;
+    if (storage == EXR_STORAGE_SCANLINE)
+        return 0;
+    if (storage != EXR_STORAGE_TILED ||
+        exr_get_tile_descriptor(file->exr, part, &side[0], &side[1], &levels, &round))
+        return -1;
+    return levels == EXR_TILE_ONE_LEVEL && side[0] == side[1] && side[0] >= 16 && side[0] <= 4096
+               ? (int)side[0]
+               : -1;
+}
+
+// Everything later code relies on: kinds of blocks, channels, a size within the limits.
 static relume_status check_parts(const exr_file *file, const struct relume_limits *limits,
                                  const struct relume_log *log)
 {
@@ -433,12 +554,12 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
     if (count < 1)
         return log_fail(log, RELUME_EFORMAT, "%s: no parts; expected an EXR image", file->path);
     for (int i = 0; i < count; i++) {
-        exr_storage_t storage;
         const exr_attr_chlist_t *channels;
         exr_attr_box2i_t box;
-        if (exr_get_storage(file->exr, i, &storage) || storage != EXR_STORAGE_SCANLINE)
+        if (tile_of(file, i) < 0)
             return log_fail(log, RELUME_EUNSUPPORTED,
-                            "%s: part %d is tiled or deep; expected scanlines", file->path, i);
+                            "%s: part %d is of mipmaps or deep; expected scanlines or plain tiles",
+                            file->path, i);
         if (exr_get_channels(file->exr, i, &channels) || channels->num_channels < 1)
             return log_fail(log, RELUME_EDAMAGED, "%s: part %d has no channels", file->path, i);
         if (exr_get_data_window(file->exr, i, &box))
@@ -453,6 +574,56 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
     return check_bytes(file, limits, log);
 }
 
+// What decoding blocks of a part needs to know of it.
+struct layout {
+    const exr_file *file;
+    int part, first_row, width, height, block_rows, channels;
+    int tile, across;  // side of the tiles, and how many there are in a row; 0: runs of rows
+    size_t blocks;
+    size_t row_bytes;  // of one channel
+};
+
+static bool find_layout(struct layout *out, const exr_file *file, int part)
+{
+    const struct exr_part_info info = exr_part_info(file, part);
+    int32_t block_rows = info.tile;
+    if (!info.tile && exr_get_scanlines_per_chunk(file->exr, part, &block_rows))
+        return false;
+    if (block_rows < 1)
+        return false;
+    *out = (struct layout){.file = file,
+                           .part = part,
+                           .first_row = info.y,
+                           .width = info.width,
+                           .height = info.height,
+                           .block_rows = block_rows,
+                           .channels = info.channels,
+                           .tile = info.tile,
+                           .across = info.tile ? tiles_across(info.width, info.tile) : 1,
+                           .row_bytes = (size_t)info.width * exr_sample_bytes(info.sample)};
+    out->blocks =
+        ((size_t)info.height + (size_t)block_rows - 1) / (size_t)block_rows * (size_t)out->across;
+    return true;
+}
+
+// Where the block of number `item` lies.
+static struct relume_rect rect_of(const struct layout *l, size_t item)
+{
+    const int column = (int)(item % (size_t)l->across), row = (int)(item / (size_t)l->across);
+    const struct relume_rect all = {0, 0, l->width, l->height};
+    const struct relume_rect at = {column * l->tile, row * l->block_rows,
+                                   l->tile ? l->tile : l->width, l->block_rows};
+    return exr_overlap(&at, &all);
+}
+
+static exr_result_t find_chunk(exr_chunk_info_t *out, const struct layout *l, size_t item)
+{
+    const int column = (int)(item % (size_t)l->across), row = (int)(item / (size_t)l->across);
+    return l->tile ? exr_read_tile_chunk_info(l->file->exr, l->part, column, row, 0, 0, out)
+                   : exr_read_scanline_chunk_info(l->file->exr, l->part,
+                                                  l->first_row + row * l->block_rows, out);
+}
+
 // Parts are written one after the other, so a file cut anywhere lacks the last block of some part.
 static relume_status check_ends(const exr_file *file, const struct relume_log *log)
 {
@@ -461,9 +632,10 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
     for (int i = 0; i < count; i++) {
         exr_attr_box2i_t box;
         exr_chunk_info_t last;
-        if (exr_get_data_window(file->exr, i, &box) ||
-            exr_read_scanline_chunk_info(file->exr, i, box.max.y, &last) ||
-            last.data_offset > size || last.packed_size > size - last.data_offset)
+        struct layout layout;
+        if (exr_get_data_window(file->exr, i, &box) || !find_layout(&layout, file, i) ||
+            find_chunk(&last, &layout, layout.blocks - 1) || last.data_offset > size ||
+            last.packed_size > size - last.data_offset)
             return log_fail(log, RELUME_EDAMAGED,
                             "%s: truncated or damaged in part %d; expected %d rows", file->path, i,
                             box.max.y - box.min.y + 1);
@@ -562,6 +734,7 @@ struct exr_part_info exr_part_info(const exr_file *file, int part)
         .uniform = true,
         .channels = list->num_channels,
         .codec = codec_name(file, part),
+        .tile = tile_of(file, part),
     };
     for (int i = 0; i < list->num_channels; i++) {
         const exr_attr_chlist_entry_t *e = &list->entries[i];
@@ -676,6 +849,7 @@ relume_status exr_part_again(struct exr_part *out, const exr_file *file, int par
         .width = info.width,
         .height = info.height,
         .sample = info.sample,
+        .tile = info.tile,
         .channels = info.channels,
         .channel = channel,
         .from = file,
@@ -730,11 +904,13 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
     return floats;
 }
 
-// The block that begins at `row`, as it is packed, into *packed, which grows.
-static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int row,
+// A block as it is packed, into *packed, which grows.
+static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int block,
                                  void **packed, size_t *room, const struct relume_log *log)
 {
-    const bool found = !exr_read_scanline_chunk_info(file->exr, part, row, chunk) &&
+    struct layout layout;
+    const bool found = find_layout(&layout, file, part) &&
+                       !find_chunk(chunk, &layout, (size_t)block) &&
                        chunk->packed_size <= chunk->unpacked_size;
     if (found && chunk->packed_size > *room) {
         mem_free(*packed);
@@ -746,13 +922,13 @@ static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_
     }
     if (found && !exr_read_chunk(file->exr, part, chunk, *packed))
         return RELUME_OK;
-    return log_fail(log, RELUME_EDAMAGED, "%s: truncated or damaged in part '%s', row %d",
-                    file->path, exr_part_info(file, part).name, row);
+    return log_fail(log, RELUME_EDAMAGED, "%s: truncated or damaged in part '%s', block %d",
+                    file->path, exr_part_info(file, part).name, block);
 }
 
-// A block of rows, decoded.
+// A block, decoded.
 struct block {
-    int row, rows;
+    struct relume_rect at;
     const void *samples;  // the pipeline's
 };
 
@@ -771,37 +947,13 @@ static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
     return EXR_ERR_SUCCESS;
 }
 
-// What decoding blocks of a part needs to know of it.
-struct layout {
-    const exr_file *file;
-    int part, first_row, height, block_rows, channels;
-    size_t row_bytes;  // of one channel
-};
-
-static bool find_layout(struct layout *out, const exr_file *file, int part)
-{
-    const struct exr_part_info info = exr_part_info(file, part);
-    int32_t block_rows;
-    if (exr_get_scanlines_per_chunk(file->exr, part, &block_rows) || block_rows < 1)
-        return false;
-    *out = (struct layout){.file = file,
-                           .part = part,
-                           .first_row = info.y,
-                           .height = info.height,
-                           .block_rows = block_rows,
-                           .channels = info.channels,
-                           .row_bytes = (size_t)info.width * exr_sample_bytes(info.sample)};
-    return true;
-}
-
 // The block of number `item`. RELUME_EDAMAGED: truncated or damaged; RELUME_ENOMEM.
 static relume_status decode(struct block *out, const struct layout *l,
                             exr_decode_pipeline_t *pipeline, size_t item)
 {
     const exr_const_context_t exr = l->file->exr;
     exr_chunk_info_t chunk;
-    const int y = l->first_row + (int)item * l->block_rows;
-    exr_result_t e = exr_read_scanline_chunk_info(exr, l->part, y, &chunk);
+    exr_result_t e = find_chunk(&chunk, l, item);
     if (!e && pipeline->channels) {
         e = exr_decoding_update(exr, l->part, &chunk, pipeline);
     } else if (!e) {
@@ -815,16 +967,15 @@ static relume_status decode(struct block *out, const struct layout *l,
         e = exr_decoding_run(exr, l->part, pipeline);
     if (e)
         return e == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDAMAGED;
-    out->row = chunk.start_y - l->first_row;
-    out->rows = chunk.height;
+    out->at = rect_of(l, item);
     return RELUME_OK;
 }
 
 struct reading {
     struct layout layout;
-    void (*sink)(void *, int, int, const void *);
+    void (*sink)(void *, const struct relume_rect *, const void *);
     void *context;
-    size_t first;                      // block
+    size_t first, across;              // block; blocks of a row of them that are wanted
     exr_decode_pipeline_t *pipelines;  // one a worker
     atomic_int status;                 // the last failure of any block
 };
@@ -833,29 +984,36 @@ static void read_block(void *context, size_t item, int worker)
 {
     struct reading *r = context;
     struct block block = {0};
+    const size_t row = item / r->across, column = item % r->across;
     if (atomic_load(&r->status))
         return;
-    const relume_status status = decode(&block, &r->layout, &r->pipelines[worker], r->first + item);
+    const relume_status status = decode(&block, &r->layout, &r->pipelines[worker],
+                                        r->first + row * (size_t)r->layout.across + column);
     if (status)
         atomic_store(&r->status, (int)status);
     else
-        r->sink(r->context, block.row, block.rows, block.samples);
+        r->sink(r->context, &block.at, block.samples);
 }
 
-relume_status exr_read_rows(const exr_file *file, int part, int row, int rows, int threads,
-                            void (*sink)(void *, int, int, const void *), void *context,
-                            const struct relume_log *log)
+relume_status exr_read(const exr_file *file, int part, const struct relume_rect *rect, int threads,
+                       void (*sink)(void *, const struct relume_rect *, const void *),
+                       void *context, const struct relume_log *log)
 {
     threads = thread_count(threads);
     struct reading r = {.sink = sink, .context = context};
-    if (!find_layout(&r.layout, file, part))
+    struct layout *l = &r.layout;
+    if (!find_layout(l, file, part))
         return log_fail(log, RELUME_EDAMAGED, "%s: part %d is broken", file->path, part);
+    const struct relume_rect at = rect ? *rect : (struct relume_rect){0, 0, l->width, l->height};
+    const int rows = l->block_rows, side = l->tile ? l->tile : l->width;
+    const int top = at.top / rows, left = at.left / side;
     r.pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines);
     if (!r.pipelines)
         return RELUME_ENOMEM;
-    const int block = r.layout.block_rows;
-    r.first = (size_t)(row / block);
-    thread_for(threads, (size_t)((row + rows - 1) / block + 1) - r.first, read_block, &r);
+    r.first = (size_t)top * (size_t)l->across + (size_t)left;
+    r.across = (size_t)((at.left + at.width - 1) / side + 1 - left);
+    thread_for(threads, r.across * (size_t)((at.top + at.height - 1) / rows + 1 - top), read_block,
+               &r);
     for (int i = 0; i < threads; i++)
         exr_decoding_destroy(file->exr, &r.pipelines[i]);
     mem_free(r.pipelines);
@@ -865,14 +1023,6 @@ relume_status exr_read_rows(const exr_file *file, int part, int row, int rows, i
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
                         exr_part_info(file, part).name, r.layout.height);
     return status;
-}
-
-relume_status exr_read(const exr_file *file, int part, int threads,
-                       void (*sink)(void *, int, int, const void *), void *context,
-                       const struct relume_log *log)
-{
-    return exr_read_rows(file, part, 0, exr_part_info(file, part).height, threads, sink, context,
-                         log);
 }
 
 struct finding {
@@ -892,34 +1042,34 @@ static void try_block(void *context, size_t item, int worker)
         atomic_store(&f->short_of_memory, true);
 }
 
-static void report_runs(const struct finding *f, size_t blocks, void (*found)(void *, int, int),
+// Tiles each; of runs of rows those that follow each other as one.
+static void report_runs(const struct finding *f, void (*found)(void *, const struct relume_rect *),
                         void *context)
 {
-    const int rows = f->layout.block_rows, height = f->layout.height;
-    for (size_t i = 0, end; i < blocks; i = end + 1) {
-        for (end = i; end < blocks && f->damaged[end];)
-            end++;
-        const int first = (int)i * rows, last = (int)end * rows;
-        if (end > i)
-            found(context, first, (last < height ? last : height) - first);
+    const struct layout *l = &f->layout;
+    for (size_t i = 0; i < l->blocks; i++) {
+        struct relume_rect at = rect_of(l, i);
+        if (!f->damaged[i])
+            continue;
+        for (; !l->tile && i + 1 < l->blocks && f->damaged[i + 1]; i++)
+            at.height += rect_of(l, i + 1).height;
+        found(context, &at);
     }
 }
 
 relume_status exr_find_damage(const exr_file *file, int part, int threads,
-                              void (*found)(void *, int, int), void *context,
+                              void (*found)(void *, const struct relume_rect *), void *context,
                               const struct relume_log *log)
 {
     threads = thread_count(threads);
     struct finding f = {0};
     if (!find_layout(&f.layout, file, part))
         return log_fail(log, RELUME_EDAMAGED, "%s: part %d is broken", file->path, part);
-    const size_t height = (size_t)f.layout.height, rows = (size_t)f.layout.block_rows;
-    const size_t blocks = (height + rows - 1) / rows;
     f.pipelines = mem_zeroed((size_t)threads, sizeof *f.pipelines);
-    f.damaged = mem_zeroed(blocks, sizeof *f.damaged);
+    f.damaged = mem_zeroed(f.layout.blocks, sizeof *f.damaged);
     if (f.pipelines && f.damaged) {
-        thread_for(threads, blocks, try_block, &f);
-        report_runs(&f, blocks, found, context);
+        thread_for(threads, f.layout.blocks, try_block, &f);
+        report_runs(&f, found, context);
     }
     for (int i = 0; f.pipelines && i < threads; i++)
         exr_decoding_destroy(file->exr, &f.pipelines[i]);
@@ -941,7 +1091,7 @@ relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part)
     *out = NULL;
     if (!b)
         return RELUME_ENOMEM;
-    if (!find_layout(&b->layout, file, part)) {
+    if (!find_layout(&b->layout, file, part) || b->layout.tile) {
         mem_free(b);
         return RELUME_EDAMAGED;
     }
@@ -952,10 +1102,10 @@ relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part)
 static relume_status find_block(exr_blocks *b, int row)
 {
     relume_status status = RELUME_OK;
-    if (row < b->block.row || row >= b->block.row + b->block.rows)
+    if (row < b->block.at.top || row >= b->block.at.top + b->block.at.height)
         status = decode(&b->block, &b->layout, &b->pipeline, (size_t)(row / b->layout.block_rows));
     if (status)
-        b->block.rows = 0;
+        b->block.at.height = 0;
     return status;
 }
 
@@ -965,7 +1115,7 @@ relume_status exr_blocks_row(exr_blocks *b, int row, const void **samples)
     if (status)
         return status;
     const size_t bytes = (size_t)b->layout.channels * b->layout.row_bytes;
-    *samples = (const uint8_t *)b->block.samples + (size_t)(row - b->block.row) * bytes;
+    *samples = (const uint8_t *)b->block.samples + (size_t)(row - b->block.at.top) * bytes;
     return RELUME_OK;
 }
 
@@ -985,7 +1135,7 @@ relume_status exr_blocks_channel(exr_blocks *b, int row, int channel, float *out
     if (status)
         return status;
     const uint8_t *from = b->block.samples;
-    for (int y = b->block.row; y <= row; y++)
+    for (int y = b->block.at.top; y <= row; y++)
         for (int c = 0; c < (y < row ? info.channels : channel); c++)
             from += samples_in(&entry[c], &info, info.y + y) *
                     exr_sample_bytes((enum exr_sample)entry[c].pixel_type);

@@ -1,4 +1,5 @@
-// exr.h - multi-part scanline OpenEXR files: the container under relume files and EXR images
+// exr.h - multi-part OpenEXR files, of scanlines and of tiles: the container under relume files and
+// EXR images
 //
 // Samples travel in the file's own order, [row][channel][x] with channels sorted by name, so that
 // nothing is shuffled on the way.
@@ -7,7 +8,7 @@
 
 #include "base/arena.h"
 
-#include <relume/io.h>
+#include <relume/image.h>
 
 // An open file. Thread-safety: reading is safe.
 typedef struct exr_file exr_file;
@@ -34,6 +35,7 @@ struct exr_part {
     int width, height;
     enum exr_sample sample;  // of every channel
     enum exr_codec codec;
+    int tile;  // side of the tiles in which it is packed; 0: in runs of rows
     int channels;
     const char *const *channel;  // [channels], sorted by strcmp
     int attributes;
@@ -53,7 +55,7 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
                         const struct relume_log *log);
 
 // The file `path`, or what `from` reads (infile.h). An input status with a sentence when it is not
-// a readable scanline EXR within the limits.
+// a readable EXR of scanlines, or of tiles without reduced levels, within the limits.
 relume_status exr_open(exr_file **out, const char *path, const struct relume_reader *from,
                        const struct relume_limits *limits, const struct relume_log *log);
 // The same for those who look for damage: blocks may be missing.
@@ -72,6 +74,7 @@ struct exr_part_info {
     bool subsampled;         // some have less
     int channels;
     const char *codec;
+    int tile;  // side of its tiles, 0: scanlines
 };
 struct exr_part_info exr_part_info(const exr_file *file, int part);
 const char *exr_channel_name(const exr_file *file, int part, int channel);
@@ -93,23 +96,33 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
 relume_status exr_part_again(struct exr_part *out, const exr_file *file, int part,
                              struct arena *arena);
 
-// Hand every block of rows of a part to `sink` (from several threads, any order).
+// Hand the blocks of a part that hold any of `rect` to `sink` (from several threads, any order):
+// `at` is what a block covers, a run of whole rows or a tile; others are not looked at. NULL: all.
 // An input status when the file is truncated or broken.
-relume_status exr_read(const exr_file *file, int part, int threads,
-                       void (*sink)(void *context, int row, int rows, const void *samples),
+relume_status exr_read(const exr_file *file, int part, const struct relume_rect *rect, int threads,
+                       void (*sink)(void *context, const struct relume_rect *at,
+                                    const void *samples),
                        void *context, const struct relume_log *log);
-// The same of those blocks that hold any of `rows` rows from `row` on; others are not looked at.
-relume_status exr_read_rows(const exr_file *file, int part, int row, int rows, int threads,
-                            void (*sink)(void *context, int row, int rows, const void *samples),
-                            void *context, const struct relume_log *log);
+// What of `at` lies within `rect`; nothing has no rows.
+struct relume_rect exr_overlap(const struct relume_rect *at, const struct relume_rect *rect);
 
-// Decode every block of a part and call `found` for each run of rows that cannot be, from the top
-// down. RELUME_ENOMEM, RELUME_ECANCEL.
+// Where the samples of a channel in row `y` of `some` lie, which is within a block at `at`.
+static inline const void *exr_samples(const void *samples, const struct relume_rect *at,
+                                      const struct relume_rect *some, int y, int channels,
+                                      int channel, size_t sample_bytes)
+{
+    const size_t row = (size_t)(y - at->top) * (size_t)channels + (size_t)channel;
+    return (const char *)samples +
+           (row * (size_t)at->width + (size_t)(some->left - at->left)) * sample_bytes;
+}
+
+// Decode every block of a part and call `found` for each run of rows that cannot be, or each tile,
+// from the top down. RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status exr_find_damage(const exr_file *file, int part, int threads,
-                              void (*found)(void *context, int row, int rows), void *context,
-                              const struct relume_log *log);
+                              void (*found)(void *context, const struct relume_rect *at),
+                              void *context, const struct relume_log *log);
 
-// The blocks of a part as they are asked for. Thread-safety: one thread at a time.
+// The blocks of a part of scanlines as they are asked for. Thread-safety: one thread at a time.
 typedef struct exr_blocks exr_blocks;
 // `file` must outlive it. RELUME_ENOMEM.
 relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part);

@@ -35,7 +35,14 @@ struct side {
     int texels, pixels;
     int tiles;  // pictures side by side, that do not mix
     bool wrap;
+    double first, span;  // what of the texels becomes the pixels
 };
+
+// In texels, where a pixel's place lies.
+static double place_of(const struct side *s, double pixel)
+{
+    return s->first + pixel * s->span / s->pixels;
+}
 
 // A texel of the tile that pixel `i` is of.
 static int texel_within(const struct side *s, int i, int texel)
@@ -59,7 +66,7 @@ static void set_linear(struct axis *a, const struct side *s, int i, struct footp
 {
     int n = 0;
     for (int k = 0; k < f.count; k++) {
-        const double at = (i + 0.5 + footprint_place(f, k)) * s->texels / s->pixels - 0.5;
+        const double at = place_of(s, i + 0.5 + footprint_place(f, k)) - 0.5;
         const double low = floor(at);
         add_tap(a, s, i, &n, (int)low, (1.0 - (at - low)) / f.count);
         add_tap(a, s, i, &n, (int)low + 1, (at - low) / f.count);
@@ -68,7 +75,7 @@ static void set_linear(struct axis *a, const struct side *s, int i, struct footp
 
 static void set_cubic(struct axis *a, const struct side *s, int i)
 {
-    const double at = (i + 0.5) * s->texels / s->pixels - 0.5;
+    const double at = place_of(s, i + 0.5) - 0.5;
     const int low = (int)floor(at);
     double weight[4];
     int n = 0;
@@ -80,12 +87,12 @@ static void set_cubic(struct axis *a, const struct side *s, int i)
 static void set_nearest(struct axis *a, const struct side *s, int i)
 {
     int n = 0;
-    add_tap(a, s, i, &n, (int)((i + 0.5) * s->texels / s->pixels), 1.0);
+    add_tap(a, s, i, &n, (int)place_of(s, i + 0.5), 1.0);
 }
 
 static bool create_axis(struct axis *a, const struct side *s, enum relume_filter filter)
 {
-    const double ratio = (double)s->texels / s->pixels;
+    const double ratio = s->span / s->pixels;
     const struct footprint f = footprint_of(ratio, s->texels);
     const bool cubic = filter == RELUME_FILTER_CUBIC && ratio < 1.0;
     const bool nearest = filter == RELUME_FILTER_NEAREST;
@@ -208,8 +215,15 @@ relume_status relume_image_scale(struct relume_image *out, const struct relume_i
                                  int width, int height, const struct relume_scale_params *params)
 {
     const struct relume_scale_params p = PARAMS(relume_scale_params, params);
-    const struct side across = {image->width, width, p.tiles > 1 ? p.tiles : 1, p.wrap};
-    const struct side down = {image->height, height, 1, false};
+    const bool part = p.from[2] > 0.0 && p.from[3] > 0.0;
+    const struct side across = {image->width,
+                                width,
+                                p.tiles > 1 ? p.tiles : 1,
+                                p.wrap,
+                                part ? p.from[0] : 0.0,
+                                part ? p.from[2] : image->width};
+    const struct side down = {
+        image->height, height, 1, false, part ? p.from[1] : 0.0, part ? p.from[3] : image->height};
     struct relume_image wide = {0};
     *out = (struct relume_image){0};
     if (!image->data || (across.tiles > 1 && across.tiles > image->width))

@@ -9,15 +9,18 @@
 struct check {
     const struct relume_pack_check_params *p;
     const char *part;
+    int tile;  // side of its tiles, 0: scanlines
     bool damaged, one_of_several;
 };
 
-static void note(void *context, int row, int rows)
+static void note(void *context, const struct relume_rect *at)
 {
     struct check *c = context;
     c->damaged = true;
-    if (c->p->found)
-        c->p->found(c->p->user, c->part, row, rows);
+    if (c->tile && c->p->tile)
+        c->p->tile(c->p->user, c->part, at->left / c->tile, at->top / c->tile, at);
+    else if (!c->tile && c->p->found)
+        c->p->found(c->p->user, c->part, at->top, at->height);
 }
 
 static relume_status check_blocks(struct check *c, const char *path)
@@ -28,6 +31,7 @@ static relume_status check_blocks(struct check *c, const char *path)
     c->one_of_several = format && !strcmp(format, FORMAT_PART);
     for (int i = 0; !status && i < exr_part_count(file); i++) {
         c->part = exr_part_info(file, i).name;
+        c->tile = exr_part_info(file, i).tile;
         status = exr_find_damage(file, i, c->p->threads, note, c, c->p->log);
     }
     exr_close(&file);

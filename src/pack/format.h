@@ -6,9 +6,13 @@
 
 #define FORMAT_NAME "relume"
 
-// Several slabs are version 2, cylinders with discs 3, planes coded with loss 4; everything else
-// stays what readers of version 1 know.
+// Several slabs are version 2, cylinders with discs 3, planes coded with loss and reduced levels 4;
+// everything else stays what readers of version 1 know.
 enum { FORMAT_VERSION = 4, FORMAT_CODED = 4, FORMAT_DISCS = 3, FORMAT_SLABS = 2, FORMAT_PLAIN = 1 };
+
+// The side of the tiles of views that have reduced levels: a small picture is a few of them, and
+// what PIZ needs for each is little beside what it saves.
+enum { FORMAT_TILE = 128 };
 
 // Attributes of the first part
 #define ATTR_FORMAT        "relume.format"

@@ -125,12 +125,12 @@ struct sinking {
     atomic_int failed;
 };
 
-static void sink_rows(void *context, int row, int rows, const void *samples)
+static void sink_rows(void *context, const struct relume_rect *at, const void *samples)
 {
     struct sinking *s = context;
-    const size_t bytes = (size_t)rows * (size_t)s->c->info.planes * (size_t)s->c->info.width *
+    const size_t bytes = (size_t)at->height * (size_t)s->c->info.planes * (size_t)s->c->info.width *
                          coefficients_waiting(s->c);
-    if (!scratch_write(s->c->fd, samples, bytes, coefficients_offset(s->c, s->first + row)))
+    if (!scratch_write(s->c->fd, samples, bytes, coefficients_offset(s->c, s->first + at->top)))
         atomic_store(&s->failed, errno);
 }
 
@@ -142,10 +142,10 @@ static relume_status read_rows(const struct rows_joining *j, const struct part_f
         c->info.storage == RELUME_STORE_FLOAT ? EXR_SAMPLE_FLOAT : EXR_SAMPLE_HALF;
     struct sinking sinking = {.c = c, .first = part->info.row};
     if (info.width != c->info.width || info.height != part->info.rows || !info.uniform ||
-        info.channels != c->info.planes || info.sample != sample)
+        info.channels != c->info.planes || info.sample != sample || info.tile)
         return damaged(j, part);
     const relume_status status =
-        exr_read(part->file, 1, j->p->threads, sink_rows, &sinking, j->p->log);
+        exr_read(part->file, 1, NULL, j->p->threads, sink_rows, &sinking, j->p->log);
     if (!status && atomic_load(&sinking.failed))
         return log_fail(j->p->log, RELUME_EIO, "%s: no room for temporary data; %s", j->path,
                         strerror(atomic_load(&sinking.failed)));

@@ -109,7 +109,7 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
 struct index_sink {
     const struct relume_book *book;  // [books]
     uint16_t *index;                 // [books] of the rectangle
-    size_t books, width;             // of the part
+    int books;
     struct relume_rect rect;
     atomic_bool wrong;
 };
@@ -124,18 +124,16 @@ static bool take_indices(uint16_t *to, const uint32_t *from, size_t n, uint32_t 
     return !wrong;
 }
 
-static void index_rows(void *context, int row, int rows, const void *samples)
+static void index_block(void *context, const struct relume_rect *at, const void *samples)
 {
     struct index_sink *s = context;
-    const struct relume_rect *r = &s->rect;
-    const size_t n = (size_t)r->width;
-    const uint32_t *from = (const uint32_t *)samples + r->left;
-    for (int y = row; y < row + rows; y++)
-        for (size_t b = 0; b < s->books; b++, from += s->width) {
-            if (y < r->top || y >= r->top + r->height)
-                continue;
-            uint16_t *to = s->index + (b * (size_t)r->height + (size_t)(y - r->top)) * n;
-            if (!take_indices(to, from, n, (uint32_t)s->book[b].codes))
+    const struct relume_rect *r = &s->rect, some = exr_overlap(at, r);
+    for (int y = some.top; y < some.top + some.height; y++)
+        for (int b = 0; b < s->books; b++) {
+            const void *from = exr_samples(samples, at, &some, y, s->books, b, sizeof(uint32_t));
+            const size_t row = (size_t)b * (size_t)r->height + (size_t)(y - r->top);
+            uint16_t *to = s->index + row * (size_t)r->width + (some.left - r->left);
+            if (!take_indices(to, from, (size_t)some.width, (uint32_t)s->book[b].codes))
                 atomic_store(&s->wrong, true);
         }
 }
@@ -158,10 +156,7 @@ relume_status reader_load_indices(struct relume_codes_part *to, relume_pack *p, 
                                   const struct relume_rect *rect, const struct relume_codes *like)
 {
     struct read_books *set = &p->books[p->info.shared ? 0 : view];
-    struct index_sink sink = {.book = set->book,
-                              .books = (size_t)p->info.books,
-                              .width = (size_t)p->info.width,
-                              .rect = *rect};
+    struct index_sink sink = {.book = set->book, .books = p->info.books, .rect = *rect};
     void *data;
     relume_status status = load_books(p, set);
     if (!status)
@@ -169,8 +164,7 @@ relume_status reader_load_indices(struct relume_codes_part *to, relume_pack *p, 
     if (status)
         return status;
     sink.index = data;
-    status = exr_read_rows(p->file, p->parts[view].codes, rect->top, rect->height, p->threads,
-                           index_rows, &sink, p->log);
+    status = exr_read(p->file, p->parts[view].codes, rect, p->threads, index_block, &sink, p->log);
     if (!status && atomic_load(&sink.wrong))
         return reader_bad(p, "an index", "indices below the number of code vectors");
     if (!status && p->info.has_mask)

@@ -61,14 +61,14 @@ relume_status reader_find_groups(relume_pack *p, int *part)
     relume_status status = RELUME_OK;
     const int planes = relume_coder_info(p->coder)->planes;
     for (int v = 0; v < p->info.views; v++)
-        p->parts[v] = (struct view_parts){-1, -1, -1, -1, {0}, {0}, 0.0f};
+        p->parts[v] = (struct view_parts){.codes = -1, .depth = -1, .mask = -1, .anchor = -1};
     for (int g = 0; !status && *part < exr_part_count(p->file); g++, ++*part) {
         const struct exr_part_info i = exr_part_info(p->file, *part);
         char name[32];
         snprintf(name, sizeof name, "group%04d", g);
         if (strcmp(i.name, name))
             break;
-        status = i.channels == 1 && i.uniform && i.sample == EXR_SAMPLE_UINT
+        status = i.channels == 1 && i.uniform && i.sample == EXR_SAMPLE_UINT && !i.tile
                      ? find_members(p, *part)
                      : reader_bad(p, name, "rows of words");
     }
@@ -89,12 +89,12 @@ struct words {
     size_t width;
 };
 
-static void load_words(void *context, int row, int rows, const void *samples)
+static void load_words(void *context, const struct relume_rect *at, const void *samples)
 {
     const struct words *to = context;
-    const size_t from = (size_t)row * to->width, last = to->range.first + to->range.count;
+    const size_t from = (size_t)at->top * to->width, last = to->range.first + to->range.count;
     const size_t begin = from > to->range.first ? from : to->range.first;
-    const size_t rows_end = from + (size_t)rows * to->width;
+    const size_t rows_end = from + (size_t)at->height * to->width;
     const size_t end = rows_end < last ? rows_end : last;
     if (begin < end)
         memcpy(to->word + (begin - to->range.first), (const uint32_t *)samples + (begin - from),
@@ -107,12 +107,12 @@ static relume_status read_words(struct lossy_words *out, const relume_pack *p, i
 {
     const size_t width = (size_t)exr_part_info(p->file, part).width;
     const size_t first = range.first / width, end = (range.first + range.count + width - 1) / width;
+    const struct relume_rect rows = {0, (int)first, (int)width, (int)(end - first)};
     struct words to = {mem_array(range.count, sizeof *to.word), range, width};
     *out = (struct lossy_words){to.word, range.count};
     if (!to.word)
         return RELUME_ENOMEM;
-    return range.count ? exr_read_rows(p->file, part, (int)first, (int)(end - first), p->threads,
-                                       load_words, &to, p->log)
+    return range.count ? exr_read(p->file, part, &rows, p->threads, load_words, &to, p->log)
                        : RELUME_OK;
 }
 

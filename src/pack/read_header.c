@@ -70,16 +70,17 @@ static void read_report(relume_pack *p)
     };
 }
 
-// Of the views: that of the first picture, but where planes are coded.
+// Of the views: that of the first picture, but where that is smaller.
 static relume_status read_size(relume_pack *p)
 {
     const struct exr_part_info first = exr_part_info(p->file, 0);
     p->info.width = first.width;
     p->info.height = first.height;
-    if (p->coded && (!exr_get_int(p->file, 0, ATTR_WIDTH, &p->info.width) ||
-                     !exr_get_int(p->file, 0, ATTR_HEIGHT, &p->info.height) || p->info.width < 1 ||
-                     p->info.height < 1 || p->info.width > 65536 || p->info.height > 65536 ||
-                     !limits_allow(&p->limits, p->info.width, p->info.height)))
+    const bool other = exr_get_int(p->file, 0, ATTR_WIDTH, &p->info.width);
+    if ((p->coded || other) &&
+        (!other || !exr_get_int(p->file, 0, ATTR_HEIGHT, &p->info.height) || p->info.width < 1 ||
+         p->info.height < 1 || p->info.width > 65536 || p->info.height > 65536 ||
+         !limits_allow(&p->limits, p->info.width, p->info.height)))
         return reader_bad(p, ATTR_WIDTH " and " ATTR_HEIGHT,
                           "1 to 65536 pixels a side, within the limits");
     return RELUME_OK;

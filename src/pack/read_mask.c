@@ -9,15 +9,21 @@
 
 #include <math.h>
 
-relume_status reader_mask_plane(relume_pack *p, int view, const struct relume_rect *rect,
+relume_status reader_mask_plane(relume_pack *p, int view, int level, const struct relume_rect *rect,
                                 void *plane)
 {
     const size_t pixels = (size_t)rect->width * (size_t)rect->height;
+    const struct view_parts *parts = &p->parts[view];
+    const int top = level ? relume_storage_top(p->info.storage) : 0;
+    const bool shares = level && p->info.domain == RELUME_DOMAIN_LINEAR;
     struct relume_image mask;
-    const relume_status status = reader_load_plane(&mask, p, p->parts[view].mask, rect);
+    const relume_status status =
+        reader_load_plane(&mask, p, level ? parts->share[level - 1] : parts->mask, rect);
     for (size_t i = 0; !status && i < pixels; i++) {
-        const float inside = !mask.data || mask.data[i] > 0.5f;
-        (void)codes_keep(plane, p->info.storage, i, &inside, 1);
+        const float share = mask.data ? fminf(mask.data[i], 1.0f) : 1.0f;
+        const float inside = shares ? share : share > (level ? 0.0f : 0.5f);
+        const float number = top ? rintf(inside * (float)top) : inside;
+        (void)codes_keep(plane, p->info.storage, i, &number, 1);
     }
     relume_image_destroy(&mask);
     return status;

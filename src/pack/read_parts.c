@@ -6,15 +6,17 @@
 #include <stdio.h>
 #include <string.h>
 
-static relume_status check_view_part(relume_pack *p, int part, int view)
+static relume_status check_view_part(relume_pack *p, int part, int view, int level)
 {
     const struct exr_part_info i = exr_part_info(p->file, part);
     const int planes = relume_coder_info(p->coder)->planes;
     char where[32];
-    snprintf(where, sizeof where, "view %d", view);
-    if (i.width != p->info.width || i.height != p->info.height)
+    int width, height;
+    snprintf(where, sizeof where, level ? "view %d, level %d" : "view %d", view, level);
+    relume_pack_level_size(&width, &height, p, level);
+    if (i.width != width || i.height != height)
         return reader_bad(p, where, "the size of the other parts");
-    if (p->info.books) {
+    if (p->info.books && !level) {
         if (i.channels != p->info.books || !i.uniform || i.sample != EXR_SAMPLE_UINT)
             return reader_bad(p, where, "one channel of whole numbers for every codebook");
         return RELUME_OK;
@@ -26,10 +28,12 @@ static relume_status check_view_part(relume_pack *p, int part, int view)
     return RELUME_OK;
 }
 
-static bool is_plane(const relume_pack *p, int part, enum exr_sample sample)
+static bool is_plane(const relume_pack *p, int part, int level, enum exr_sample sample)
 {
     const struct exr_part_info i = exr_part_info(p->file, part);
-    return i.width == p->info.width && i.height == p->info.height && i.channels == 1 && i.uniform &&
+    int width, height;
+    relume_pack_level_size(&width, &height, p, level);
+    return i.width == width && i.height == height && i.channels == 1 && i.uniform &&
            i.sample == sample;
 }
 
@@ -46,8 +50,36 @@ static relume_status find_codes(relume_pack *p, int view, int *part)
     p->parts[view] = (struct view_parts){.codes = *part, .depth = -1, .mask = -1, .anchor = -1};
     if (!is_next(p, *part, name, view, ""))
         return reader_bad(p, name, "a part of that name");
-    const relume_status status = check_view_part(p, (*part)++, view);
+    const relume_status status = check_view_part(p, (*part)++, view, 0);
     return status || p->info.shared ? status : reader_find_books(p, view, part);
+}
+
+// The reduced levels of a view, from *part on. Each is followed by its mask where the view has one,
+// which the last part of the view says.
+static relume_status find_levels(relume_pack *p, int view, int *part)
+{
+    struct view_parts *parts = &p->parts[view];
+    char name[48], what[32];
+    int levels = 0;
+    relume_status status = RELUME_OK;
+    for (; !status && levels < RELUME_MOST_LEVELS; levels++) {
+        snprintf(what, sizeof what, ".level%d", levels + 1);
+        if (!is_next(p, *part, name, view, what))
+            break;
+        parts->level[levels] = *part;
+        parts->share[levels] = -1;
+        status = check_view_part(p, (*part)++, view, levels + 1);
+        snprintf(what, sizeof what, ".level%d.mask", levels + 1);
+        if (status || !is_next(p, *part, name, view, what))
+            continue;
+        if (!is_plane(p, *part, levels + 1, EXR_SAMPLE_HALF))
+            return reader_bad(p, name, "one half channel of the level's size");
+        parts->share[levels] = (*part)++;
+    }
+    if (!status && view && levels != p->info.levels)
+        return reader_bad(p, name, "as many levels as the first view has");
+    p->info.levels = levels;
+    return status;
 }
 
 static relume_status find_view(relume_pack *p, int view, int *part)
@@ -56,17 +88,24 @@ static relume_status find_view(relume_pack *p, int view, int *part)
     struct view_parts *parts = &p->parts[view];
     relume_status status = p->coded ? RELUME_OK : find_codes(p, view, part);
     if (!status && is_next(p, *part, name, view, ".depth")) {
-        if (!is_plane(p, *part, EXR_SAMPLE_FLOAT))
+        if (!is_plane(p, *part, 0, EXR_SAMPLE_FLOAT))
             return reader_bad(p, name, "one float channel of the views' size");
         parts->depth = (*part)++;
         p->info.has_depth = true;
     }
+    if (!status && !p->coded)
+        status = find_levels(p, view, part);
     if (!status && is_next(p, *part, name, view, ".mask")) {
-        if (!is_plane(p, *part, EXR_SAMPLE_HALF))
+        if (!is_plane(p, *part, 0, EXR_SAMPLE_HALF))
             return reader_bad(p, name, "one half channel of the views' size");
         parts->mask = (*part)++;
         p->info.has_mask = true;
     }
+    for (int i = 0; !status && !p->coded && i < p->info.levels; i++)
+        if ((parts->share[i] < 0) != (parts->mask < 0)) {
+            snprintf(name, sizeof name, "view%04d.level%d", view, i + 1);
+            return reader_bad(p, name, "a mask where the view has one");
+        }
     return status;
 }
 
@@ -85,6 +124,7 @@ relume_status reader_find_parts(relume_pack *p)
         status = find_view(p, v, &part);
     if (status)
         return status;
+    p->info.tile = p->coded ? 0 : exr_part_info(p->file, p->parts[0].codes).tile;
     p->info.compression = p->coded ? CODING_AV1 : exr_part_info(p->file, p->parts[0].codes).codec;
     return reader_read_members(p);
 }

@@ -14,27 +14,25 @@ struct loading {
     const relume_pack *pack;
     char *data;  // [planes] of the rectangle
     int first, planes;
-    size_t width;  // of the part
     struct relume_rect rect;
     atomic_bool wrong;
 };
 
-static void load_rows(void *context, int row, int rows, const void *samples)
+static void load_block(void *context, const struct relume_rect *at, const void *samples)
 {
     struct loading *l = context;
     const enum relume_storage storage = l->pack->info.storage;
     const struct relume_coder_info *coder = relume_coder_info(l->pack->coder);
-    const struct relume_rect *r = &l->rect;
-    const size_t sample = exr_sample_bytes(codes_sample(storage)), from = l->width * sample;
-    const size_t n = (size_t)r->width, to = n * relume_storage_bytes(storage);
-    const char *left = (const char *)samples + (size_t)r->left * sample;
-    for (int y = row; y < row + rows; y++)
-        for (int c = 0; c < l->planes; c++, left += from) {
+    const struct relume_rect *r = &l->rect, some = exr_overlap(at, r);
+    const size_t sample = exr_sample_bytes(codes_sample(storage)),
+                 code = relume_storage_bytes(storage);
+    for (int y = some.top; y < some.top + some.height; y++)
+        for (int c = 0; c < l->planes; c++) {
             const int plane = l->first < 0 ? c : format_plane(coder, l->first + c) - l->first;
-            if (y < r->top || y >= r->top + r->height)
-                continue;
-            char *at = l->data + ((size_t)plane * (size_t)r->height + (size_t)(y - r->top)) * to;
-            if (!codes_from_samples(at, storage, left, n))
+            const void *from = exr_samples(samples, at, &some, y, l->planes, c, sample);
+            const size_t row = (size_t)plane * (size_t)r->height + (size_t)(y - r->top);
+            char *to = l->data + (row * (size_t)r->width + (size_t)(some.left - r->left)) * code;
+            if (!codes_from_samples(to, storage, from, (size_t)some.width))
                 atomic_store(&l->wrong, true);
         }
 }
@@ -47,39 +45,39 @@ relume_status reader_load(relume_pack *p, int part, const struct relume_rect *re
         .data = data,
         .first = first,
         .planes = planes,
-        .width = (size_t)exr_part_info(p->file, part).width,
         .rect = *rect,
     };
-    const relume_status status =
-        exr_read_rows(p->file, part, rect->top, rect->height, p->threads, load_rows, &l, p->log);
+    const relume_status status = exr_read(p->file, part, rect, p->threads, load_block, &l, p->log);
     if (!status && atomic_load(&l.wrong))
         return reader_bad(p, "stored codes", "finite codes of the stated type");
     return status;
 }
 
-// Scale and offset of the planes, and of the one of the mask, whose codes are 0 and 1.
-static void find_steps(float *steps, const relume_pack *p, int part, size_t planes)
+// Scale and offset of the planes, and of the one of the mask, whose codes are 0 and 1, or parts of
+// the largest code.
+static void find_steps(float *steps, const relume_pack *p, int part, int level, size_t planes)
 {
     const size_t stored = (size_t)p->info.planes;
+    const int top = level ? relume_storage_top(p->info.storage) : 0;
     const float *scale = reader_floats(p, part, ATTR_SCALE, p->info.planes);
     const float *offset = reader_floats(p, part, ATTR_OFFSET, p->info.planes);
     for (size_t i = 0; i < planes; i++) {
-        steps[i] = i < stored ? scale[i] : 1.0f;
+        steps[i] = i < stored ? scale[i] : top ? 1.0f / (float)top : 1.0f;
         steps[planes + i] = i < stored ? offset[i] : 0.0f;
     }
 }
 
-relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, int view,
+relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, int view, int level,
                                  const struct relume_rect *rect, const struct relume_codes *like)
 {
     const size_t planes = (size_t)like->planes, stored = (size_t)p->info.planes;
-    const int part = p->parts[view].codes;
+    const int part = level ? p->parts[view].level[level - 1] : p->parts[view].codes;
     float *steps = mem_array(2 * planes, sizeof *steps);
     struct relume_codes stepped = *like;
     void *data;
     if (!steps)
         return RELUME_ENOMEM;
-    find_steps(steps, p, p->coded ? 0 : part, planes);
+    find_steps(steps, p, p->coded ? 0 : part, level, planes);
     stepped.scale = steps;
     stepped.offset = steps + planes;
     relume_status status = codes_part_create(to, &data, &stepped, rect->width, rect->height);
@@ -89,7 +87,7 @@ relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, i
                           : reader_load(p, part, rect, data, p->info.planes, 0);
     if (!status && planes > stored)
         status =
-            reader_mask_plane(p, view, rect,
+            reader_mask_plane(p, view, level, rect,
                               (char *)data + stored * (size_t)rect->width * (size_t)rect->height *
                                                  relume_storage_bytes(like->storage));
     return !status && p->coded ? reader_mask_codes(p, view, rect, &to->codes, data) : status;
@@ -99,18 +97,17 @@ struct plane_sink {
     struct relume_image *image;
     enum exr_sample sample;
     struct relume_rect rect;
-    size_t width;  // of the part
 };
 
-static void plane_rows(void *context, int row, int rows, const void *samples)
+static void plane_block(void *context, const struct relume_rect *at, const void *samples)
 {
     const struct plane_sink *s = context;
-    const struct relume_rect *r = &s->rect;
-    const size_t sample = exr_sample_bytes(s->sample), n = (size_t)r->width;
-    const char *from = (const char *)samples + (size_t)r->left * sample;
-    for (int y = row; y < row + rows; y++, from += s->width * sample)
-        if (y >= r->top && y < r->top + r->height)
-            exr_to_floats(s->image->data + (size_t)(y - r->top) * n, s->sample, from, n);
+    const struct relume_rect *r = &s->rect, some = exr_overlap(at, r);
+    for (int y = some.top; y < some.top + some.height; y++)
+        exr_to_floats(
+            s->image->data + (size_t)(y - r->top) * (size_t)r->width + some.left - r->left,
+            s->sample, exr_samples(samples, at, &some, y, 1, 0, exr_sample_bytes(s->sample)),
+            (size_t)some.width);
 }
 
 relume_status reader_load_plane(struct relume_image *out, relume_pack *pack, int part,
@@ -122,10 +119,8 @@ relume_status reader_load_plane(struct relume_image *out, relume_pack *pack, int
     relume_status status = relume_image_create(out, rect->width, rect->height, 1);
     if (status)
         return status;
-    struct plane_sink sink = {out, exr_part_info(pack->file, part).sample, *rect,
-                              (size_t)pack->info.width};
-    status = exr_read_rows(pack->file, part, rect->top, rect->height, pack->threads, plane_rows,
-                           &sink, pack->log);
+    struct plane_sink sink = {out, exr_part_info(pack->file, part).sample, *rect};
+    status = exr_read(pack->file, part, rect, pack->threads, plane_block, &sink, pack->log);
     const size_t n = (size_t)out->width * (size_t)out->height;
     for (size_t i = 0; !status && i < n; i++)
         if (!(out->data[i] >= 0.0f))

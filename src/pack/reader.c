@@ -96,20 +96,49 @@ const struct relume_geometry *relume_pack_geometry(const relume_pack *pack, int 
     return info->slabs ? &info->slab[info->slab_of[view]] : &info->geometry;
 }
 
+void relume_pack_level_size(int *width, int *height, const relume_pack *pack, int level)
+{
+    *width = pack->info.width;
+    *height = pack->info.height;
+    for (int i = 0; i < level; i++) {
+        *width = (*width + 1) / 2;
+        *height = (*height + 1) / 2;
+    }
+}
+
+static relume_status check_bytes(const relume_pack *p, const struct relume_rect *rect,
+                                 const struct relume_codes *like)
+{
+    const uint64_t planes = (uint64_t)(like->books ? like->books : like->planes);
+    const uint64_t each = like->books ? sizeof(uint16_t) : relume_storage_bytes(like->storage);
+    const uint64_t bytes = (uint64_t)rect->width * (uint64_t)rect->height * planes * each;
+    if (bytes <= p->limits.max_memory)
+        return RELUME_OK;
+    return log_fail(p->log, RELUME_ELIMIT,
+                    "%s: %d x %d pixels of %d planes take %llu MB; expected at most %llu MB "
+                    "(--max-memory): ask for less of it (--size, --crop)",
+                    p->path, rect->width, rect->height, (int)planes,
+                    (unsigned long long)(bytes >> 20),
+                    (unsigned long long)(p->limits.max_memory >> 20));
+}
+
 // From the file.
-static relume_status load(struct relume_codes_part *to, relume_pack *p, int view,
+static relume_status load(struct relume_codes_part *to, relume_pack *p, int view, int level,
                           const struct relume_rect *rect)
 {
+    const int books = level ? 0 : p->info.books;
     const struct relume_codes like = {
         .coder = p->coder,
         .domain = p->info.domain,
         .display = p->info.display,
         .planes = relume_coder_info(p->coder)->planes,
-        .books = p->info.books,
-        .storage = p->info.books ? 0 : p->info.storage,
+        .books = books,
+        .storage = books ? 0 : p->info.storage,
     };
-    const relume_status status =
-        (p->info.books ? reader_load_indices : reader_load_planes)(to, p, view, rect, &like);
+    relume_status status = check_bytes(p, rect, &like);
+    if (!status)
+        status = books ? reader_load_indices(to, p, view, rect, &like)
+                       : reader_load_planes(to, p, view, level, rect, &like);
     if (status)
         relume_codes_part_destroy(to);
     return status;
@@ -122,7 +151,7 @@ relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pa
         return RELUME_EINVAL;
     struct relume_codes_part *to = &pack->loaded[view];
     const struct relume_rect all = reader_whole(pack);
-    const relume_status status = to->memory ? RELUME_OK : load(to, pack, view, &all);
+    const relume_status status = to->memory ? RELUME_OK : load(to, pack, view, 0, &all);
     if (status) {
         relume_pack_drop(pack, view);
         return status;
@@ -131,17 +160,26 @@ relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pa
     return RELUME_OK;
 }
 
+relume_status relume_pack_codes_level(struct relume_codes_part *out, relume_pack *pack, int view,
+                                      int level, const struct relume_rect *rect)
+{
+    int width, height;
+    *out = (struct relume_codes_part){.memory = NULL};
+    if (view < 0 || view >= pack->info.views || level < 0 || level > pack->info.levels)
+        return RELUME_EINVAL;
+    relume_pack_level_size(&width, &height, pack, level);
+    if (rect->left < 0 || rect->top < 0 || rect->width < 1 || rect->height < 1 ||
+        rect->width > width - rect->left || rect->height > height - rect->top)
+        return RELUME_EINVAL;
+    const struct relume_codes_part *whole = &pack->loaded[view];
+    return whole->memory && !level ? relume_codes_crop(out, &whole->codes, rect)
+                                   : load(out, pack, view, level, rect);
+}
+
 relume_status relume_pack_codes_part(struct relume_codes_part *out, relume_pack *pack, int view,
                                      const struct relume_rect *rect)
 {
-    *out = (struct relume_codes_part){.memory = NULL};
-    if (view < 0 || view >= pack->info.views || rect->left < 0 || rect->top < 0 ||
-        rect->width < 1 || rect->height < 1 || rect->width > pack->info.width - rect->left ||
-        rect->height > pack->info.height - rect->top)
-        return RELUME_EINVAL;
-    const struct relume_codes_part *whole = &pack->loaded[view];
-    return whole->memory ? relume_codes_crop(out, &whole->codes, rect)
-                         : load(out, pack, view, rect);
+    return relume_pack_codes_level(out, pack, view, 0, rect);
 }
 
 void relume_pack_drop(relume_pack *pack, int view)

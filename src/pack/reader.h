@@ -18,6 +18,7 @@ struct view_parts {
     int anchor;              // coded: the view from which it is predicted, -1: from none
     struct word_range words, depth_words;  // coded: of `codes`, and where there are any of `depth`
     float depth_step;
+    int level[RELUME_MOST_LEVELS], share[RELUME_MOST_LEVELS];  // reduced; as `codes` and `mask`
 };
 
 // The codebooks of one view, or those of all.
@@ -68,8 +69,9 @@ relume_status reader_find_parts(relume_pack *p);
 // `data` where it is negative (read_view.c).
 relume_status reader_load(relume_pack *p, int part, const struct relume_rect *rect, void *data,
                           int planes, int first);
-// The codes of a rectangle of a view, from the file; `like` is what is known of them.
-relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, int view,
+// The codes of a rectangle of a view, or of a reduced level of it, from the file; `like` is what is
+// known of them.
+relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, int view, int level,
                                  const struct relume_rect *rect, const struct relume_codes *like);
 relume_status reader_load_indices(struct relume_codes_part *to, relume_pack *p, int view,
                                   const struct relume_rect *rect, const struct relume_codes *like);
@@ -85,8 +87,9 @@ relume_status reader_load_coded(relume_pack *p, int view, const struct relume_re
 relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, int view);
 
 // What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
-// mean, 1 inside and 0 outside; and the code vectors of nothing.
-relume_status reader_mask_plane(relume_pack *p, int view, const struct relume_rect *rect,
+// mean, 1 inside and 0 outside, of a reduced level what of each pixel is inside (in the display
+// domain: 1 where any is); and the code vectors of nothing.
+relume_status reader_mask_plane(relume_pack *p, int view, int level, const struct relume_rect *rect,
                                 void *plane);
 // Codes of coefficients that are 0 where the mask leaves out, into planes that were coded with
 // loss.

@@ -12,6 +12,9 @@
 // more pixels a side than these, each the mean of so many of the view.
 enum { SMALL = 64, MOST_ROWS = 16 };
 
+// Of views that have reduced levels it is one of those, at most so many pixels a side.
+enum { MOST_SHOWN = 1024 };
+
 static size_t coarseness(const struct relume_coefficients_info *info)
 {
     const int side = info->width > info->height ? info->width : info->height;
@@ -41,10 +44,28 @@ static uint16_t *put_row(uint16_t *out, const float *rgb, size_t width)
     return out;
 }
 
+int relume_pack_shown(const struct relume_pack_view *view)
+{
+    const int levels = view->levels ? view->levels->levels : 0;
+    for (int i = 0; i < levels; i++) {
+        const struct relume_coefficients_info *info =
+            relume_coefficients_info(view->levels->level[i]);
+        if (info->width <= MOST_SHOWN && info->height <= MOST_SHOWN)
+            return i + 1;
+    }
+    return levels;
+}
+
+const struct relume_coefficients_info *writer_shown(const struct relume_pack_view *view)
+{
+    const int level = relume_pack_shown(view);
+    return relume_coefficients_info(level ? view->levels->level[level - 1] : view->coefficients);
+}
+
 static relume_status preview_rows(void *context, int row, int rows, void *samples)
 {
     const struct relume_pack_contents *c = context;
-    const size_t width = (size_t)relume_coefficients_info(first_view(c)->coefficients)->width;
+    const size_t width = (size_t)writer_shown(first_view(c))->width;
     float *rgb = mem_zeroed((size_t)rows * width, 3 * sizeof *rgb);
     uint16_t *out = samples;
     if (!rgb)
@@ -190,8 +211,6 @@ static void describe_coding(struct writer *w, struct exr_part *part,
     part->height = (info->height + coarse - 1) / coarse;
     part->rows = small_rows;
     writer_text(part, ATTR_CODING, CODING_AV1);
-    writer_int(part, ATTR_WIDTH, info->width);
-    writer_int(part, ATTR_HEIGHT, info->height);
     writer_floats(w, part, ATTR_SCALE, info->scale, info->planes);
     writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
 }
@@ -229,7 +248,8 @@ void writer_add_header(struct writer *w)
     const struct relume_pack_view *view = first_view(c);
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
     const double report[] = {c->report.fit_rms, c->report.store_rms};
-    struct exr_part *part = writer_part(w, "preview", info->width, info->height);
+    const struct relume_coefficients_info *shown = writer_shown(view);
+    struct exr_part *part = writer_part(w, "preview", shown->width, shown->height);
     part->codec = w->codec;
     part->sample = EXR_SAMPLE_HALF;
     part->channels = 3;
@@ -239,10 +259,10 @@ void writer_add_header(struct writer *w)
     relume_transfer_text(c->display, w->display, sizeof w->display);
     writer_text(part, ATTR_FORMAT, c->share ? FORMAT_PART : FORMAT_NAME);
     writer_int(part, ATTR_VERSION,
-               view->coded        ? FORMAT_CODED
-               : c->slabs         ? FORMAT_SLABS
-               : c->geometry.disc ? FORMAT_DISCS
-                                  : FORMAT_PLAIN);
+               view->coded || view->levels ? FORMAT_CODED
+               : c->slabs                  ? FORMAT_SLABS
+               : c->geometry.disc          ? FORMAT_DISCS
+                                           : FORMAT_PLAIN);
     writer_text(part, ATTR_CREATOR, "relume " RELUME_VERSION);
     writer_text(part, ATTR_DOMAIN, c->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear");
     writer_text(part, ATTR_DISPLAY, w->display);
@@ -250,6 +270,10 @@ void writer_add_header(struct writer *w)
     writer_int(part, ATTR_VIEWS, c->views);
     if (isfinite(report[0]) && isfinite(report[1]))
         writer_doubles(w, part, ATTR_REPORT, report, 2);
+    if (view->coded || view->levels) {
+        writer_int(part, ATTR_WIDTH, info->width);
+        writer_int(part, ATTR_HEIGHT, info->height);
+    }
     if (view->coded)
         describe_coding(w, part, info);
     if (view->books)

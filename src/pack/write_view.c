@@ -49,6 +49,16 @@ static relume_status mask_rows(void *context, int row, int rows, void *samples)
     return RELUME_OK;
 }
 
+// Shares that are not 0 stay so.
+static relume_status share_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_image *image = context;
+    const size_t width = (size_t)image->width;
+    exr_from_floats(samples, EXR_SAMPLE_HALF, image->data + (size_t)row * width,
+                    (size_t)rows * width);
+    return RELUME_OK;
+}
+
 static void add_plane(struct writer *w, const char *name, int view,
                       const struct relume_image *image, const char *const *channel,
                       enum exr_sample sample, relume_status (*rows)(void *, int, int, void *))
@@ -58,6 +68,7 @@ static void add_plane(struct writer *w, const char *name, int view,
     struct exr_part *part = writer_part(w, arena_format(&w->arena, "view%04d.%s", view, name),
                                         image->width, image->height);
     part->codec = EXR_CODEC_ZIP;
+    part->tile = w->contents->view[view].levels ? FORMAT_TILE : 0;
     part->sample = sample;
     part->channels = 1;
     part->channel = channel;
@@ -66,14 +77,14 @@ static void add_plane(struct writer *w, const char *name, int view,
 }
 
 static void fill_with_planes(struct writer *w, struct exr_part *part,
-                             const struct relume_pack_view *view)
+                             const relume_coefficients *coefficients)
 {
-    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
+    const struct relume_coefficients_info *info = relume_coefficients_info(coefficients);
     part->sample = codes_sample(info->storage);
     part->channels = info->planes;
     part->channel = w->channels;
     part->rows = code_rows;
-    part->context = (void *)(uintptr_t)view->coefficients;
+    part->context = (void *)(uintptr_t)coefficients;
     writer_floats(w, part, ATTR_SCALE, info->scale, info->planes);
     writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
 }
@@ -155,6 +166,7 @@ static void add_codes(struct writer *w, int index, bool shared)
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
     struct exr_part *part =
         writer_part(w, arena_format(&w->arena, "view%04d", index), info->width, info->height);
+    part->tile = view->levels ? FORMAT_TILE : 0;
     writer_int(part, ATTR_VIEW, index);
     if (w->contents->slabs)
         writer_int(part, ATTR_MEMBER, view->slab);
@@ -165,9 +177,27 @@ static void add_codes(struct writer *w, int index, bool shared)
     else if (view->coefficients->some.rows)
         fill_with_waiting(w, part, view);
     else
-        fill_with_planes(w, part, view);
+        fill_with_planes(w, part, view->coefficients);
     if (view->books && !shared)
         writer_add_books(w, view->books, index);
+}
+
+static void add_levels(struct writer *w, int index)
+{
+    static const char *const channel[] = {"A"};
+    const struct relume_pack_levels *levels = w->contents->view[index].levels;
+    char name[32];
+    for (int i = 0; levels && i < levels->levels; i++) {
+        const struct relume_coefficients_info *info = relume_coefficients_info(levels->level[i]);
+        struct exr_part *part =
+            writer_part(w, arena_format(&w->arena, "view%04d.level%d", index, i + 1), info->width,
+                        info->height);
+        part->tile = FORMAT_TILE;
+        fill_with_planes(w, part, levels->level[i]);
+        snprintf(name, sizeof name, "level%d.mask", i + 1);
+        add_plane(w, name, index, levels->share[i].data ? &levels->share[i] : NULL, channel,
+                  EXR_SAMPLE_HALF, share_rows);
+    }
 }
 
 void writer_add_view(struct writer *w, int index, bool shared)
@@ -178,5 +208,6 @@ void writer_add_view(struct writer *w, int index, bool shared)
         add_codes(w, index, shared);
     if (!view->coded || !(view->depth_step > 0.0f))
         add_plane(w, "depth", index, view->depth, depth_channel, EXR_SAMPLE_FLOAT, depth_rows);
+    add_levels(w, index);
     add_plane(w, "mask", index, view->mask, mask_channel, EXR_SAMPLE_HALF, mask_rows);
 }

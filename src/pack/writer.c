@@ -119,7 +119,8 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
         .coder = relume_coder_info(contents->coder),
         .codec = codecs[p.compression],
     };
-    const size_t most_parts = 1 + (3 + RELUME_MOST_BOOKS) * (size_t)contents->views;
+    const size_t most_parts =
+        1 + (3 + RELUME_MOST_BOOKS + 2 * RELUME_MOST_LEVELS) * (size_t)contents->views;
     if (!path && !p.writer)
         return RELUME_EINVAL;
     w.parts = arena_array(&w.arena, most_parts, sizeof *w.parts);

@@ -35,6 +35,8 @@ void writer_add_header(struct writer *w);
 // The parts of a view: its planes unless they are coded, or indices into codebooks and these unless
 // they are `shared`; its mask, and its depth unless that is coded (write_view.c).
 void writer_add_view(struct writer *w, int view, bool shared);
+// What the first part shows of a view: its coefficients, or those of a reduced level.
+const struct relume_coefficients_info *writer_shown(const struct relume_pack_view *view);
 // The parts of all views whose planes are coded, and of their depth (write_coded.c).
 void writer_add_groups(struct writer *w);
 // The parts of the codebooks of a view, or of all of them (-1); and the indices into them.

@@ -38,6 +38,7 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            c->interpolant ? c->interpolant->name : "null", c->interpolant ? "\"" : "",
            i->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display", display,
            relume_storage_name(i->storage), i->compression);
+    printf("\"levels\": %d, \"tile\": %d, ", i->levels, i->tile);
     printf("\"books\": %d, \"codes\": %d, \"shared\": %s, ", i->books, i->codes,
            i->shared ? "true" : "false");
     printf("\"fit_rms\": ");
@@ -95,6 +96,9 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
         printf("error         %s of white from the model, %s from rounding (RMS over the "
                "photographs)\n",
                percent(model, i->report.fit_rms), percent(rounding, i->report.store_rms));
+    if (i->levels)
+        printf("pyramid       %d smaller level%s, tiles of %d pixels\n", i->levels,
+               relume_plural(i->levels), i->tile);
     printf("extras        %s%s%s\n", i->has_depth ? "depth" : "",
            i->has_depth && i->has_mask ? ", " : "",
            i->has_mask    ? "mask"

@@ -1,0 +1,29 @@
+// reduce.h - the coefficients of a view at half its size
+#ifndef CODER_REDUCE_H
+#define CODER_REDUCE_H
+
+#include <relume/coder.h>
+
+// Half of a side; an odd one keeps its last pixel.
+static inline int reduced(int side)
+{
+    return (side + 1) / 2;
+}
+
+// What coefficients are in, and how they are to be stored: domain, not AUTO, and its curve;
+// storage, step, threads and the place of temporary data.
+struct reduction {
+    enum relume_domain domain;
+    struct relume_transfer display;
+    struct relume_encode_params encode;
+};
+
+// Coefficients whose pixels show, under the captured lights, the mean light of the 2 x 2 that they
+// cover. `share` (empty: 1) is how much of each pixel of `from` is within the mask: nothing shows
+// beyond it. Not of luminance coefficients, which are no sums. RELUME_EIO, RELUME_ENOMEM.
+relume_status coefficients_reduce(relume_coefficients **out, const relume_coefficients *from,
+                                  const struct relume_image *share, const struct reduction *r);
+// The means of 2 x 2 shares.
+relume_status share_reduce(struct relume_image *out, const struct relume_image *share);
+
+#endif

@@ -1,0 +1,202 @@
+// test_pyramid.c - reduced levels of a view: each pixel shows the mean light of 2 x 2 of the level
+// before, and any rectangle of a level is what the whole level has there
+#include "test.h"
+
+#include "capture_fixture.h"
+
+static char folder[64], path[96];
+
+static int setup(void **state)
+{
+    (void)state;
+    test_folder(folder);
+    snprintf(path, sizeof path, "%s/pyramid.exr", folder);
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    test_folder_remove(folder);
+    return 0;
+}
+
+static void open_pyramid(relume_pack **pack, const struct relume_basis *basis, int coefficients,
+                         enum relume_domain domain, enum relume_storage storage, int threads)
+{
+    CHECK_OK(fixture_encode(folder, path, basis, coefficients,
+                            relume_pack_encode_params(.domain = domain, .storage = storage,
+                                                      .pyramid = RELUME_PYRAMID_YES,
+                                                      .threads = threads)));
+    CHECK_OK(relume_pack_open(pack, path, NULL));
+}
+
+static void read_level(struct relume_codes_part *out, relume_pack *pack, int level)
+{
+    struct relume_rect all = {0};
+    relume_pack_level_size(&all.width, &all.height, pack, level);
+    CHECK_OK(relume_pack_codes_level(out, pack, 0, level, &all));
+}
+
+static void relight_level(struct relume_image *out, relume_pack *pack, int level,
+                          struct relume_vec3 direction)
+{
+    struct relume_codes_part part;
+    const struct relume_light light = {.direction = direction, .rgb = {1, 1, 1}};
+    read_level(&part, pack, level);
+    *out = (struct relume_image){0};
+    CHECK_OK(relume_relight(out, &part.codes, &light, 1, NULL));
+    relume_codes_part_destroy(&part);
+}
+
+// The mean of those of 2 x 2 pixels that there are.
+static double mean(const struct relume_image *image, int x, int y, int c)
+{
+    double sum = 0.0;
+    int n = 0;
+    for (int i = 0; i < 4; i++) {
+        const int u = 2 * x + i % 2, v = 2 * y + i / 2;
+        if (u >= image->width || v >= image->height)
+            continue;
+        sum += (double)image->data[3 * (v * image->width + u) + c];
+        n++;
+    }
+    return sum / n;
+}
+
+static void check_means(relume_pack *pack, double tolerance)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const struct relume_coder_info *coder = relume_coder_info(info->coder);
+    assert_int_equal(info->levels, 2);  // 301, 151, 76
+    for (int light = 0; light < coder->lights; light += 3)
+        for (int level = 1; level <= info->levels; level++) {
+            struct relume_image larger, smaller;
+            relight_level(&larger, pack, level - 1, coder->directions[light]);
+            relight_level(&smaller, pack, level, coder->directions[light]);
+            assert_int_equal(smaller.width, (larger.width + 1) / 2);
+            assert_int_equal(smaller.height, (larger.height + 1) / 2);
+            for (int i = 0; i < smaller.width * smaller.height; i++)
+                for (int c = 0; c < 3; c++)
+                    CHECK_NEAR(smaller.data[3 * i + c],
+                               mean(&larger, i % smaller.width, i / smaller.width, c), tolerance);
+            relume_image_destroy(&larger);
+            relume_image_destroy(&smaller);
+        }
+}
+
+static void test_levels_show_means(void **state)
+{
+    (void)state;
+    for (int mask = 0; mask < 2; mask++) {
+        const struct fixture f = {.width = 203,
+                                  .height = 301,
+                                  .lights = 8,
+                                  .views = 1,
+                                  .hemisphere = true,
+                                  .mask = mask,
+                                  .depth = mask};
+        fixture_write(&f, folder);
+        const struct {
+            const struct relume_basis *basis;
+            int coefficients;
+            enum relume_domain domain;
+            enum relume_storage storage;
+            double tolerance;
+        } cases[] = {
+            // sums in single precision
+            {&relume_basis_pca, 5, RELUME_DOMAIN_LINEAR, RELUME_STORE_FLOAT, 1e-5},
+            {&relume_basis_hsh, 4, RELUME_DOMAIN_LINEAR, RELUME_STORE_FLOAT, 1e-5},
+            // what is fitted to the residual is ridged by 1e-5 of it, and curves are tables
+            {&relume_basis_table, 0, RELUME_DOMAIN_DISPLAY, RELUME_STORE_FLOAT, 5e-5},
+            {&relume_basis_pca, 24, RELUME_DOMAIN_DISPLAY, RELUME_STORE_FLOAT, 2e-4},
+            // half a step of each of 8 planes in both levels, and of the share of the mask
+            {&relume_basis_table, 0, RELUME_DOMAIN_LINEAR, RELUME_STORE_8, 0.01},
+        };
+        for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+            relume_pack *pack;
+            open_pyramid(&pack, cases[i].basis, cases[i].coefficients, cases[i].domain,
+                         cases[i].storage, 3);
+            check_means(pack, cases[i].tolerance);
+            relume_pack_destroy(&pack);
+        }
+    }
+}
+
+static void check_crop(relume_pack *pack, const struct relume_codes *whole, int level,
+                       const struct relume_rect *at)
+{
+    struct relume_codes_part part;
+    float got[512], want[512];
+    CHECK_OK(relume_pack_codes_level(&part, pack, 0, level, at));
+    for (int y = 0; y < at->height; y++)
+        for (int p = 0; p < whole->planes; p++) {
+            relume_codes_plane(&part.codes, p, (size_t)(y * at->width), (size_t)at->width, got);
+            relume_codes_plane(whole, p, (size_t)((at->top + y) * whole->width + at->left),
+                               (size_t)at->width, want);
+            assert_memory_equal(got, want, sizeof *got * (size_t)at->width);
+        }
+    relume_codes_part_destroy(&part);
+}
+
+static void test_any_rectangle(void **state)
+{
+    (void)state;
+    const struct fixture f = {.width = 301, .height = 203, .lights = 5, .views = 1, .mask = true};
+    uint32_t seed = 7;
+    relume_pack *pack;
+    fixture_write(&f, folder);
+    open_pyramid(&pack, &relume_basis_pca, 4, RELUME_DOMAIN_DISPLAY, RELUME_STORE_DEFAULT, 2);
+    for (int level = 0; level <= relume_pack_info(pack)->levels; level++) {
+        struct relume_codes_part whole;
+        read_level(&whole, pack, level);
+        const int w = whole.codes.width, h = whole.codes.height;
+        for (int i = 0; i < 40; i++) {
+            const int left = (int)(test_random(&seed) % (uint32_t)w);
+            const int top = (int)(test_random(&seed) % (uint32_t)h);
+            const struct relume_rect at = {left, top,
+                                           1 + (int)(test_random(&seed) % (uint32_t)(w - left)),
+                                           1 + (int)(test_random(&seed) % (uint32_t)(h - top))};
+            check_crop(pack, &whole.codes, level, &at);
+        }
+        const struct relume_rect wrong[] = {{-1, 0, 1, 1}, {0, 0, w + 1, 1}, {0, h, 1, 1}};
+        struct relume_codes_part none;
+        for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+            assert_int_equal(relume_pack_codes_level(&none, pack, 0, level, &wrong[i]),
+                             RELUME_EINVAL);
+        assert_int_equal(relume_pack_codes_level(&none, pack, 0, 9, &wrong[2]), RELUME_EINVAL);
+        relume_codes_part_destroy(&whole);
+    }
+    relume_pack_destroy(&pack);
+}
+
+// The same bytes from any number of threads.
+static void test_threads(void **state)
+{
+    (void)state;
+    const struct fixture f = {.width = 150, .height = 290, .lights = 5, .views = 1};
+    char *bytes[2];
+    size_t size[2];
+    fixture_write(&f, folder);
+    for (int i = 0; i < 2; i++) {
+        relume_pack *pack;
+        open_pyramid(&pack, &relume_basis_sh, 4, RELUME_DOMAIN_DISPLAY, RELUME_STORE_DEFAULT,
+                     i ? 7 : 1);
+        relume_pack_destroy(&pack);
+        bytes[i] = test_read(path, &size[i]);
+    }
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(bytes[0], bytes[1], size[0]);
+    free(bytes[0]);
+    free(bytes[1]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_levels_show_means, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_any_rectangle, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_threads, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

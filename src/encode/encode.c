@@ -103,8 +103,14 @@ static relume_status encode_view(struct material *m, int i, const relume_coder *
 }
 
 // The half of a step moves what the next camera of a slab sees by so many pixels; without one it is
-// this part of the inverse of the usual depth.
-static const double MOST_PARALLAX = 0.25, OF_USUAL = 1.0 / 128.0;
+// this part of the inverse of the usual depth. Twice as much where planes are coarse.
+static const double MOST_PARALLAX = 0.25, OF_USUAL = 1.0 / 128.0, COARSE_DB = 36.0, FINE_DB = 40.0;
+
+static double coarser(double psnr_db)
+{
+    return psnr_db > 0.0 ? fmin(fmax(exp2((FINE_DB - psnr_db) / (FINE_DB - COARSE_DB)), 1.0), 2.0)
+                         : 1.0;
+}
 
 // How far apart the cameras of a slab stand; 0: there is one.
 static double between_cameras(const struct relume_manifest *m, int slab)
@@ -135,15 +141,16 @@ static double usual_inverse(const struct relume_image *depth)
 }
 
 // The step of inverse depth; 0: depth is written as it is.
-static float depth_step(const struct relume_manifest *m, const struct relume_image *depth, int slab)
+static double depth_step(const struct relume_manifest *m, const struct relume_image *depth,
+                         int slab)
 {
     const struct relume_geometry *g = m->slabs ? &m->slab[slab] : &m->geometry;
     const double between = g->projection == RELUME_SLAB ? between_cameras(m, slab) : 0.0;
     if (!(between > 0.0))
-        return (float)(2.0 * OF_USUAL * usual_inverse(depth));
+        return 2.0 * OF_USUAL * usual_inverse(depth);
     const double pixel = fmin((g->st_max[0] - g->st_min[0]) / depth->width,
                               (g->st_max[1] - g->st_min[1]) / depth->height);
-    return (float)(2.0 * MOST_PARALLAX * pixel / (between * fabs(g->uv_z - g->st_z)));
+    return 2.0 * MOST_PARALLAX * pixel / (between * fabs(g->uv_z - g->st_z));
 }
 
 // Indices into the books of view `set`.
@@ -337,7 +344,9 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
     for (int i = 0; i < m->views; i++) {
         masked |= m->mask[i].data != NULL;
         if (m->depth[i].data)
-            m->view[i].depth_step = depth_step(manifest, &m->depth[i], manifest->view[i].slab);
+            m->view[i].depth_step =
+                (float)(coarser(p->psnr_db) *
+                        depth_step(manifest, &m->depth[i], manifest->view[i].slab));
     }
     relume_status status =
         coefficients_share_steps(m->coefficients, m->views, masked, encode->step);

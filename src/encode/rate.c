@@ -10,12 +10,15 @@
 #include <math.h>
 #include <string.h>
 
-// The slow coder is about a whole step better in quality at the same quantiser.
+// At the same quantiser the slow coder is about a whole step better in quality, and in bytes two.
 enum { FIRST_GUESS = 30 * AV1_STEPS, SLOW_IS_FINER = AV1_STEPS };
 
 // What is tried first: of views that are alone three, else two groups; by the slow coder too where
 // all of them are more than so many times that.
 enum { MOST_ALONE = 3, MOST_GROUPS = 2, WORTH_TRYING = 2 };
+
+// The most samples of all pictures that are coded slowly.
+static const double MOST_SLOW = 64e6;
 
 struct trial {
     struct lossy_words *words;  // [views], of the groups that are tried; NULL: not tried
@@ -26,6 +29,7 @@ struct rate {
     relume_coefficients *const *coefficients;  // [views]
     const struct view_groups *groups;
     int tried, speed;  // of the groups, evenly spread
+    bool rough;        // a guess is enough
     int first;         // which view of the capture the coefficients begin with
     double done;       // 0 .. 1
     double step_db;    // what a step of the quantiser is worth
@@ -205,12 +209,14 @@ static int within(int quantiser)
                                       : quantiser;
 }
 
-// So near that the next step would hardly be nearer: qualities are wanted within 0.3 dB, and bytes
+// So near that another trial is not worth its time: qualities are wanted within 0.3 dB, and bytes
 // that are all but used are used.
 static bool is_close(const struct rate *r, int quantiser)
 {
     const double s = surplus(r, quantiser);
-    return r->target.psnr_db > 0.0 ? fabs(s) < 0.2 : s <= 0.0 && s > -0.15;
+    if (r->rough)
+        return fabs(s) < 0.5;
+    return r->target.psnr_db > 0.0 ? fabs(s) < 0.25 : s <= 0.0 && s > -0.25;
 }
 
 // Whether a trial is nearer to the target than another: in quality, or with as many bytes as are
@@ -230,7 +236,8 @@ static void learn_step(struct rate *r, int a, int b)
     r->step_db = fmin(fmax(each, 0.02), 0.5);
 }
 
-// From *quantiser on to the one that meets the target best, on `tried` groups.
+// From *quantiser on to the one that meets the target best, on `tried` groups; or, roughly, to
+// where it is to be sought.
 static relume_status search(struct rate *r, int tried, int speed, int *quantiser)
 {
     int fine = AV1_FINEST - 1, coarse = AV1_COARSEST + 1;  // not tried
@@ -246,14 +253,26 @@ static relume_status search(struct rate *r, int tried, int speed, int *quantiser
             learn_step(r, last, q);
         last = q;
         *(surplus(r, q) >= 0.0 ? &fine : &coarse) = q;
-        if (coarse - fine <= 1 || is_close(r, q))
+        const bool found = is_close(r, q), enclosed = fine >= AV1_FINEST && coarse <= AV1_COARSEST;
+        if (coarse - fine <= 1 || (found && !r->rough))
             return RELUME_OK;
-        q = within(fine >= AV1_FINEST && coarse <= AV1_COARSEST ? between(r, fine, coarse)
-                                                                : beyond(r, q));
+        q = within(enclosed ? between(r, fine, coarse) : beyond(r, q));
+        if (r->rough && (found || enclosed)) {
+            *quantiser = q;
+            return RELUME_OK;
+        }
     }
 }
 
-// The fast coder finds about where, the slow one the step itself, then that of all groups.
+// The slow coder where it takes no more than some minutes.
+static int speed_for(relume_coefficients *const *coefficients, int views)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(coefficients[0]);
+    const double samples = (double)info->width * info->height * info->planes * views;
+    return samples <= MOST_SLOW ? AV1_SLOW : AV1_USUAL;
+}
+
+// The fast coder finds about where, a slower one the step itself, then that of all groups.
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           relume_coefficients *const *coefficients,
                           const struct view_groups *groups, const relume_capture *capture,
@@ -263,21 +282,23 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
     const int tried = groups->count < some ? groups->count : some;
     struct rate r = {.coefficients = coefficients,
                      .groups = groups,
+                     .rough = true,
                      .capture = capture,
                      .p = p,
                      .step_db = 0.1,
                      .target = *target};
+    const int speed = speed_for(coefficients, views_of(groups));
     int *quantiser = &result->quantiser;
     *quantiser = FIRST_GUESS;
     relume_status status = search(&r, tried, AV1_FAST, quantiser);
-    r.done = 0.3;
-    if (target->psnr_db > 0.0)
-        *quantiser = within(*quantiser + SLOW_IS_FINER);
+    r.rough = false;
+    r.done = 0.2;
+    *quantiser = within(*quantiser + (target->psnr_db > 0.0 ? 1 : -2) * SLOW_IS_FINER);
     if (!status && WORTH_TRYING * tried < groups->count)
-        status = search(&r, tried, AV1_SLOW, quantiser);
-    r.done = 0.6;
+        status = search(&r, tried, speed, quantiser);
+    r.done = 0.5;
     if (!status)
-        status = search(&r, groups->count, AV1_SLOW, quantiser);
+        status = search(&r, groups->count, speed, quantiser);
     struct trial *best = &r.trial[*quantiser];
     result->psnr_db = best->psnr_db;
     if (!status) {

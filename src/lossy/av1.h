@@ -10,7 +10,8 @@ enum {
     AV1_STEPS = 4,
     AV1_FINEST = AV1_STEPS,
     AV1_COARSEST = 63 * AV1_STEPS,
-    AV1_SLOW = 3,
+    AV1_SLOW = 2,
+    AV1_USUAL = 3,
     AV1_FAST = 6,
     AV1_MOST_MEMBERS = 25
 };
@@ -22,8 +23,9 @@ struct av1_shape {
 };
 
 // `quantiser` AV1_FINEST .. AV1_COARSEST: AV1_STEPS times what libaom calls so, of whose whole
-// numbers the pictures have the two nearest in turn. `speed` AV1_SLOW .. AV1_FAST, which takes a
-// half of the time for a tenth more bytes.
+// numbers the pictures have the two nearest in turn. `speed` AV1_SLOW .. AV1_FAST: compared with
+// the slow one the usual takes less than half of the time for 6 % more bytes, the fast a sixth of
+// it for 18 %.
 struct av1_effort {
     int quantiser, speed;
 };

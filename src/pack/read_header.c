@@ -161,6 +161,27 @@ static relume_status read_geometry(relume_pack *p)
     return read_uv(p);
 }
 
+// What decodes the coefficients, [rows][each]; NULL where there is none.
+static relume_status read_functions(const float **out, relume_pack *p, int rows, int each)
+{
+    const char *text = exr_get_text(p->file, 0, ATTR_FUNCTIONS);
+    if (!text)
+        return optional_floats(p, ATTR_TRANSFORM, (long long)rows * each, out)
+                   ? RELUME_OK
+                   : reader_bad(p, ATTR_TRANSFORM, "coefficients x functions finite numbers");
+    const float *most = reader_floats(p, 0, ATTR_MOST, rows);
+    *out = NULL;
+    if (!most || strlen(text) != 2 * (size_t)rows * (size_t)each)
+        return reader_bad(p, ATTR_FUNCTIONS, "two digits for every number, and " ATTR_MOST);
+    float *numbers = arena_array(&p->arena, (size_t)rows * (size_t)each, sizeof *numbers);
+    *out = numbers;
+    if (!numbers)
+        return RELUME_ENOMEM;
+    return format_functions_of_text(numbers, text, most, rows, each)
+               ? RELUME_OK
+               : reader_bad(p, ATTR_FUNCTIONS, "digits A-Z a-z 0-9 + /");
+}
+
 static relume_status read_coder(relume_pack *p)
 {
     const char *name = exr_get_text(p->file, 0, ATTR_BASIS);
@@ -181,9 +202,11 @@ static relume_status read_coder(relume_pack *p)
     if (!lights || n < 3 || n % 3 || n / 3 > p->limits.max_lights)
         return reader_bad(p, ATTR_LIGHTS, "x y z of every light, within the limits");
     const int raw = basis->interpolates ? n / 3 : k;
-    const float *transform, *mean;
-    if (!optional_floats(p, ATTR_TRANSFORM, (basis->learned ? 3LL : 1LL) * k * raw, &transform))
-        return reader_bad(p, ATTR_TRANSFORM, "coefficients x functions finite numbers");
+    const float *transform = NULL, *mean;
+    const relume_status functions =
+        read_functions(&transform, p, (basis->learned ? 3 : 1) * k, raw);
+    if (functions)
+        return functions;
     if (!optional_floats(p, ATTR_MEAN, 3LL * raw, &mean))
         return reader_bad(p, ATTR_MEAN, "a finite number for every colour and light");
     const char *colour = exr_get_text(p->file, 0, ATTR_COLOUR);

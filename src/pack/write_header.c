@@ -179,7 +179,33 @@ static void describe_geometry(struct writer *w, struct exr_part *part)
     }
 }
 
-static void describe_coder(struct writer *w, struct exr_part *part)
+// Those that were learned take two bytes for four in a file where planes are coded: what rounding
+// them loses is far below what coding does.
+static void describe_functions(struct writer *w, struct exr_part *part, bool coded)
+{
+    const struct relume_coder_info *info = w->coder;
+    const int rows = (info->basis->learned ? 3 : 1) * info->coefficients, each = info->functions;
+    const float *numbers = info->transform;
+    if (!coded || !info->basis->learned) {
+        writer_floats(w, part, ATTR_TRANSFORM, numbers, rows * each);
+        return;
+    }
+    float *most = arena_array(&w->arena, (size_t)rows, sizeof *most);
+    char *text = arena_array(&w->arena, 2 * (size_t)rows * (size_t)each + 1, 1);
+    w->failed |= !most || !text;
+    if (w->failed)
+        return;
+    for (int r = 0; r < rows; r++) {
+        most[r] = 0.0f;
+        for (int i = 0; i < each; i++)
+            most[r] = fmaxf(most[r], fabsf(numbers[r * each + i]));
+    }
+    format_functions_text(text, numbers, most, rows, each);
+    writer_text(part, ATTR_FUNCTIONS, text);
+    writer_floats(w, part, ATTR_MOST, most, rows);
+}
+
+static void describe_coder(struct writer *w, struct exr_part *part, bool coded)
 {
     const struct relume_coder_info *info = w->coder;
     writer_text(part, ATTR_BASIS, info->basis->name);
@@ -189,8 +215,7 @@ static void describe_coder(struct writer *w, struct exr_part *part)
     writer_doubles(w, part, ATTR_RIDGE, &info->ridge, 1);
     writer_doubles(w, part, ATTR_LIGHTS, &info->directions->x, 3 * info->lights);
     if (info->transform)
-        writer_floats(w, part, ATTR_TRANSFORM, info->transform,
-                      (info->basis->learned ? 3 : 1) * info->coefficients * info->functions);
+        describe_functions(w, part, coded);
     if (info->mean)
         writer_floats(w, part, ATTR_MEAN, info->mean, 3 * info->functions);
     if (info->luminance)
@@ -278,7 +303,7 @@ void writer_add_header(struct writer *w)
         describe_coding(w, part, info);
     if (view->books)
         writer_int(part, ATTR_BOOKS, relume_books_info(view->books)->books);
-    describe_coder(w, part);
+    describe_coder(w, part, view->coded != NULL);
     describe_geometry(w, part);
     if (c->share)
         describe_share(w, part);

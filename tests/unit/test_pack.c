@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
+#include "pack/format.h"
 #include "base/half.h"
 #include "image/exr.h"
 #include "pack_parts.h"
@@ -297,41 +298,69 @@ static double parallax(const relume_pack *pack, int view, int pixel, double trut
     return fabs(1.0 / truth - 1.0 / found) * whole * between / fmin(size[0], size[1]);
 }
 
-// Coded depth: half a pixel at most, rounding and smoothing together; alone 1/64 of the usual.
+// Coded depth: half a pixel at most, rounding and smoothing together, or 1/64 of the usual; twice
+// that where planes are coarse.
+static void check_coded_depth(int views, double psnr_db, double coarser)
+{
+    const struct fixture f = {.width = 16, .height = 9, .lights = 3, .views = views, .depth = true};
+    relume_pack *pack;
+    fixture_write(&f, folder);
+    CHECK_OK(fixture_encode(folder, path, &relume_basis_table, 0,
+                            relume_pack_encode_params(.psnr_db = psnr_db)));
+    CHECK_OK(relume_pack_open(&pack, path, NULL));
+    for (int v = 0; v < views; v++) {
+        struct relume_image depth;
+        CHECK_OK(relume_pack_depth(&depth, pack, v));
+        for (int i = 0; i < f.width * f.height; i++) {
+            const double found = (double)depth.data[i];
+            assert_true(isinf(found) == !(i % 3));
+            if (i % 3 && views > 1)
+                CHECK_NEAR(parallax(pack, v, i, 2.5, found), 0.0, 0.5 * coarser);
+            else if (i % 3)
+                CHECK_NEAR(found, 2.5, 2.5 / 64 * coarser);
+        }
+        relume_image_destroy(&depth);
+    }
+    relume_pack_destroy(&pack);
+}
+
 static void test_coded_depth(void **state)
 {
     (void)state;
-    for (int views = 1; views <= 3; views += 2) {
-        const struct fixture f = {
-            .width = 16, .height = 9, .lights = 3, .views = views, .depth = true};
-        relume_pack *pack;
-        fixture_write(&f, folder);
-        CHECK_OK(fixture_encode(folder, path, &relume_basis_table, 0,
-                                relume_pack_encode_params(.psnr_db = 20.0)));
-        CHECK_OK(relume_pack_open(&pack, path, NULL));
-        for (int v = 0; v < views; v++) {
-            struct relume_image depth;
-            CHECK_OK(relume_pack_depth(&depth, pack, v));
-            for (int i = 0; i < f.width * f.height; i++) {
-                const double found = (double)depth.data[i];
-                assert_true(isinf(found) == !(i % 3));
-                if (i % 3 && views > 1)
-                    CHECK_NEAR(parallax(pack, v, i, 2.5, found), 0.0, 0.5);
-                else if (i % 3)
-                    CHECK_NEAR(found, 2.5, 2.5 / 64);
-            }
-            relume_image_destroy(&depth);
-        }
-        relume_pack_destroy(&pack);
-    }
+    check_coded_depth(1, 40.0, 1.0);
+    check_coded_depth(3, 40.0, 1.0);
+    check_coded_depth(3, 20.0, 2.0);
+}
+
+// Half a digit of the largest of the row, and no digit but one of the 64.
+static void test_functions_as_text(void **state)
+{
+    enum { ROWS = 3, EACH = 50 };
+    const float most[ROWS] = {0.7f, 0.0f, 1e-20f};
+    float numbers[ROWS * EACH], back[ROWS * EACH];
+    char text[2 * ROWS * EACH + 1];
+    (void)state;
+    for (int i = 0; i < ROWS * EACH; i++)
+        numbers[i] = most[i / EACH] * sinf(0.7f * (float)i);
+    format_functions_text(text, numbers, most, ROWS, EACH);
+    assert_int_equal(strlen(text), 2 * ROWS * EACH);
+    assert_true(format_functions_of_text(back, text, most, ROWS, EACH));
+    for (int i = 0; i < ROWS * EACH; i++)
+        CHECK_NEAR(back[i], numbers[i], (double)most[i / EACH] * (0.5 / 2047 + 1e-6));
+    text[77] = '-';
+    assert_false(format_functions_of_text(back, text, most, ROWS, EACH));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trips), cmocka_unit_test(test_preview),
-        cmocka_unit_test(test_own_preview), cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_cancel),      cmocka_unit_test(test_coded_depth),
+        cmocka_unit_test(test_round_trips),
+        cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_own_preview),
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_coded_depth),
+        cmocka_unit_test(test_functions_as_text),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

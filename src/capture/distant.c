@@ -11,11 +11,12 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/lsq.h"
 
 #include <string.h>
 
-enum { MOST = 16, CELLS = 32, LEAST_CELL = 4, MOST_CELL = 32 };
+enum { MOST = 16 };
 static const double LAMBERT = 3000.0;
 static const double NUGGET = 1e-3;
 
@@ -70,12 +71,6 @@ static void choose_nearest(struct distant *d, int light)
     }
 }
 
-static int cell_for(const struct near_view *near)
-{
-    const int cell = (near->width > near->height ? near->width : near->height) / CELLS;
-    return cell < LEAST_CELL ? LEAST_CELL : cell > MOST_CELL ? MOST_CELL : cell;
-}
-
 relume_status distant_create(struct distant **out, const struct near_view *near,
                              const vec3 *direction, int threads)
 {
@@ -87,7 +82,7 @@ relume_status distant_create(struct distant **out, const struct near_view *near,
         .direction = direction,
         .lights = near->lights,
         .most = near->lights < MOST ? near->lights : MOST,
-        .cell = cell_for(near),
+        .cell = coarse_cell(near->width, near->height),
         .threads = thread_count(threads),
         .node_row = {-1, -1},
     };

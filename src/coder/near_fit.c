@@ -3,11 +3,11 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/lsq.h"
 
 #include <string.h>
 
-enum { CELLS = 32, LEAST_CELL = 4, MOST_CELL = 32 };
 // Weak beside the pixel's own samples. Less or more of it changes little between 0.001 and 0.3;
 // beyond 1 the gain is lost.
 static const double GUESS = 0.1;
@@ -52,12 +52,6 @@ void near_fit_destroy(struct near_fit **fit)
     mem_free(s);
 }
 
-static int cell_for(int width, int height)
-{
-    const int cell = (width > height ? width : height) / CELLS;
-    return cell < LEAST_CELL ? LEAST_CELL : cell > MOST_CELL ? MOST_CELL : cell;
-}
-
 relume_status near_fit_create(struct near_fit **out, const relume_coder *coder,
                               const relume_table *table, int width, int height, int threads)
 {
@@ -69,7 +63,7 @@ relume_status near_fit_create(struct near_fit **out, const relume_coder *coder,
                            .width = width,
                            .height = height,
                            .threads = thread_count(threads),
-                           .cell = cell_for(width, height)};
+                           .cell = coarse_cell(width, height)};
     relume_status status = design_create(&s->design, coder);
     if (status) {
         near_fit_destroy(out);

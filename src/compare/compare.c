@@ -9,6 +9,7 @@
 #include "compare/ssim.h"
 #include "image/encoder.h"
 #include "math/luminance.h"
+#include "math/scalar.h"
 
 #include <math.h>
 #include <string.h>
@@ -131,11 +132,6 @@ static void compare_structure(void *context, size_t item, int worker)
                                     j->a->height, first, first + SSIM_ROWS, scratch);
 }
 
-static double psnr(double mse)
-{
-    return mse > 1e-20 ? fmin(-10.0 * log10(mse), 200.0) : 200.0;
-}
-
 static void collect(struct relume_difference *out, const struct sums *block, size_t blocks,
                     bool with_delta_e)
 {
@@ -154,7 +150,7 @@ static void collect(struct relume_difference *out, const struct sums *block, siz
     *out = (struct relume_difference){
         .rms = sqrt(t.linear / samples),
         .max_abs = t.max_abs,
-        .psnr_db = psnr(t.coded / (255.0 * 255.0) / samples),
+        .psnr_db = decibels(t.coded / (255.0 * 255.0) / samples),
         .mse = t.display / samples,
         .ssim = t.ssim.windows ? t.ssim.sum / (double)t.ssim.windows : (double)NAN,
         .delta_e = with_delta_e ? t.delta_e / (double)t.pixels : (double)NAN,

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outdir.h"
+#include "math/scalar.h"
 
 #include <limits.h>
 #include <math.h>
@@ -49,18 +50,13 @@ static double pixels_of(const struct planes *p)
     return (double)p->width * p->height;
 }
 
-static double decibel(double error)
-{
-    return error > 1e-20 ? -10.0 * log10(error / 3.0) : 200.0;
-}
-
 // What a step gives: the logarithm of the bytes per pixel, or with `psnr` the expected decibels.
 // Both fall with the step, nearly along lines.
 static relume_status try_step(const struct maker *m, double log_step, bool psnr, double *value)
 {
     struct web_folder w = {.plan = &m->plan, .planes = m->sample.data ? &m->sample : &m->planes};
     const relume_status status = web_encode(&w, exp(log_step), m->all, m->e->params->threads);
-    *value = psnr ? decibel(w.error) : log((double)w.bytes / pixels_of(w.planes));
+    *value = psnr ? decibels(w.error / 3.0) : log((double)w.bytes / pixels_of(w.planes));
     web_folder_free(&w);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/lsq.h"
+#include "math/scalar.h"
 
 #include <math.h>
 #include <relume/image.h>
@@ -127,8 +128,7 @@ static double mean_psnr(const struct judge *j, size_t bands)
         double square = 0.0;
         for (size_t b = 0; b < bands; b++)
             square += j->square[b * (size_t)j->lights + (size_t)l];
-        const double mse = square / (3.0 * pixels) / (255.0 * 255.0);
-        sum += mse > 1e-20 ? -10.0 * log10(mse) : 200.0;
+        sum += decibels(square / (3.0 * pixels) / (255.0 * 255.0));
     }
     return sum / j->lights;
 }

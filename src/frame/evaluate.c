@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
+#include "math/scalar.h"
 #include "math/vec.h"
 
 #include <math.h>
@@ -283,7 +284,7 @@ static double ratio(double a, double b)
 
 static double decibel(double mse)
 {
-    return mse > 1e-20 ? -10.0 * log10(mse) : mse >= 0.0 ? 200.0 : mse;
+    return mse >= 0.0 ? decibels(mse) : mse;
 }
 
 static void collect(const struct evaluator *e, struct relume_evaluation *out)

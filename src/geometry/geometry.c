@@ -69,15 +69,10 @@ static bool near_to(double found, double wanted)
     return fabs(found - wanted) <= 1e-3;
 }
 
-static bool is_zero(vec3 v)
-{
-    return v.x == 0.0 && v.y == 0.0 && v.z == 0.0;
-}
-
 bool relume_pose_normalise(struct relume_pose *pose)
 {
     vec3 *a = pose->axis;
-    if (is_zero(a[0]) && is_zero(a[1]) && is_zero(a[2])) {
+    if (vec3_is_zero(a[0]) && vec3_is_zero(a[1]) && vec3_is_zero(a[2])) {
         a[0] = vec3_of(1, 0, 0);
         a[1] = vec3_of(0, 1, 0);
         a[2] = vec3_of(0, 0, 1);
@@ -97,7 +92,7 @@ bool relume_pose_normalise(struct relume_pose *pose)
 vec3 relume_pose_turn(const struct relume_pose *pose, vec3 local)
 {
     const vec3 *a = pose->axis;
-    if (is_zero(a[0]))  // the world; nobody has normalised
+    if (vec3_is_zero(a[0]))  // the world; nobody has normalised
         return local;
     return vec3_add(vec3_scale(a[0], local.x),
                     vec3_along(vec3_scale(a[1], local.y), a[2], local.z));
@@ -106,7 +101,7 @@ vec3 relume_pose_turn(const struct relume_pose *pose, vec3 local)
 vec3 relume_pose_turn_back(const struct relume_pose *pose, vec3 world)
 {
     const vec3 *a = pose->axis;
-    if (is_zero(a[0]))
+    if (vec3_is_zero(a[0]))
         return world;
     return vec3_of(vec3_dot(a[0], world), vec3_dot(a[1], world), vec3_dot(a[2], world));
 }

@@ -20,6 +20,13 @@ static inline int index_wrapped(int i, int n)
     return (i % n + n) % n;
 }
 
+// The side in pixels of the cells of a coarse grid over a picture.
+static inline int coarse_cell(int width, int height)
+{
+    const int cell = (width > height ? width : height) / 32;
+    return cell < 4 ? 4 : cell > 32 ? 32 : cell;
+}
+
 // The four texels around a place, row by row, and how far it is from the first of them.
 struct bilinear {
     size_t at[4];

@@ -11,6 +11,11 @@
 #define RELUME_VEC3_SHORT
 #include <relume/vec.h>
 
+static inline bool vec3_is_zero(vec3 a)
+{
+    return a.x == 0.0 && a.y == 0.0 && a.z == 0.0;
+}
+
 // `a`, turned by the shortest way that brings the unit vector `n` to +z; n.z > -1.
 static inline vec3 vec3_upright(vec3 a, vec3 n)
 {

@@ -2,6 +2,7 @@
 //
 // Row by row: for every wavelength two rows of the pattern become one, which is then stretched.
 #include "base/thread.h"
+#include "math/scalar.h"
 #include "post/psf.h"
 
 #include <math.h>
@@ -103,8 +104,7 @@ static void fade_out(float *const row[3], int half, int v, double fade, double r
     const int kept = chord > 0.0 ? relume_whole(sqrt(chord)) : -1;
     for (int u = kept + 1; u <= half; u++) {
         const double r = sqrt((double)u * u + (double)v * v);
-        const double t = fmin(fmax((r - fade) / (radius - fade), 0.0), 1.0);
-        const float keep = (float)(1.0 - t * t * (3.0 - 2.0 * t));
+        const float keep = (float)(1.0 - smoothstep(fade, radius, r));
         for (int c = 0; c < 3; c++) {
             row[c][half + u] *= keep;
             if (u)

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/scalar.h"
 #include "post/psf.h"
 
 #include <math.h>
@@ -110,12 +111,6 @@ static void resample_row(void *context, size_t item, int worker)
 
 // ---------------------------------------------------------------- veil
 
-static double smooth(double x, double from, double to)
-{
-    const double t = fmin(fmax((x - from) / (to - from), 0.0), 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 // Share of the observer's light between two angles: the ring's solid angle is 2 pi sin t dt.
 static double light_between(double from_deg, double to_deg, double age, double pigment)
 {
@@ -124,7 +119,7 @@ static double light_between(double from_deg, double to_deg, double age, double p
     double sum = 0.0;
     for (int i = 0; i < STEPS; i++) {
         const double t = from_deg * exp((i + 0.5) * ratio);
-        sum += (1.0 - smooth(t, veil_fade_deg, veil_deg)) * relume_cie_glare(t, age, pigment) *
+        sum += (1.0 - smoothstep(veil_fade_deg, veil_deg, t)) * relume_cie_glare(t, age, pigment) *
                2.0 * M_PI * sin(t * M_PI / 180.0) * t * ratio * M_PI / 180.0;
     }
     return sum;
@@ -140,7 +135,8 @@ void relume_veil(struct relume_veil *out, const struct relume_psf_geometry *patt
     out->share = light_between(edge, veil_deg, age, pigment);
     for (int i = 0; i < RELUME_VEIL_STEPS; i++) {
         const double t = i * veil_deg / RELUME_VEIL_STEPS;
-        const double share = smooth(t, fade, edge) * (1.0 - smooth(t, veil_fade_deg, veil_deg));
+        const double share =
+            smoothstep(fade, edge, t) * (1.0 - smoothstep(veil_fade_deg, veil_deg, t));
         out->light[i] = (float)(share * relume_cie_glare(t, age, pigment));
     }
 }

@@ -5,6 +5,7 @@
 #include "post/eye.h"
 
 #include "math/random.h"
+#include "math/scalar.h"
 
 #include <math.h>
 
@@ -19,12 +20,6 @@ int lashes_count(const struct relume_subject *s, const struct lashes *image)
     return image->piece ? 2 * image->count : s->lids.lashes * PIECES;
 }
 
-static double smooth(double x)
-{
-    const double t = fmin(fmax(x, 0.0), 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 // One blink in every interval, somewhere in its second half; lids fall twice as fast as they rise.
 double lids_openness(const struct relume_subject *s, double time_s)
 {
@@ -36,7 +31,8 @@ double lids_openness(const struct relume_subject *s, double time_s)
     const double last = fmax(interval - s->lids.blink_s, 0.0);
     const double start = slot * interval + random_range(&random, 0.5, 1.0) * last;
     const double phase = (time_s - start) / s->lids.blink_s;
-    return 1.0 - smooth(phase / 0.35) * (1.0 - smooth((phase - 0.45) / 0.55));
+    return 1.0 -
+           smoothstep(0.0, 1.0, phase / 0.35) * (1.0 - smoothstep(0.0, 1.0, (phase - 0.45) / 0.55));
 }
 
 static void set_edge(float edge[2], double middle)

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "math/bilinear.h"
+#include "math/scalar.h"
 #include "math/vec.h"
 
 static const char *const kind_names[] = {
@@ -121,12 +122,6 @@ void relume_light_frame(struct relume_vec3 *right, struct relume_vec3 *up, struc
     const bool vertical = fabs(a.y) > 1.0 - 1e-9;
     *right = vec3_unit(vec3_cross(a, vertical ? z : y));
     *up = vec3_cross(*right, a);
-}
-
-static double smoothstep(double low, double high, double x)
-{
-    const double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
-    return t * t * (3.0 - 2.0 * t);
 }
 
 static double radians(double degrees)

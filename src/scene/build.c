@@ -37,6 +37,14 @@ void build_put_exact(struct relume_scene_builder *b, struct mesh *part, uint32_t
     mesh_free(part);
 }
 
+void build_lathe(struct relume_scene_builder *b, const struct lathe_point *profile, int points,
+                 int steps, int sides, uint32_t material)
+{
+    struct mesh part = {0};
+    shape_lathe(&part, profile, points, steps, sides);
+    build_put(b, &part, material);
+}
+
 void build_box(struct relume_scene_builder *b, vec3 min, vec3 max, double edge, uint32_t material)
 {
     struct mesh part = {0};

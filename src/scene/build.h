@@ -30,6 +30,9 @@ struct material build_matte(float r, float g, float b);
 void build_put(struct relume_scene_builder *b, struct mesh *part, uint32_t material);
 // The same without the shift: for checkers and pictures, which must stay where they are.
 void build_put_exact(struct relume_scene_builder *b, struct mesh *part, uint32_t material);
+// A surface of revolution at the current frame, as shape_lathe.
+void build_lathe(struct relume_scene_builder *b, const struct lathe_point *profile, int points,
+                 int steps, int sides, uint32_t material);
 // A chamfered box at the current frame.
 void build_box(struct relume_scene_builder *b, vec3 min, vec3 max, double edge, uint32_t material);
 // A chamfered beam of square section `width` x `height` between two points; its texture's x axis

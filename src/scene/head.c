@@ -3,6 +3,7 @@
 // The face looks along +z. A direction from the middle of the head is sent to a point of an egg;
 // features are bumps placed in the face's own plane (x, y), each given by hand.
 #include "scene/shapes.h"
+#include "math/scalar.h"
 #include "scene/texture.h"
 
 static double bell(double x, double width)
@@ -15,17 +16,11 @@ static double bump(vec3 p, double x, double y, double width_x, double width_y)
     return bell(p.x - x, width_x) * bell(p.y - y, width_y);
 }
 
-static double ramp(double low, double high, double x)
-{
-    const double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 // How far the face stands out along z; p.x is made positive, the face is symmetric.
 static double relief(vec3 p)
 {
     p.x = fabs(p.x);
-    const double bridge = ramp(-0.20, -0.12, p.y) * ramp(0.24, 0.10, p.y);
+    const double bridge = smoothstep(-0.20, -0.12, p.y) * smoothstep(0.24, 0.10, p.y);
     const double along = fmin(fmax((0.22 - p.y) / 0.38, 0.0), 1.0);
     double z = 0.0;
     z += bridge * (0.045 + 0.13 * along) * bell(p.x, 0.045 + 0.035 * along);  // nose
@@ -48,15 +43,16 @@ static double relief(vec3 p)
 
 static vec3 egg(vec3 d)
 {
-    const double jaw = ramp(0.05, -0.75, d.y);
+    const double jaw = smoothstep(0.05, -0.75, d.y);
     return vec3_of(d.x * (0.50 - 0.13 * jaw), d.y * 0.66, d.z * (0.58 - 0.09 * jaw) + 0.05 * jaw);
 }
 
 // Waves of hair over the skull, combed back from a hairline above the brow.
 static double hair(vec3 d, vec3 p)
 {
-    const double line = 0.36 - 0.30 * ramp(0.55, -0.1, d.z) - 0.55 * ramp(0.0, -0.6, d.z);
-    const double covered = ramp(line - 0.02, line + 0.05, p.y);
+    const double line =
+        0.36 - 0.30 * smoothstep(0.55, -0.1, d.z) - 0.55 * smoothstep(0.0, -0.6, d.z);
+    const double covered = smoothstep(line - 0.02, line + 0.05, p.y);
     const double bend = noise_sum((float)(4.0 * p.x), (float)(4.0 * p.y), (float)(4.0 * p.z), 3);
     const double angle_rad = atan2(p.x, p.y + 0.35);
     const double strands = sin(26.0 * angle_rad + 5.0 * bend + 7.0 * p.z);
@@ -67,12 +63,12 @@ static vec3 head_at(vec3 d)
 {
     const vec3 p = egg(d);
     vec3 out = p;
-    out.z += relief(p) * ramp(0.1, 0.45, d.z);
+    out.z += relief(p) * smoothstep(0.1, 0.45, d.z);
     out = vec3_along(out, d, hair(d, p));
     // Ears: a rim with a hollow at the sides.
     const double ear = exp(-(pow((p.y - 0.02) / 0.12, 2) + pow((p.z + 0.02) / 0.065, 2)));
     const double hollow = exp(-(pow((p.y - 0.03) / 0.065, 2) + pow((p.z - 0.005) / 0.03, 2)));
-    out.x += copysign(0.06 * ear - 0.045 * hollow, d.x) * ramp(0.5, 0.85, fabs(d.x));
+    out.x += copysign(0.06 * ear - 0.045 * hollow, d.x) * smoothstep(0.5, 0.85, fabs(d.x));
     return out;
 }
 

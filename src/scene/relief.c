@@ -33,12 +33,6 @@ double relief_mix(double a, double b, double t)
     return a + (b - a) * t;
 }
 
-double relief_step(double low, double high, double x)
-{
-    const double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 double relief_round(double x, double half)
 {
     return sqrt(fmax(0.0, 1.0 - x * x / (half * half)));

@@ -37,8 +37,6 @@ double relief_sum(double u, double v, int cells, int octaves, uint64_t seed);
 double relief_scatter(double u, double v, int cells, uint64_t seed, double distance[2]);
 
 double relief_mix(double a, double b, double t);
-// 0 below `low`, 1 above `high`, smooth between.
-double relief_step(double low, double high, double x);
 // The upper half of an ellipse of height 1 over [-half, half].
 double relief_round(double x, double half);
 void relief_color(float out[3], const float color[3], double tone);

@@ -1,6 +1,8 @@
 // relief_hard.c - stone, leather, wallpaper, brushed aluminium
 #include "scene/relief.h"
 
+#include "math/scalar.h"
+
 #include <math.h>
 
 // ---------------------------------------------------------------- stone: broken, with cracks
@@ -12,9 +14,9 @@ static void stone(double u, double v, int extent, uint64_t seed, struct relief_p
     const double rough = relief_sum(u, v, 4 * extent, 6, seed);
     const double warp = 0.03 / extent * relief_sum(u, v, 8 * extent, 3, seed + 20);
     const double own = relief_scatter(u - floor(u) + warp, v + warp, 5 * extent, seed + 31, d);
-    const double crack = 1.0 - relief_step(0.02, 0.16, d[1] - d[0]);
+    const double crack = 1.0 - smoothstep(0.02, 0.16, d[1] - d[0]);
     const double grain = relief_sum(u, v, 32 * extent, 3, seed + 47);
-    const double tone = relief_step(-0.6, 0.6, 0.5 * rough + 0.6 * grain + own - 0.5);
+    const double tone = smoothstep(-0.6, 0.6, 0.5 * rough + 0.6 * grain + own - 0.5);
     float color[3];
     for (int c = 0; c < 3; c++)
         color[c] = (float)relief_mix(dark[c], light[c], tone);
@@ -38,7 +40,7 @@ static void leather(double u, double v, int extent, uint64_t seed, struct relief
     double d[2];
     const double warp = 0.02 / extent * relief_sum(u, v, 6 * extent, 2, seed + 5);
     const double own = relief_scatter(u + warp, v - warp, 11 * extent, seed, d);
-    const double cushion = relief_step(0.0, 0.45, d[1] - d[0]);
+    const double cushion = smoothstep(0.0, 0.45, d[1] - d[0]);
     const double pores = relief_sum(u, v, 64 * extent, 2, seed + 9);
     out->height = 0.016 * cushion + 0.004 * own +
                   0.012 * relief_noise(u, v, 3 * extent, 3 * extent, seed + 7) + 0.0006 * pores;
@@ -63,7 +65,7 @@ static void wallpaper(double u, double v, int extent, uint64_t seed, struct reli
     const double x = across * u + (fmod(row, 2.0) != 0.0 ? 0.5 : 0.0), y = across * v - row - 0.5;
     const double cx = x - floor(x) - 0.5;
     const double petals = 0.30 + 0.11 * cos(6.0 * atan2(y, cx));
-    const double inside = relief_step(-0.02, 0.04, petals - sqrt(cx * cx + y * y));
+    const double inside = smoothstep(-0.02, 0.04, petals - sqrt(cx * cx + y * y));
     const double grain = relief_sum(u, v, 40 * extent, 2, seed);
     out->layer = inside > 0.5;
     out->height = 0.006 * inside + 0.0008 * grain;

@@ -244,14 +244,6 @@ static void add_walls(struct relume_scene_builder *b, const struct wood *w)
 
 // ---------------------------------------------------------------- furniture
 
-static void put_lathe(struct relume_scene_builder *b, const struct lathe_point *profile, int points,
-                      uint32_t material)
-{
-    struct mesh part = {0};
-    shape_lathe(&part, profile, points, 8, 64);
-    build_put(b, &part, material);
-}
-
 static void add_table(struct relume_scene_builder *b, uint32_t material)
 {
     static const struct lathe_point leg[] = {
@@ -261,7 +253,7 @@ static void add_table(struct relume_scene_builder *b, uint32_t material)
     const struct frame place = b->frame;
     for (int i = 0; i < 4; i++) {
         b->frame = frame_compose(place, frame_move(i & 1 ? 0.6 : -0.6, 0, i & 2 ? 0.3 : -0.3));
-        put_lathe(b, leg, sizeof leg / sizeof *leg, material);
+        build_lathe(b, leg, sizeof leg / sizeof *leg, 8, 64, material);
     }
     b->frame = place;
     build_box(b, vec3_of(-0.62, 0.60, -0.32), vec3_of(0.62, 0.70, 0.32), 0.01, material);
@@ -275,7 +267,7 @@ static void add_globe(struct relume_scene_builder *b, uint32_t material, uint32_
         {0.03, 0.04, false}, {0.015, 0.08, true}, {0.0, 0.09, true},
     };
     struct mesh part = {0};
-    put_lathe(b, foot, sizeof foot / sizeof *foot, brass);
+    build_lathe(b, foot, sizeof foot / sizeof *foot, 8, 64, brass);
     shape_sphere(&part, vec3_of(0, 0.24, 0), 0.15, 96);
     build_put(b, &part, material);
 }
@@ -287,7 +279,7 @@ static void add_vase(struct relume_scene_builder *b, uint32_t material)
         {0.12, 0.18, false}, {0.06, 0.30, false}, {0.045, 0.36, false},
         {0.075, 0.40, true}, {0.065, 0.40, true}, {0.035, 0.35, true},
     };
-    put_lathe(b, vase, sizeof vase / sizeof *vase, material);
+    build_lathe(b, vase, sizeof vase / sizeof *vase, 8, 64, material);
 }
 
 static void add_books(struct relume_scene_builder *b, const uint32_t *covers, int count,
@@ -331,7 +323,7 @@ static void add_trunk(struct relume_scene_builder *b, uint32_t body, uint32_t ba
     b->frame = frame_compose(
         place, frame_compose(frame_move(0, 0.36, 0),
                              frame_compose(frame_scale(1, 0.55, 1), frame_turn_z(0.5 * M_PI))));
-    put_lathe(b, lid, 4, body);
+    build_lathe(b, lid, 4, 8, 64, body);
     b->frame = place;
     for (int i = -1; i <= 1; i++)
         build_box(b, vec3_of(0.4 * i - 0.03, 0, -0.315), vec3_of(0.4 * i + 0.03, 0.37, 0.315),
@@ -346,14 +338,14 @@ static void add_barrel(struct relume_scene_builder *b, uint32_t material, uint32
         {0.24, 0.84, true},  {0.24, 0.80, true},  {0.0, 0.80, true},
     };
     static const double hoops[4][2] = {{0.06, 0.288}, {0.25, 0.339}, {0.58, 0.341}, {0.76, 0.294}};
-    put_lathe(b, barrel, sizeof barrel / sizeof *barrel, material);
+    build_lathe(b, barrel, sizeof barrel / sizeof *barrel, 8, 64, material);
     for (int i = 0; i < 4; i++) {
         const double y = hoops[i][0], r = hoops[i][1];
         const struct lathe_point hoop[] = {{r, y - 0.02, true},
                                            {r + 0.006, y - 0.02, true},
                                            {r + 0.006, y + 0.02, true},
                                            {r, y + 0.02, true}};
-        put_lathe(b, hoop, 4, iron);
+        build_lathe(b, hoop, 4, 8, 64, iron);
     }
 }
 

@@ -63,14 +63,6 @@ struct set {
     double facing_rad;
 };
 
-static void put_lathe(struct relume_scene_builder *b, const struct lathe_point *profile, int points,
-                      uint32_t material)
-{
-    struct mesh part = {0};
-    shape_lathe(&part, profile, points, 6, 72);
-    build_put(b, &part, material);
-}
-
 // Rings of the outline, drawn in towards a middle line as they leave the centre plane.
 static void add_knight_head(struct relume_scene_builder *b, uint32_t material)
 {
@@ -125,7 +117,7 @@ static void add_cross(struct relume_scene_builder *b, uint32_t material)
 
 static void add_piece(struct relume_scene_builder *b, char kind, uint32_t material)
 {
-#define LATHE(profile) put_lathe(b, profile, sizeof profile / sizeof *profile, material)
+#define LATHE(profile) build_lathe(b, profile, sizeof profile / sizeof *profile, 6, 72, material)
     switch (kind) {
     case 'P': LATHE(pawn); break;
     case 'B': LATHE(bishop); break;
@@ -210,15 +202,13 @@ static void add_columns(struct relume_scene_builder *b, uint32_t material)
         {9.25, 4.72, true}, {9.25, 4.86, true}, {7.75, 4.86, true},
         {7.75, 4.72, true}, {7.95, 4.62, true}, {7.95, 4.32, true},
     };
-    struct mesh part = {0};
     for (int i = 0; i < 16; i++) {
         const double angle_rad = 2.0 * M_PI * (i + 0.5) / 16.0;
         b->frame = frame_move(8.5 * sin(angle_rad), BOARD - 0.25, 8.5 * cos(angle_rad));
-        put_lathe(b, column, sizeof column / sizeof *column, material);
+        build_lathe(b, column, sizeof column / sizeof *column, 6, 72, material);
     }
     b->frame = frame_move(0, BOARD - 0.25, 0);
-    shape_lathe(&part, ring, sizeof ring / sizeof *ring, 1, 192);
-    build_put(b, &part, material);
+    build_lathe(b, ring, sizeof ring / sizeof *ring, 1, 192, material);
     b->frame = frame_world;
 }
 

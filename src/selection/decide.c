@@ -17,6 +17,7 @@
 #include "coder/interpolant.h"
 #include "image/encoder.h"
 #include "base/half.h"
+#include "math/scalar.h"
 #include "selection/samples.h"
 
 #include <float.h>
@@ -59,7 +60,7 @@ struct job {
 
 static double decibel(double mse)
 {
-    return fmin(-10.0 * log10(fmax(mse, 1e-20)), MOST_DB);
+    return fmin(decibels(mse), MOST_DB);
 }
 
 struct judging {

@@ -12,6 +12,7 @@
 #include "coder/coefficients.h"
 #include "compare/ssim.h"
 #include "image/encoder.h"
+#include "math/scalar.h"
 
 #include <float.h>
 #include <math.h>
@@ -401,16 +402,11 @@ struct total {
     size_t images, samples, structured;
 };
 
-static double decibel(double mse)
-{
-    return mse > 1e-20 ? fmin(-10.0 * log10(mse), 200.0) : 200.0;
-}
-
 static void add_image(struct total *t, const struct sums *s)
 {
     if (s->samples == 0)
         return;
-    t->psnr += decibel(s->coded / (255.0 * 255.0) / (double)s->samples);
+    t->psnr += decibels(s->coded / (255.0 * 255.0) / (double)s->samples);
     t->shown += s->shown;
     t->samples += s->samples;
     t->images++;
@@ -506,7 +502,7 @@ static struct relume_heldout_quality quality_of(const struct total *t)
     const double none = (double)NAN;
     return (struct relume_heldout_quality){
         .psnr_db = t->images ? t->psnr / (double)t->images : none,
-        .psnr_pooled_db = t->samples ? decibel(t->shown / (double)t->samples) : none,
+        .psnr_pooled_db = t->samples ? decibels(t->shown / (double)t->samples) : none,
         .ssim = t->structured ? t->ssim / (double)t->structured : none,
     };
 }

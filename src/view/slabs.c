@@ -2,6 +2,7 @@
 #include "view/slabs.h"
 
 #include "base/memory.h"
+#include "math/scalar.h"
 
 // Of the extent of the camera grid, and of the window's: where a slab's word begins to fade.
 static const double fade_uv = 0.25;
@@ -79,16 +80,10 @@ vec3 relume_slab_set_eye(const relume_slab_set *slabs, int i)
 
 // ---------------------------------------------------------------- weights
 
-static double fade(double inside, double width)
-{
-    const double x = fmin(fmax(inside / width, 0.0), 1.0);
-    return x * x * (3.0 - 2.0 * x);
-}
-
 // Of a place between `low` and `high`; a grid of one line has no inside to fade in.
 static double line_weight(double at, double low, double high)
 {
-    return high > low ? fade(fmin(at - low, high - at), fade_uv * (high - low)) : 1.0;
+    return high > low ? smoothstep(0.0, fade_uv * (high - low), fmin(at - low, high - at)) : 1.0;
 }
 
 double relume_slab_weight(const relume_slab *slab, const double uv[2], const double st[2])
@@ -104,8 +99,8 @@ double relume_slab_weight(const relume_slab *slab, const double uv[2], const dou
         if (!(uv[axis] >= low - slab->slack && uv[axis] <= high + slab->slack))
             return 0.0;
         grid *= line_weight(uv[axis], low, high);
-        window *= fade(fmin(st[axis] - g->st_min[axis], g->st_max[axis] - st[axis]),
-                       fade_st * (g->st_max[axis] - g->st_min[axis]));
+        window *= smoothstep(0.0, fade_st * (g->st_max[axis] - g->st_min[axis]),
+                             fmin(st[axis] - g->st_min[axis], g->st_max[axis] - st[axis]));
     }
     return fmax(grid, least) * window;
 }
@@ -134,14 +129,9 @@ static void find_half(double half[2], const relume_slab_set *slabs)
         }
 }
 
-static bool is_zero(vec3 v)
-{
-    return v.x == 0.0 && v.y == 0.0 && v.z == 0.0;
-}
-
 static vec3 choose_up(vec3 wanted, vec3 ahead)
 {
-    if (!is_zero(wanted))
+    if (!vec3_is_zero(wanted))
         return wanted;
     const bool steep = fabs(ahead.y) > 1.0 - 1e-9;
     return steep ? vec3_of(0, 0, ahead.y < 0.0 ? -1.0 : 1.0) : vec3_of(0, 1, 0);
@@ -149,7 +139,7 @@ static vec3 choose_up(vec3 wanted, vec3 ahead)
 
 bool relume_look_at_given(const struct relume_look_at *look_at)
 {
-    return look_at->aimed || look_at->field_of_view_deg != 0.0 || !is_zero(look_at->up);
+    return look_at->aimed || look_at->field_of_view_deg != 0.0 || !vec3_is_zero(look_at->up);
 }
 
 bool relume_slab_set_window(struct relume_window *out, const relume_slab_set *slabs, vec3 eye,

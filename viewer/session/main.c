@@ -148,6 +148,17 @@ static struct script_host host_of(struct session *s)
                                 host_wait, host_frame, host_shot, s->log,     host_glare};
 }
 
+// With all that the options ask for beside it.
+static relume_status open_file(struct session *s, struct options *o, bool look_ahead)
+{
+    relume_status status = session_take_rig(s, &o->rig, &o->start);
+    if (!status && o->capture)
+        status = session_compare(s, o->capture);
+    if (!status)
+        status = session_take_objects(s, &o->objects);
+    return status ? status : session_open(s, o->file, &o->start, look_ahead);
+}
+
 // ---------------------------------------------------------------- without a window
 
 static relume_status run_offscreen(struct session *s, struct options *o)
@@ -155,13 +166,7 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     const struct script_host host = host_of(s);
     const bool film = o->record && o->kind == RECORD_SCRIPT;
     o->start.ball |= film;
-    relume_status status = session_take_rig(s, &o->rig, &o->start);
-    if (!status && o->capture)
-        status = session_compare(s, o->capture);
-    if (!status)
-        status = session_take_objects(s, &o->objects);
-    if (!status)
-        status = session_open(s, o->file, &o->start, film);
+    relume_status status = open_file(s, o, film);
     if (!status)
         status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
     s->app.panel = o->panel;
@@ -299,13 +304,7 @@ static relume_status open_window(struct session *s, struct options *o,
                                  const struct settings *settings)
 {
     o->start.ball = o->file || o->stage;
-    relume_status status = session_take_rig(s, &o->rig, &o->start);
-    if (!status && o->capture)
-        status = session_compare(s, o->capture);
-    if (!status)
-        status = session_take_objects(s, &o->objects);
-    if (!status)
-        status = session_open(s, o->file, &o->start, true);
+    relume_status status = open_file(s, o, true);
     if (status)
         return status;
     if (settings->width && !(o->size[0] || o->size[1])) {

@@ -1,0 +1,20 @@
+// scalar.h - functions of one number
+#ifndef MATH_SCALAR_H
+#define MATH_SCALAR_H
+
+#include <math.h>
+
+// From 0 at `low` to 1 at `high`, level at both ends.
+static inline double smoothstep(double low, double high, double x)
+{
+    const double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// PSNR of a mean squared error of values in [0, 1]; at most 200.
+static inline double decibels(double mse)
+{
+    return mse > 1e-20 ? fmin(-10.0 * log10(mse), 200.0) : 200.0;
+}
+
+#endif

@@ -19,13 +19,6 @@
 static const double OUTLIER = 3.0;         // times what photographs usually miss
 static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
 
-static void forget(struct acquisition *s, int i)
-{
-    relume_image_destroy(&s->shot[i].small);
-    memmove(&s->shot[i], &s->shot[i + 1], (size_t)(s->shots - i - 1) * sizeof *s->shot);
-    s->shots--;
-}
-
 relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...)
 {
     char text[1024];
@@ -41,7 +34,9 @@ relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...
     unlink(image);
     mem_free(image);
     const relume_status status = acquire_warn(s, "%s: left out: %s", s->shot[i].path, text);
-    forget(s, i);
+    relume_image_destroy(&s->shot[i].small);
+    memmove(&s->shot[i], &s->shot[i + 1], (size_t)(s->shots - i - 1) * sizeof *s->shot);
+    s->shots--;
     if (!status && s->shots < 3)
         return log_fail(s->p.log, RELUME_EUNFIT, "fewer than 3 photographs are left");
     return status;

@@ -91,19 +91,14 @@ relume_status acquire_check_pictures(struct acquisition *s)
 
 // ---------------------------------------------------------------- lights
 
-static vec3 grid_direction(int i)
-{
-    const double z = LOWEST + (1.0 - LOWEST) * (i + 0.5) / GRID, r = sqrt(1.0 - z * z);
-    const double phi = i * (M_PI * (3.0 - sqrt(5.0)));
-    return vec3_of(r * cos(phi), r * sin(phi), z);
-}
-
 // The direction farthest from all lights and from the `n` already proposed.
 static double find_gap(const struct relume_acquisition *out, const vec3 *proposed, int n, vec3 *gap)
 {
     double widest = 0.0;
     for (int k = 0; k < GRID; k++) {
-        const vec3 d = grid_direction(k);
+        const double z = LOWEST + (1.0 - LOWEST) * (k + 0.5) / GRID, r = sqrt(1.0 - z * z);
+        const double phi = k * (M_PI * (3.0 - sqrt(5.0)));
+        const vec3 d = vec3_of(r * cos(phi), r * sin(phi), z);
         double nearest = M_PI;
         for (int i = 0; i < out->lights; i++)
             nearest = fmin(nearest, vec3_angle(d, out->direction[i]));

@@ -163,21 +163,6 @@ static double miss_of(const struct relume_acquisition *out, int i)
     return out->photometric.light_residual ? out->photometric.light_residual[i] : 0.0;
 }
 
-static double most_missed(const struct relume_acquisition *out)
-{
-    double most = 0.0;
-    for (int i = 0; i < out->lights; i++)
-        most = fmax(most, miss_of(out, i));
-    return most;
-}
-
-// The share of 100 % as a bar behind the number.
-static void put_bar(FILE *f, double value, double most)
-{
-    fprintf(f, "<td style=\"background:linear-gradient(to left,#cde %.0f%%,#fff 0)\">%.1f %%</td>",
-            most > 0.0 ? 100.0 * value / most : 0.0, 100.0 * value);
-}
-
 static void put_row(FILE *f, const struct relume_acquisition *out, int i, double most)
 {
     const struct relume_acquired_photo *p = &out->photo[i];
@@ -188,14 +173,18 @@ static void put_row(FILE *f, const struct relume_acquisition *out, int i, double
     fprintf(f, p->sigma_deg > 0.0 ? "<td>%.2f&#176;</td>" : "<td></td>", p->sigma_deg);
     fprintf(f, p->light.spread_deg > 0.0 ? "<td>%.1f&#176;</td>" : "<td></td>",
             p->light.spread_deg);
-    put_bar(f, miss_of(out, i), most);
+    // The share of 100 % as a bar behind the number.
+    fprintf(f, "<td style=\"background:linear-gradient(to left,#cde %.0f%%,#fff 0)\">%.1f %%</td>",
+            most > 0.0 ? 100.0 * miss_of(out, i) / most : 0.0, 100.0 * miss_of(out, i));
     fprintf(f, "<td>%.2f %%</td></tr>\n", 100.0 * (double)p->saturated);
 }
 
 static void put_table(struct report *r)
 {
     const struct relume_acquisition *out = r->s->out;
-    const double most = most_missed(out);
+    double most = 0.0;
+    for (int i = 0; i < out->lights; i++)
+        most = fmax(most, miss_of(out, i));
     fputs("<h2>Lights</h2>\n<div class=\"wide\"><table><tr><th>photograph</th><th>x</th><th>y</th>"
           "<th>z</th><th>error</th><th>lamp's width</th><th>brightness "
           "error</th><th>overexposed</th></tr>\n",
@@ -203,15 +192,6 @@ static void put_table(struct report *r)
     for (int i = 0; i < out->lights; i++)
         put_row(r->f, out, i, most);
     fputs("</table></div>\n", r->f);
-}
-
-// Where the light of a photograph stood, for the corner of its thumbnail.
-static void put_sun(FILE *f, vec3 d)
-{
-    fprintf(f,
-            "<svg class=\"sun\" viewBox=\"-10 -10 20 20\"><circle r=\"9\" fill=\"#222\" "
-            "stroke=\"#aaa\"/><circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.6\" fill=\"#fd4\"/></svg>",
-            8.0 * d.x, -8.0 * d.y);
 }
 
 // All of one gain: which photograph is darker shows.
@@ -232,7 +212,11 @@ static void put_thumbnails(struct report *r)
         fprintf(r->f, "<figure%s><div class=\"over\">",
                 s->out->photo[i].outlier ? " class=\"off\"" : "");
         put_picture(r, &s->shot[i].small, THUMB, gain, LOOK_LIGHT);
-        put_sun(r->f, s->out->direction[i]);
+        // Where the light of a photograph stood, for the corner of its thumbnail.
+        fprintf(r->f,
+                "<svg class=\"sun\" viewBox=\"-10 -10 20 20\"><circle r=\"9\" fill=\"#222\" "
+                "stroke=\"#aaa\"/><circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.6\" fill=\"#fd4\"/></svg>",
+                8.0 * s->out->direction[i].x, -8.0 * s->out->direction[i].y);
         fprintf(r->f, "</div><figcaption>%d ", i);
         put_text(r->f, path_name(s->shot[i].path));
         fputs("</figcaption></figure>\n", r->f);

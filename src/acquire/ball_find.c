@@ -29,12 +29,6 @@ struct candidate {
     double score;
 };
 
-static void destroy_pyramid(struct pyramid *p)
-{
-    for (int i = 0; i < p->levels; i++)
-        relume_image_destroy(&p->level[i]);
-}
-
 // The value below which `part` of some thousand samples lie; NaN when memory is short.
 static float quantile(const float *v, size_t n, double part)
 {
@@ -218,18 +212,13 @@ static relume_status search_level(const struct relume_image *image, double scale
 
 // ---------------------------------------------------------------- candidates
 
-// The camera and the ball as they are in a picture smaller by `scale`.
-static struct relume_ball_camera scaled_camera(const struct relume_ball_camera *c, double scale)
-{
-    return (struct relume_ball_camera){(int)(c->width / scale), (int)(c->height / scale),
-                                       c->focal_px / scale};
-}
-
 static relume_status follow_at(struct relume_ball *ball, const struct relume_ball_camera *camera,
                                const struct pyramid *p, int level, int angles)
 {
     const double scale = 1 << level;
-    const struct relume_ball_camera small = scaled_camera(camera, scale);
+    // The camera and the ball as they are in a picture smaller by `scale`.
+    const struct relume_ball_camera small = (struct relume_ball_camera){
+        (int)(camera->width / scale), (int)(camera->height / scale), camera->focal_px / scale};
     ball->x /= scale;
     ball->y /= scale;
     ball->radius /= scale;
@@ -384,7 +373,8 @@ relume_status relume_ball_candidates(struct relume_ball *out, int most, int *fou
         status = screen(list, n, &pyramid, mean, camera, &p);
     if (!status)
         status = choose(out, most, found, list, n, &pyramid, mean, camera, &p);
-    destroy_pyramid(&pyramid);
+    for (int i = 0; i < pyramid.levels; i++)
+        relume_image_destroy(&pyramid.level[i]);
     mem_free(list);
     return status;
 }

@@ -80,11 +80,6 @@ static float background(const struct follower *f)
     return f->scratch[f->angles / 2];
 }
 
-static double tolerance_of(const struct follower *f, double reach)
-{
-    return fmax(fmax(NEAR * f->ball->radius, 0.3 * reach), 1.0);
-}
-
 // Cauchy weights by the distance from the outline.
 static void weigh(const struct follower *f, double tolerance)
 {
@@ -134,7 +129,7 @@ static bool follow(struct follower *f, double reach)
         for (int k = 0; k < 6; k++) {
             if (!ball_fit(f->ball, f->camera, f->point, f->angles))
                 return false;
-            weigh(f, tolerance_of(f, reach));
+            weigh(f, fmax(fmax(NEAR * f->ball->radius, 0.3 * reach), 1.0));
         }
         reach = fmin(reach, fmax(0.6 * reach, fmax(0.05 * f->ball->radius, 3.0)));
     }

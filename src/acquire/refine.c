@@ -72,19 +72,14 @@ static int take(struct refiner *r, const float *band, size_t stride, size_t at, 
     return r->pixels < PIXELS && is_useful(to, r->lights) ? (int)r->pixels++ : -1;
 }
 
-static size_t count_inside(const struct relume_image *mask, size_t all)
-{
-    size_t n = 0;
-    for (size_t i = 0; mask->data && i < all; i++)
-        n += mask->data[i] > 0.5f;
-    return mask->data ? n : all;
-}
-
 // A square lattice with about PIXELS crossings inside the mask.
 static relume_status lay_lattice(struct refiner *r, const struct relume_image *mask)
 {
     const int width = relume_capture_width(r->capture), height = relume_capture_height(r->capture);
-    const size_t inside = count_inside(mask, (size_t)width * (size_t)height);
+    const size_t all = (size_t)width * (size_t)height;
+    size_t inside = mask->data ? 0 : all;
+    for (size_t i = 0; mask->data && i < all; i++)
+        inside += mask->data[i] > 0.5f;
     r->step = (int)ceil(sqrt((double)inside / (0.95 * PIXELS)));
     r->step = r->step < 1 ? 1 : r->step;
     r->columns = (width + r->step - 1) / r->step;

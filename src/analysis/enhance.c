@@ -233,15 +233,6 @@ static bool fits(const struct relume_image *image, const struct relume_image *ot
            other->height == image->height;
 }
 
-static void fill_defaults(struct relume_pass_params *p)
-{
-    p->gain = p->gain != 0.0f ? p->gain : RELUME_PASS_GAIN;
-    p->specular = p->specular != 0.0f ? p->specular : 0.6f;
-    p->exponent = p->exponent > 0.0f ? p->exponent : 40.0f;
-    p->radius = p->radius > 0 ? p->radius : 4;
-    p->threads = thread_count(p->threads);
-}
-
 static relume_status find_range(struct enhance *e)
 {
     const struct relume_pass_params *p = &e->params;
@@ -273,7 +264,11 @@ relume_status relume_pass_apply(struct relume_image *image, enum relume_pass pas
         .n = n,
         .params = PARAMS(relume_pass_params, params),
     };
-    fill_defaults(&e.params);
+    e.params.gain = e.params.gain != 0.0f ? e.params.gain : RELUME_PASS_GAIN;
+    e.params.specular = e.params.specular != 0.0f ? e.params.specular : 0.6f;
+    e.params.exponent = e.params.exponent > 0.0f ? e.params.exponent : 40.0f;
+    e.params.radius = e.params.radius > 0 ? e.params.radius : 4;
+    e.params.threads = thread_count(e.params.threads);
     if ((unsigned)pass >= RELUME_PASSES || image->channels != 3 ||
         (relume_pass_needs_normals(pass) &&
          (!normals || !fits(image, &normals->normal) || !fits(image, &normals->albedo))) ||

@@ -126,15 +126,6 @@ static void remove_all(const beside *b)
     rmdir(b->path);
 }
 
-// Stopped between giving away the old name and taking it.
-static void put_back(const beside *b, const char *name)
-{
-    char *target = *name ? mem_format("%s/%s", b->dir, name) : NULL;
-    if (target && access(target, F_OK))
-        (void)tree_rename(b->old, target, TREE_NEW);
-    mem_free(target);
-}
-
 static void sweep_one(const char *dir, const char *entry)
 {
     char name[NAME];
@@ -145,7 +136,11 @@ static void sweep_one(const char *dir, const char *entry)
     if (!lstat(b->path, &s) && S_ISDIR(s.st_mode) && s.st_uid == geteuid() && rmdir(b->path)) {
         b->fd = take(b, name);
         if (b->fd >= 0) {
-            put_back(b, name);
+            // Stopped between giving away the old name and taking it.
+            char *target = *name ? mem_format("%s/%s", b->dir, name) : NULL;
+            if (target && access(target, F_OK))
+                (void)tree_rename(b->old, target, TREE_NEW);
+            mem_free(target);
             remove_all(b);
         }
     }
@@ -196,14 +191,6 @@ static int try_lock(beside *b, const char *name)
     return good ? 1 : gone || taken ? 0 : -1;
 }
 
-static void enter(beside *b)
-{
-    pthread_mutex_lock(&open_lock);
-    b->next = open_ones;
-    open_ones = b;
-    pthread_mutex_unlock(&open_lock);
-}
-
 static void leave(const beside *b)
 {
     pthread_mutex_lock(&open_lock);
@@ -236,7 +223,10 @@ beside *beside_open(const char *dir, const char *name)
         const bool made = !mkdir(b->path, 0700);
         const int locked = made ? try_lock(b, name) : errno == EEXIST ? 0 : -1;
         if (locked > 0) {
-            enter(b);
+            pthread_mutex_lock(&open_lock);
+            b->next = open_ones;
+            open_ones = b;
+            pthread_mutex_unlock(&open_lock);
             return b;
         }
         const int error = errno;

@@ -107,14 +107,6 @@ static relume_status copy_to_device(outfile *f)
 
 // ---------------------------------------------------------------- files
 
-static relume_status open_inside(outfile *f)
-{
-    f->kind = INSIDE;
-    unlink(f->target);
-    f->fd = open(f->target, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    return f->fd < 0 ? fail(f, "cannot be written") : RELUME_OK;
-}
-
 static relume_status enter_beside(outfile *f)
 {
     char *name = tree_base(f->target);
@@ -182,8 +174,12 @@ static relume_status open_file(outfile *f, const char *path)
     const int descriptor = descriptor_of(path);
     if (descriptor >= 0 || tree_is_device(path))
         return open_device(f, descriptor);
-    if (beside_holds(f->target))
-        return open_inside(f);
+    if (beside_holds(f->target)) {
+        f->kind = INSIDE;
+        unlink(f->target);
+        f->fd = open(f->target, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        return f->fd < 0 ? fail(f, "cannot be written") : RELUME_OK;
+    }
     const relume_status status = outfile_check(f->target, f->path, f->log);
     return status ? status : open_new(f);
 }

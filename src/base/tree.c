@@ -117,17 +117,12 @@ bool tree_is_device(const char *path)
 
 // ---------------------------------------------------------------- contents
 
-static struct tree_entry *more(struct tree_list *list)
-{
-    const bool room = mem_grow(&list->item, list->count, sizeof *list->item);
-    return room ? &list->item[list->count++] : NULL;
-}
-
 // `within` is "" or ends in a slash.
 static bool list_entry(struct tree_list *out, const char *root, const char *within,
                        const char *name)
 {
-    struct tree_entry *e = more(out);
+    const bool room = mem_grow(&out->item, out->count, sizeof *out->item);
+    struct tree_entry *e = room ? &out->item[out->count++] : NULL;
     if (!e)
         return false;
     *e = (struct tree_entry){.name = mem_format("%s%s", within, name)};

@@ -279,17 +279,13 @@ static relume_status make_grid(struct pictures *p)
     return p->grid ? place(p) : RELUME_ENOMEM;
 }
 
-static vec3 direction(struct angles a)
-{
-    const double theta = a.theta_deg * M_PI / 180.0, phi = a.phi_deg * M_PI / 180.0;
-    return vec3_of(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
-}
-
 static vec3 *directions(const struct angles *a, int n)
 {
     vec3 *d = mem_array((size_t)n, sizeof *d);
-    for (int i = 0; d && i < n; i++)
-        d[i] = direction(a[i]);
+    for (int i = 0; d && i < n; i++) {
+        const double theta = a[i].theta_deg * M_PI / 180.0, phi = a[i].phi_deg * M_PI / 180.0;
+        d[i] = vec3_of(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
+    }
     return d;
 }
 

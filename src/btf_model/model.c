@@ -108,14 +108,6 @@ static relume_status choose_counts(struct fitting *f, const struct relume_btf_fi
     return status;
 }
 
-// Those of the level before, where texels are left for them: a cluster keeps its share of texels.
-static void inherit_counts(relume_btf_fitted *m, const relume_btf_fitted *from)
-{
-    m->clusters = from->clusters > 4 ? from->clusters / 4 : from->clusters > 0;
-    m->components = least((size_t)from->components, (size_t)most_components(m));
-    m->lobes = from->lobes;
-}
-
 static relume_status check_values(const relume_btf *btf, const struct relume_log *log)
 {
     const size_t n = btf_texels(btf) * 3;
@@ -174,9 +166,13 @@ static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
     m->without_cosine = btf->info.without_cosine;
     struct fitting f = {btf, m, p->log, p->seed, p->threads, p->ratio};
     relume_status status = copy_directions(m, btf, p->log);
-    if (!status && before)
-        inherit_counts(m, before);
-    else if (!status)
+    if (!status && before) {
+        // Those of the level before, where texels are left for them: a cluster keeps its share of
+        // texels.
+        m->clusters = before->clusters > 4 ? before->clusters / 4 : before->clusters > 0;
+        m->components = least((size_t)before->components, (size_t)most_components(m));
+        m->lobes = before->lobes;
+    } else if (!status)
         status = choose_counts(&f, p);
     if (!status && p->ratio != 0.0 && !(p->ratio >= 1.0 && p->ratio <= 1e6))
         status =

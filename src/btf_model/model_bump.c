@@ -125,15 +125,6 @@ static relume_status fit(struct fitting *f)
 
 static const double LEAST_COSINE = 1e-6;
 
-// What the table's value is times: the share that arrives below its lowest lights, or, where values
-// lack n.l, the cosine of the light on the turned plane over that on the plane, which follows.
-static double scale_of(const relume_btf_fitted *m, vec3 light, vec3 turned,
-                       const struct relume_direction_blend *at)
-{
-    return m->without_cosine ? fmax(turned.z, 0.0) / fmax(light.z, LEAST_COSINE)
-                             : at->rim / at->length;
-}
-
 static void eval(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
 {
     const uint16_t *color = model_halfs(m, COLOR) + 3 * at->texel;
@@ -145,7 +136,11 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
         relume_direction_mesh_at(m->view_mesh, vec3_upright(at->v, n));
     const vec3 turned = vec3_upright(at->l, n);
     const struct relume_direction_blend l = relume_direction_mesh_at(m->light_mesh, turned);
-    const double scale = scale_of(m, at->l, turned, &l);
+    // What the table's value is times: the share that arrives below its lowest lights, or, where
+    // values lack n.l, the cosine of the light on the turned plane over that on the plane, which
+    // follows.
+    const double scale =
+        m->without_cosine ? fmax(turned.z, 0.0) / fmax(at->l.z, LEAST_COSINE) : l.rim / l.length;
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < v.count; i++)
         for (int j = 0; j < l.count; j++) {

@@ -62,15 +62,6 @@ struct work {
     bool failed;  // set by any worker, read after all
 };
 
-static void find_energy(struct work *w)
-{
-    for (size_t i = 0; i < w->texels; i++)
-        for (int k = 0; k < w->r.count; k++) {
-            const double s = (double)w->r.score[i * (size_t)w->r.count + (size_t)k];
-            w->energy[k] += s * s;
-        }
-}
-
 // Turn the patterns' colours, most of the energy first.
 static bool turn_colors(struct work *w)
 {
@@ -245,7 +236,11 @@ static relume_status write(struct work *w)
 static relume_status quantise(struct work *w, double most)
 {
     size_t texel, pair;
-    find_energy(w);
+    for (size_t i = 0; i < w->texels; i++)
+        for (int k = 0; k < w->r.count; k++) {
+            const double s = (double)w->r.score[i * (size_t)w->r.count + (size_t)k];
+            w->energy[k] += s * s;
+        }
     w->plane = mem_array((size_t)w->r.count * PLANES, sizeof *w->plane);
     if (!w->plane || !turn_colors(w))
         return RELUME_ENOMEM;

@@ -54,13 +54,6 @@ static bool sort(struct sorted *s, const float *values, size_t count, size_t str
     return true;
 }
 
-static void free_sorted(struct sorted *s)
-{
-    mem_free(s->value);
-    mem_free(s->sum);
-    mem_free(s->squares);
-}
-
 // How many values lie below `x`, of those from `from` on.
 static size_t below(const struct sorted *s, size_t from, double x)
 {
@@ -125,7 +118,9 @@ bool levels_choose(const float *values, size_t count, size_t stride, struct leve
         if (bits && s.deviation > 0.0)
             error[bits] = choose_width(&s, bits, &best[bits]);
     }
-    free_sorted(&s);
+    mem_free(s.value);
+    mem_free(s.sum);
+    mem_free(s.squares);
     return good;
 }
 

@@ -37,11 +37,6 @@ static double hemisphere_share(double z, double h)
     return h >= 0.0 ? 0.0 : -h;
 }
 
-static double share_of_cap(vec3 centre, double h, bool hemisphere, bool pole_y)
-{
-    return hemisphere ? hemisphere_share(pole_from_world(centre, pole_y).z, h) : 0.5 * (1.0 - h);
-}
-
 static double worst_around(vec3 centre, const vec3 *lights, int n, double *cosines,
                            const struct relume_directions_params *p)
 {
@@ -50,7 +45,9 @@ static double worst_around(vec3 centre, const vec3 *lights, int n, double *cosin
     qsort(cosines, (size_t)n, sizeof *cosines, descending);
     double worst = 0.0;
     for (int i = 0; i < n; i++) {
-        const double area = share_of_cap(centre, cosines[i], p->hemisphere, p->pole_y);
+        const double area = p->hemisphere
+                                ? hemisphere_share(pole_from_world(centre, p->pole_y).z, cosines[i])
+                                : 0.5 * (1.0 - cosines[i]);
         const double without = (double)i / n, with = (double)(i + 1) / n;
         worst = fmax(worst, fmax(area - without, with - area));
     }

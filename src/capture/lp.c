@@ -205,14 +205,6 @@ relume_status lp_read(struct draft *out, const char *path, const struct relume_l
 
 // ---------------------------------------------------------------- files
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    const char *backslash = strrchr(path, '\\');
-    const char *last = slash > backslash ? slash : backslash;
-    return last ? last + 1 : path;
-}
-
 static int is_image(const struct dirent *entry)
 {
     static const char *const extensions[] = {
@@ -242,7 +234,10 @@ static char *find_file(struct draft *d, const char *folder, const char *listed,
     *refused = exists && !p->allow_outside && leaves_folder(listed);
     if (!path || (exists && !*refused))
         return path;
-    const char *base = base_name(listed);
+    const char *slash = strrchr(listed, '/');
+    const char *backslash = strrchr(listed, '\\');
+    const char *last = slash > backslash ? slash : backslash;
+    const char *base = last ? last + 1 : listed;
     for (int exact = 1; exact >= 0; exact--)
         for (int i = 0; i < file_count; i++)
             if (exact ? !strcmp(files[i]->d_name, base) : !strcasecmp(files[i]->d_name, base)) {

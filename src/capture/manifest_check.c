@@ -38,30 +38,21 @@ static relume_status check_vectors(struct relume_vec3 *v, int n, bool unit, cons
     return RELUME_OK;
 }
 
-// Pixels are divided by it in single precision.
-static bool is_intensity(float v)
-{
-    return v >= 1e-30f && v <= 1e30f;
-}
-
-static relume_status imply_directions(struct draft *d)
-{
-    d->directions = arena_array(&d->arena, (size_t)d->m.lights, sizeof *d->directions);
-    for (int i = 0; d->directions && i < d->m.lights; i++)
-        d->directions[i] = d->positions[i];
-    return d->directions ? RELUME_OK : RELUME_ENOMEM;
-}
-
 relume_status draft_check_lights(struct draft *d, const char *path, const struct relume_log *log)
 {
     relume_status status = check_vectors(d->positions, d->m.lights, false, path, log);
-    if (!status && !d->directions)
-        status = imply_directions(d);
+    if (!status && !d->directions) {
+        d->directions = arena_array(&d->arena, (size_t)d->m.lights, sizeof *d->directions);
+        for (int i = 0; d->directions && i < d->m.lights; i++)
+            d->directions[i] = d->positions[i];
+        status = d->directions ? RELUME_OK : RELUME_ENOMEM;
+    }
     if (!status)
         status = check_vectors(d->directions, d->m.lights, true, path, log);
     for (int i = 0; !status && d->intensities && i < d->m.lights; i++)
         for (int c = 0; !status && c < 3; c++)
-            if (!is_intensity(d->intensities[i][c]))
+            // Pixels are divided by it in single precision.
+            if (!(d->intensities[i][c] >= 1e-30f && d->intensities[i][c] <= 1e30f))
                 status = manifest_wrong(path, "lights.intensities", MANIFEST_INTENSITIES, log);
     return status;
 }

@@ -76,14 +76,6 @@ static void put_slab(FILE *f, const struct relume_geometry *g)
     fputs("},\n", f);
 }
 
-static void put_panorama(FILE *f, const struct relume_geometry *g)
-{
-    fprintf(f, "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, ", g->v_min, g->v_max);
-    if (g->disc)
-        fprintf(f, "\"discs\": %d, ", g->disc);
-    fprintf(f, "\"center\": [%.9g, %.9g, %.9g]},\n", g->center.x, g->center.y, g->center.z);
-}
-
 static void put_geometry(FILE *f, const struct relume_manifest *m)
 {
     const struct relume_geometry *g = &m->geometry;
@@ -96,8 +88,12 @@ static void put_geometry(FILE *f, const struct relume_manifest *m)
                 g->perspective ? "perspective" : "orthographic", g->camera_z);
     else if (g->projection == RELUME_SLAB)
         m->slabs ? put_slabs(f, m) : put_slab(f, g);
-    else
-        put_panorama(f, g);
+    else {
+        fprintf(f, "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, ", g->v_min, g->v_max);
+        if (g->disc)
+            fprintf(f, "\"discs\": %d, ", g->disc);
+        fprintf(f, "\"center\": [%.9g, %.9g, %.9g]},\n", g->center.x, g->center.y, g->center.z);
+    }
 }
 
 static void put_view(FILE *f, const struct relume_manifest *m, const struct relume_manifest_view *v)

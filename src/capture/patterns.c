@@ -79,14 +79,6 @@ static vec3 on_sphere(const double square[2], bool hemisphere)
     return vec3_of(r * cos(phi_rad), r * sin(phi_rad), z);
 }
 
-static double nearest_cosine(vec3 point, const vec3 *others, int n)
-{
-    double nearest = -1.0;
-    for (int i = 0; i < n; i++)
-        nearest = fmax(nearest, vec3_dot(point, others[i]));
-    return nearest;
-}
-
 // Best candidates (Mitchell 1991): of several random points keep the one farthest from all so far.
 static relume_status fill_poisson(double (*out)[2], int n, uint64_t seed, bool hemisphere)
 {
@@ -103,7 +95,9 @@ static relume_status fill_poisson(double (*out)[2], int n, uint64_t seed, bool h
             const double u = random_next(&random);
             const double square[2] = {u, random_next(&random)};
             const vec3 point = on_sphere(square, hemisphere);
-            const double near = nearest_cosine(point, kept, k);
+            double near = -1.0;
+            for (int i = 0; i < k; i++)
+                near = fmax(near, vec3_dot(point, kept[i]));
             if (near < best) {
                 best = near;
                 kept[k] = point;

@@ -120,12 +120,6 @@ static void draw_grid_line(struct drawing *d, double x0, double y0, double x1, d
     cairo_stroke(d->c);
 }
 
-// Wide ranges name 1, 2, 5; narrow ones every digit; very narrow ones steps of their own.
-static bool is_named(int digit, double decades)
-{
-    return decades < 0.8 || digit == 1 || digit == 2 || digit == 5;
-}
-
 static void draw_x_tick(struct drawing *d, double value, bool named)
 {
     const double x = page_x(d, value);
@@ -153,7 +147,7 @@ static void draw_x_axis(struct drawing *d)
             for (int digit = 1; digit < 10; digit++) {
                 const double v = digit * pow(10.0, e);
                 if (v >= low && v <= high)
-                    draw_x_tick(d, v, is_named(digit, decades));
+                    draw_x_tick(d, v, decades < 0.8 || digit == 1 || digit == 2 || digit == 5);
             }
     }
     set_colour(d->c, AXIS_TEXT);

@@ -49,13 +49,6 @@ struct sample {
     uint16_t *index;  // [n]
 };
 
-static void free_sample(struct sample *s)
-{
-    mem_free(s->residual);
-    mem_free(s->part);
-    mem_free(s->index);
-}
-
 static bool alloc_sample(struct sample *s)
 {
     s->residual = mem_array(s->n * s->planes, sizeof *s->residual);
@@ -319,7 +312,9 @@ relume_status relume_books_train(relume_books **out, const relume_coefficients *
         status = draw_sample(&s, views, n, pixels, p.seed);
     for (int i = 0; !status && i < books->info.books; i++)
         status = learn_book(books, i, &s, &p);
-    free_sample(&s);
+    mem_free(s.residual);
+    mem_free(s.part);
+    mem_free(s.index);
     if (status)
         relume_books_destroy(&books);
     *out = books;

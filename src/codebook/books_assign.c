@@ -142,11 +142,6 @@ static double measure_row(const struct assignment *a, struct work *w, int y)
     return sum;
 }
 
-static bool is_measured(const struct assignment *a, int y)
-{
-    return y % (a->view->bands < 64 ? BAND_ROWS : 4 * BAND_ROWS) == 0;
-}
-
 static void assign_row(void *context, size_t item, int worker)
 {
     struct assignment *a = context;
@@ -164,7 +159,7 @@ static void judge_row(void *context, size_t item, int worker)
 {
     struct assignment *a = context;
     const int y = (int)item;
-    if (is_measured(a, y))
+    if (y % (a->view->bands < 64 ? BAND_ROWS : 4 * BAND_ROWS) == 0)
         a->loss[y] =
             begin_row(a, &a->work[worker], y) ? (double)NAN : measure_row(a, &a->work[worker], y);
 }

@@ -145,20 +145,14 @@ static void move_to_mean(void *context, size_t code, int worker)
     }
 }
 
-static int worst_cell(const struct training *t)
+// An empty code becomes the farthest vector of the worst cell, which then no longer counts there.
+// False when no error is left.
+static bool fill_empty(struct training *t, int empty)
 {
     int worst = 0;
     for (int c = 1; c < t->codes; c++)
         if (t->error[c] > t->error[worst])
             worst = c;
-    return worst;
-}
-
-// An empty code becomes the farthest vector of the worst cell, which then no longer counts there.
-// False when no error is left.
-static bool fill_empty(struct training *t, int empty)
-{
-    const int worst = worst_cell(t);
     if (!(t->error[worst] > 0.0))
         return false;
     uint32_t far = t->order[t->begin[worst]];

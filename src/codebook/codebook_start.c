@@ -123,13 +123,6 @@ static int larger_first(const void *a, const void *b)
                                 : (x->cell > y->cell) - (x->cell < y->cell);
 }
 
-static void order_cells(const struct training *t, struct cell_error *cells)
-{
-    for (int c = 0; c < t->codes; c++)
-        cells[c] = (struct cell_error){t->error[c], c};
-    qsort(cells, (size_t)t->codes, sizeof *cells, larger_first);
-}
-
 relume_status start_split(struct training *t)
 {
     struct cell_error *cells = mem_array((size_t)t->most_codes, sizeof *cells);
@@ -144,7 +137,9 @@ relume_status start_split(struct training *t)
         if (status)
             break;
         const int left = t->most_codes - t->codes, split = left < t->codes ? left : t->codes;
-        order_cells(t, cells);
+        for (int c = 0; c < t->codes; c++)
+            cells[c] = (struct cell_error){t->error[c], c};
+        qsort(cells, (size_t)t->codes, sizeof *cells, larger_first);
         thread_for(t->threads, (size_t)split, split_cell, &s);
         t->codes += split;
         t->bounded = false;

@@ -35,15 +35,6 @@ struct system {
     double *b;    // [k][n]
 };
 
-static void free_system(struct system *s)
-{
-    mem_free(s->y);
-    mem_free(s->v);
-    mem_free(s->f);
-    mem_free(s->h);
-    mem_free(s->b);
-}
-
 static bool alloc_system(struct system *s)
 {
     const size_t n = (size_t)s->n, k = (size_t)s->k, m = (size_t)s->m;
@@ -64,18 +55,13 @@ static void add_gram(double *a, int k, const double *rows, int count, double wei
                 a[i * k + j] += weight * rows[r * k + i] * rows[r * k + j];
 }
 
-// The most coefficients of the basis that so many directions determine, 0 where there are none.
-static int most_of_rank(const struct relume_basis *basis, int rank)
-{
-    while (rank > 0 && !basis->has_count(rank))
-        rank--;
-    return rank;
-}
-
 static relume_status refuse_rank(const struct system *s, const struct relume_basis *basis, int rank,
                                  const struct relume_log *log)
 {
-    const int most = most_of_rank(basis, rank);
+    // The most coefficients of the basis that so many directions determine, 0 where there are none.
+    int most = rank;
+    while (most > 0 && !basis->has_count(most))
+        most--;
     char instead[64] = "";
     if (most)
         snprintf(instead, sizeof instead, ", or at most %d coefficient%s", most,
@@ -211,6 +197,10 @@ relume_status fit_map(relume_coder *coder, const double *roughness, const struct
         assemble(&s, roughness, coder->info.ridge);
         status = finish(&s, coder, log);
     }
-    free_system(&s);
+    mem_free(s.y);
+    mem_free(s.v);
+    mem_free(s.f);
+    mem_free(s.h);
+    mem_free(s.b);
     return status;
 }

@@ -37,23 +37,6 @@ static double reach_of(const struct relume_vec3 *lights, int n, int i, double pa
     return fmax(nearest * part, LEAST);
 }
 
-static vec3 mean_of(const struct relume_vec3 *lights, int n)
-{
-    vec3 sum = {0.0, 0.0, 0.0};
-    for (int i = 0; i < n; i++)
-        sum = vec3_add(sum, lights[i]);
-    return sum;
-}
-
-// Any frame will do; at a pole it is that of x and y, or of x and z.
-static void set_axis(struct relume_captured_region *z, vec3 axis)
-{
-    const vec3 beside = fabs(axis.x) < 0.9 ? vec3_of(1.0, 0.0, 0.0) : vec3_of(0.0, 1.0, 0.0);
-    z->axis = axis;
-    z->up = vec3_unit(vec3_cross(axis, beside));
-    z->right = vec3_cross(z->up, axis);
-}
-
 static double azimuth(int step)
 {
     return 2.0 * M_PI * step / STEPS;
@@ -101,7 +84,11 @@ static bool try_axis(struct relume_captured_region *z, vec3 axis, const struct r
                      int n, double part)
 {
     double support[STEPS];
-    set_axis(z, axis);
+    // Any frame will do; at a pole it is that of x and y, or of x and z.
+    const vec3 beside = fabs(axis.x) < 0.9 ? vec3_of(1.0, 0.0, 0.0) : vec3_of(0.0, 1.0, 0.0);
+    z->axis = axis;
+    z->up = vec3_unit(vec3_cross(axis, beside));
+    z->right = vec3_cross(z->up, axis);
     if (!find_support(support, z, lights, n, part))
         return false;
     find_border(z, support);
@@ -120,7 +107,9 @@ void zone_find(struct relume_captured_region *zone, const struct relume_vec3 *li
 {
     const double part = p->part;
     const vec3 pole = p->pole_y ? vec3_of(0.0, 1.0, 0.0) : vec3_of(0.0, 0.0, 1.0);
-    const vec3 mean = mean_of(lights, n);
+    vec3 mean = {0.0, 0.0, 0.0};
+    for (int i = 0; i < n; i++)
+        mean = vec3_add(mean, lights[i]);
     double gap;
     const vec3 lost = mesh_widest_gap(lights, n, &gap);
     *zone = (struct relume_captured_region){.everywhere = true};

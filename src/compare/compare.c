@@ -47,15 +47,6 @@ struct block {
     float delta_e[CIEDE_BLOCK];
 };
 
-static void find_display(const struct job *j, struct block *b)
-{
-    for (int i = 0; i < 2; i++) {
-        encoder_apply(&j->display, b->linear[i], b->display[i], 3 * b->n);
-        for (int x = 0; x < 3 * b->n; x++)
-            b->display[i][x] = encoder_clip(b->display[i][x]);
-    }
-}
-
 // CIEDE2000 looks at display codes as sRGB whatever they are.
 static void find_lab(const struct job *j, const struct block *b, int i, struct lab_block *lab)
 {
@@ -74,15 +65,6 @@ static void find_delta_e(const struct job *j, struct block *b)
     for (int i = 0; i < 2; i++)
         find_lab(j, b, i, &lab[i]);
     ciede2000_block(j->tables, &lab[0], &lab[1], b->delta_e);
-}
-
-static void keep_luma(const struct job *j, const struct block *b, size_t first)
-{
-    for (int i = 0; i < 2; i++)
-        for (int x = 0; x < b->n; x++) {
-            const float *v = b->display[i] + 3 * x;
-            j->luma[i][first + (size_t)x] = luma_601f(v);
-        }
 }
 
 static void add_pixel(struct sums *s, const struct block *b, int pixel)
@@ -112,11 +94,16 @@ static void measure_rows(void *context, size_t item, int worker)
         b.n = left < CIEDE_BLOCK ? (int)left : CIEDE_BLOCK;
         b.linear[0] = j->a->data + 3 * at;
         b.linear[1] = j->b->data + 3 * at;
-        find_display(j, &b);
+        for (int i = 0; i < 2; i++) {
+            encoder_apply(&j->display, b.linear[i], b.display[i], 3 * b.n);
+            for (int x = 0; x < 3 * b.n; x++)
+                b.display[i][x] = encoder_clip(b.display[i][x]);
+        }
         if (j->tables)
             find_delta_e(j, &b);
-        if (j->luma[1])
-            keep_luma(j, &b, at);
+        for (int i = 0; j->luma[1] && i < 2; i++)
+            for (int x = 0; x < b.n; x++)
+                j->luma[i][at + (size_t)x] = luma_601f(b.display[i] + 3 * x);
         for (int x = 0; x < b.n; x++)
             if (is_inside(j, at + (size_t)x))
                 add_pixel(&j->block[item], &b, x);

@@ -87,14 +87,6 @@ static relume_status search(struct trial *best, const struct foreign *f, const s
     return status;
 }
 
-static void warn_of_width(const struct foreign *f, const struct export *e, const char *path)
-{
-    if (f->width % 8)
-        log_line(e->log, RELUME_WARNING,
-                 "%s: width %d is not a multiple of 8; RTIViewer may show the JPEG planes wrongly",
-                 path, f->width);
-}
-
 bool legacy_wants_jpeg(const struct relume_export_params *p)
 {
     return p->quality > 0 || p->bytes_per_pixel > 0.0 || p->psnr_db > 0.0;
@@ -125,7 +117,9 @@ relume_status legacy_write_jpeg(const struct foreign *f, const struct export *e,
     report->psnr_db = best.psnr_db;
     report->exact = false;
     ptm_jpeg_free(&best.file);
-    if (!status)
-        warn_of_width(f, e, path);
+    if (!status && f->width % 8)
+        log_line(e->log, RELUME_WARNING,
+                 "%s: width %d is not a multiple of 8; RTIViewer may show the JPEG planes wrongly",
+                 path, f->width);
     return status;
 }

@@ -43,15 +43,6 @@ static enum relume_kind kind_of_folder(const char *path, const struct relume_log
 enum { HEAD = 4096 };
 static const char exr_magic[] = "\x76\x2f\x31\x01";
 
-static size_t read_head(char head[HEAD], const char *path, const struct relume_log *log)
-{
-    FILE *f = input_open(path, log);
-    const size_t n = f ? fread(head, 1, HEAD, f) : 0;
-    if (f)
-        fclose(f);
-    return n;
-}
-
 static bool is_among(const char *path, const char *const *endings)
 {
     while (*endings && !path_ends(path, *endings))
@@ -82,7 +73,10 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
         return RELUME_KIND_FOREIGN;
     if (path_ends(path, ".lp"))
         return RELUME_KIND_CAPTURE;
-    const size_t n = read_head(head, path, log);
+    FILE *f = input_open(path, log);
+    const size_t n = f ? fread(head, 1, HEAD, f) : 0;
+    if (f)
+        fclose(f);
     if (path_ends(path, ".json"))
         return kind_of_json(head, n, path);
     if (n > 4 && !memcmp(head, exr_magic, 4))

@@ -45,14 +45,6 @@ static void take_plane(struct samples *s, const struct foreign *f, int i, int ev
     }
 }
 
-static void free_samples(struct samples *s)
-{
-    for (int i = 0; i < s->planes; i++) {
-        mem_free(s->code[i]);
-        mem_free(s->coefficient[i]);
-    }
-}
-
 static relume_status take_samples(struct samples *s, const struct foreign *f)
 {
     const int every = (int)(foreign_pixels(f) / SAMPLE_PIXELS) + 1;
@@ -80,15 +72,6 @@ static relume_status take_samples(struct samples *s, const struct foreign *f)
 static double bits_of(float steps)
 {
     return 0.5 * (double)log2f(1.0f + 4.0f * steps * steps);
-}
-
-static double cost_alone(const struct samples *s, int i, int step)
-{
-    const float scale = 1.0f / (float)step;
-    double bits = 0.0;
-    for (size_t k = 0; k < s->coefficients; k++)
-        bits += bits_of(scale * s->coefficient[i][k]);
-    return bits;
 }
 
 // Of plane `i` given plane `r`; what does not fit into a byte takes a record.
@@ -130,7 +113,10 @@ relume_status ptm_tree_grow(struct ptm_tree *out, const struct foreign *f, const
     const relume_status status = take_samples(&s, f);
     *out = (struct ptm_tree){0};
     for (int i = 0; !status && i < f->planes; i++) {
-        cost[i] = cost_alone(&s, i, step[i]);
+        const float scale = 1.0f / (float)step[i];
+        cost[i] = 0.0;
+        for (size_t k = 0; k < s.coefficients; k++)
+            cost[i] += bits_of(scale * s.coefficient[i][k]);
         out->reference[i] = out->turn[i] = -1;
     }
     for (int turn = 0; !status && turn < f->planes; turn++) {
@@ -143,6 +129,9 @@ relume_status ptm_tree_grow(struct ptm_tree *out, const struct foreign *f, const
         out->turn[next] = turn;
         offer(out, cost, &s, step, next);
     }
-    free_samples(&s);
+    for (int i = 0; i < s.planes; i++) {
+        mem_free(s.code[i]);
+        mem_free(s.coefficient[i]);
+    }
     return status;
 }

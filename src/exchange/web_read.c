@@ -294,20 +294,15 @@ static void fill_joint(const struct folder *w)
         }
 }
 
-// The constant function as a sum of the type's functions: only the first is a constant.
-static double constant_term(const struct functions *f)
-{
-    double values[FUNCTIONS_MOST_OWN];
-    functions_at(f, vec3_of(0.0, 0.0, 1.0), values);
-    return 1.0 / values[0];
-}
-
 // Planes: Y_0, Cb, Cr, Y_1, ... of which Cb and Cr do not depend on the light.
 static void fill_ycc(const struct folder *w)
 {
     struct foreign *f = w->f;
     const int n = f->functions.count;
-    const double one = constant_term(&f->functions);
+    // The constant function as a sum of the type's functions: only the first is a constant.
+    double values[FUNCTIONS_MOST_OWN];
+    functions_at(&f->functions, vec3_of(0.0, 0.0, 1.0), values);
+    const double one = 1.0 / values[0];
     for (int c = 0; c < 3; c++) {
         double *t = f->transform + c * f->terms * n;
         f->mean[c * n] = -0.5 * one * (foreign_rgb_of_ycc[c][1] + foreign_rgb_of_ycc[c][2]);
@@ -396,13 +391,6 @@ static void set_quantisers(const struct folder *w)
     }
 }
 
-static int stored_planes(const struct foreign *f)
-{
-    return f->form == FOREIGN_CHANNELS    ? 3 * f->terms
-           : f->form == FOREIGN_LUMINANCE ? f->terms + 3
-                                          : f->terms;
-}
-
 static relume_status read_planes(struct folder *w)
 {
     struct foreign *f = w->f;
@@ -413,8 +401,11 @@ static relume_status read_planes(struct folder *w)
     // the first picture vouches for the size before memory is taken for all
     relume_status status = read_jpeg(w, 0, &codes);
     if (!status)
-        status =
-            foreign_create(f, w->info, f->width, f->height, stored_planes(f), w->limits, w->log);
+        status = foreign_create(f, w->info, f->width, f->height,
+                                f->form == FOREIGN_CHANNELS    ? 3 * f->terms
+                                : f->form == FOREIGN_LUMINANCE ? f->terms + 3
+                                                               : f->terms,
+                                w->limits, w->log);
     if (!status)
         set_quantisers(w);
     for (int i = 0; !status; i++) {

@@ -127,18 +127,15 @@ static void take_weights(struct plan *p, const struct plan_view *v)
         p->weight[i] = p->form == FOREIGN_YCC ? ycc_weight(i - p->terms + 1) : 1.0;
 }
 
-static int planes_of(enum foreign_form form, int terms)
-{
-    return form == FOREIGN_LUMINANCE ? terms + 3 : form == FOREIGN_YCC ? terms + 2 : 3 * terms;
-}
-
 relume_status plan_fit(struct plan *p, const struct source *s, const struct functions *functions,
                        enum foreign_form form, int threads)
 {
     *p = (struct plan){.form = form,
                        .functions = *functions,
                        .terms = functions->count,
-                       .planes = planes_of(form, functions->count)};
+                       .planes = form == FOREIGN_LUMINANCE ? functions->count + 3
+                                 : form == FOREIGN_YCC     ? functions->count + 2
+                                                           : 3 * functions->count};
     struct plan_view view;
     relume_status status = plan_view_open(&view, p, s, threads);
     if (!status && form == FOREIGN_LUMINANCE)

@@ -87,12 +87,6 @@ static double *weighted(const struct plan_view *v, const double *in, int columns
     return out;
 }
 
-// L^-1 of h = L L^T, in place of h.
-static bool invert_factor(double *h, int n)
-{
-    return lsq_cholesky(h, n) && lsq_invert_lower(h, n);
-}
-
 // nodes = (F^T S F + pull)^-1 (F^T S A + pull x prior); no prior: zero.
 static relume_status solve_nodes(struct plan_view *v, const double *prior, double pull)
 {
@@ -112,7 +106,8 @@ static relume_status solve_nodes(struct plan_view *v, const double *prior, doubl
             h[i * n + i] += pull * trace;
         for (size_t i = 0; prior && i < nodes; i++)
             b[i] += pull * trace * prior[i];
-        status = invert_factor(h, n) ? RELUME_OK : RELUME_ENOMEM;
+        // L^-1 of h = L L^T, in place of h.
+        status = lsq_cholesky(h, n) && lsq_invert_lower(h, n) ? RELUME_OK : RELUME_ENOMEM;
     }
     if (!status) {
         lsq_product(false, false, n, width, n, h, b, half);

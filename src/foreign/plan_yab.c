@@ -189,16 +189,12 @@ struct place {
     size_t component;
 };
 
-static struct place place_of(size_t plane, size_t chroma)
-{
-    return plane < 3 * chroma ? (struct place){(enum part_name)(plane % 3), plane / 3}
-                              : (struct place){PART_Y, plane - 2 * chroma};
-}
-
 static void take_plane(struct plan *p, const struct maker *m, size_t plane)
 {
     const size_t n = width_of(m), functions = (size_t)p->functions.count;
-    const struct place at = place_of(plane, (size_t)p->chroma);
+    const struct place at = plane < 3 * (size_t)p->chroma
+                                ? (struct place){(enum part_name)(plane % 3), plane / 3}
+                                : (struct place){PART_Y, plane - 2 * (size_t)p->chroma};
     const struct part *part = &m->part[at.part];
     const double *forward = part->c.forward + at.component * n;
     const double *back = part->c.back + at.component * n;

@@ -177,12 +177,6 @@ static relume_status load_ahead(struct evaluator *e, int count)
     return RELUME_OK;
 }
 
-static void drop_images(struct evaluator *e)
-{
-    for (int i = 0; i < e->ahead; i++)
-        relume_image_destroy(&e->image[i]);
-}
-
 // Lamps a little below the horizon of a hemispherical capture count as on it, when it is encoded
 // and here: nothing is to be warned of.
 static vec3 photographed_from(const struct evaluator *e, int light)
@@ -236,7 +230,8 @@ static relume_status evaluate_some(struct evaluator *e, const struct relume_came
         if (!status && !log_progress(e->params.log, "evaluating", done))
             status = RELUME_ECANCEL;
     }
-    drop_images(e);
+    for (int i = 0; i < e->ahead; i++)
+        relume_image_destroy(&e->image[i]);
     e->first += count;
     return status;
 }
@@ -337,15 +332,6 @@ static bool create(struct evaluator *e, struct relume_evaluation *out)
     return e->light && e->image && e->status && out->light;
 }
 
-static void destroy(struct evaluator *e)
-{
-    relume_renderer_destroy(&e->renderer);
-    relume_image_destroy(&e->relit);
-    mem_free(e->light);
-    mem_free(e->image);
-    mem_free(e->status);
-}
-
 relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
                               const relume_capture *capture,
                               const struct relume_evaluate_params *params)
@@ -372,6 +358,10 @@ relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
         collect(&e, out);
     else
         relume_evaluation_destroy(out);
-    destroy(&e);
+    relume_renderer_destroy(&e.renderer);
+    relume_image_destroy(&e.relit);
+    mem_free(e.light);
+    mem_free(e.image);
+    mem_free(e.status);
     return status;
 }

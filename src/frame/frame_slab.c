@@ -29,13 +29,6 @@ static void say_beside(relume_renderer *r, vec3 eye, bool by_depth)
         by_depth ? "the surface there" : "it, without parallax; a file with depth moves it");
 }
 
-// Whether parts of views do for the frame: one eye, not a lens, and light.
-static bool takes_parts(const relume_renderer *r)
-{
-    return r->shown == SHOWN_LIGHT && renderer_goes_by_texels(r) && r->view.aperture == 0.0 &&
-           r->view.focus == 0.0;
-}
-
 static relume_status draw(relume_renderer *r, const struct relume_camera *camera,
                           struct relume_image *out)
 {
@@ -43,7 +36,9 @@ static relume_status draw(relume_renderer *r, const struct relume_camera *camera
         camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slab_middle(r->slab);
     const bool by_depth = renderer_takes_depth(r);
     const int frame[2] = {camera->width, camera->height};
-    bool whole = !takes_parts(r);
+    // Whether parts of views do for the frame: one eye, not a lens, and light.
+    bool whole = !(r->shown == SHOWN_LIGHT && renderer_goes_by_texels(r) &&
+                   r->view.aperture == 0.0 && r->view.focus == 0.0);
     if (relume_slab_needs(r->needed, r->slab, eye, &r->view) == 0)
         return log_fail(r->params.log, RELUME_EUNFIT,
                         "the eye (%g, %g, %g) sees nothing of the slab; move it so that it looks "

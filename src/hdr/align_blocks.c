@@ -48,14 +48,6 @@ static double score(const struct search *s, const struct block *b, int dx, int d
     return b->contrast * block_correlation(s->anchor, s->image, &b->r, b->anchor, dx, dy);
 }
 
-// Its scale is that of level 0, whatever the pyramid level.
-static double contrast_of(const struct search *s, const struct block *b)
-{
-    const double n = 3.0 * b->r.width * b->r.height;
-    const double variance = fmax(b->anchor.aa / n - b->anchor.a * b->anchor.a / (n * n), 0.0);
-    return sqrt(9.0 * variance / n) / s->scale;
-}
-
 // ---------------------------------------------------------------- the search
 
 struct guess {
@@ -182,7 +174,10 @@ static void match_block(const struct search *s, int column, int row)
     if (b.r.width < 4 || b.r.height < 4)
         return;
     b.anchor = block_moments(s->anchor, &b.r);
-    b.contrast = contrast_of(s, &b);
+    // Its scale is that of level 0, whatever the pyramid level.
+    const double n = 3.0 * b.r.width * b.r.height;
+    const double variance = fmax(b.anchor.aa / n - b.anchor.a * b.anchor.a / (n * n), 0.0);
+    b.contrast = sqrt(9.0 * variance / n) / s->scale;
     const struct guess best =
         s->parent ? search_block(s, &b, column, row, node->d) : search_root(s, &b);
     if (!isfinite(best.score))

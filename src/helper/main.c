@@ -117,16 +117,6 @@ static void settle(void)
     close_range(HELPER_CHANNEL + 1, ~0U, 0);
 }
 
-// Whether any process is left.
-static bool reap(void)
-{
-    int how;
-    pid_t ended;
-    while ((ended = waitpid(-1, &how, WNOHANG)) > 0)
-        note_end(ended, how);
-    return ended == 0;
-}
-
 int main(void)
 {
     struct helper_order order;
@@ -135,7 +125,12 @@ int main(void)
     struct pollfd asked = {.fd = HELPER_CHANNEL, .events = POLLIN};
     for (;;) {
         const int waited = poll(&asked, 1, HELPER_IDLE_S * 1000);
-        const bool busy = reap();
+        // Whether any process is left.
+        int how;
+        pid_t ended;
+        while ((ended = waitpid(-1, &how, WNOHANG)) > 0)
+            note_end(ended, how);
+        const bool busy = ended == 0;
         if (waited == 0 && !busy)
             _exit(0);
         if (waited <= 0)

@@ -72,18 +72,14 @@ static void leave_out(struct gathering *g, const char *path, const char *why)
                  *why ? " (" : "", why, *why ? ")" : "");
 }
 
-// A list of light directions by its name.
-static bool is_table(const char *path)
-{
-    return picture_has_extension(path, ".txt") && !is_named(path, "intens") &&
-           !is_named(path, "pos") && (is_named(path, "light") || is_named(path, "direction"));
-}
-
 // Of several masks the last, of several lists of lights none (choose_lights).
 static void keep_beside(struct gathering *g, char *path, const char *why)
 {
     const bool lp = picture_has_extension(path, ".lp"), mask = !lp && is_named(path, "mask");
-    const bool table = !mask && is_table(path);
+    // A list of light directions by its name.
+    const bool table = !mask && (picture_has_extension(path, ".txt") && !is_named(path, "intens") &&
+                                 !is_named(path, "pos") &&
+                                 (is_named(path, "light") || is_named(path, "direction")));
     const bool used = mask || (lp && g->lp++ == 0) || (table && g->tables++ == 0);
     char **const place = lp ? &g->list->lights : table ? &g->table : &g->list->mask;
     if (!g->p->companions || !used)

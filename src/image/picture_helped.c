@@ -79,14 +79,10 @@ static relume_status fetch_profile(struct helped *h, uint64_t bytes)
     return h->profile ? RELUME_OK : RELUME_ENOMEM;
 }
 
-static size_t band_row_bytes(const struct helped *h)
-{
-    return picture_row_bytes(&h->reader.info, !h->reader.info.bytes);
-}
-
 static relume_status make_band(struct helped *h)
 {
-    const size_t row = band_row_bytes(h), fit = MOST_BAND_BYTES / row;
+    const size_t row = picture_row_bytes(&h->reader.info, !h->reader.info.bytes),
+                 fit = MOST_BAND_BYTES / row;
     const struct picture_ask what = {.what = PICTURE_BAND,
                                      .rows = fit < 1                ? 1
                                              : fit < MOST_BAND_ROWS ? (int)fit

@@ -110,12 +110,6 @@ static bool create_axis(struct axis *a, const struct side *s, enum relume_filter
     return a->texel && a->weight;
 }
 
-static void destroy_axis(struct axis *a)
-{
-    mem_free(a->texel);
-    mem_free(a->weight);
-}
-
 // ---------------------------------------------------------------- passes
 
 struct pass {
@@ -207,7 +201,8 @@ static relume_status run(struct pass *p, const struct side *side, int threads,
     const relume_status status = create_axis(&p->axis, side, filter) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         thread_for(threads, (size_t)p->to->height, scale_row, p);
-    destroy_axis(&p->axis);
+    mem_free(p->axis.texel);
+    mem_free(p->axis.weight);
     return status;
 }
 

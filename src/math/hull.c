@@ -25,13 +25,6 @@ struct builder {
     int horizon_count;
 };
 
-// Distinct shifts of about 1e-7: far above rounding, far below any angle between lights.
-static vec3 shifted(vec3 v, int index)
-{
-    const uint32_t h = ((uint32_t)index + 1u) * 2654435761u;
-    return vec3_scale(v, 1.0 + 1e-7 * ((h >> 8) / 16777216.0));
-}
-
 static double volume(const struct builder *b, const int c[3], vec3 d)
 {
     const vec3 e1 = vec3_sub(b->p[c[1]], b->p[c[0]]), e2 = vec3_sub(b->p[c[2]], b->p[c[0]]);
@@ -158,8 +151,11 @@ relume_status hull_build(const struct relume_vec3 *points, int n, struct hull_tr
     struct builder b = {.original = points, .n = n, .p = mem_array((size_t)n, sizeof *b.p)};
     if (!b.p)
         return RELUME_ENOMEM;
-    for (int i = 0; i < n; i++)
-        b.p[i] = shifted(points[i], i);
+    for (int i = 0; i < n; i++) {
+        // Distinct shifts of about 1e-7: far above rounding, far below any angle between lights.
+        const uint32_t h = ((uint32_t)i + 1u) * 2654435761u;
+        b.p[i] = vec3_scale(points[i], 1.0 + 1e-7 * ((h >> 8) / 16777216.0));
+    }
     relume_status status = n < 4 ? RELUME_EUNFIT : build(&b);
     if (!status && !(*triangles = mem_array((size_t)b.count, sizeof **triangles)))
         status = RELUME_ENOMEM;

@@ -297,13 +297,6 @@ static void fill_codes(loops *l)
     };
 }
 
-// Coefficients of a picture: large ones first.
-static void fill_dct(loops *l)
-{
-    for (size_t i = 0; i < 64 * (size_t)BLOCKS; i++)
-        l->dct[i] /= (1.0f + 0.5f * (float)(i % 64));
-}
-
 static void fill_screen(loops *l)
 {
     for (size_t i = 0; i < (size_t)SCREEN * SCREEN; i++)  // neighbours mostly alike, as in pictures
@@ -396,7 +389,9 @@ relume_status loops_create(loops **out, int threads)
     for (size_t i = 0; i < 3 * (size_t)WIDE * WIDE; i++)
         l->picture.data[i] = l->samples[i % ((size_t)CHUNKS * LIGHTS * 3 * COLUMNS)];
     fill_codes(l);
-    fill_dct(l);
+    // Coefficients of a picture: large ones first.
+    for (size_t i = 0; i < 64 * (size_t)BLOCKS; i++)
+        l->dct[i] /= (1.0f + 0.5f * (float)(i % 64));
     fill_screen(l);
     return RELUME_OK;
 }

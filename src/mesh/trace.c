@@ -12,12 +12,6 @@ struct tracer {
     RTCScene scene;
 };
 
-static const char *reason(enum RTCError error)
-{
-    return error == RTC_ERROR_UNSUPPORTED_CPU ? "this processor is not supported"
-                                              : "it does not start";
-}
-
 // `stride` * `count` bytes of ours, shared with Embree, which reads 16 bytes at each position: the
 // last one has its normal behind it.
 static void share(RTCGeometry g, enum RTCBufferType type, enum RTCFormat format, const void *data,
@@ -51,9 +45,10 @@ relume_status trace_create(tracer **out, const struct mesh *mesh, const struct r
     // One thread builds: the tree, and with it every tie between equal hits, is always the same.
     t->device = rtcNewDevice("threads=1");
     if (!t->device) {
-        const relume_status status =
-            log_fail(log, RELUME_ESYSTEM, "the ray tracer Embree cannot be used; %s",
-                     reason(rtcGetDeviceError(NULL)));
+        const relume_status status = log_fail(
+            log, RELUME_ESYSTEM, "the ray tracer Embree cannot be used; %s",
+            rtcGetDeviceError(NULL) == RTC_ERROR_UNSUPPORTED_CPU ? "this processor is not supported"
+                                                                 : "it does not start");
         trace_destroy(&t);
         return status;
     }

@@ -16,12 +16,6 @@ static const float kernel[5] = {1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f
 
 // ---------------------------------------------------------------- boxes
 
-// How far smoothing over all levels looks.
-static int reach_of(const struct blend *b)
-{
-    return 2 * ((1 << (b->bands - 1)) - 1);
-}
-
 // The shortest stretch of columns, across the panorama's ends if need be, that holds all `used`.
 static void columns_of(struct blend_box *box, const uint8_t *used, int width)
 {
@@ -41,7 +35,8 @@ static void columns_of(struct blend_box *box, const uint8_t *used, int width)
 // rows go on at the other side, so there all columns are needed.
 static void make_room(struct blend_box *box, const struct blend *b)
 {
-    const int room = 2 * reach_of(b);
+    // Twice how far smoothing over all levels looks.
+    const int room = 4 * ((1 << (b->bands - 1)) - 1);
     const int top = box->y - room, bottom = box->y + box->height + room;
     box->y = top > 0 ? top : 0;
     box->height = (bottom < b->height ? bottom : b->height) - box->y;

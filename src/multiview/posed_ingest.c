@@ -39,14 +39,6 @@ static vec3 camera_axis(const struct posed_camera *c, int k)
     return vec3_of(c->rotation[3 * k], c->rotation[3 * k + 1], c->rotation[3 * k + 2]);
 }
 
-static vec3 mean_place(const struct posed_model *m)
-{
-    vec3 sum = {0};
-    for (int i = 0; i < m->count; i++)
-        sum = vec3_add(sum, m->camera[i].place);
-    return vec3_scale(sum, 1.0 / m->count);
-}
-
 static relume_status choose_axes(struct posed *s)
 {
     vec3 ahead = {0}, down = {0};
@@ -107,7 +99,10 @@ static double distance_of_axes(const struct posed *s, vec3 middle)
 
 static relume_status choose_world(struct posed *s)
 {
-    const vec3 middle = mean_place(&s->model);
+    vec3 sum = {0};
+    for (int i = 0; i < s->model.count; i++)
+        sum = vec3_add(sum, s->model.camera[i].place);
+    const vec3 middle = vec3_scale(sum, 1.0 / s->model.count);
     const relume_status status = choose_axes(s);
     if (status)
         return status;
@@ -138,13 +133,6 @@ static vec3 to_world(const struct posed *s, vec3 p)
 {
     const vec3 d = vec3_scale(vec3_sub(p, s->origin), s->scale);
     return vec3_of(vec3_dot(d, s->axis[0]), vec3_dot(d, s->axis[1]), vec3_dot(d, s->axis[2]));
-}
-
-static vec3 to_camera(const struct posed_camera *c, vec3 p)
-{
-    const vec3 d = vec3_sub(p, c->place);
-    return vec3_of(vec3_dot(d, camera_axis(c, 0)), vec3_dot(d, camera_axis(c, 1)),
-                   vec3_dot(d, camera_axis(c, 2)));
 }
 
 // ---------------------------------------------------------------- window
@@ -267,7 +255,10 @@ static void blend_row(void *context, size_t item, int worker)
     for (int x = 0; x < s->width; x++) {
         const double at = g->st_min[0] + (x + 0.5) / s->width * (g->st_max[0] - g->st_min[0]);
         double xy[2];
-        const vec3 p = to_camera(b->camera, to_model(s, vec3_of(at, t, 0.0)));
+        const vec3 d = vec3_sub(to_model(s, vec3_of(at, t, 0.0)), b->camera->place);
+        const vec3 p =
+            vec3_of(vec3_dot(d, camera_axis(b->camera, 0)), vec3_dot(d, camera_axis(b->camera, 1)),
+                    vec3_dot(d, camera_axis(b->camera, 2)));
         if (!posed_project(xy, b->camera, p) || !(xy[0] >= 0.0) || !(xy[1] >= 0.0) ||
             xy[0] > b->photo->width || xy[1] > b->photo->height)
             continue;

@@ -24,15 +24,6 @@ enum field { ROW, COLUMN, NUMBER, U, V };
 static const char *const fields[] = {"{row}", "{column}", "{n}", "{u}", "{v}"};
 enum { FIELDS = sizeof fields / sizeof *fields };
 
-// The field that `pattern` begins with; FIELDS: none.
-static int field_at(const char *pattern)
-{
-    int f = 0;
-    while (f < FIELDS && strncmp(pattern, fields[f], strlen(fields[f])))
-        f++;
-    return f;
-}
-
 // The end of the number that `text` begins with; NULL: it begins with none. Whole ones for places
 // in a grid, with a point for positions.
 static const char *number_end(double *out, const char *text, bool whole)
@@ -51,7 +42,10 @@ static const char *number_end(double *out, const char *text, bool whole)
 
 static bool matches(struct match *m, const char *pattern, const char *text)
 {
-    const int f = field_at(pattern);
+    // The field that `pattern` begins with; FIELDS: none.
+    int f = 0;
+    while (f < FIELDS && strncmp(pattern, fields[f], strlen(fields[f])))
+        f++;
     if (f < FIELDS) {
         const char *end = number_end(&m->value[f], text, f < U);
         m->found |= 1u << f;

@@ -104,11 +104,6 @@ static void scale(struct orders *o)
     o->sweep.channels = 3;
 }
 
-static double disparity_of(const struct orders *o, int plane)
-{
-    return plane - (o->planes - 1) / 2;
-}
-
 // Mean over a window of 2 WINDOW + 1 pixels square.
 static void smooth(float *out, const uint8_t *in, int width, int height)
 {
@@ -133,8 +128,8 @@ static void plane_sweep_plane(float *least, float *mean, uint8_t *raw, const str
     const int width = o->sweep.width, height = o->sweep.height;
     uint8_t *all = raw + (size_t)width * (size_t)height;
     for (int y = 0; y < height; y++)
-        plane_sweep_row(raw + y * width, all + y * width, &o->sweep, target, disparity_of(o, plane),
-                        y, scratch);
+        plane_sweep_row(raw + y * width, all + y * width, &o->sweep, target,
+                        plane - (o->planes - 1) / 2, y, scratch);
     smooth(least, raw, width, height);
     smooth(mean, all, width, height);
 }

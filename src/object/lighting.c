@@ -56,16 +56,6 @@ static relume_status make_sky(struct sky_light *sky, const relume_objects *o,
     return status;
 }
 
-// Lamps of a light follow one another, and lights in their order.
-static void find_samples(struct sky_light *sky, const struct lighting *l, int light)
-{
-    while (sky->first < l->light_samples && l->light_sample[sky->first].number < light)
-        sky->first++;
-    while (sky->first + sky->light_samples < l->light_samples &&
-           l->light_sample[sky->first + sky->light_samples].number == light)
-        sky->light_samples++;
-}
-
 relume_status lighting_create(struct lighting *out, const relume_objects *o,
                               const struct relume_light *lights, int n,
                               const struct relume_render_params *params)
@@ -82,7 +72,12 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
         if (lights[i].kind != RELUME_LIGHT_ENVIRONMENT)
             continue;
         struct sky_light *sky = &out->sky[out->skies++];
-        find_samples(sky, out, i);
+        // Samples of a light follow one another, and lights in their order.
+        while (sky->first < out->light_samples && out->light_sample[sky->first].number < i)
+            sky->first++;
+        while (sky->first + sky->light_samples < out->light_samples &&
+               out->light_sample[sky->first + sky->light_samples].number == i)
+            sky->light_samples++;
         status = make_sky(sky, o, &lights[i], params ? params->threads : 0);
     }
     return status;

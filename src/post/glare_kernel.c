@@ -49,12 +49,6 @@ static float share(const struct axis *a, int pixel, int texel)
     return (float)(d < a->spread ? (1.0 - d / a->spread) / a->spread : 0.0);
 }
 
-static void axis_destroy(struct axis *a)
-{
-    mem_free(a->first);
-    mem_free(a->weight);
-}
-
 static relume_status axis_create(struct axis *a, int reach, int half, double pixels)
 {
     const int side = 2 * reach + 1;
@@ -243,7 +237,8 @@ static relume_status add_pattern(struct kernel *out, const relume_psf *psf, doub
         status = RELUME_ENOMEM;
     if (!status)
         thread_for(threads, 2 * (size_t)out->reach + 1, resample_row, &r);
-    axis_destroy(&r.axis);
+    mem_free(r.axis.first);
+    mem_free(r.axis.weight);
     mem_free(r.work);
     return status;
 }

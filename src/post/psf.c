@@ -345,15 +345,6 @@ static relume_status diffract(relume_psf *psf, bool real)
     return RELUME_OK;
 }
 
-// Texel n of a row and row n repeat the first ones, so that lookups may stand between them.
-static void close_period(struct plane *plane)
-{
-    const int n = plane->n - 1;
-    for (int y = 0; y < n; y++)
-        plane->v[(size_t)y * plane->stride + (size_t)n] = plane->v[(size_t)y * plane->stride];
-    memcpy(plane->v + (size_t)n * plane->stride, plane->v, plane->stride * sizeof *plane->v);
-}
-
 // ---------------------------------------------------------------- wavelengths
 
 static void colour(relume_psf *psf)
@@ -401,7 +392,13 @@ relume_status psf_update_aperture(relume_psf *psf, const struct relume_aperture 
     if (status)
         return status;
     const double diffracted = now_s();
-    close_period(&psf->mono);
+    // Texel n of a row and row n repeat the first ones, so that lookups may stand between them.
+    const int n = psf->mono.n - 1;
+    for (int y = 0; y < n; y++)
+        psf->mono.v[(size_t)y * psf->mono.stride + (size_t)n] =
+            psf->mono.v[(size_t)y * psf->mono.stride];
+    memcpy(psf->mono.v + (size_t)n * psf->mono.stride, psf->mono.v,
+           psf->mono.stride * sizeof *psf->mono.v);
     colour(psf);
     psf->times = (struct relume_psf_times){drawn - start, diffracted - drawn, now_s() - diffracted};
     return RELUME_OK;

@@ -17,11 +17,6 @@ enum { LANES = 64, LEAST_LANES = 4, MOST_FLOATS = 3 * RELUME_MOST_COEFFICIENTS *
 
 // ---------------------------------------------------------------- sources
 
-static int patch_side(const struct near_lights *near, const struct relume_light *area)
-{
-    return relume_light_patch_side(area, relume_area_distance(area, near->surface));
-}
-
 static void cut(struct near_source *to, const struct relume_light *area, int side)
 {
     struct relume_light_patch patches[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
@@ -36,7 +31,8 @@ relume_status near_lights_create(struct near_lights *near, const struct relume_l
     size_t count = 0;
     for (int i = 0; side && i < n; i++) {
         if (lights[i].kind == RELUME_LIGHT_AREA)
-            side[i] = patch_side(near, &lights[i]);
+            side[i] = relume_light_patch_side(&lights[i],
+                                              relume_area_distance(&lights[i], near->surface));
         else
             side[i] = relume_light_is_near(lights[i].kind);
         count += (size_t)side[i] * (size_t)side[i];

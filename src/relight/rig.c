@@ -134,11 +134,6 @@ static relume_status find_resource(struct resource **out, relume_rig *rig,
     return RELUME_OK;
 }
 
-static char *path_in(const char *folder, const char *file)
-{
-    return folder && file[0] != '/' ? mem_format("%s/%s", folder, file) : mem_text(file);
-}
-
 // ---------------------------------------------------------------- entries
 
 static relume_status attach(relume_rig *rig, struct relume_rig_entry *e,
@@ -155,11 +150,6 @@ static relume_status attach(relume_rig *rig, struct relume_rig_entry *e,
     return RELUME_OK;
 }
 
-static char *default_name(const relume_rig *rig, enum relume_light_kind kind)
-{
-    return mem_format("%s %d", relume_light_kind_name(kind), rig->count + 1);
-}
-
 static relume_status make_entry(struct relume_rig_entry *e, relume_rig *rig,
                                 const struct spec *spec, const char *folder,
                                 const struct relume_log *log)
@@ -167,8 +157,10 @@ static relume_status make_entry(struct relume_rig_entry *e, relume_rig *rig,
     e->light = spec->light;
     e->on = true;
     e->intensity = 1.0;
-    e->name = default_name(rig, spec->light.kind);
-    e->file = spec->file ? path_in(folder, spec->file) : NULL;
+    e->name = mem_format("%s %d", relume_light_kind_name(spec->light.kind), rig->count + 1);
+    e->file = spec->file ? (folder && spec->file[0] != '/' ? mem_format("%s/%s", folder, spec->file)
+                                                           : mem_text(spec->file))
+                         : NULL;
     if (!e->name || (spec->file && !e->file))
         return RELUME_ENOMEM;
     e->spec = spec_text(&e->light, e->file);

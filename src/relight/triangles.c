@@ -56,19 +56,14 @@ static bool make_triangle(struct relume_weight_triangle *out,
     return any && whole && invert(out->inverse, p);
 }
 
-static float share_of(const struct relume_weight_triangle *t, int i, vec3 d)
-{
-    return t->inverse[i][0] * (float)d.x + t->inverse[i][1] * (float)d.y +
-           t->inverse[i][2] * (float)d.z;
-}
-
 static int walk(float share[3], const struct triangles *m, int t, vec3 d)
 {
     for (int step = 0;; step++) {
         const struct relume_weight_triangle *at = &m->triangle[t];
         int least = 0;
         for (int i = 0; i < 3; i++) {
-            share[i] = share_of(at, i, d);
+            share[i] = at->inverse[i][0] * (float)d.x + at->inverse[i][1] * (float)d.y +
+                       at->inverse[i][2] * (float)d.z;
             least = share[i] < share[least] ? i : least;
         }
         if (share[least] >= edge || step == MOST_STEPS)

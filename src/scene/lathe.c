@@ -26,16 +26,6 @@ static struct lathe_point spline(const struct lathe_point p[4], double t)
     return at;
 }
 
-// The neighbours that shape the piece from point i to i + 1: a crease has none beyond it.
-static void neighbours(const struct lathe_point *profile, int points, int i,
-                       struct lathe_point out[4])
-{
-    out[1] = profile[i];
-    out[2] = profile[i + 1];
-    out[0] = i > 0 && !profile[i].sharp ? profile[i - 1] : profile[i];
-    out[3] = i + 2 < points && !profile[i + 1].sharp ? profile[i + 2] : profile[i + 1];
-}
-
 static struct ring ring_at(const struct lathe_point p[4], double t)
 {
     const double h = 1e-3;
@@ -74,7 +64,11 @@ void shape_lathe(struct mesh *out, const struct lathe_point *profile, int points
 {
     for (int i = 0; i + 1 < points; i++) {
         struct lathe_point p[4];
-        neighbours(profile, points, i, p);
+        // The neighbours that shape the piece from point i to i + 1: a crease has none beyond it.
+        p[1] = profile[i];
+        p[2] = profile[i + 1];
+        p[0] = i > 0 && !profile[i].sharp ? profile[i - 1] : profile[i];
+        p[3] = i + 2 < points && !profile[i + 1].sharp ? profile[i + 2] : profile[i + 1];
         const bool straight = profile[i].sharp && profile[i + 1].sharp;
         const int pieces = straight ? 1 : steps;
         double radius = 0.0;

@@ -127,18 +127,13 @@ static float lobe_density(const struct surface *s, const float wi[3])
     return distribution(s->alpha, nh) * nh / (4.0f * larger(dot3(s->wo, h), 1e-4f));
 }
 
-// How often the lobe rather than the base is asked, by their rough shares of the light.
-static float lobe_chance(const struct surface *s)
-{
-    const float base = s->diffuse[0] + s->diffuse[1] + s->diffuse[2];
-    const float lobe = s->gloss * (s->f0[0] + s->f0[1] + s->f0[2]);
-    return lobe > 0.0f ? lobe / (lobe + base) : 0.0f;
-}
-
 bool surface_sample(const struct surface *s, float pick, const float u[2], float wi[3],
                     float out[3])
 {
-    const float chance = lobe_chance(s);
+    // How often the lobe rather than the base is asked, by their rough shares of the light.
+    const float base = s->diffuse[0] + s->diffuse[1] + s->diffuse[2];
+    const float lobe = s->gloss * (s->f0[0] + s->f0[1] + s->f0[2]);
+    const float chance = lobe > 0.0f ? lobe / (lobe + base) : 0.0f;
     if (pick < chance)
         sample_lobe(s, u[0], u[1], wi);
     else

@@ -82,11 +82,6 @@ static struct frame slope(int side)
     return (struct frame){x, y, z, vec3_of(side * EAVE_X, EAVE_Y, 0)};
 }
 
-static double slope_length(void)
-{
-    return hypot(EAVE_X, RIDGE_Y - EAVE_Y);
-}
-
 static void add_board(struct relume_scene_builder *b, double low, double high, double z0, double z1,
                       uint32_t material)
 {
@@ -124,7 +119,7 @@ static void add_roof_window(struct relume_scene_builder *b, const struct hole *h
 
 static void add_slope(struct relume_scene_builder *b, int side, const struct wood *w)
 {
-    const double length = slope_length(), width = 0.19;
+    const double length = hypot(EAVE_X, RIDGE_Y - EAVE_Y), width = 0.19;
     b->frame = slope(side);
     const double boarded = side < 0 ? 2.5 : 0.0;
     for (double s = -0.15; s < boarded; s += width)
@@ -160,11 +155,6 @@ static void add_frame_timber(struct relume_scene_builder *b, const struct wood *
 
 // ---------------------------------------------------------------- walls
 
-static double roof_height(double x)
-{
-    return EAVE_Y + (RIDGE_Y - EAVE_Y) * (1.0 - fabs(x) / EAVE_X);
-}
-
 struct opening {
     double x0, x1, y0, y1;
 };
@@ -186,7 +176,8 @@ static void add_gable(struct relume_scene_builder *b, double z, struct opening o
     const double step = 0.1;
     for (int i = -28; i < 28; i++) {
         const double x0 = i * step, x1 = x0 + step, middle = 0.5 * (x0 + x1);
-        const double top = fmin(roof_height(middle) + 0.02, most);
+        const double top =
+            fmin(EAVE_Y + (RIDGE_Y - EAVE_Y) * (1.0 - fabs(middle) / EAVE_X) + 0.02, most);
         const bool open = middle > o.x0 && middle < o.x1;
         add_wall_piece(b, x0, x1, FLOOR - 0.1, open ? o.y0 : top, z, material);
         if (open)

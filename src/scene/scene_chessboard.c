@@ -109,12 +109,6 @@ static void add_merlons(struct relume_scene_builder *b, uint32_t material)
     b->frame = place;
 }
 
-static void add_cross(struct relume_scene_builder *b, uint32_t material)
-{
-    build_box(b, vec3_of(-0.035, 1.96, -0.035), vec3_of(0.035, 2.24, 0.035), 0.01, material);
-    build_box(b, vec3_of(-0.10, 2.08, -0.03), vec3_of(0.10, 2.15, 0.03), 0.01, material);
-}
-
 static void add_piece(struct relume_scene_builder *b, char kind, uint32_t material)
 {
 #define LATHE(profile) build_lathe(b, profile, sizeof profile / sizeof *profile, 6, 72, material)
@@ -128,7 +122,8 @@ static void add_piece(struct relume_scene_builder *b, char kind, uint32_t materi
         break;
     case 'K':
         LATHE(king);
-        add_cross(b, material);
+        build_box(b, vec3_of(-0.035, 1.96, -0.035), vec3_of(0.035, 2.24, 0.035), 0.01, material);
+        build_box(b, vec3_of(-0.10, 2.08, -0.03), vec3_of(0.10, 2.15, 0.03), 0.01, material);
         break;
     case 'N':
         LATHE(knight_foot);

@@ -148,15 +148,6 @@ static void place_grid(struct synth *s, double spread)
     }
 }
 
-// Half the window through which a camera anywhere within `spread` sees a ball of radius 1 around
-// the origin: where the rays that touch it meet the st plane.
-static double window_for(double spread, double distance)
-{
-    const double away = hypot(spread, distance);
-    const double angle = atan2(spread, distance) + asin(1.0 / away);
-    return distance * tan(angle) - spread;
-}
-
 // Quarter turns are exact.
 static double whole(double x)
 {
@@ -168,7 +159,11 @@ static void place_ring(struct synth *s)
     const int around = ring_around[s->p.ring];
     const double distance = s->geometry.uv_z;
     const double spread = overlap * distance * tan(M_PI / around);
-    const double window = window_for(spread, distance);
+    // Half the window through which a camera anywhere within `spread` sees a ball of radius 1
+    // around the origin: where the rays that touch it meet the st plane.
+    const double away = hypot(spread, distance);
+    const double angle = atan2(spread, distance) + asin(1.0 / away);
+    const double window = distance * tan(angle) - spread;
     for (int axis = 0; axis < 2; axis++) {
         s->geometry.st_min[axis] = -window;
         s->geometry.st_max[axis] = window;
@@ -354,17 +349,12 @@ static relume_status make_view_folder(const struct synth *s)
     return status;
 }
 
-static int held_lights(const struct synth *s)
+static relume_status write_views(struct synth *s)
 {
     const size_t bytes = (size_t)s->width * (size_t)s->height * 3 * sizeof(float);
     const size_t fit = HELD_BYTES / bytes;
     const size_t most = (size_t)s->p.light_count;
-    return (int)(fit < 1 ? 1 : fit < most ? fit : most);
-}
-
-static relume_status write_views(struct synth *s)
-{
-    const int held_count = held_lights(s);
+    const int held_count = (int)(fit < 1 ? 1 : fit < most ? fit : most);
     struct relume_image *held = arena_array(&s->arena, (size_t)held_count, sizeof *held);
     relume_status status = held ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < held_count && !status; i++)

@@ -23,12 +23,6 @@ void places_destroy(struct places *places)
     *places = (struct places){0};
 }
 
-static struct place *new_place(struct places *places)
-{
-    places->failed = places->failed || !mem_grow(&places->at, places->count, sizeof *places->at);
-    return places->failed ? NULL : &places->at[places->count++];
-}
-
 static void flip(float v[3])
 {
     for (int c = 0; c < 3; c++)
@@ -195,7 +189,9 @@ static void follow(struct walk *walk, const struct step *step)
     if (step->bounces > 0)
         place.surface.alpha = fmaxf(place.surface.alpha, INDIRECT_ALPHA);
     memcpy(place.weight, step->weight, sizeof place.weight);
-    struct place *kept = new_place(walk->places);
+    walk->places->failed = walk->places->failed || !mem_grow(&walk->places->at, walk->places->count,
+                                                             sizeof *walk->places->at);
+    struct place *kept = walk->places->failed ? NULL : &walk->places->at[walk->places->count++];
     if (!kept)
         return;
     *kept = place;

@@ -615,14 +615,6 @@ static relume_status consider_pictures(struct job *job, enum relume_storage *sto
     return status;
 }
 
-static void finish(struct job *job)
-{
-    relume_samples_destroy(&job->all);
-    relume_samples_destroy(&job->some);
-    relume_coder_destroy(&job->coder);
-    mem_free(job->display);
-}
-
 relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision,
                                   const relume_capture *capture, double quality_db,
                                   const struct relume_coder_params *coder,
@@ -668,6 +660,9 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
         *out = job.coder;
         job.coder = NULL;
     }
-    finish(&job);
+    relume_samples_destroy(&job.all);
+    relume_samples_destroy(&job.some);
+    relume_coder_destroy(&job.coder);
+    mem_free(job.display);
     return status;
 }

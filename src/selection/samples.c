@@ -83,15 +83,6 @@ static relume_status sample_view(struct sampler *s, const relume_capture *captur
     return status;
 }
 
-// Masked pixels left gaps at the end of every light's row.
-static void close_gaps(struct sampler *s)
-{
-    for (size_t i = 1; i < (size_t)s->out->lights; i++)
-        memmove(s->out->data + i * s->kept * 3, s->out->data + i * s->count * 3,
-                s->kept * 3 * sizeof *s->out->data);
-    s->out->pixels = s->kept;
-}
-
 relume_status relume_samples_read(struct relume_samples *out, const relume_capture *capture,
                                   size_t pixels, const struct relume_encode_params *params)
 {
@@ -117,8 +108,13 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
     mem_free(s.place);
     if (status)
         relume_samples_destroy(out);
-    else
-        close_gaps(&s);
+    else {
+        // Masked pixels left gaps at the end of every light's row.
+        for (size_t i = 1; i < (size_t)s.out->lights; i++)
+            memmove(s.out->data + i * s.kept * 3, s.out->data + i * s.count * 3,
+                    s.kept * 3 * sizeof *s.out->data);
+        s.out->pixels = s.kept;
+    }
     return status;
 }
 

@@ -311,18 +311,14 @@ static void look_from_aside(struct around *a)
     }
 }
 
-// The disparity of the eye; of one on or behind the cameras endless.
-static double disparity_of_eye(const struct slab_frame *f)
-{
-    const struct relume_geometry *g = &f->slab->geometry;
-    const bool before = (g->uv_z - f->eye.z) * (g->uv_z - g->st_z) > 0.0;
-    return before ? relume_slab_plane_disparity(f->slab, f->eye.z) : (double)INFINITY;
-}
-
 double slab_depth_beside(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray,
                          const double range[2], bool away)
 {
-    const double eye = disparity_of_eye(frame);
+    // The disparity of the eye; of one on or behind the cameras endless.
+    const struct relume_geometry *g = &frame->slab->geometry;
+    const bool before = (g->uv_z - frame->eye.z) * (g->uv_z - g->st_z) > 0.0;
+    const double eye =
+        before ? relume_slab_plane_disparity(frame->slab, frame->eye.z) : (double)INFINITY;
     struct around a;
     struct stretch whole, surfaces;
     double sum[5];

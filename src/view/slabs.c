@@ -80,12 +80,6 @@ vec3 relume_slab_set_eye(const relume_slab_set *slabs, int i)
 
 // ---------------------------------------------------------------- weights
 
-// Of a place between `low` and `high`; a grid of one line has no inside to fade in.
-static double line_weight(double at, double low, double high)
-{
-    return high > low ? smoothstep(0.0, fade_uv * (high - low), fmin(at - low, high - at)) : 1.0;
-}
-
 double relume_slab_weight(const relume_slab *slab, const double uv[2], const double st[2])
 {
     const struct relume_geometry *g = &slab->geometry;
@@ -98,7 +92,10 @@ double relume_slab_weight(const relume_slab *slab, const double uv[2], const dou
         const double high = lines[axis][last[axis]];
         if (!(uv[axis] >= low - slab->slack && uv[axis] <= high + slab->slack))
             return 0.0;
-        grid *= line_weight(uv[axis], low, high);
+        // Of a place between `low` and `high`; a grid of one line has no inside to fade in.
+        grid *= high > low
+                    ? smoothstep(0.0, fade_uv * (high - low), fmin(uv[axis] - low, high - uv[axis]))
+                    : 1.0;
         window *= smoothstep(0.0, fade_st * (g->st_max[axis] - g->st_min[axis]),
                              fmin(st[axis] - g->st_min[axis], g->st_max[axis] - st[axis]));
     }

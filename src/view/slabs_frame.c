@@ -387,12 +387,6 @@ static void draw_row(void *context, size_t row, int worker)
 
 // ---------------------------------------------------------------- picture
 
-static bool takes_depth(const struct relume_view_params *p)
-{
-    return p->disparity && (p->interpolation == RELUME_INTERPOLATE_DEFAULT ||
-                            p->interpolation == RELUME_INTERPOLATE_DEPTH);
-}
-
 struct job {
     struct picture picture;
     struct relume_view_params params;
@@ -457,7 +451,9 @@ static relume_status begin(struct job *job, const relume_slab_set *slabs,
     if (params)
         job->params = *params;
     struct picture *p = &job->picture;
-    p->by_depth = takes_depth(&job->params);
+    p->by_depth =
+        job->params.disparity && (job->params.interpolation == RELUME_INTERPOLATE_DEFAULT ||
+                                  job->params.interpolation == RELUME_INTERPOLATE_DEPTH);
     p->fill = has_extent(window);
     p->pinholes = count_pinholes(window, width, &job->params);
     if (p->pinholes == 0 ||

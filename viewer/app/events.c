@@ -34,28 +34,15 @@ static void zoom_picture(struct app *app, double x, double y, double factor)
     s->zoom = zoom;
 }
 
-// As if the front of a ball half as wide as the frame were dragged: right turns it about the
-// frame's up, down about its right.
-static void turn_light(struct app *app, double dx, double dy)
-{
-    const double per_pixel = 180 / fmin(app->width, app->height);
-    app_turn_light(app, dx * per_pixel, dy * per_pixel);
-}
-
-static void turn_orbit(struct app *app, double dx, double dy)
-{
-    double turn_deg[2];
-    orbit_drag(turn_deg, app, dx, dy);
-    orbit_turn(app, turn_deg[0], turn_deg[1]);
-    app->turned_deg[0] += turn_deg[0];
-    app->turned_deg[1] += turn_deg[1];
-}
-
 // The object follows the cursor, so the eye goes the other way; it stays among the cameras.
 static void move_eye(struct app *app, double dx, double dy)
 {
     if (orbit_is(app)) {
-        turn_orbit(app, dx, dy);
+        double turn_deg[2];
+        orbit_drag(turn_deg, app, dx, dy);
+        orbit_turn(app, turn_deg[0], turn_deg[1]);
+        app->turned_deg[0] += turn_deg[0];
+        app->turned_deg[1] += turn_deg[1];
         return;
     }
     const struct app_file *f = &app->file;
@@ -135,19 +122,15 @@ static void (*const drag_camera[])(struct app *, double dx, double dy) = {
     [RELUME_FRAME_LOOK] = turn_look,
 };
 
-static bool pick_focus(struct app *app, const struct app_event *e)
-{
-    app->cursor[0] = e->x;
-    app->cursor[1] = e->y;
-    app->picks_focus = false;
-    app->wish = APP_WISH_FOCUS;
-    return true;
-}
-
 static bool on_press(struct app *app, const struct app_event *e)
 {
-    if (app->picks_focus && e->button == APP_LEFT)
-        return pick_focus(app, e);
+    if (app->picks_focus && e->button == APP_LEFT) {
+        app->cursor[0] = e->x;
+        app->cursor[1] = e->y;
+        app->picks_focus = false;
+        app->wish = APP_WISH_FOCUS;
+        return true;
+    }
     const bool light = e->button == APP_RIGHT || app->light_key;
     const int grabbed = app->gizmos && !light ? gizmo_hit(app, e->x, e->y) : -1;
     const bool ball = !light && grabbed < 0 && gizmo_on_ball(app, e->x, e->y);
@@ -187,9 +170,12 @@ static bool on_move(struct app *app, const struct app_event *e)
     app->cursor[1] = e->y;
     if (app->drag == APP_DRAG_NONE || (dx == 0 && dy == 0))
         return app->inspect;
-    if (app->drag == APP_DRAG_LIGHT)
-        turn_light(app, dx, dy);
-    else if (app->drag == APP_DRAG_GIZMO)
+    if (app->drag == APP_DRAG_LIGHT) {
+        // As if the front of a ball half as wide as the frame were dragged: right turns it about
+        // the frame's up, down about its right.
+        const double per_pixel = 180 / fmin(app->width, app->height);
+        app_turn_light(app, dx * per_pixel, dy * per_pixel);
+    } else if (app->drag == APP_DRAG_GIZMO)
         gizmo_drag(app, app->now.selected, e->x, e->y);
     else if (app->drag == APP_DRAG_BALL)
         gizmo_drag_ball(app, e->x, e->y);

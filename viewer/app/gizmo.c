@@ -241,16 +241,12 @@ int gizmo_hit(const struct app *app, double x, double y)
     return best;
 }
 
-static void drag_direction(struct app *app, int light, double x, double y)
-{
-    const struct gizmo_circle disc = gizmo_disc(app);
-    app_point_light(app, light, (x - disc.x) / disc.radius, (disc.y - y) / disc.radius);
-}
-
 void gizmo_drag(struct app *app, int light, double x, double y)
 {
     if (is_near(app, light))
         framing_of(app).drag(&app->now.light[light].position, app, x, y);
-    else
-        drag_direction(app, light, x, y);
+    else {
+        const struct gizmo_circle disc = gizmo_disc(app);
+        app_point_light(app, light, (x - disc.x) / disc.radius, (disc.y - y) / disc.radius);
+    }
 }

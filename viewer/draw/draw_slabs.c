@@ -139,14 +139,6 @@ static bool find_rectangle(struct app_rectangle *out, const struct turned *t, co
 
 // ---------------------------------------------------------------- drawing
 
-static void set_here(const struct turned *t, const int cell[4])
-{
-    float here[4];
-    for (int i = 0; i < 4; i++)
-        here[i] = t->in->views[cell[i]] ? 1 : 0;
-    t->gl->Uniform4f(t->program->at[HERE], here[0], here[1], here[2], here[3]);
-}
-
 static void draw_cell(const struct turned *t, int column, int row)
 {
     const struct relume_slab_grid *grid = &t->grid;
@@ -161,8 +153,12 @@ static void draw_cell(const struct turned *t, int column, int row)
     if (!draw_use_cell(t->gl, t->in->views, t->in->disparity, cell) ||
         !find_rectangle(&rectangle, t, low, high))
         return;
-    if (t->in->disparity)
-        set_here(t, cell);
+    if (t->in->disparity) {
+        float here[4];
+        for (int i = 0; i < 4; i++)
+            here[i] = t->in->views[cell[i]] ? 1 : 0;
+        t->gl->Uniform4f(t->program->at[HERE], here[0], here[1], here[2], here[3]);
+    }
     t->gl->Uniform4f(t->program->at[CELL], (float)grid->u[column], (float)grid->v[row],
                      (float)grid->u[right], (float)grid->v[below]);
     draw_rectangle(t->gl, t->program, t->place, rectangle);

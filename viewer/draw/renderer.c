@@ -161,16 +161,12 @@ static int picture_width(const struct frame_request *q)
     return (int)lround(q->picture.right - q->picture.left);
 }
 
-static void mark_around(struct renderer *r, const struct frame_request *q)
-{
-    if (q->has_window)
-        (void)relume_slab_set_needs(r->needed, r->around, &q->window, picture_width(q), &q->view);
-}
-
 static void mark_eye(struct renderer *r, const struct frame_request *q)
 {
     if (r->around) {
-        mark_around(r, q);
+        if (q->has_window)
+            (void)relume_slab_set_needs(r->needed, r->around, &q->window, picture_width(q),
+                                        &q->view);
         return;
     }
     (void)relume_slab_needs(r->needed, r->grid, q->camera.eye, &q->view);
@@ -367,17 +363,13 @@ static double apart(const struct renderer *r, int a, int b)
     return du * du + dv * dv;
 }
 
-static bool of_one_slab(const struct renderer *r, int a, int b)
-{
-    return !r->slab_of || r->slab_of[a] == r->slab_of[b];
-}
-
 // The view on the GPU that stands nearest to a missing one of the same slab, or -1.
 static int nearest_present(const struct renderer *r, int missing)
 {
     int nearest = -1;
     for (int i = 0; i < r->views; i++)
-        if (relighter_has(&r->relighter, i) && of_one_slab(r, i, missing) &&
+        if (relighter_has(&r->relighter, i) &&
+            (!r->slab_of || r->slab_of[i] == r->slab_of[missing]) &&
             (nearest < 0 || apart(r, i, missing) < apart(r, nearest, missing)))
             nearest = i;
     return nearest;

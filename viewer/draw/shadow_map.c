@@ -57,15 +57,6 @@ static void set_row(float clip[16], int row, struct relume_vec3 axis, struct rel
     clip[12 + row] = (float)(offset - scale * vec3_dot(axis, eye));
 }
 
-static void set_distant(float clip[16], const struct view *v, double radius)
-{
-    memset(clip, 0, 16 * sizeof *clip);
-    set_row(clip, 0, v->right, v->eye, 1.0 / radius, 0.0);
-    set_row(clip, 1, v->up, v->eye, 1.0 / radius, 0.0);
-    set_row(clip, 2, v->ahead, v->eye, 1.0 / radius, 0.0);
-    clip[15] = 1.0f;
-}
-
 static void set_near(float clip[16], const struct view *v, double tangent, double from, double to)
 {
     set_row(clip, 0, v->right, v->eye, 1.0 / tangent, 0.0);
@@ -107,7 +98,11 @@ static void aim(struct shadow_map *map, const struct relume_object_light *light_
     map->layers = 1;
     if (!near) {
         const struct view v = look(middle, vec3_scale(at, -1.0));
-        set_distant(map->clip[0], &v, radius);
+        memset(map->clip[0], 0, 16 * sizeof *map->clip[0]);
+        set_row(map->clip[0], 0, v.right, v.eye, 1.0 / radius, 0.0);
+        set_row(map->clip[0], 1, v.up, v.eye, 1.0 / radius, 0.0);
+        set_row(map->clip[0], 2, v.ahead, v.eye, 1.0 / radius, 0.0);
+        map->clip[0][15] = 1.0f;
         map->texel = (float)(2.0 * radius / map->side);
         return;
     }

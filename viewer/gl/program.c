@@ -6,15 +6,6 @@
 #include <assert.h>
 #include <string.h>
 
-static const struct shader_source *find_source(const char *name)
-{
-    const struct shader_source *s = shader_sources;
-    while (s->name && strcmp(s->name, name))
-        s++;
-    assert(s->name);
-    return s;
-}
-
 // The first line says the version; `defines` follow it.
 static void set_source(const struct gl *gl, GLuint shader, const struct shader_source *source,
                        const char *defines)
@@ -31,7 +22,10 @@ static void set_source(const struct gl *gl, GLuint shader, const struct shader_s
 static relume_status compile(GLuint *out, const struct gl *gl, GLenum stage, const char *name,
                              const char *defines, const struct relume_log *log)
 {
-    const struct shader_source *source = find_source(name);
+    const struct shader_source *source = shader_sources;
+    while (source->name && strcmp(source->name, name))
+        source++;
+    assert(source->name);
     GLint done = 0;
     *out = gl->CreateShader(stage);
     set_source(gl, *out, source, defines);

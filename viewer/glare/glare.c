@@ -48,11 +48,6 @@ void glare_end(struct glare *g)
 
 // ---------------------------------------------------------------- who does it
 
-static int size_of(const struct glare *g, bool passes)
-{
-    return g->size ? g->size : passes ? PASSES_SIZE : LIBRARY_SIZE;
-}
-
 // From now on, and said once.
 static void leave_it_to_library(struct glare *g, const char *why)
 {
@@ -68,7 +63,9 @@ static struct relume_psf_params pattern_of(const struct glare *g, const struct o
 {
     return (struct relume_psf_params){.log = g->log,
                                       .threads = g->threads,
-                                      .size = size_of(g, passes),
+                                      .size = g->size  ? g->size
+                                              : passes ? PASSES_SIZE
+                                                       : LIBRARY_SIZE,
                                       .half_field_deg = g->field_deg > 0 ? g->field_deg : field_deg,
                                       .parts_off = observer->parts_off};
 }
@@ -82,13 +79,6 @@ static bool can_pass(struct glare *g, const struct observer *observer)
     else if (!g->by_library && !gl_psf_fits(g->gl, &params))
         leave_it_to_library(g, "the graphics card has no room for the pattern");
     return !g->by_library;
-}
-
-static bool wants_passes(struct glare *g, const struct observer *observer)
-{
-    return !observer->cycle_s &&
-           (observer->mode == OBSERVER_AUTO || observer->mode == OBSERVER_FFT) &&
-           can_pass(g, observer);
 }
 
 static relume_status prepare(struct glare *g, const struct observer *observer, bool passes)
@@ -297,7 +287,9 @@ static relume_status see_by_passes(struct glare *g, const struct target *frame,
 
 relume_status glare_see(struct glare *g, const struct target *frame, const struct frame_request *q)
 {
-    const bool passes = wants_passes(g, &q->observer);
+    const bool passes = !q->observer.cycle_s &&
+                        (q->observer.mode == OBSERVER_AUTO || q->observer.mode == OBSERVER_FFT) &&
+                        can_pass(g, &q->observer);
     bool fits = true;
     relume_status status = need_seen(g, frame->width, frame->height);
     if (!status)

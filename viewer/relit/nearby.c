@@ -97,11 +97,6 @@ void nearby_destroy(struct nearby *near)
     *near = (struct nearby){0};
 }
 
-static int form_of(const struct relume_coder_info *info)
-{
-    return info->luminance ? FORM_LUMINANCE : info->joint ? FORM_JOINT : FORM_SEPARATE;
-}
-
 // ---------------------------------------------------------------- weights by direction
 
 // Four coefficients of one set, from every node.
@@ -439,7 +434,9 @@ static void set_codes(const struct nearby *near, const struct nearby_view *view,
     gl->Uniform1i(at[TILES], near->tiles);
     gl->Uniform1i(at[HEMISPHERE], info->hemispherical);
     gl->Uniform1i(at[POLE_Y], info->pole_y);
-    gl->Uniform1i(at[FORM], form_of(info));
+    gl->Uniform1i(at[FORM], info->luminance ? FORM_LUMINANCE
+                            : info->joint   ? FORM_JOINT
+                                            : FORM_SEPARATE);
     gl->Uniform1i(at[COEFFICIENTS], info->coefficients);
     gl->Uniform1i(at[LAYERS], (codes->planes + LANES - 1) / LANES);
     gl->Uniform1i(at[BOOKS], codes->books);

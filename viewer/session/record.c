@@ -41,33 +41,25 @@ static void pose_sweep(struct app *app, double part)
                    app_middle(app));
 }
 
-// As far as all sides of the grid allow.
-static void pose_eye(struct app *app, double part)
-{
-    const struct app_file *f = &app->file;
-    struct relume_vec3 *eye = &app->now.camera.eye;
-    const double angle = 2 * M_PI * part;
-    eye->x = 0.5 * (f->uv_min[0] + f->uv_max[0]) + 0.5 * (f->uv_max[0] - f->uv_min[0]) * cos(angle);
-    eye->y = 0.5 * (f->uv_min[1] + f->uv_max[1]) + 0.5 * (f->uv_max[1] - f->uv_min[1]) * sin(angle);
-}
-
-static void pose_around(struct app *app, double part)
-{
-    app->now.camera.eye = app->start.camera.eye;
-    orbit_turn(app, 360 * part, 0);
-}
-
 relume_status record_pose(struct app *app, enum record_kind kind, double part,
                           const struct relume_log *log)
 {
     const enum relume_framing framing = app->now.camera.framing;
     if (kind == RECORD_SWEEP)
         pose_sweep(app, part);
-    else if (orbit_is(app))
-        pose_around(app, part);
-    else if (framing == RELUME_FRAME_EYE)
-        pose_eye(app, part);
-    else if (framing == RELUME_FRAME_LOOK)
+    else if (orbit_is(app)) {
+        app->now.camera.eye = app->start.camera.eye;
+        orbit_turn(app, 360 * part, 0);
+    } else if (framing == RELUME_FRAME_EYE) {
+        // As far as all sides of the grid allow.
+        const struct app_file *f = &app->file;
+        struct relume_vec3 *eye = &app->now.camera.eye;
+        const double angle = 2 * M_PI * part;
+        eye->x =
+            0.5 * (f->uv_min[0] + f->uv_max[0]) + 0.5 * (f->uv_max[0] - f->uv_min[0]) * cos(angle);
+        eye->y =
+            0.5 * (f->uv_min[1] + f->uv_max[1]) + 0.5 * (f->uv_max[1] - f->uv_min[1]) * sin(angle);
+    } else if (framing == RELUME_FRAME_LOOK)
         app->now.camera.look.pan_deg = remainder(app->start.camera.look.pan_deg + 360 * part, 360);
     else
         return say(log, RELUME_EINVAL,

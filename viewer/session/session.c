@@ -214,19 +214,15 @@ relume_status session_open_nothing(struct session *s, const struct app_state *st
 
 // ---------------------------------------------------------------- drawing
 
-static relume_status make_nothing(struct session *s)
-{
-    const struct code_source nothing = {.user = NULL};
-    const relume_status status =
-        renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
-    s->renderer.empty = true;
-    return status;
-}
-
 static relume_status make_renderer(struct session *s)
 {
-    if (s->app.file.empty)
-        return make_nothing(s);
+    if (s->app.file.empty) {
+        const struct code_source nothing = {.user = NULL};
+        const relume_status status =
+            renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+        s->renderer.empty = true;
+        return status;
+    }
     if (!s->pack)
         return session_make_stage(s);
     const struct relume_pack_info *info = relume_pack_info(s->pack);
@@ -334,13 +330,6 @@ static relume_status keep_lights(struct app_state *to, const struct app_state *f
     return RELUME_OK;
 }
 
-// It is not known where they would stand.
-static void drop_near_lights(struct app *app)
-{
-    light_list_drop_near(&app->start);
-    light_list_drop_near(&app->now);
-}
-
 static relume_status replace(struct session *s, const char *path, bool *opened)
 {
     session_record_stop(s);
@@ -363,8 +352,11 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         session_say(s, "%s", s->told);
     if (!*opened)
         return status;
-    if (!s->app.near_lights)
-        drop_near_lights(&s->app);
+    if (!s->app.near_lights) {
+        // It is not known where they would stand.
+        light_list_drop_near(&s->app.start);
+        light_list_drop_near(&s->app.now);
+    }
     const double toast_s = s->told[0] ? APP_TOAST_S : 0;
     keep_window(&s->app, &was);
     s->app.toast_s = toast_s;

@@ -24,18 +24,12 @@ static struct app_light_state state_of(const struct relume_rig_entry *e, int ent
     };
 }
 
-// To have been refused by light_list_add.
-static relume_status refused(const struct session *s, const struct app_state *to)
-{
-    return to->lights < APP_LIGHTS ? RELUME_ENOMEM : too_many(s);
-}
-
 static relume_status append_entries(const struct session *s, struct app_state *to, int first)
 {
     for (int i = first; i < relume_rig_count(s->rig); i++) {
         const struct relume_rig_entry *e = relume_rig_entry(s->rig, i);
         if (!light_list_add(to, &e->light, i))
-            return refused(s, to);
+            return to->lights < APP_LIGHTS ? RELUME_ENOMEM : too_many(s);
         to->light_state[to->selected] = state_of(e, i);
     }
     return RELUME_OK;

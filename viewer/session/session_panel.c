@@ -8,16 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-// As high as the logarithm of a count in the most frequent one's.
-static void scale_histogram(float histogram[256][3])
-{
-    float most = 1;
-    for (int i = 0; i < 3 * 256; i++)
-        most = fmaxf(most, histogram[i / 3][i % 3]);
-    for (int i = 0; i < 3 * 256; i++)
-        histogram[i / 3][i % 3] = log1pf(histogram[i / 3][i % 3]) / log1pf(most);
-}
-
 static void count_histogram(struct session *s)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
@@ -37,7 +27,12 @@ static void count_histogram(struct session *s)
         s->histogram[(int)fminf(fmaxf(255 * code + 0.5f, 0), 255)][i % 3] += 1;
     }
     relume_image_destroy(&frame);
-    scale_histogram(s->histogram);
+    // As high as the logarithm of a count in the most frequent one's.
+    float most = 1;
+    for (int i = 0; i < 3 * 256; i++)
+        most = fmaxf(most, s->histogram[i / 3][i % 3]);
+    for (int i = 0; i < 3 * 256; i++)
+        s->histogram[i / 3][i % 3] = log1pf(s->histogram[i / 3][i % 3]) / log1pf(most);
 }
 
 static const char *file_name(const char *path)

@@ -71,6 +71,7 @@ struct relume_pack_share {
     const char *capture, *options;  // what must be the same in all parts; texts
     bool free_storage;              // nobody asked for the storage: join refuses coarse steps
     enum relume_step step;          // what was asked for
+    enum relume_pyramid pyramid;    // likewise
     const struct relume_encode_report *measured;  // [views] of it
 };
 
@@ -268,6 +269,9 @@ RELUME_API void relume_pack_drop(relume_pack *pack, int view);
 // Depth or mask of a view, one channel; empty when it has none. The caller destroys it.
 RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack,
                                               int view);
+// The same at a level, as relume_pack_level_size: of each pixel what lies beside its middle.
+RELUME_RESULT relume_status relume_pack_depth_level(struct relume_image *out, relume_pack *pack,
+                                                    int view, int level);
 // Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 

@@ -84,6 +84,13 @@ RELUME_RESULT relume_status relume_renderer_part(struct relume_image *out,
                                                  relume_renderer *renderer, int view,
                                                  const struct relume_rect *rect);
 
+// The same in another size. Of a view with reduced levels no more is read than what the rectangle
+// has in the one that is fine enough. RELUME_EINVAL also for sizes below 1.
+RELUME_RESULT relume_status relume_renderer_detail(struct relume_image *out,
+                                                   relume_renderer *renderer, int view,
+                                                   const struct relume_rect *rect, int width,
+                                                   int height);
+
 // Where the surface is instead of light, `*out` created likewise: world positions, background far
 // along its ray, NaN where no view sees. Lights and pass are not looked at.
 RELUME_RESULT relume_status relume_renderer_places(struct relume_image *out,

@@ -271,6 +271,7 @@ static relume_status write_material(const struct material *m, const relume_captu
         .options = p->options ? p->options : "",
         .free_storage = p->free_storage,
         .step = p->step,
+        .pyramid = p->pyramid,
         .measured = m->report + m->first,
     };
     if (p->parts) {

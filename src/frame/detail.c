@@ -19,11 +19,12 @@ struct detail {
 
 // Whether `side` pixels at a level show `pixels` well. Between the level's pixels there is only
 // what a mean of them says: from 1.4 a pixel on that is closer than 42 dB to the mean of the view's
-// own, and where the two grids are the same but for a quarter of a pixel it is that mean.
-static bool is_fine(int side, int level, int pixels)
+// own, and where the two grids are the same but for an eighth of a pixel it is that mean.
+static bool is_fine(int first, int side, int level, int pixels)
 {
-    const double each = ldexp((double)side / pixels, -level);
-    return each >= 1.4 || (each >= 1.0 && (each - 1.0) * pixels <= 0.25);
+    const double each = ldexp((double)side / pixels, -level), at = ldexp(first, -level);
+    const bool same = fabs(at - round(at)) + (each - 1.0) * pixels <= 0.125;
+    return each >= 1.4 || (each >= 1.0 && same);
 }
 
 // The coarsest level that is fine enough for the picture.
@@ -31,8 +32,8 @@ static int find_level(const relume_renderer *r, const struct relume_rect *rect, 
                       int height)
 {
     int level = 0;
-    while (level < r->info->levels && is_fine(rect->width, level + 1, width) &&
-           is_fine(rect->height, level + 1, height))
+    while (level < r->info->levels && is_fine(rect->left, rect->width, level + 1, width) &&
+           is_fine(rect->top, rect->height, level + 1, height))
         level++;
     return level;
 }

@@ -242,3 +242,25 @@ relume_status relume_renderer_part(struct relume_image *out, relume_renderer *r,
     status = renderer_need(r, view);
     return status ? status : crop(out, &r->image[SHOWN_LIGHT][view], rect);
 }
+
+relume_status relume_renderer_detail(struct relume_image *out, relume_renderer *r, int view,
+                                     const struct relume_rect *rect, int width, int height)
+{
+    struct relume_image own = {0};
+    *out = own;
+    relume_status status = check_part(r, view, rect);
+    if (status || width < 1 || height < 1)
+        return status ? status : RELUME_EINVAL;
+    if (width == rect->width && height == rect->height)
+        return relume_renderer_part(out, r, view, rect);
+    renderer_begin(r, SHOWN_LIGHT);
+    if (frame_detail_suits(r, rect, width, height))
+        return frame_detail(out, r, view, rect, width, height);
+    status = relume_renderer_part(&own, r, view, rect);
+    if (!status)
+        status = relume_image_scale(
+            out, &own, width, height,
+            relume_scale_params(.threads = r->params.threads, .filter = r->params.filter));
+    relume_image_destroy(&own);
+    return status;
+}

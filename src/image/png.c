@@ -226,6 +226,9 @@ static void no_flush(png_structp png)
     (void)png;
 }
 
+// Of photographs more effort gains 4 % of the bytes in five times as long.
+enum { EFFORT = 2 };
+
 static bool encode(struct writer *w, int width, int height, int channels, const uint8_t *samples)
 {
     const size_t row = (size_t)width * (size_t)channels;
@@ -237,6 +240,7 @@ static bool encode(struct writer *w, int width, int height, int channels, const 
                  : channels == 3 ? PNG_COLOR_TYPE_RGB
                                  : PNG_COLOR_TYPE_GRAY,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_compression_level(w->png, EFFORT);
     png_set_sRGB(w->png, w->info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(w->png, w->info);
     for (int y = 0; y < height; y++)

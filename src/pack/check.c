@@ -38,7 +38,7 @@ static relume_status check_blocks(struct check *c, const char *path)
     return status;
 }
 
-static relume_status check_view(relume_pack *pack, int view)
+static relume_status check_whole(relume_pack *pack, int view)
 {
     struct relume_image image;
     const struct relume_codes *codes;
@@ -51,6 +51,45 @@ static relume_status check_view(relume_pack *pack, int view)
     if (!status) {
         status = relume_pack_mask(&image, pack, view);
         relume_image_destroy(&image);
+    }
+    return status;
+}
+
+static relume_status check_plane(relume_pack *pack, int part, const struct relume_rect *rect)
+{
+    struct relume_image image;
+    const relume_status status = reader_load_plane(&image, pack, part, rect);
+    relume_image_destroy(&image);
+    return status;
+}
+
+// A band of a view, or of a reduced level of it.
+static relume_status check_band(relume_pack *pack, int view, int level,
+                                const struct relume_rect *rect)
+{
+    const struct view_parts *parts = &pack->parts[view];
+    struct relume_codes_part codes;
+    relume_status status = relume_pack_codes_level(&codes, pack, view, level, rect);
+    relume_codes_part_destroy(&codes);
+    if (!status)
+        status = check_plane(pack, level ? parts->share[level - 1] : parts->mask, rect);
+    return status || level ? status : check_plane(pack, parts->depth, rect);
+}
+
+// Large views are in tiles: no more than some rows of these are there at once.
+static relume_status check_view(relume_pack *pack, int view)
+{
+    enum { ROWS = 1024 };
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    relume_status status = info->levels ? RELUME_OK : check_whole(pack, view);
+    for (int level = 0; !status && info->levels && level <= info->levels; level++) {
+        struct relume_rect band = {0};
+        int height;
+        relume_pack_level_size(&band.width, &height, pack, level);
+        for (; !status && band.top < height; band.top += ROWS) {
+            band.height = height - band.top < ROWS ? height - band.top : ROWS;
+            status = check_band(pack, view, level, &band);
+        }
     }
     return status;
 }

@@ -55,6 +55,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_CAPTURE   "relume.part.capture"
 #define ATTR_OPTIONS   "relume.part.options"
 #define ATTR_PART_STEP "relume.part.step"
+#define ATTR_PYRAMID   "relume.part.pyramid"
 #define ATTR_EXACT     "relume.part.exact"
 #define ATTR_MEASURED  "relume.part.measured"
 #define ATTR_BANDS     "relume.part.bands"

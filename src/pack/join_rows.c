@@ -24,8 +24,10 @@ struct rows_joining {
     relume_coefficients **coefficients;
     struct relume_image *depth, *mask;
     struct relume_pack_view *view;
+    struct relume_pack_levels *levels;
     struct relume_encode_report *report;  // [views]
     enum relume_step step;
+    enum relume_pyramid pyramid;
     const char *path;
     const struct relume_pack_params *p;
 };
@@ -286,6 +288,20 @@ static relume_status gather_views(struct rows_joining *j)
 
 // ---------------------------------------------------------------- the file
 
+static relume_status reduce_views(struct rows_joining *j,
+                                  const struct relume_pack_contents *contents)
+{
+    relume_status status = RELUME_OK;
+    for (int v = 0; !status && v < contents->views; v++) {
+        status = relume_pack_reduce(&j->levels[v], contents, &j->view[v], j->pyramid,
+                                    relume_encode_params(.log = j->p->log, .step = j->step,
+                                                         .threads = j->p->threads,
+                                                         .scratch = j->p->writer ? NULL : j->path));
+        j->view[v].levels = j->levels[v].levels ? &j->levels[v] : NULL;
+    }
+    return status;
+}
+
 static relume_status write_views(struct rows_joining *j, const struct relume_encode_report *report)
 {
     const struct relume_pack_info *info = &j->header->info;
@@ -305,27 +321,35 @@ static relume_status write_views(struct rows_joining *j, const struct relume_enc
     struct relume_pack_params p = *j->p;
     if (relume_compression_parse(&p.compression, exr_part_info(j->part[0]->file, 0).codec))
         return damaged(j, j->part[0]);
-    return relume_pack_write(&contents, j->path, &p);
+    const relume_status status = reduce_views(j, &contents);
+    return status ? status : relume_pack_write(&contents, j->path, &p);
 }
 
 static bool create(struct rows_joining *j)
 {
     const size_t n = (size_t)j->header->info.views;
-    int step;
+    int step, pyramid;
     j->coefficients = mem_zeroed(n, sizeof *j->coefficients);
     j->depth = mem_zeroed(n, sizeof *j->depth);
     j->mask = mem_zeroed(n, sizeof *j->mask);
     j->view = mem_zeroed(n, sizeof *j->view);
     j->report = mem_zeroed(n, sizeof *j->report);
+    j->levels = mem_zeroed(n, sizeof *j->levels);
     j->step = exr_get_int(j->part[0]->file, 0, ATTR_PART_STEP, &step) && step == RELUME_STEP_COMMON
                   ? RELUME_STEP_COMMON
                   : RELUME_STEP_DEFAULT;
-    return j->coefficients && j->depth && j->mask && j->view && j->report;
+    if (exr_get_int(j->part[0]->file, 0, ATTR_PYRAMID, &pyramid) && pyramid >= 0 &&
+        pyramid <= RELUME_PYRAMID_NO)
+        j->pyramid = (enum relume_pyramid)pyramid;
+    return j->levels && j->coefficients && j->depth && j->mask && j->view && j->report;
 }
 
 static void destroy(struct rows_joining *j)
 {
     const bool whole = j->coefficients && j->depth && j->mask;  // else there is nothing in them
+    for (int v = 0; j->levels && v < j->header->info.views; v++)
+        relume_pack_levels_destroy(&j->levels[v]);
+    mem_free(j->levels);
     for (int v = 0; whole && v < j->header->info.views; v++) {
         relume_coefficients_destroy(&j->coefficients[v]);
         relume_image_destroy(&j->depth[v]);

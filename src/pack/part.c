@@ -42,6 +42,15 @@ static bool copy_text(char *to, size_t size, const char *from)
     return from && (size_t)snprintf(to, size, "%s", from) < size;
 }
 
+// Of the views: that of the preview where that is not smaller.
+static int height_of(const struct part_file *p)
+{
+    int height;
+    return exr_get_int(p->file, 0, ATTR_HEIGHT, &height) && height > 0
+               ? height
+               : exr_part_info(p->file, 0).height;
+}
+
 static relume_status read_place(struct part_file *p, const struct relume_limits *limits,
                                 const struct relume_log *log)
 {
@@ -57,7 +66,7 @@ static relume_status read_place(struct part_file *p, const struct relume_limits 
     p->free_storage = v[2] != 0.0f;
     if (!exr_get_int(p->file, 0, ATTR_VIEWS, &i->all_views) || i->all_views < 1 ||
         i->all_views > limits->max_views || i->part < 1 || i->part > i->parts ||
-        !encode_share_of(&share, i->part, i->parts, i->all_views, exr_part_info(p->file, 0).height))
+        !encode_share_of(&share, i->part, i->parts, i->all_views, height_of(p)))
         return bad(p, "number of views", log);
     i->first = share.first;
     i->views = share.views;

@@ -141,6 +141,64 @@ relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int
     return reader_load_plane(out, pack, pack->parts[view].depth, &all);
 }
 
+struct picking {
+    struct relume_image *image;
+    struct relume_rect whole;
+    int level;
+};
+
+// The pixel of the view beside the middle of pixel `i` of a level; at the end the last.
+static int middle(int i, int level, int side)
+{
+    const int at = (i << level) + (1 << level >> 1);
+    return at < side ? at : side - 1;
+}
+
+static void pick_block(void *context, const struct relume_rect *at, const void *samples)
+{
+    const struct picking *p = context;
+    const struct relume_image *to = p->image;
+    const int l = p->level, right = at->left + at->width, bottom = at->top + at->height;
+    const float *from = samples;
+    for (int y = (at->top >> l) - (at->top > 0); y < to->height && y << l < bottom; y++) {
+        const int row = middle(y, l, p->whole.height);
+        if (row < at->top || row >= bottom)
+            continue;
+        for (int x = (at->left >> l) - (at->left > 0); x < to->width && x << l < right; x++) {
+            const int column = middle(x, l, p->whole.width);
+            if (column >= at->left && column < right)
+                to->data[(size_t)y * (size_t)to->width + (size_t)x] =
+                    from[(size_t)(row - at->top) * (size_t)at->width + (size_t)(column - at->left)];
+        }
+    }
+}
+
+relume_status relume_pack_depth_level(struct relume_image *out, relume_pack *pack, int view,
+                                      int level)
+{
+    struct picking picking = {out, reader_whole(pack), level};
+    int width, height;
+    *out = (struct relume_image){0};
+    if (!level)
+        return relume_pack_depth(out, pack, view);
+    if (view < 0 || view >= pack->info.views || level < 0 || level > pack->info.levels)
+        return RELUME_EINVAL;
+    const int part = pack->parts[view].depth;
+    if (part < 0)
+        return RELUME_OK;
+    relume_pack_level_size(&width, &height, pack, level);
+    relume_status status = relume_image_create(out, width, height, 1);
+    if (!status)
+        status = exr_read(pack->file, part, NULL, pack->threads, pick_block, &picking, pack->log);
+    const size_t n = (size_t)width * (size_t)height;
+    for (size_t i = 0; !status && i < n; i++)
+        if (!(out->data[i] >= 0.0f))
+            status = reader_bad(pack, "depth or mask", "values of 0 or more");
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}
+
 relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view)
 {
     *out = (struct relume_image){0};

@@ -263,6 +263,7 @@ static void describe_share(struct writer *w, struct exr_part *part)
     writer_text(part, ATTR_CAPTURE, s->capture);
     writer_text(part, ATTR_OPTIONS, s->options);
     writer_int(part, ATTR_PART_STEP, (int)s->step);
+    writer_int(part, ATTR_PYRAMID, (int)s->pyramid);
     writer_text(part, ATTR_EXACT, exact_text(w));
 }
 

@@ -40,6 +40,20 @@ expect_fail "a damaged header" 1 "cannot be read as OpenEXR" - "$RELUME" check "
 check_says "all files are looked at" 1 "piz.exr: whole" middle.exr piz.exr
 relume check middle.exr zip.exr --json >out.txt 2>/dev/null
 check "as JSON" grep -q '"whole": false}, {"file": "zip.exr", "damaged": \[\], "whole": true}\]}' out.txt
+# Reduced levels, in tiles
+"$sphere" large --size 200 --lights 9 --hemisphere --mask || exit 1
+relume encode large -o large.exr --basis ptm --compression zip --pyramid yes 2>/dev/null
+check_says "a pyramid is whole" 0 "^large.exr: whole$" large.exr
+relume info large.exr >out.txt
+check "what it is" grep -q '^pyramid *1 smaller level, tiles of 128 pixels$' out.txt
+size=$(wc -c <large.exr)
+cp large.exr tile.exr
+printf 'spoiled!' | dd of=tile.exr bs=1 seek=$((size / 2)) conv=notrunc 2>/dev/null
+check_says "a tile of it" 1 "^tile.exr: part 'view0000', tile in column [01], row [01] \(pixels " tile.exr
+below "one tile alone" "$(wc -l <out.txt)" 1
+head -c $((size - 2)) large.exr >cut.exr
+expect_fail "a pyramid that is cut off" 1 "cut.exr: truncated or damaged in part" x.png "$RELUME" relight cut.exr -o x.png --size 90
+expect_fail "no pyramid for luminance" 1 "luminance coefficients cannot have a pyramid" x.exr "$RELUME" encode large -o x.exr --colour luminance --basis ptm --pyramid yes
 # Blocks that decode, to values that are no codes: 0xffff is NaN
 relume encode cap -o none.exr --basis ptm --compression none 2>/dev/null
 size=$(wc -c <none.exr)

@@ -45,6 +45,11 @@ joined 'rows of one of two views, masks' cut 5
 joined 'rows of one of two views, one step' cut 3 --basis pca --step common --bits 12
 joined 'rows of a panorama' room 2
 check 'the joined file is whole' relume check joined.exr
+# the pyramid of rows is made when they are joined
+"$sphere" large --size 150 --lights 9 --hemisphere --mask --format jpg
+joined 'rows of a view with a pyramid' large 3 --pyramid yes --basis sh --coefficients 4
+joined 'a view with a pyramid, in the display domain' large 2 --pyramid yes --basis ptm --domain display
+joined 'a whole view with a pyramid' large 1 --pyramid yes --basis ptm
 
 # ---- threads, and a part that is made again
 encode_parts slab 2 --basis pca

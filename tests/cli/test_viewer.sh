@@ -62,6 +62,18 @@ same 'luminance' --view 1 --pass luminance
 same 'enhanced' --view 1 --pass unsharp
 same 'with a highlight' --pass specular
 
+# a large view is known smaller, and shown by its tiles: --vram makes it large here
+"$sphere" large --size 640 --lights 4 --hemisphere || exit 1
+"$RELUME" encode -q large -o deep.exr --basis sh --coefficients 1 --pyramid yes || exit 1
+"$RELUME" encode -q large -o flat.exr --basis sh --coefficients 1 --pyramid no || exit 1
+printf 'size 200 200\nlight dir .4 .3 1\nwheel 14 40 40\nwait\nframe %s\n' a.exr >tiles.txt
+sed 's/a.exr/b.exr/' tiles.txt >whole.txt
+for how in passes library; do
+    "$VIEWER" deep.exr --script tiles.txt --vram 14 --relight $how && "$VIEWER" flat.exr --script whole.txt --relight $how
+    # the same codes, of which single precision finds the places a little differently
+    above "tiles, by $how" "$("$RELUME" compare a.exr b.exr | awk '$1 == "psnr_db" { print $2 }')" 80
+done
+
 # a panel that is open changes a shot, not a frame; clicks on it change the picture
 cat >panel.txt <<'END'
 size 500 540

@@ -99,6 +99,14 @@ static void use(relume_pack *pack)
         if (!relume_frame(&frame, pack, &cameras[i], lights, 2, relume_frame_params(.threads = 1)))
             relume_image_destroy(&frame);
     }
+    struct relume_rect all = {0};
+    struct relume_codes_part part;
+    struct relume_image depth;
+    relume_pack_level_size(&all.width, &all.height, pack, info->levels);
+    if (!relume_pack_codes_level(&part, pack, 0, info->levels, &all))
+        relume_codes_part_destroy(&part);
+    if (!relume_pack_depth_level(&depth, pack, 0, info->levels))
+        relume_image_destroy(&depth);
     float rgb[3];
     (void)!relume_query(rgb, pack, (struct relume_vec3){0.2, 0.1, 3.0},
                         (struct relume_vec3){0.0, 0.1, -1.0}, lights, 1, NULL);
@@ -153,6 +161,17 @@ static void add_coded(struct fuzz *f, const struct fixture *fixture,
     fuzz_add(f, fuzz_load(f->path));
 }
 
+static void add_pyramid(struct fuzz *f, const struct fixture *fixture,
+                        const struct relume_basis *basis, enum relume_compression compression)
+{
+    fixture_write(fixture, f->folder);
+    fixture_must(fixture_encode(f->folder, f->path, basis, 4,
+                                relume_pack_encode_params(.pyramid = RELUME_PYRAMID_YES,
+                                                          .compression = compression)),
+                 "encode");
+    fuzz_add(f, fuzz_load(f->path));
+}
+
 static void add(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
                 int coefficients, enum relume_storage storage, enum relume_compression compression)
 {
@@ -171,6 +190,8 @@ int main(int argc, char **argv)
                                  .hemisphere = true,
                                  .depth = true,
                                  .mask = true};
+    const struct fixture tall = {
+        .width = 3, .height = 141, .lights = 5, .views = 1, .depth = true, .mask = true};
     const struct fixture around = {
         .width = 8, .height = 5, .lights = 5, .views = 6, .slabs = 3, .depth = true};
     fuzz_begin(&f, "fuzz_pack", argc, argv);
@@ -192,6 +213,8 @@ int main(int argc, char **argv)
               RELUME_STORE_12);
     add_books(&f, &slab, false, relume_books_params(.codes = 3, .split = RELUME_SPLIT_PRODUCT),
               RELUME_STORE_HALF);
+    add_pyramid(&f, &tall, &relume_basis_pca, RELUME_COMPRESS_NONE);
+    add_pyramid(&f, &tall, &relume_basis_sh, RELUME_COMPRESS_PIZ);
     add_coded(&f, &plain, &relume_basis_table, 0);
     add_coded(&f, &slab, &relume_basis_pca, 4);
     return fuzz_run(&f, argc, argv, one);

@@ -30,6 +30,10 @@ void draw_rectangle(const struct gl *gl, const struct program *program, const st
 extern const struct fragment draw_picture_fragment;
 void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
                   const struct target *view);
+// The same, only within a rectangle of the frame.
+void draw_picture_within(const struct program *program, const struct gl *gl,
+                         const struct place *place, const struct target *view,
+                         struct app_rectangle within);
 
 // A slab from an eye.
 struct slab_inputs {

@@ -6,8 +6,9 @@ static const char *const uniforms[] = {"rectangle", "frame_size", "view", "pictu
 
 const struct fragment draw_picture_fragment = {"picture.frag", uniforms, COUNT};
 
-void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
-                  const struct target *view)
+void draw_picture_within(const struct program *program, const struct gl *gl,
+                         const struct place *place, const struct target *view,
+                         struct app_rectangle within)
 {
     const struct app_rectangle *p = &place->picture;
     texture_use(gl, 0, GL_TEXTURE_2D, view->texture);
@@ -16,5 +17,11 @@ void draw_picture(const struct program *program, const struct gl *gl, const stru
     gl->Uniform4f(program->at[PICTURE], (float)p->left, (float)p->top, (float)p->right,
                   (float)p->bottom);
     gl->Uniform1f(program->at[EXPOSURE], place->exposure);
-    draw_rectangle(gl, program, place, *p);
+    draw_rectangle(gl, program, place, within);
+}
+
+void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct target *view)
+{
+    draw_picture_within(program, gl, place, view, place->picture);
 }

@@ -117,6 +117,7 @@ void renderer_destroy(struct renderer *r)
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
+    renderer_tiles_destroy(r);
     enhancer_destroy(&r->enhancer);
     glare_end(&r->glare);
     hiding_scene_forget(&r->backdrop);
@@ -181,7 +182,10 @@ static void mark_look(struct renderer *r, const struct frame_request *q)
 static relume_status draw_framed_view(struct renderer *r, const struct frame_request *q,
                                       const struct place *place)
 {
-    draw_picture(&r->picture, r->gl, place, r->relit[q->camera.view]);
+    if (r->map)
+        renderer_draw_tiles(r, place, r->relit[q->camera.view]);
+    else
+        draw_picture(&r->picture, r->gl, place, r->relit[q->camera.view]);
     return RELUME_OK;
 }
 
@@ -451,6 +455,8 @@ relume_status renderer_relight_views(struct renderer *r, const struct frame_requ
             status =
                 enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], q->pass, lights, count);
     }
+    if (!status && r->map)
+        status = renderer_relight_tiles(r, q, lights, count);
     return status ? status : stand_in(r);
 }
 
@@ -529,12 +535,13 @@ relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
 
 relume_status renderer_stream(struct renderer *r)
 {
-    return relighter_stream(&r->relighter);
+    const relume_status status = relighter_stream(&r->relighter);
+    return status || !r->map ? status : relighter_stream(&r->tiles);
 }
 
 bool renderer_is_pending(const struct renderer *r)
 {
-    return r->relighter.pending;
+    return r->relighter.pending || r->tiles.pending;
 }
 
 relume_status renderer_read(struct relume_image *out, const struct renderer *r)

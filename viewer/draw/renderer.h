@@ -24,6 +24,10 @@ relume_status renderer_use_depth(struct renderer *renderer, const struct depth_s
 void renderer_use_parts(struct renderer *renderer, const struct part_source *parts,
                         const struct relume_pack_info *info);
 
+// A large view's own pixels come as tiles. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status renderer_use_tiles(struct renderer *renderer, const struct code_source *source,
+                                 const struct tile_map *map);
+
 // A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.
 void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
 

@@ -14,6 +14,13 @@ relume_status renderer_relight_views(struct renderer *r, const struct frame_requ
 relume_status renderer_frame(struct renderer *r, const struct frame_request *request,
                              const struct place *place);
 
+// The tiles of a large view that a frame shows finer than the view as a whole, relit; and both
+// drawn.
+relume_status renderer_relight_tiles(struct renderer *r, const struct frame_request *request,
+                                     const struct relume_light *lights, int count);
+void renderer_draw_tiles(struct renderer *r, const struct place *place, const struct target *view);
+void renderer_tiles_destroy(struct renderer *r);
+
 // The frame with objects, into r->frame.
 relume_status renderer_draw_objects(struct renderer *r, const struct frame_request *request,
                                     const struct place *place, const struct relume_light *lights,

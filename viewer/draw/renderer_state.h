@@ -9,11 +9,15 @@
 #include "relit/depths.h"
 #include "relit/enhancer.h"
 #include "relit/relighter.h"
+#include "relit/tile_map.h"
 
 struct renderer {
     const struct gl *gl;
     const struct relume_log *log;
     struct relighter relighter;
+    struct relighter tiles;      // of a large view, which the other knows smaller; empty: none ...
+    const struct tile_map *map;  // ... by number; NULL: none
+    const struct target **tile;  // [tiles]: relit; NULL where not needed or not there yet
     struct enhancer enhancer;
     struct glare glare;
     struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,

@@ -226,7 +226,7 @@ static relume_status make_renderer(struct session *s)
     if (!s->pack)
         return session_make_stage(s);
     const struct relume_pack_info *info = relume_pack_info(s->pack);
-    relume_status status = pack_source_create(&s->source, s->pack);
+    relume_status status = pack_source_create(&s->source, s->pack, s->vram_bytes);
     if (status)
         return status;
     const struct code_source source = pack_source_codes(s->source);
@@ -249,7 +249,9 @@ static relume_status make_renderer(struct session *s)
     s->renderer.glare.by_library =
         s->glare == SESSION_LIBRARY || (s->glare == SESSION_AUTO && s->gl.software);
     renderer_use_capture(&s->renderer, s->capture);
-    if (info->has_depth)
+    const struct code_source tiles = pack_source_tiles(s->source);
+    status = renderer_use_tiles(&s->renderer, &tiles, pack_source_map(s->source));
+    if (!status && info->has_depth)
         status = renderer_use_depth(&s->renderer, &depth);
     if (!status && s->objects)
         status = session_add_objects(s);

@@ -35,7 +35,7 @@ static const struct option options[] = {
     NAME(
         "--pyramid", pyramid, "P",
         "auto, yes or no: keep large views at half, a quarter, ... of their size too, so that they "
-        "are soon shown; a third more bytes; default: auto, above 16 megapixels",
+        "are soon shown; default: auto, above 16 megapixels",
         RELUME_PYRAMID_DEFAULT, "auto", "yes", "no"),
     GROUP("model"),
     ENTRY("--basis", basis, "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled",

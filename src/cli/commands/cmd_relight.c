@@ -37,8 +37,8 @@ static const struct option options[] = {
     GROUP("camera"),
     INT("--view", view, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535),
     NUMBERS("--crop", crop, "x,y,w,h",
-            "of a captured view only the w x h pixels from column x, row y on; reads no more of "
-            "the file",
+            "of a captured view only the w x h pixels from column x, row y on, in the size of "
+            "--size; reads no more of the file",
             4),
     POINT("--eye", eye, "x,y,z",
           "slab: look at the window from this point; default: the middle of the cameras"),
@@ -133,10 +133,9 @@ static relume_status parse_camera(const struct relight_options *o, struct relume
     if (view + eye + look > 1)
         return usage_error(
             "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
-    if (given(o, o->crop) && (eye || look || o->size[0] || o->size[1] || o->alpha || o->objects ||
-                              o->pass == GLARE_PASS))
-        return usage_error("--crop: expected a captured view at its own size (--view N) without "
-                           "--size, --alpha, --objects and --pass glare");
+    if (given(o, o->crop) && (eye || look || o->alpha || o->objects || o->pass == GLARE_PASS))
+        return usage_error("--crop: expected a captured view (--view N) without --alpha, "
+                           "--objects and --pass glare");
     if (!eye &&
         (given(o, &o->look_at) || given(o, &o->up) || (given(o, &o->fov) && o->pass != GLARE_PASS)))
         return usage_error("relight: --look-at, --up and --fov need --eye");
@@ -313,7 +312,9 @@ static relume_status draw(struct relume_image *out, relume_renderer *renderer,
                                o->crop[i]);
     }
     const struct relume_rect rect = {at[0], at[1], at[2], at[3]};
-    return relume_renderer_part(out, renderer, camera->view, &rect);
+    int width, height;
+    relume_frame_size(&width, &height, at + 2, camera);
+    return relume_renderer_detail(out, renderer, camera->view, &rect, width, height);
 }
 
 static relume_status render(const struct relight_options *o, const struct relume_camera *camera,

@@ -5,9 +5,9 @@
 // mean of ln e_i is minimised, so that every light counts by its ratio, as in decibels. No light is
 // used to predict itself, and no other data is seen.
 #include "base/memory.h"
-#include "coder/gram.h"
 #include "coder/basis.h"
 #include "coder/interpolant.h"
+#include "math/gram.h"
 #include "math/lsq.h"
 
 #include <string.h>

@@ -14,8 +14,8 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "coder/gram.h"
 #include "coder/interpolant.h"
+#include "math/gram.h"
 #include "math/lsq.h"
 
 #include <string.h>

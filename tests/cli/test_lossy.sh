@@ -3,7 +3,7 @@
 # on surfaces, in slabs and behind masks; what cannot be done or read is one line.
 . "$(dirname "$0")/lib.sh"
 
-"$RELUME" synth bust -o bust --size 64 --lights 20 --samples 1 -q
+"$RELUME" synth bust -o bust --size 48 --lights 12 --samples 1 -q
 "$RELUME" synth attic -o room --size 32 --lights 12 --samples 1 -q
 "$RELUME" synth teapot -o slab --size 32 --views 3x3 --lights 8 --samples 1 -q
 
@@ -24,7 +24,7 @@ done
 
 # ---- bytes, asked for and kept
 relume encode bust -o small.exr --bytes-per-pixel 6 --no-depth
-below '--bytes-per-pixel keeps its size' "$(wc -c <small.exr)" $((64 * 64 * 6 + 1))
+below '--bytes-per-pixel keeps its size' "$(wc -c <small.exr)" $((48 * 48 * 6 + 1))
 relume encode bust -o large.exr --bytes-per-pixel 9 --no-depth
 below 'more bytes are used' "$(wc -c <small.exr)" "$(wc -c <large.exr)"
 

@@ -1,6 +1,6 @@
 // gram.h - Gram matrices of many rows, summed on several cores
-#ifndef CODER_GRAM_H
-#define CODER_GRAM_H
+#ifndef MATH_GRAM_H
+#define MATH_GRAM_H
 
 #include <relume/base.h>
 

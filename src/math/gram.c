@@ -1,5 +1,5 @@
 // gram.c - Gram matrices of many rows, summed on several cores
-#include "coder/gram.h"
+#include "math/gram.h"
 
 #include "base/memory.h"
 #include "base/thread.h"

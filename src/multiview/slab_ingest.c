@@ -254,7 +254,7 @@ static void say_spacing(const struct slab *s, const struct grid_spacing *g, doub
     if (g->ratio == 0.0)
         log_line(log, RELUME_NOTE,
                  "assuming that rows of cameras are as far apart as columns, %g from the first to "
-                 "the last: the photographs do not tell; if not, give --baseline-v",
+                 "the last: the photographs do not show it; if that is wrong, give --baseline-v",
                  high);
     else
         log_line(log, RELUME_NOTE,

@@ -59,7 +59,7 @@ check 'what was found is said' grep -q 'by the photographs (error . %, .. % of t
 "$RELUME" lightfield grid -o spaced --baseline-v 1 --force 2>spacing.txt
 check 'who says it himself is believed' test -z "$(spacing)"
 for f in grid/*; do cmp -s $f grid/view_00_00.exr || cp grid/view_00_00.exr $f; done
-expect_ok 'what does not move does not tell' 'as far apart as columns, 1 from the first to the last: the photographs do not tell; if not' \
+expect_ok 'what does not move does not tell' 'as far apart as columns, 1 from the first to the last: the photographs do not show it; if that is wrong' \
     "$RELUME" lightfield grid -o still
 chess="$data/lf-stanford-chess-9x9"
 if [ -d "$chess" ]; then # every second row, counted as if it were every row

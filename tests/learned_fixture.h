@@ -39,7 +39,8 @@ static inline void learned_create(struct learned *l, const struct relume_basis *
         for (int i = 0; i < LEARNED_LIGHTS; i++)
             learned_value(l->samples + 3 * (i * LEARNED_PIXELS + x), l->normal[x], l->lights[i]);
     }
-    const struct relume_samples samples = {LEARNED_LIGHTS, LEARNED_PIXELS, l->samples};
+    const struct relume_samples samples = {
+        .lights = LEARNED_LIGHTS, .pixels = LEARNED_PIXELS, .data = l->samples};
     CHECK_OK(relume_coder_create(&l->coder, basis, l->lights, LEARNED_LIGHTS,
                                  relume_coder_params(.hemispherical = hemispherical,
                                                      .pole_y = pole_y, .coefficients = coefficients,

@@ -80,12 +80,16 @@ extern RELUME_API const struct relume_interpolant *const relume_interpolants[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_interpolant *relume_interpolant_find(const char *name);
 
+struct relume_sample_sums;
+
 // Samples of some pixels under every light of a capture: what a learned basis learns from.
 // Thread-safety: plain data.
 struct relume_samples {
     int lights;
     size_t pixels;
     float *data;  // [lights][pixels][rgb], in the domain of the coefficients
+    const struct relume_sample_sums *sums;  // what was added up of them before, for the library's
+                                            // own use; default: `data` is added up
 };
 
 // How a coder is made. All that is pointed at is borrowed during the call and copied where it is

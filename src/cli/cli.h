@@ -72,6 +72,9 @@ __attribute__((format(printf, 3, 4))) void announce(const struct args *args,
 // of inputs at fault.
 __attribute__((format(printf, 2, 3))) relume_status refuse(relume_status status, const char *format,
                                                            ...);
+// Of commands that read a capture more than once: decoded images of up to this size wait.
+#define KEEP_BYTES ((size_t)640 << 20)
+
 #define usage_error(...) refuse(RELUME_EINVAL, __VA_ARGS__)
 #define data_error(...)  refuse(RELUME_EUNFIT, __VA_ARGS__)
 

@@ -70,8 +70,6 @@ void captured_destroy(struct captured *c);
 void captured_predict(const struct captured *c, const relume_coder *coder, int channel,
                       const float *planes, size_t plane_stride, size_t n, float *out);
 
-// The Gram matrix [lights][lights] of the images, mean over pixels and channels.
-relume_status samples_gram(double *gram, const struct relume_samples *s, int threads);
 // Mean squared error of each light predicted from the others, never 0 (choose.c).
 void predict_errors(double *error, const double *b, const double *gram, int lights);
 

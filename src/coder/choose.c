@@ -7,31 +7,13 @@
 #include "base/memory.h"
 #include "coder/basis.h"
 #include "coder/interpolant.h"
-#include "math/gram.h"
+#include "coder/sums.h"
 #include "math/lsq.h"
 
 #include <string.h>
 
 // Squared errors below a third of an 8-bit step do not count.
 static const double FLOOR = 0.1 / (255.0 * 255.0);
-
-static void values_of(const void *context, size_t first, size_t count, double *out)
-{
-    const struct relume_samples *s = context;
-    const size_t n = (size_t)s->lights, values = 3 * s->pixels;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < count; j++)
-            out[j * n + i] = (double)s->data[i * values + first + j];
-}
-
-relume_status samples_gram(double *gram, const struct relume_samples *s, int threads)
-{
-    const size_t n = (size_t)s->lights, values = 3 * s->pixels;
-    const relume_status status = gram_sum(gram, n, values, values_of, s, threads);
-    for (size_t i = 0; !status && i < n * n; i++)
-        gram[i] /= (double)values;
-    return status;
-}
 
 void predict_errors(double *error, const double *b, const double *gram, int lights)
 {

@@ -15,7 +15,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "coder/interpolant.h"
-#include "math/gram.h"
+#include "coder/sums.h"
 #include "math/lsq.h"
 
 #include <string.h>
@@ -72,54 +72,6 @@ static bool alloc_solver(struct solver *s)
     s->values = mem_array(k, sizeof(double));
     return s->out->mean && s->out->analysis && s->out->function && s->covariance && s->weights &&
            s->metric && s->root && s->inverse && s->product && s->transposed && s->values;
-}
-
-// ---------------------------------------------------------------- statistics of the samples
-
-// The means of one light's three channels, by sums of every fourth pixel: they do not wait for each
-// other.
-static void find_mean(void *context, size_t light, int worker)
-{
-    (void)worker;
-    const struct solver *s = context;
-    const struct relume_samples *samples = s->coder->samples;
-    const size_t n = 3 * samples->pixels;
-    const float *data = samples->data + light * n;
-    double sum[12] = {0.0};
-    for (size_t i = 0; i < n - n % 12; i += 12)
-        for (size_t k = 0; k < 12; k++)
-            sum[k] += (double)data[i + k];
-    for (size_t i = n - n % 12; i < n; i++)
-        sum[i % 12] += (double)data[i];
-    for (size_t c = 0; c < 3; c++)
-        s->out->mean[c * s->lights + light] =
-            (sum[c] + sum[c + 3] + sum[c + 6] + sum[c + 9]) / (double)samples->pixels;
-}
-
-// Samples of pixels as [channel][light], less their means.
-static void centre(const void *context, size_t first, size_t count, double *out)
-{
-    const struct solver *s = context;
-    const struct relume_samples *samples = s->coder->samples;
-    for (size_t i = 0; i < s->lights; i++) {
-        const float *data = samples->data + (i * samples->pixels + first) * 3;
-        for (size_t x = 0; x < count; x++)
-            for (size_t c = 0; c < 3; c++) {
-                const size_t j = c * s->lights + i;
-                out[x * s->dim + j] = (double)data[3 * x + c] - s->out->mean[j];
-            }
-    }
-}
-
-static relume_status find_statistics(struct solver *s)
-{
-    const struct relume_samples *samples = s->coder->samples;
-    thread_for(s->coder->threads, s->lights, find_mean, s);
-    const relume_status status =
-        gram_sum(s->covariance, s->dim, samples->pixels, centre, s, s->coder->threads);
-    for (size_t i = 0; i < s->dim * s->dim; i++)
-        s->covariance[i] /= (double)samples->pixels;
-    return status;
 }
 
 // ---------------------------------------------------------------- directions
@@ -300,7 +252,8 @@ static relume_status solve_dense(struct solver *s)
 static relume_status solve(struct solver *s)
 {
     vec3 d[DIRECTIONS];
-    relume_status status = find_statistics(s);
+    relume_status status =
+        samples_covariance(s->out->mean, s->covariance, s->coder->samples, s->coder->threads);
     if (!status && s->lights > DENSE)
         return solve_dense(s);
     choose_directions(s, d);

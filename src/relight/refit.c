@@ -285,7 +285,8 @@ static relume_status refit_codes(relume_refit *refit, struct work *w,
                                  const struct relume_codes *codes, bool book)
 {
     const size_t step = (w->pixels + SAMPLES - 1) / SAMPLES;
-    struct relume_samples samples = {w->info->lights, (w->pixels + step - 1) / step, NULL};
+    struct relume_samples samples = {.lights = w->info->lights,
+                                     .pixels = (w->pixels + step - 1) / step};
     samples.data = mem_array(samples.pixels * (size_t)samples.lights, 3 * sizeof *samples.data);
     relume_status status = samples.data ? RELUME_OK : RELUME_ENOMEM;
     if (!status)

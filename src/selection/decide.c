@@ -232,8 +232,9 @@ static relume_status take_some(struct job *job)
 {
     const size_t n = job->all.pixels < JUDGED ? job->all.pixels : JUDGED;
     const size_t lights = (size_t)job->all.lights;
-    job->some =
-        (struct relume_samples){(int)lights, n, mem_array(lights * n, 3 * sizeof *job->some.data)};
+    job->some = (struct relume_samples){.lights = (int)lights,
+                                        .pixels = n,
+                                        .data = mem_array(lights * n, 3 * sizeof *job->some.data)};
     if (!job->some.data)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < lights; i++)

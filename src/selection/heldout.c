@@ -16,6 +16,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { SSIM_ROWS = 64 };
@@ -33,11 +34,38 @@ struct kept {
     size_t first;
 };
 
+struct request {
+    const struct relume_basis *basis;
+    struct relume_coder_params coder;
+    const struct relume_heldout_store *store;
+    int stores;
+    struct total *total;  // [1 + stores]
+    struct encoder *display;
+};
+
+// A sentence of a coder that is made by another thread.
+struct said {
+    enum relume_level level;
+    char text[400];
+};
+
+// What one fold learns. Coders of some folds are made side by side.
+struct lesson {
+    int *light;  // [all]: those to learn from, then those to be judged
+    int judged;
+    relume_coder *coder;
+    struct captured unseen;
+    float *share;  // [judged]: of light from outside the captured zone
+    relume_status status;
+    struct said said[4];
+    int sentences;
+};
+
 struct fold {
     relume_heldout *h;
     relume_coder *coder;
     struct captured unseen;
-    float *share;         // [judged]: of light from outside the captured zone
+    float *share;         // as the lesson's
     int learned, judged;  // lights; the judged ones lie in the places behind the learned ones
     size_t planes;
     size_t room_planes, room_judged;  // that the arrays below have room for
@@ -80,75 +108,108 @@ static void bring(relume_heldout *h, int place, int light)
         swap_places(h, place, at);
 }
 
-// Samples of the lights to learn from must lie side by side, in the order of the capture; those of
-// the lights `fold`, `fold` + folds, ... follow. From fold to fold few lights change places.
-// Returns how many are left out.
-static int leave_out(relume_heldout *h, int fold)
+// The lights of a fold in the order of their places: first those to learn from, in the order of the
+// capture, then `fold`, `fold` + folds, ... Returns how many are left out.
+static int order_lights(const relume_heldout *h, int fold, int *light)
 {
     const int folds = h->info.folds;
     int place = 0;
-    if (h->params.test)
-        return h->all - h->lights;
-    for (int i = 0; i < h->lights; i++)
-        if (i % folds != fold)
-            bring(h, place++, i);
-    for (int i = fold; i < h->lights; i += folds)
-        bring(h, place++, i);
-    return (h->lights - fold + folds - 1) / folds;
+    for (int i = 0; i < h->all; i++)
+        if (h->params.test || i % folds != fold)
+            light[place++] = i;
+    for (int i = fold; !h->params.test && i < h->lights; i += folds)
+        light[place++] = i;
+    return h->params.test ? h->all - h->lights : (h->lights - fold + folds - 1) / folds;
 }
 
-// ---------------------------------------------------------------- one coder
-
-// Samples for a learned basis, without the lights left out, in the order of their places.
-static relume_status samples_of_fold(struct relume_samples *out, const struct fold *f)
-{
-    const struct relume_samples *all = &f->h->learning;
-    const size_t row = 3 * all->pixels;
-    *out = (struct relume_samples){.lights = f->learned, .pixels = all->pixels};
-    out->data = mem_array((size_t)f->learned * row, sizeof *out->data);
-    if (!out->data)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < f->learned; i++)
-        memcpy(out->data + (size_t)i * row, all->data + (size_t)f->h->light_at[i] * row,
-               row * sizeof *out->data);
-    return RELUME_OK;
-}
+// ---------------------------------------------------------------- coders
 
 // The functions at the lights left out, as relighting takes them: from the zone that was captured.
-static relume_status find_unseen(struct fold *f, struct relume_vec3 *direction)
+static relume_status find_unseen(struct lesson *l, struct relume_vec3 *direction)
 {
-    f->share = mem_array((size_t)f->judged, sizeof *f->share);
-    for (int i = 0; f->share && i < f->judged; i++) {
+    l->share = mem_array((size_t)l->judged, sizeof *l->share);
+    for (int i = 0; l->share && i < l->judged; i++) {
         struct relume_vec3 from;
-        f->share[i] = (float)relume_coder_clamp(&from, f->coder, direction[i]);
+        l->share[i] = (float)relume_coder_clamp(&from, l->coder, direction[i]);
         direction[i] = from;
     }
-    return f->share ? captured_create(&f->unseen, f->coder, direction, f->judged) : RELUME_ENOMEM;
+    return l->share ? captured_create(&l->unseen, l->coder, direction, l->judged) : RELUME_ENOMEM;
 }
 
-static relume_status make_coder(struct fold *f, const struct relume_basis *basis,
-                                const struct relume_coder_params *coder)
+static void hear(void *user, enum relume_level level, const char *text)
 {
-    relume_heldout *h = f->h;
-    struct relume_samples samples = {0};
+    struct lesson *l = user;
+    if (l->sentences == (int)(sizeof l->said / sizeof *l->said))
+        return;
+    struct said *s = &l->said[l->sentences++];
+    s->level = level;
+    snprintf(s->text, sizeof s->text, "%s", text);
+}
+
+static relume_status learn_fold(struct lesson *l, const relume_heldout *h, const struct request *r)
+{
+    const int learned = h->all - l->judged;
+    const struct relume_log log = {hear, NULL, l, r->coder.log ? r->coder.log->context : NULL,
+                                   false};
+    const bool learns = r->basis->learned || r->coder.choose;
+    struct relume_sample_sums sums = {0};
+    const struct relume_samples samples = {
+        .lights = learned, .pixels = h->learning.pixels, .sums = &sums};
     struct relume_vec3 *directions = mem_array((size_t)h->all, sizeof *directions);
     relume_status status = directions ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && (basis->learned || coder->choose))
-        status = samples_of_fold(&samples, f);
+    if (!status && learns)
+        status = sample_sums_pick(&sums, &h->sums, l->light, learned);
     if (!status) {
-        struct relume_coder_params p = *coder;
+        struct relume_coder_params p = r->coder;
         for (int i = 0; i < h->all; i++)
-            directions[i] = h->directions[h->light_at[i]];
+            directions[i] = h->directions[l->light[i]];
+        p.log = &log;
         p.hemispherical = h->hemispherical;
         p.pole_y = h->pole_y;
-        p.samples = samples.data ? &samples : NULL;
-        status = relume_coder_create(&f->coder, basis, directions, f->learned, &p);
+        p.threads = 1;
+        p.samples = learns ? &samples : NULL;
+        status = relume_coder_create(&l->coder, r->basis, directions, learned, &p);
     }
     if (!status)
-        status = find_unseen(f, directions + f->learned);
-    relume_samples_destroy(&samples);
+        status = find_unseen(l, directions + learned);
+    sample_sums_free(&sums);
     mem_free(directions);
     return status;
+}
+
+struct lessons {
+    relume_heldout *h;
+    const struct request *r;
+    int first;  // fold
+    struct lesson *lesson;
+};
+
+static void take_lesson(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct lessons *s = context;
+    struct lesson *l = &s->lesson[item];
+    l->light = mem_array((size_t)s->h->all, sizeof *l->light);
+    l->status = RELUME_ENOMEM;
+    if (!l->light)
+        return;
+    l->judged = order_lights(s->h, s->first + (int)item, l->light);
+    l->status = learn_fold(l, s->h, s->r);
+}
+
+static relume_status say_lesson(const struct lesson *l, const struct relume_log *log)
+{
+    for (int i = 0; log && log->message && i < l->sentences; i++)
+        log->message(log->user, l->said[i].level, l->said[i].text);
+    return l->status;
+}
+
+static void drop_lesson(struct lesson *l)
+{
+    relume_coder_destroy(&l->coder);
+    captured_destroy(&l->unseen);
+    mem_free(l->share);
+    mem_free(l->light);
 }
 
 static void drop_room(struct fold *f)
@@ -445,56 +506,68 @@ static relume_status judge(struct fold *f, struct total *total)
     return status;
 }
 
-struct request {
-    const struct relume_basis *basis;
-    struct relume_coder_params coder;
-    const struct relume_heldout_store *store;
-    int stores;
-    struct total *total;  // [1 + stores]
-    struct encoder *display;
-};
-
-static relume_status measure_fold(struct fold *f, int number, const struct request *r)
+// Samples of the lights to learn from must lie side by side. From fold to fold few change places.
+static relume_status measure_fold(struct fold *f, const struct lesson *l, const struct request *r)
 {
     relume_heldout *h = f->h;
-    f->judged = leave_out(h, number);
-    f->learned = h->all - f->judged;
-    relume_status status = make_coder(f, r->basis, &r->coder);
-    if (!status)
-        status = make_room(f);
+    relume_status status = say_lesson(l, r->coder.log);
+    if (status)
+        return status;
+    for (int place = 0; place < h->all; place++)
+        bring(h, place, l->light[place]);
+    f->judged = l->judged;
+    f->learned = h->all - l->judged;
+    f->coder = l->coder;
+    f->unseen = l->unseen;
+    f->share = l->share;
+    status = make_room(f);
     if (!status)
         thread_for(h->params.threads, (size_t)h->chunks, find_coefficients, f);
     for (int i = -1; !status && i < r->stores; i++) {
         f->store = i < 0 ? NULL : &r->store[i];
         status = judge(f, &r->total[i + 1]);
     }
-    relume_coder_destroy(&f->coder);
-    captured_destroy(&f->unseen);
-    mem_free(f->share);
-    f->share = NULL;
     return status;
 }
 
+// As many coders are made at once as there are threads.
 static relume_status measure_folds(relume_heldout *h, const struct request *r)
 {
+    const int together = thread_count(h->params.threads), folds = h->info.folds;
     struct fold f = {.h = h, .display = r->display};
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < h->info.folds; i++) {
-        status = measure_fold(&f, i, r);
-        if (!status && !log_progress(r->coder.log, "judging", (i + 1.0) / h->info.folds))
-            status = RELUME_ECANCEL;
+    for (int first = 0, n; !status && first < folds; first += n) {
+        n = folds - first < together ? folds - first : together;
+        struct lessons all = {h, r, first, mem_zeroed((size_t)n, sizeof *all.lesson)};
+        if (!all.lesson)
+            status = RELUME_ENOMEM;
+        else
+            thread_for(h->params.threads, (size_t)n, take_lesson, &all);
+        for (int i = 0; !status && i < n; i++) {
+            status = measure_fold(&f, &all.lesson[i], r);
+            if (!status && !log_progress(r->coder.log, "judging", (first + i + 1.0) / folds))
+                status = RELUME_ECANCEL;
+        }
+        for (int i = 0; all.lesson && i < n; i++)
+            drop_lesson(&all.lesson[i]);
+        mem_free(all.lesson);
     }
     drop_room(&f);
     return status;
 }
 
-static relume_status read_learning(relume_heldout *h)
+// Samples are read once, and what is learnt from them is added up once, for all coders.
+static relume_status learn(relume_heldout *h, bool learned)
 {
-    if (h->learning.data)
-        return RELUME_OK;
-    return relume_samples_read(&h->learning, h->capture, 0,
-                               relume_encode_params(.log = h->params.log, .domain = h->info.domain,
-                                                    .threads = h->params.threads));
+    relume_status status = RELUME_OK;
+    struct relume_log quiet = h->params.log ? *h->params.log : (struct relume_log){0};
+    quiet.progress = NULL;  // the caller's is that of all coders
+    if (!h->learning.data)
+        status = relume_samples_read(&h->learning, h->capture, 0,
+                                     relume_encode_params(.log = h->params.log ? &quiet : NULL,
+                                                          .domain = h->info.domain,
+                                                          .threads = h->params.threads));
+    return status ? status : sample_sums_make(&h->sums, &h->learning, learned, h->params.threads);
 }
 
 static struct relume_heldout_quality quality_of(const struct total *t)
@@ -533,7 +606,7 @@ relume_status relume_heldout_measure(relume_heldout *heldout, const struct relum
     r.display = mem_array(1, sizeof *r.display);
     relume_status status = stores && r.total && r.display ? RELUME_OK : RELUME_ENOMEM;
     if (!status && (basis->learned || r.coder.choose))
-        status = read_learning(heldout);
+        status = learn(heldout, basis->learned);
     if (!status) {
         encoder_init(r.display, heldout->display);
         status = measure_folds(heldout, &r);
@@ -557,6 +630,7 @@ void relume_heldout_destroy(relume_heldout **heldout)
     if (!h)
         return;
     relume_samples_destroy(&h->learning);
+    sample_sums_free(&h->sums);
     mem_free(h->directions);
     mem_free(h->light_at);
     mem_free(h->samples);

@@ -2,6 +2,8 @@
 #ifndef SELECTION_HELDOUT_H
 #define SELECTION_HELDOUT_H
 
+#include "coder/sums.h"
+
 #include <relume/heldout.h>
 
 // Rows of one view that follow each other in memory.
@@ -37,6 +39,7 @@ struct relume_heldout {
     struct chunk *chunk;
     int chunks;
     struct relume_samples learning;  // of all captured lights; read when first needed
+    struct relume_sample_sums sums;  // of them
 };
 
 // Codebooks of one fold, and which vectors stand for each pixel.

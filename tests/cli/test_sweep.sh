@@ -39,6 +39,12 @@ no_times() { sed 's/"seconds": [0-9.e-]*//g' "$1"; }
 for n in 1 7; do "$RELUME" sweep cap $grid --json --threads $n -q | sed 's/"seconds": [0-9.e-]*//g' >t$n.json; done
 same 'sweep with 1 and 7 threads' t1.json t7.json
 
+# ---- coders that share what they learn from are those that are made alone
+rows() { cut -d, -f1-12,15 | grep -v '^coder'; }
+$sweep --basis auto,pca,sh --coefficients 4,9 --bits 8,half --csv -q | rows >together.csv
+for b in auto pca sh; do for k in 4 9; do for w in 8 half; do $sweep --basis $b --coefficients $k --bits $w --csv -q; done; done; done | rows >alone.csv
+same 'rows of one sweep and of one for each' together.csv alone.csv
+
 expect_ok 'auto, interpolants, luminance, codebooks' - $sweep --basis auto,pca,table,sh --coefficients 4 --interpolant auto,tps --colour rgb,luminance --codebook 0,32 --stages 2 --csv
 for r in auto,4,8,plane,0 auto,4,8,-,32 'pca auto' 'pca tps,4,8,plane,0' 'table auto,20,8,plane,0' 'table tps,20,8,-,32' sh,4,8,plane,0 'sh luminance,4,8,plane,0'; do
     case $r in

@@ -7,7 +7,7 @@ enum { LIGHTS = 12, DIM = 3 * LIGHTS, PIXELS = 300 };
 
 static struct relume_vec3 lights[LIGHTS];
 static float data[LIGHTS * PIXELS * 3];
-static const struct relume_samples samples = {LIGHTS, PIXELS, data};
+static const struct relume_samples samples = {.lights = LIGHTS, .pixels = PIXELS, .data = data};
 
 // Lambertian pixels with a lobe and noise: full rank, with a clear order of importance.
 static int setup(void **state)
@@ -264,7 +264,8 @@ static void test_poor_samples(void **state)
     (void)state;
     static float flat[LIGHTS * 4 * 3];
     for (int round = 0; round < 3; round++) {
-        const struct relume_samples s = {LIGHTS, round == 2 ? 1 : 4, flat};
+        const struct relume_samples s = {
+            .lights = LIGHTS, .pixels = round == 2 ? 1 : 4, .data = flat};
         for (size_t i = 0; i < sizeof flat / sizeof *flat; i++)
             flat[i] = round == 0 ? 0.0f : round == 1 ? 0.5f : (float)i / 100.0f;
         relume_coder *c;

@@ -197,9 +197,6 @@ static bool ignores_positions(const struct relume_manifest *m)
     return m->positions && p != RELUME_PLANAR && (p != RELUME_SLAB || !m->view[0].depth);
 }
 
-// Learning reads the images once before the encoder does: decoded images of up to this size wait.
-#define KEEP_BYTES ((size_t)640 << 20)
-
 static relume_status learn(relume_coder **coder, const relume_capture *capture, struct request *r)
 {
     const struct relume_encode_params encode = {.log = r->pack.log,

@@ -237,26 +237,34 @@ static struct relume_coder_params coder_params(const struct sweep_row *row,
                                         .luminance = row->luminance};
 }
 
-// The real file of all lights, for its size.
-static relume_status encode_row(struct work *w, struct sweep_row *row, const struct relume_log *log)
+// The coder of all lights, which rows of a group share.
+static relume_status learn(relume_coder **out, double *seconds, const struct work *w,
+                           const struct sweep_row *row, const struct relume_log *log)
 {
-    const struct args *args = w->sweep->args;
     const struct relume_coder_params params = coder_params(row, log);
+    const double start = now_s();
+    const relume_status status =
+        relume_coder_learn(out, row->basis, w->capture, &params,
+                           relume_encode_params(.log = log, .domain = w->sweep->domain,
+                                                .threads = w->sweep->args->threads));
+    *seconds = now_s() - start;
+    return status;
+}
+
+// The real file of all lights, for its size.
+static relume_status encode_row(struct work *w, struct sweep_row *row, const relume_coder *coder,
+                                const struct relume_log *log)
+{
     char path[4096];
     snprintf(path, sizeof path, "%s/row.exr", relume_making_path(w->folder));
-    relume_coder *coder = NULL;
     relume_pack *pack = NULL;
     const double start = now_s();
-    relume_status status = relume_coder_learn(
-        &coder, row->basis, w->capture, &params,
-        relume_encode_params(.log = log, .domain = w->sweep->domain, .threads = args->threads));
-    if (!status)
-        status = relume_pack_encode(
-            w->capture, coder, path, NULL,
-            relume_pack_encode_params(.log = log, .domain = w->sweep->domain,
-                                      .storage = row->store.storage, .step = row->store.step,
-                                      .books = row->books.codes ? &row->books : NULL,
-                                      .share = row->store.share, .threads = args->threads));
+    relume_status status = relume_pack_encode(
+        w->capture, coder, path, NULL,
+        relume_pack_encode_params(.log = log, .domain = w->sweep->domain,
+                                  .storage = row->store.storage, .step = row->store.step,
+                                  .books = row->books.codes ? &row->books : NULL,
+                                  .share = row->store.share, .threads = w->sweep->args->threads));
     row->seconds = now_s() - start;
     if (!status)
         status = relume_pack_open(&pack, path, relume_pack_params(.log = log));
@@ -268,7 +276,6 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const str
         row->planes = relume_coder_info(coder)->planes;
     }
     relume_pack_destroy(&pack);
-    relume_coder_destroy(&coder);
     unlink(path);
     return status;
 }
@@ -321,12 +328,16 @@ static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n
         skip_row(rows[0], l, status);
     if (status)
         return is_skipped(status) ? RELUME_OK : status;
+    relume_coder *coder = NULL;
+    double seconds;
     l->first += l->extent;
     l->extent /= 9.0 * n;
+    const relume_status learnt = learn(&coder, &seconds, w, rows[0], &l->inner);
     for (int i = 0; !status && i < n; i++, l->first += l->extent) {
         rows[i]->before_db = before.psnr_db;
         rows[i]->quality = after[i];
-        status = encode_row(w, rows[i], &l->log);
+        status = learnt ? learnt : encode_row(w, rows[i], coder, &l->log);
+        rows[i]->seconds += seconds;
         if (is_skipped(status)) {
             skip_row(rows[i], l, status);
             status = RELUME_OK;
@@ -335,6 +346,7 @@ static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n
             status = sweep_resume_keep(w->resume, rows[i]);
         }
     }
+    relume_coder_destroy(&coder);
     return status;
 }
 
@@ -424,13 +436,15 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     return status;
 }
 
-static relume_status open_capture(const struct sweep_options *o, const char *path,
+// `keep` bytes of decoded images wait for the next row.
+static relume_status open_capture(const struct sweep_options *o, const char *path, size_t keep,
                                   relume_capture **out)
 {
     return relume_capture_open(out, path,
                                relume_capture_params(.log = o->args.log, .transfer = o->transfer,
                                                      .skip_missing = o->skip_missing,
-                                                     .allow_outside = o->allow_outside));
+                                                     .allow_outside = o->allow_outside,
+                                                     .keep_bytes = keep));
 }
 
 static relume_status run(const struct args *args)
@@ -450,9 +464,9 @@ static relume_status run(const struct args *args)
         return usage_error("sweep: expected --json or --csv; found both");
     relume_status status = parse_books(args, &o->books, given(o, &o->codebook), &sweep.books);
     if (!status)
-        status = open_capture(o, sweep.capture, &capture);
+        status = open_capture(o, sweep.capture, KEEP_BYTES, &capture);
     if (!status && sweep.test)
-        status = open_capture(o, sweep.test, &test);
+        status = open_capture(o, sweep.test, 0, &test);
     if (!status) {
         const struct relume_manifest *m = relume_capture_manifest(capture);
         sweep.domain = relume_encode_domain(capture, o->domain);

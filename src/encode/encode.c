@@ -398,13 +398,52 @@ static relume_status find_share(struct encode_share *out, const relume_capture *
     return RELUME_OK;
 }
 
+// What is said of the work on all views, as that of a part.
+struct part_log {
+    struct relume_log log;
+    const struct relume_log *to;
+    double first, extent;
+};
+
+static void pass_message(void *user, enum relume_level level, const char *text)
+{
+    const struct part_log *p = user;
+    if (p->to->message)
+        p->to->message(p->to->user, level, text);
+}
+
+static bool pass_progress(void *user, const char *what, double done)
+{
+    const struct part_log *p = user;
+    return log_progress(p->to, what, fmin(fmax((done - p->first) / p->extent, 0.0), 1.0));
+}
+
+// NULL for no log.
+static const struct relume_log *log_part(struct part_log *p, const struct relume_log *to,
+                                         const struct encode_share *share,
+                                         const relume_capture *capture)
+{
+    const double views = relume_capture_manifest(capture)->views;
+    const double rows = relume_capture_height(capture);
+    if (!to)
+        return NULL;
+    *p = (struct part_log){.log = *to,
+                           .to = to,
+                           .first = (share->first + share->row / rows) / views,
+                           .extent = (share->rows ? share->rows / rows : share->views) / views};
+    p->log.message = pass_message;
+    p->log.progress = pass_progress;
+    p->log.user = p;
+    return &p->log;
+}
+
 relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,
                                  const char *path, struct relume_encode_report *report,
                                  const struct relume_pack_encode_params *params)
 {
     const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
     const bool coded = p.psnr_db > 0.0 || p.bytes_per_pixel > 0.0;
-    const struct relume_encode_params encode = {
+    struct relume_encode_params encode = {
         .log = p.log,
         .domain = relume_encode_domain(capture, p.domain),
         .storage = coded ? RELUME_STORE_12 : p.storage,
@@ -417,7 +456,10 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     const struct relume_manifest *manifest = relume_capture_manifest(capture);
     struct material m = {0};
     struct encode_share share;
+    struct part_log part;
     relume_status status = find_share(&share, capture, &p);
+    if (!status && p.parts)
+        encode.log = log_part(&part, p.log, &share, capture);
     if (!status && !create(&m, manifest->views, &share))
         status = RELUME_ENOMEM;
     if (!status)

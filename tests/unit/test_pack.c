@@ -284,6 +284,41 @@ static void test_cancel(void **state)
     fail_msg("never done");
 }
 
+struct bar {
+    double least, most;
+};
+
+static bool note(void *user, const char *what, double done)
+{
+    struct bar *bar = user;
+    if (!strcmp(what, "encoding")) {
+        bar->least = fmin(bar->least, done);
+        bar->most = fmax(bar->most, done);
+    }
+    return true;
+}
+
+// Parts of whole views, and of rows of one: each bar goes from the first band to all of the part.
+static void test_progress_of_parts(void **state)
+{
+    (void)state;
+    for (int views = 1; views <= 4; views += 3) {
+        fixture_write(&(struct fixture){.width = 8, .height = 64, .lights = 4, .views = views},
+                      folder);
+        for (int part = 1; part <= 2; part++) {
+            struct bar bar = {2.0, -1.0};
+            const struct relume_log log = {.progress = note, .user = &bar};
+            unlink(path);
+            CHECK_OK(
+                fixture_encode(folder, path, &relume_basis_sh, 4,
+                               relume_pack_encode_params(.log = &log, .part = part, .parts = 2)));
+            CHECK_NEAR(bar.least, views == 1 ? 0.5 : 0.125, 1e-9);  // 1 band of 2, of 8
+            CHECK_NEAR(bar.most, 1.0, 1e-9);
+        }
+    }
+    unlink(path);
+}
+
 // How far the next camera of a slab sees a pixel moved, in pixels, by a wrong depth along its ray.
 static double parallax(const relume_pack *pack, int view, int pixel, double truth, double found)
 {
@@ -354,13 +389,10 @@ static void test_functions_as_text(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trips),
-        cmocka_unit_test(test_preview),
-        cmocka_unit_test(test_own_preview),
-        cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_cancel),
-        cmocka_unit_test(test_coded_depth),
-        cmocka_unit_test(test_functions_as_text),
+        cmocka_unit_test(test_round_trips), cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_own_preview), cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_cancel),      cmocka_unit_test(test_progress_of_parts),
+        cmocka_unit_test(test_coded_depth), cmocka_unit_test(test_functions_as_text),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -601,6 +601,14 @@ static relume_status spread_environments(struct relume_light **out, int *count,
     return status;
 }
 
+// Codes under one light may be below 0 already, and so may be their sum.
+static void guard_spread(struct job *job)
+{
+    job->guard = true;
+    if (job->codes->books == 1)
+        keep_above_zero(job->passes[0].book[0], (size_t)job->codes->book_codes[0]);
+}
+
 static relume_status begin_all(struct job *job, const struct relume_codes *codes,
                                const struct relume_light *lights, int n,
                                const struct relume_relight_params *p)
@@ -615,6 +623,8 @@ static relume_status begin_all(struct job *job, const struct relume_codes *codes
     if (!status)
         status = begin_job(job, codes, lights, n, p);
     job->lights = spread;  // near lights go on looking at them
+    if (spread && !status)
+        guard_spread(job);
     return status ? status : begin_distant(job, lights, n, p);
 }
 

@@ -207,6 +207,10 @@ RELUME_RESULT relume_status relume_capture_depth(struct relume_image *out,
 RELUME_RESULT relume_status relume_capture_mask(struct relume_image *out,
                                                 const relume_capture *capture, int view,
                                                 const struct relume_log *log);
+// As relume_capture_image, black where the view's mask leaves out.
+RELUME_RESULT relume_status relume_capture_masked(struct relume_image *out,
+                                                  const relume_capture *capture, int view,
+                                                  int light, const struct relume_log *log);
 
 // The reflectance table of one view, read from the top in bands of rows; memory does not grow with
 // the image's height. Thread-safety: one thread at a time.

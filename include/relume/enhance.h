@@ -20,7 +20,7 @@ enum relume_pass {
     RELUME_PASS_DIFFUSE_GAIN,  // the same, 4.1
     RELUME_PASS_UNSHARP,       // shading by normals whose detail is exaggerated
     RELUME_PASS_LUMINANCE,     // Rec. 709
-    RELUME_PASS_FALSE_COLOUR,  // luminance from dark blue (0) to yellow (`top`)
+    RELUME_PASS_FALSE_COLOUR,  // luminance from dark blue (`low`) to yellow (`top`); 0 is black
     RELUME_PASS_DIFFERENCE,    // absolute, from `reference`
     RELUME_PASSES
 };

@@ -130,7 +130,8 @@ static void show_luminance(const struct enhance *e, size_t at, float rgb[3])
     rgb[0] = rgb[1] = rgb[2] = (float)luminance_709(rgb);
 }
 
-// Dark blue, violet, red, orange, yellow: lightness rises all the way.
+// Dark blue, violet, red, orange, yellow: lightness rises all the way. Black where nothing is:
+// what a mask leaves out has codes of 0, whose sum may round to 2e-7.
 static void show_false_colour(const struct enhance *e, size_t at, float rgb[3])
 {
     static const float steps[5][3] = {
@@ -139,12 +140,13 @@ static void show_false_colour(const struct enhance *e, size_t at, float rgb[3])
     };
     (void)at;
     const double low = (double)e->range.low, high = (double)e->range.high;
-    const double place = 4.0 * (luminance_709(rgb) - low) / (high - low);
+    const double y = luminance_709(rgb), place = 4.0 * (y - low) / (high - low);
+    const float shown = y > 1e-6 ? 1.0f : 0.0f;
     const double x = fmin(fmax(place, 0.0), 4.0);
     const int step = x < 3.0 ? (int)x : 3;
     const float part = (float)(x - step);
     for (int c = 0; c < 3; c++)
-        rgb[c] = steps[step][c] + part * (steps[step + 1][c] - steps[step][c]);
+        rgb[c] = shown * (steps[step][c] + part * (steps[step + 1][c] - steps[step][c]));
 }
 
 static void show_difference(const struct enhance *e, size_t at, float rgb[3])

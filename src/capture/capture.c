@@ -185,3 +185,20 @@ relume_status relume_capture_mask(struct relume_image *out, const relume_capture
                 out->data[(size_t)y * (size_t)width + (size_t)x] = 0.0f;
     return status;
 }
+
+relume_status relume_capture_masked(struct relume_image *out, const relume_capture *capture,
+                                    int view, int light, const struct relume_log *log)
+{
+    struct relume_image mask = {0};
+    relume_status status = relume_capture_image(out, capture, view, light, log);
+    if (!status)
+        status = relume_capture_mask(&mask, capture, view, log);
+    const size_t pixels = (size_t)capture->width * (size_t)capture->height;
+    for (size_t i = 0; !status && mask.data && i < pixels; i++)
+        if (!(mask.data[i] > 0.5f))
+            memset(out->data + 3 * i, 0, 3 * sizeof *out->data);
+    relume_image_destroy(&mask);
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}

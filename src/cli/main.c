@@ -42,7 +42,7 @@ static const struct option common[] = {
           "most pixels in one picture, as 200M; default: 1G"),
     FLAG("--any-format", limits.any_format,
          "read pictures of every format that OpenImageIO knows, not only those for photographs"),
-    FLAG("-q", quiet, "no progress bar, no warnings"),
+    FLAG("-q", quiet, "no progress bar and no notes; warnings and errors stay"),
     FLAG("--help", help, "this text"),
     {0},
 };

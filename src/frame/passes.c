@@ -76,8 +76,8 @@ static relume_status find_photograph(struct relume_image *out, const struct relu
                         info->height);
     const struct relume_manifest *manifest = relume_capture_manifest(capture);
     const relume_status status =
-        relume_capture_image(out, capture, find_view(manifest, info, view),
-                             find_light(manifest, vec3_unit(lights[0].direction)), params->log);
+        relume_capture_masked(out, capture, find_view(manifest, info, view),
+                              find_light(manifest, vec3_unit(lights[0].direction)), params->log);
     const size_t samples = 3 * (size_t)info->width * (size_t)info->height;
     for (size_t i = 0; !status && i < samples; i++)
         out->data[i] *= lights[0].rgb[i % 3];

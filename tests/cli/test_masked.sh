@@ -45,9 +45,14 @@ for capture in linear photos; do
     done
     "$RELUME" encode $capture -o m.exr -q
     black "$capture: environment" --light "env sky.hdr"
-    for pass in normals unsharp luminance diffuse-gain specular; do
+    for pass in normals unsharp luminance diffuse-gain specular false-colour; do
         black "$capture: $pass" --pass $pass
     done
+    black "$capture: difference" --pass difference --capture $capture
+    "$VIEWER" m.exr --offscreen v.png --pass false-colour >/dev/null 2>err.txt
+    check "$capture: false colour in the viewer" nothing v.png
+    "$VIEWER" m.exr --offscreen v.png --pass difference --capture $capture >/dev/null 2>err.txt
+    check "$capture: difference in the viewer" nothing v.png
     check "$capture: info tells the coefficients that are stored" \
         grep -q '"coefficients": 27, "planes": 27' <<INFO
 $("$RELUME" info m.exr --json)

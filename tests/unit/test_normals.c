@@ -373,6 +373,8 @@ static void false_colour_suits_the_picture(void **state)
     apply(&s, RELUME_PASS_FALSE_COLOUR, NULL);
     CHECK_NEAR(s.image.data[3 * 999], 1.0, 1e-6);       // yellow
     CHECK_NEAR(s.image.data[3 * 500 + 2], 0.10, 0.02);  // dark blue
+    for (int i = 0; i < 3 * 500; i++)                   // the background
+        CHECK_NEAR(s.image.data[i], 0.0, 0.0);
     CHECK_OK(relume_pass_apply(&fixed, RELUME_PASS_FALSE_COLOUR, NULL, NULL, 0,
                                relume_pass_params(.low = r.low, .top = r.high)));
     for (int i = 0; i < 3000; i++)

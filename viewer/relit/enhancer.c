@@ -241,7 +241,7 @@ static relume_status find_photograph(struct enhancer *e, int view, const struct 
         return RELUME_OK;
     struct relume_image image;
     const relume_status status =
-        relume_capture_image(&image, e->capture, nearest_view(e, m, view), light, e->log);
+        relume_capture_masked(&image, e->capture, nearest_view(e, m, view), light, e->log);
     if (!status)
         v->reference = upload(e->gl, v->reference, &image);
     v->light = light;

@@ -93,6 +93,8 @@ vec3 show_false_colour(vec3 rgb)
     const vec3 steps[5] = vec3[5](vec3(0.00, 0.00, 0.10), vec3(0.15, 0.00, 0.35),
                                   vec3(0.65, 0.02, 0.10), vec3(0.95, 0.30, 0.00),
                                   vec3(1.00, 0.95, 0.30));
+    if (!(luminance(rgb) > 1e-6))
+        return vec3(0.0);
     float x = clamp(4.0 * (luminance(rgb) - range.x) / (range.y - range.x), 0.0, 4.0);
     int step = min(int(x), 3);
     return mix(steps[step], steps[step + 1], x - float(step));

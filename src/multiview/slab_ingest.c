@@ -248,20 +248,27 @@ static bool is_open(const struct slab *s)
 // A ratio this near to 1, or nearer than its error, is that of a square grid.
 static const double near_square = 0.03;
 
-static void say_spacing(const struct slab *s, const struct grid_spacing *g, double high)
+// Of the grid in world units: numbers in names may count rows otherwise than columns.
+static void say_spacing(const struct slab *s, const struct grid_spacing *g)
 {
     const struct relume_log *log = s->common->log;
+    double u[2], v[2];
+    range_of(u, s->u, s->columns);
+    range_of(v, s->v, s->rows);
+    const double high = v[1] - v[0];
+    const double ratio = high / (s->rows - 1) * (s->columns - 1) / (u[1] - u[0]);
     if (g->ratio == 0.0)
         log_line(log, RELUME_NOTE,
-                 "assuming that rows of cameras are as far apart as columns, %g from the first to "
-                 "the last: the photographs do not show it; if that is wrong, give --baseline-v",
-                 high);
+                 "assuming that rows of cameras are %.3g times as far apart as columns, %g from "
+                 "the first to the last: the photographs do not show it; if that is wrong, give "
+                 "--baseline-v",
+                 ratio, high);
     else
         log_line(log, RELUME_NOTE,
                  "rows of cameras are %.2f times as far apart as columns, %.3g from the first to "
                  "the last, by the photographs (error %.0f %%, %.0f %% of the pixels agree); if "
                  "not, give --baseline-v",
-                 g->ratio, high, ceil(100.0 * g->error), 100.0 * g->share);
+                 ratio, high, ceil(100.0 * g->error), 100.0 * g->share);
 }
 
 // How many times as far as a unit of u is a unit of v.
@@ -294,7 +301,7 @@ static relume_status scale_grid(struct slab *s)
     for (int i = 0; i < s->rows; i++)
         s->v[i] = (s->v[i] - 0.5 * (v[0] + v[1])) * kv;
     if (!status && is_open(s))
-        say_spacing(s, &spacing, high * kv);
+        say_spacing(s, &spacing);
     return status;
 }
 

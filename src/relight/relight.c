@@ -390,13 +390,18 @@ static void relight_chunk_rgba8(void *context, size_t item, int worker)
     byte_code(job->out_rgba8 + first, room->rgb, n, job->coder);
 }
 
+static bool is_below_horizon(const struct relume_coder_info *info, const struct relume_light *light)
+{
+    return info->hemispherical && light->kind == RELUME_LIGHT_DIRECTIONAL &&
+           pole_from_world(vec3_unit(light->direction), info->pole_y).z < -1e-9;
+}
+
 static void warn_below_horizon(const struct relume_codes *codes, const struct relume_light *lights,
                                int n, const struct relume_log *log)
 {
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
-    for (int i = 0; info->hemispherical && i < n; i++)
-        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL &&
-            pole_from_world(vec3_unit(lights[i].direction), info->pole_y).z < -1e-9) {
+    for (int i = 0; i < n; i++)
+        if (is_below_horizon(info, &lights[i])) {
             log_line(log, RELUME_WARNING,
                      "light %d lies below the horizon, where nothing was photographed; light from "
                      "the horizon is shown instead",
@@ -405,7 +410,8 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
         }
 }
 
-// Told once for all lights, of the one that is farthest off.
+// Told once for all lights, of the one that is farthest off; of one below the horizon, that is
+// said.
 static void warn_beyond(const struct relume_codes *codes, const struct relume_light *lights, int n,
                         const struct relume_log *log)
 {
@@ -413,7 +419,8 @@ static void warn_beyond(const struct relume_codes *codes, const struct relume_li
     double most = 0.0;
     int which = 0;
     for (int i = 0; i < n; i++) {
-        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
+        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL ||
+            is_below_horizon(relume_coder_info(codes->coder), &lights[i]))
             continue;
         vec3 d = vec3_unit(lights[i].direction), from;
         (void)relume_captured_region_clamp(&from, relume_coder_region(codes->coder), d);

@@ -144,6 +144,7 @@ if grep -q '"depth": true, "mask": true' info.json; then ok 'depth and mask are 
 for basis in 'sh --coefficients 9' table; do
     relume encode dome -o dome.exr --basis $basis --bits 16
     expect_ok "$basis: below the horizon" 'warning: dome.exr: light 1 lies below the horizon' "$RELUME" relight dome.exr -o low.exr --light 'dir 1 2 -1'
+    check "$basis: said once" [ "$(grep -c warning err.txt)" = 1 ]
     expect_ok "$basis: at the horizon" - "$RELUME" relight dome.exr -o edge.exr --light 'dir 1 2 0'
     below "$basis: the value at the horizon" "$(diff low.exr edge.exr)" 1e-6
 done

@@ -78,8 +78,9 @@ static relume_status skip_missing(relume_capture *c, const struct relume_log *lo
         for (int v = 0; v < d->m.views && keep[i]; v++) {
             keep[i] = input_exists(d->view[v].images[i], log);
             if (!keep[i])
-                log_line(log, RELUME_WARNING, "%s: image '%s' does not exist; light %d is skipped",
-                         c->path, d->view[v].images[i], i);
+                log_line(log, RELUME_WARNING,
+                         "%s: image '%s' does not exist; its light is left out", c->path,
+                         d->view[v].images[i]);
         }
     }
     keep_lights(d, keep);

@@ -16,7 +16,7 @@ struct light_options {
           "\"dir x y z\", point, spot, slide, area, env, ies, gonio (docs/lights.md); repeats; "   \
           "default: \"dir 0 0 1\""),                                                               \
     TEXT("--rig", lighting.rig, "FILE", "lights of a rig (JSON), before those of --light"),        \
-    TEXT_AS(OPTION_OUTPUT, "--save-rig", lighting.save_rig, "FILE", "write all lights as a rig"),  \
+    TEXT_AS(OPTION_RIG, "--save-rig", lighting.save_rig, "FILE", "write all lights as a rig"),  \
     NUMBER("--assume-depth", lighting.assume_depth, "D",                                           \
            "near lights, file without depth: assume the surface this far from the eye", 1e-6, 1e9)
 // `interpolation` and `nearest` in its struct.

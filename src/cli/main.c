@@ -1,9 +1,11 @@
 // main.c - the relume tool: finds the command, has its options read, turns statuses into exit codes
 #include "messages.h"
+#include "program/output_name.h"
 #include "program/stopping.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <libgen.h>
 #include <limits.h>
 #include <malloc.h>
 #include <signal.h>
@@ -142,6 +144,40 @@ static bool is_output(const struct given *g)
            (g->option->kind == OPTION_OUTPUT && (stat(g->text, &s) || !S_ISDIR(s.st_mode)));
 }
 
+// Whether two names are those of one file or folder, there already or not. What is neither, as
+// /dev/null, takes any number.
+static bool is_same_output(const char *a, const char *b)
+{
+    struct stat s, t;
+    const bool there = !stat(a, &s), other = !stat(b, &t);
+    if (there || other)
+        return there && other && s.st_dev == t.st_dev && s.st_ino == t.st_ino &&
+               (S_ISREG(s.st_mode) || S_ISDIR(s.st_mode));
+    char *folder_a = strdup(a);
+    char *folder_b = strdup(b);
+    const bool same = folder_a && folder_b && !strcmp(base_name(a), base_name(b)) &&
+                      !stat(dirname(folder_a), &s) && !stat(dirname(folder_b), &t) &&
+                      s.st_dev == t.st_dev && s.st_ino == t.st_ino;
+    free(folder_a);
+    free(folder_b);
+    return same;
+}
+
+static relume_status check_outputs_differ(const struct command_line *l)
+{
+    for (int i = 0; i < l->given_count; i++)
+        for (int k = 0; k < i; k++)
+            if (l->given[i].option != l->given[k].option &&
+                l->given[i].option->kind >= OPTION_OUTPUT &&
+                l->given[k].option->kind >= OPTION_OUTPUT &&
+                is_same_output(l->given[i].text, l->given[k].text))
+                return usage_error("%s and %s: both are %s, and one would be lost; choose another "
+                                   "name",
+                                   l->given[k].option->name, l->given[i].option->name,
+                                   l->given[i].text);
+    return RELUME_OK;
+}
+
 // What the command line names and is there is read, except what it says is written. Files that
 // these name in turn are noted as they are opened.
 static relume_status note_inputs(struct parsed *p)
@@ -157,7 +193,7 @@ static relume_status note_inputs(struct parsed *p)
     for (int i = 0; !status && i < p->line.given_count; i++)
         if (is_output(&p->line.given[i]))
             status = relume_file_check(p->line.given[i].text, &p->log);
-    return status;
+    return status ? status : check_outputs_differ(&p->line);
 }
 
 static relume_status fill_options(struct parsed *p, int argc, char **argv)

@@ -146,6 +146,11 @@ static relume_status unknown(const char *path, const struct relume_open_params *
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
                         path);
+    if (holds(path, "info.xml", p->log))
+        return log_fail(p->log, RELUME_EUNSUPPORTED,
+                        "%s: tiles of WebRTI (info.xml), which relume does not read; expected the "
+                        ".ptm or .rti that they were made from",
+                        path);
     return log_fail(
         p->log, RELUME_EFORMAT,
         "%s: a folder without capture.json, info.json or a single .lp file; if it holds "

@@ -263,6 +263,7 @@ static relume_status take_given(struct command_line *l, const struct given *g)
     const relume_status status = o->kind == OPTION_PICTURE  ? picture_name(l->log, o->name, g->text)
                                  : o->kind == OPTION_FLOATS ? floats_name(l->log, o->name, g->text)
                                  : o->kind == OPTION_RELUME ? relume_name(l->log, o->name, g->text)
+                                 : o->kind == OPTION_RIG    ? rig_name(l->log, o->name, g->text)
                                                             : RELUME_OK;
     return status ? status : (o->list ? take_list : take)(member, l, o, g->text);
 }

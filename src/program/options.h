@@ -27,6 +27,7 @@ enum option_kind {
     OPTION_PICTURE,  // a picture of any format, by the ending of its name
     OPTION_FLOATS,   // a picture of values that are no light
     OPTION_RELUME,   // a relume file
+    OPTION_RIG,      // lights
 };
 
 struct option {

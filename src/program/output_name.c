@@ -52,3 +52,12 @@ relume_status relume_name(const struct relume_log *log, const char *option, cons
                option, path,
                relume_image_can_save(path) ? " ('relume relight' writes pictures)" : "");
 }
+
+relume_status rig_name(const struct relume_log *log, const char *option, const char *path)
+{
+    const char *ending = name_ending(path);
+    if (!*ending || !strcasecmp(ending, ".json"))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL,
+               "%s: %s: a rig is a JSON file; expected a name that ends in .json", option, path);
+}

@@ -5,9 +5,10 @@
 #include <relume/image.h>
 
 // `path` as the value of `option`. RELUME_EINVAL with a sentence. A picture of any format, one of
-// values below 0 as well, a relume file.
+// values below 0 as well, a relume file, a rig.
 relume_status picture_name(const struct relume_log *log, const char *option, const char *path);
 relume_status floats_name(const struct relume_log *log, const char *option, const char *path);
+relume_status rig_name(const struct relume_log *log, const char *option, const char *path);
 relume_status relume_name(const struct relume_log *log, const char *option, const char *path);
 
 // The last part of `path`.

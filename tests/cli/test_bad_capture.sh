@@ -12,8 +12,8 @@ image=view00/light0003.png
 fresh good c; rm c/$image
 not_encoded 'missing image' "c/$image.*no such file" c
 not_encoded 'missing image, .lp' "dirs.lp: image '$image' does not exist" c/dirs.lp
-encoded missing-skipped "warning.*light0003.png.*skipped" c $L --skip-missing
-encoded missing-skipped-lp "warning.*light0003.png.*skipped" c/dirs.lp $L --skip-missing
+encoded missing-skipped "warning.*light0003.png' does not exist; its light is left out" c $L --skip-missing
+encoded missing-skipped-lp "warning.*light0003.png' does not exist; its light is left out" c/dirs.lp $L --skip-missing
 "$RELUME" info missing-skipped.exr --json >info.json
 below 'nine lights are left' "$(field lights info.json)" 9
 rm -f c/view00/*.png

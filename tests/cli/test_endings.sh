@@ -57,6 +57,16 @@ for ending in jpg png tif ptm; do
         "$RELUME" capture missing -o cap --encode o.$ending
 done
 
+# ---- rigs are JSON, and two outputs are two files
+expect_fail 'a rig over a list of lights' 2 'dome/dirs.lp: a rig is a JSON file; expected a name that ends in .json' - \
+    "$RELUME" relight missing.exr -o o.png --save-rig dome/dirs.lp
+expect_fail 'two outputs of one name' 2 '^relume: --encode and --normals: both are ./o.exr, and one would be lost' o.exr \
+    "$RELUME" capture missing -o cap --encode o.exr --normals ./o.exr
+cp dome.exr old.exr && ln old.exr also.exr
+expect_fail 'of one file' 2 'both are also.exr, and one would be lost' - "$RELUME" capture missing -o cap --albedo old.exr --encode also.exr
+same 'which stays' dome.exr old.exr
+expect_fail 'a missing photograph is reached by others' 1 'missing: no such file' - "$RELUME" capture missing -o cap --encode o.exr --normals p.exr
+
 # ---- export: the ending says what is written
 export_as() { # name, first bytes, export's words
     file=$1 want=$2

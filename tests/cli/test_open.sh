@@ -83,7 +83,7 @@ expect_fail 'an unknown tone' 2 "unknown --tone 'flimic'; did you mean 'filmic'"
 expect_fail 'no picture' 1 'nothing.hdr: no such file' x.png "$RELUME" tonemap nothing.hdr -o x.png
 
 # ---- the viewer
-for file in i.ptm web dome photos plain.hdr; do
+for file in i.ptm web web/info.json dome dome/capture.json photos plain.hdr; do
     if "$VIEWER" $file --offscreen got.png --light "$light" --gl osmesa 2>err.txt && [ -s got.png ]; then
         ok "relume-view $file"
     else
@@ -101,6 +101,10 @@ bad() { expect_fail "$1" 1 "$2" x.png "$RELUME" relight "$3" -o x.png; }
 bad 'one photograph' "light0000.png: one photograph under one light cannot be relit; expected the .lp file or the folder of all of them, or 'relume capture" dome/view00/light0000.png
 bad 'a folder of nothing' "empty: a folder without capture.json, info.json or a single .lp file; .*: relume capture empty -o DIR" empty
 bad 'a folder of two lists' 'two: a folder without' two
+"$VIEWER" empty --offscreen x.png 2>err.txt
+check 'the viewer says so too' grep -q '^relume-view: empty: a folder without capture.json' err.txt
+mkdir tiles && touch tiles/info.xml
+bad 'tiles of WebRTI' 'tiles: tiles of WebRTI .info.xml., which relume does not read; expected the .ptm or .rti' tiles
 echo words >words.txt
 bad 'a text' 'words.txt: relume cannot open this; expected a relume file \(.exr\), .ptm' words.txt
 cp words.txt false.ptm

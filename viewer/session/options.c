@@ -240,17 +240,11 @@ void options_release(struct options *o)
     light_list_release(&o->start);
 }
 
-static bool is_description(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && !strcmp(dot, ".json");
-}
-
 // FILE is a scene; or a description of objects; or, beside --mesh without --material, a material.
 static relume_status choose_objects(struct options *o, const struct relume_log *log)
 {
     struct session_objects *w = &o->objects;
-    if (o->file && is_description(o->file) && !w->description && !w->mesh) {
+    if (o->file && session_is_description(o->file) && !w->description && !w->mesh) {
         w->description = o->file;
         o->file = NULL;
     } else if (o->file && w->mesh && !w->materials) {

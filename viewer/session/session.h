@@ -102,6 +102,8 @@ relume_status session_take_objects(struct session *s, const struct session_objec
 // For session_open: what is no relume file, and objects on a stage of their own in place of what is
 // shown.
 bool session_is_objects(const char *path);
+// Whether it is, by its name, a description of objects: a .json that is nothing else.
+bool session_is_description(const char *path);
 relume_status session_open_objects(struct session *s, const char *path,
                                    const struct app_state *start);
 void session_close_file(struct session *s);

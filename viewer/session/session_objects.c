@@ -5,10 +5,12 @@
 
 #include "program/say.h"
 
-#include <stdio.h>
+#include <limits.h>
 #include <relume/exchange.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 relume_status session_take_objects(struct session *s, const struct session_objects *wanted)
 {
@@ -28,13 +30,30 @@ static bool is_folder(const char *path)
     return !stat(path, &s) && S_ISDIR(s.st_mode);
 }
 
-bool session_is_objects(const char *path)
+static bool holds(const char *folder, const char *name)
+{
+    char path[PATH_MAX];
+    const int n = snprintf(path, sizeof path, "%s/%s", folder, name);
+    return n < (int)sizeof path && !access(path, F_OK);
+}
+
+static bool is_material(const char *path)
+{
+    return is_folder(path) &&
+           (holds(path, "btf.json") || holds(path, "model.json") || holds(path, "surface.json"));
+}
+
+bool session_is_description(const char *path)
 {
     const char *dot = strrchr(path, '.');
     const enum relume_kind kind = relume_kind_of(path);
-    if (kind == RELUME_KIND_CAPTURE || kind == RELUME_KIND_FOREIGN)
-        return false;
-    return (dot && !strcmp(dot, ".json")) || is_folder(path);
+    return dot && !strcmp(dot, ".json") && kind != RELUME_KIND_CAPTURE &&
+           kind != RELUME_KIND_FOREIGN;
+}
+
+bool session_is_objects(const char *path)
+{
+    return session_is_description(path) || is_material(path);
 }
 
 relume_status session_open_objects(struct session *s, const char *path,

@@ -84,7 +84,7 @@ static const struct option options[] = {
           "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be "
           "repeated"),
     TEXT("--rig", lighting.rig, "FILE", "render objects: lights of a rig, before --light"),
-    TEXT_AS(OPTION_OUTPUT, "--save-rig", lighting.save_rig, "FILE",
+    TEXT_AS(OPTION_RIG, "--save-rig", lighting.save_rig, "FILE",
             "render objects: write all lights as a rig"),
     GROUP("objects"),
     TEXT("--mesh", mesh, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ..."),

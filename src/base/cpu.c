@@ -54,8 +54,9 @@ static unsigned features_here(void)
 static unsigned features_wanted(bool *known)
 {
     const char *name = getenv("RELUME_CPU");
-    *known = !name;
-    for (size_t i = 0; name && i < sizeof named / sizeof *named; i++)
+    const bool asked = name && *name;
+    *known = !asked;
+    for (size_t i = 0; asked && i < sizeof named / sizeof *named; i++)
         if ((*known = strcmp(name, named[i].name) == 0))
             return named[i].features;
     return ~0u;

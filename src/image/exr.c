@@ -947,12 +947,20 @@ static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
     return EXR_ERR_SUCCESS;
 }
 
+// The core says that memory is short of codes that end too early as well: whether it was is in
+// errno, which an allocation that fails sets.
+static relume_status block_error(exr_result_t e)
+{
+    return e == EXR_ERR_OUT_OF_MEMORY && errno == ENOMEM ? RELUME_ENOMEM : RELUME_EDAMAGED;
+}
+
 // The block of number `item`. RELUME_EDAMAGED: truncated or damaged; RELUME_ENOMEM.
 static relume_status decode(struct block *out, const struct layout *l,
                             exr_decode_pipeline_t *pipeline, size_t item)
 {
     const exr_const_context_t exr = l->file->exr;
     exr_chunk_info_t chunk;
+    errno = 0;
     exr_result_t e = find_chunk(&chunk, l, item);
     if (!e && pipeline->channels) {
         e = exr_decoding_update(exr, l->part, &chunk, pipeline);
@@ -966,7 +974,7 @@ static relume_status decode(struct block *out, const struct layout *l,
     if (!e)
         e = exr_decoding_run(exr, l->part, pipeline);
     if (e)
-        return e == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDAMAGED;
+        return block_error(e);
     out->at = rect_of(l, item);
     return RELUME_OK;
 }

@@ -58,7 +58,8 @@ void picture_find_colour(struct picture_info *info, const char *const *names)
         return;
     }
     const int r = find(names, n, "R"), g = find(names, n, "G"), b = find(names, n, "B");
-    const int luminance = find(names, n, "Y");
+    // X, Y, Z are places, or colours of CIE: no luminance alone
+    const int luminance = find(names, n, "X") < 0 ? find(names, n, "Y") : -1;
     use(info, 0, 0, 0);
     if (r >= 0 && g >= 0 && b >= 0)
         use(info, r, g, b);

@@ -36,7 +36,11 @@ expect_ok 'times by name' - "$RELUME" hdr a.png b.png c.png --times names.txt -o
 expect_ok 'in any order' - "$RELUME" capture --hdr c.png a.png b.png -q --times names.txt -o one.exr --response curve.txt
 below 'the same picture' "$("$mkimage" maxdiff again.exr one.exr)" 1e-5 # sums in another order
 
-for t in 1e300 1e-300 1e10; do
+cp a.png 'my a.png'
+printf 'c.png 0.25  # the darkest\r\n\n  b.png , 4\nmy a.png\t1\n' >blanks.txt
+expect_ok 'a name with a blank' - "$RELUME" hdr b.png 'my a.png' c.png --times blanks.txt -o blank.exr --response curve.txt
+below 'the same picture too' "$("$mkimage" maxdiff again.exr blank.exr)" 1e-5
+for t in 1e300 1e-300 1e10 0 -2 nan inf 1/0; do
     printf '1\n%s\n1/4\n' $t >far.txt
     expect_fail "a time of $t s" 1 'far.txt: line 2; expected an exposure time from' out2.exr \
         "$RELUME" hdr a.png b.png c.png --times far.txt --response curve.txt -o out2.exr

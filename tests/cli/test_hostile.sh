@@ -86,7 +86,7 @@ lp >tiles.lp
 expect_ok "tiles are read by rows" - env KB=1200000 ./bounded "$RELUME" encode tiles.lp -o tiles.exr --basis ptm -q --threads 2
 
 # ---------------------------------------------------------------- channels that are no colour
-for case in 'exr-z:Z' 'exr-rg:R, G' 'exr-100:c00, .*100 channels.'; do
+for case in 'exr-z:Z' 'exr-rg:R, G' 'exr-xyz:X, Y, Z' 'exr-100:c00, .*100 channels.'; do
     make_file "${case%%:*}" odd.exr
     refused "channels ${case%%:*}" "odd.exr: has no colour channels, only ${case#*:}; expected R, G, B or Y" \
         "$RELUME" compare odd.exr odd.exr

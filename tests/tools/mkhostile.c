@@ -269,6 +269,8 @@ int main(int argc, char **argv)
         return exr(argv[2], 1, (const char *const[]){"Z"});
     if (!strcmp(what, "exr-rg"))
         return exr(argv[2], 2, (const char *const[]){"G", "R"});
+    if (!strcmp(what, "exr-xyz"))
+        return exr(argv[2], 3, (const char *const[]){"X", "Y", "Z"});
     if (!strcmp(what, "exr-100"))
         return exr_hundred(argv[2]);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)

@@ -2,7 +2,6 @@
 #include "commands/capture_times.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,28 +30,46 @@ static bool parse_seconds(const char *text, double *out)
     }
     if (*end == 's')
         end++;
-    return end != text && !*end && *out > 0.0 && isfinite(*out);
+    return end != text && !*end;
+}
+
+static const char blanks[] = " \t\r\n,";
+
+static char *trim(char *text)
+{
+    text += strspn(text, blanks);
+    size_t n = strlen(text);
+    while (n && strchr(blanks, text[n - 1]))
+        text[--n] = '\0';
+    return text;
+}
+
+// Of a trimmed line, whose rest is trimmed in turn: names may hold blanks.
+static const char *last_word(char *text)
+{
+    char *word = text + strlen(text);
+    while (word > text && !strchr(blanks, word[-1]))
+        word--;
+    for (char *end = word; end > text && strchr(blanks, end[-1]); end--)
+        end[-1] = '\0';
+    return word;
 }
 
 static relume_status parse_line(const char *path, struct times *t, char *text, int number)
 {
-    char *remark = strchr(text, '#');
-    if (remark)
-        *remark = '\0';
-    char *words[3];
-    int n = 0;
-    for (char *save, *w = strtok_r(text, " \t\r\n,", &save); w && n < 3;
-         w = strtok_r(NULL, " \t\r\n,", &save))
-        words[n++] = w;
-    if (n == 0)
+    text[strcspn(text, "#")] = '\0';
+    text = trim(text);
+    if (!*text)
         return RELUME_OK;
-    if (n > 2 || t->count == MAX_LINES || !parse_seconds(words[n - 1], &t->line[t->count].seconds))
+    const char *const last = last_word(text);
+    const char *const name = last > text ? text : "";
+    if (t->count == MAX_LINES || !parse_seconds(last, &t->line[t->count].seconds))
         return data_error("%s: line %d; expected 'seconds' or 'name seconds', such as 1/60", path,
                           number);
-    if (t->line[t->count].seconds < SHORTEST_S || t->line[t->count].seconds > LONGEST_S)
+    if (!(t->line[t->count].seconds >= SHORTEST_S && t->line[t->count].seconds <= LONGEST_S))
         return data_error("%s: line %d; expected an exposure time from %g to %g seconds; found %g",
                           path, number, SHORTEST_S, LONGEST_S, t->line[t->count].seconds);
-    snprintf(t->line[t->count].name, sizeof t->line->name, "%s", n == 2 ? words[0] : "");
+    snprintf(t->line[t->count].name, sizeof t->line->name, "%s", name);
     t->count++;
     return RELUME_OK;
 }

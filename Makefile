@@ -263,6 +263,7 @@ $(FAULTS): tests/tools/preload/faults.c | $(DEPS)
 $B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES) $(HELPER)
 
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
+%.d: ;
 
 # ---------------------------------------------------------------- checking
 

@@ -3,6 +3,9 @@
 // It is compiled for the baseline of the CPU, for AVX2 and for AVX-512; LSQ_KERNELS names the
 // table. Each object renames Eigen's namespace (Makefile), or the linker would take one of the
 // versions of each template for both. Products that find no memory for packing do without it.
+//
+// Of very small products Eigen works out numbers before the first whole vector otherwise than those
+// in vectors: these are plain loops, so that results are the same wherever the memory is.
 #include "kernel/lsq_kernels.h"
 
 #define EIGEN_DONT_PARALLELIZE
@@ -30,8 +33,22 @@ template <typename F> bool with_memory(F work)
     }
 }
 
+template <typename C, typename A, typename B> void small_product(C &c, const A &a, const B &b)
+{
+    for (Eigen::Index i = 0; i < c.rows(); i++)
+        for (Eigen::Index j = 0; j < c.cols(); j++) {
+            c(i, j) = 0;
+            for (Eigen::Index k = 0; k < a.cols(); k++)
+                c(i, j) += a(i, k) * b(k, j);
+        }
+}
+
 template <typename C, typename A, typename B> void product(C &c, const A &a, const B &b)
 {
+    if (c.rows() + c.cols() + a.cols() < EIGEN_GEMM_TO_COEFFBASED_THRESHOLD || c.size() == 1) {
+        small_product(c, a, b);
+        return;
+    }
     const bool done = with_memory([&] {
         c.noalias() = a * b;
         return true;

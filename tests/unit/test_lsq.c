@@ -241,6 +241,65 @@ static void test_tables(void **state)
     check_products(kernels_choose(0)->lsq);
 }
 
+// Bytes of a file are those of its numbers: not a bit may depend on where memory is.
+enum { PLACES = 16, MOST_SIDE = 24, MOST_SIZE = MOST_SIDE * MOST_SIDE };
+
+// A product that lies `place` numbers behind a whole vector, and its factors elsewhere behind one.
+static void product_at(float *c_at_0, int m, int n, int k, int place)
+{
+    _Alignas(64) float a[MOST_SIZE + 2 * PLACES], b[MOST_SIZE + 2 * PLACES],
+        c[MOST_SIZE + 2 * PLACES];
+    uint32_t seed = 7;
+    for (int i = 0; i < m * k; i++)
+        a[3 * place % PLACES + i] = (float)test_uniform(&seed);
+    for (int i = 0; i < k * n; i++)
+        b[5 * place % PLACES + i] = (float)test_uniform(&seed);
+    lsq_multiply(m, n, k, a + 3 * place % PLACES, k, b + 5 * place % PLACES, n, c + place, n);
+    memcpy(c_at_0, c + place, (size_t)(m * n) * sizeof *c);
+}
+
+static void test_products_anywhere(void **state)
+{
+    (void)state;
+    for (int t = 0; t < MOST_SIZE; t++) {
+        const int m = t % 8 + 1, n = t / 8 % 8 + 1, k = t % 23 + 1;
+        float first[64], other[64];
+        product_at(first, m, n, k, 0);
+        for (int place = 1; place < PLACES; place++) {
+            product_at(other, m, n, k, place);
+            assert_memory_equal(first, other, (size_t)(m * n) * sizeof *first);
+        }
+    }
+}
+
+static void solution_at(double *b_at_0, int n, int place)
+{
+    _Alignas(64) double a[MOST_SIZE + PLACES] = {0}, b[MOST_SIZE + PLACES] = {0};
+    uint32_t seed = 7;
+    for (int i = 0; i < n * n; i++) {
+        a[place + i] = i % (n + 1) ? 0.0 : 1.0;
+        b[place + i] = test_uniform(&seed) - 0.5;
+    }
+    lsq_add_gram(a + place, n, b + place, n);
+    assert_true(lsq_solve(a + place, n, b + place, n));
+    assert_true(lsq_invert_lower(a + place, n));
+    CHECK_OK(lsq_invert(b + place, n));
+    for (int i = 0; i < n * n; i++)
+        b_at_0[i] = b[place + i] + (i / n >= i % n ? a[place + i] : 0.0);
+}
+
+static void test_solutions_anywhere(void **state)
+{
+    (void)state;
+    for (int n = 1; n <= MOST_SIDE; n++)
+        for (int place = 1; place < PLACES; place++) {
+            double first[MOST_SIZE], other[MOST_SIZE];
+            solution_at(first, n, 0);
+            solution_at(other, n, place);
+            assert_memory_equal(first, other, (size_t)(n * n) * sizeof *first);
+        }
+}
+
 // RELUME_CPU=plain turns every kernel off.
 static void test_plain_cpu(void **state)
 {
@@ -263,7 +322,8 @@ int main(void)
         cmocka_unit_test(test_large_eigenvectors), cmocka_unit_test(test_invert),
         cmocka_unit_test(test_add_gram),           cmocka_unit_test(test_cholesky),
         cmocka_unit_test(test_multiply),           cmocka_unit_test(test_tables),
-        cmocka_unit_test(test_plain_cpu),
+        cmocka_unit_test(test_plain_cpu),          cmocka_unit_test(test_products_anywhere),
+        cmocka_unit_test(test_solutions_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

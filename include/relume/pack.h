@@ -28,6 +28,7 @@ RELUME_RESULT relume_status relume_compression_parse(enum relume_compression *ou
 // Large views are kept at half, a quarter, ... of their size too, so that a smaller picture of all
 // is soon there.
 enum { RELUME_MOST_LEVELS = 16 };
+// Whether a file gets these levels.
 enum relume_pyramid {
     RELUME_PYRAMID_DEFAULT = 0,  // views of more than 16 megapixels, but not of slabs
     RELUME_PYRAMID_YES,
@@ -36,9 +37,9 @@ enum relume_pyramid {
 // The reduced levels of a view, each half of the one before. The first pixel of one covers the
 // first 2 x 2 of the one before; of an odd side the last covers what is left.
 struct relume_pack_levels {
-    int levels;
-    relume_coefficients *level[RELUME_MOST_LEVELS];
-    struct relume_image share[RELUME_MOST_LEVELS];  // of each pixel, within the mask; or empty
+    int levels;                                      // how many
+    relume_coefficients *level[RELUME_MOST_LEVELS];  // [levels], relume_coefficients_destroy
+    struct relume_image share[RELUME_MOST_LEVELS];   // of each pixel, within the mask; or empty
 };
 
 // What goes into a file beside the coefficients. Borrowed.

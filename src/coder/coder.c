@@ -23,6 +23,20 @@ const struct relume_basis *relume_basis_find(const char *name)
     return NULL;
 }
 
+const struct relume_interpolant *const relume_interpolants[] = {
+    &interpolant_chord,    &interpolant_angular,    &interpolant_tps,
+    &interpolant_rbf,      &interpolant_natural,    &interpolant_hsh,
+    &interpolant_delaunay, &interpolant_octahedral, NULL,
+};
+
+const struct relume_interpolant *relume_interpolant_find(const char *name)
+{
+    for (const struct relume_interpolant *const *i = relume_interpolants; *i; i++)
+        if (!strcmp((*i)->name, name))
+            return *i;
+    return NULL;
+}
+
 void relume_coder_destroy(relume_coder **coder)
 {
     relume_coder *c = *coder;

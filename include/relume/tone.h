@@ -46,7 +46,8 @@ RELUME_RESULT relume_status relume_tone_apply(struct relume_image *image,
 
 // The exposure in EV that takes the log-average luminance of `image` to 0.18, a mid grey (Reinhard
 // 2002, Eq. 1), in [-16, 16]. The darkest tenth and the brightest fiftieth of the luminances are
-// left out, and so is what is black: 2^-20 of the brightest and below. 0 for a black image.
+// left out, and so is what is black: 2^-20 of the brightest and below, and what would be 0 in 8
+// bits if that fiftieth began at white. 0 for a black image.
 RELUME_API double relume_tone_meter(const struct relume_image *image);
 
 #ifdef __cplusplus

@@ -98,6 +98,8 @@ enum { PER_EV = 16, RANGE_EV = 40, BINS = 2 * RANGE_EV * PER_EV };
 static const double mid_grey = 0.18;
 static const double dark = 0.10, bright = 0.02;  // parts left out
 static const int black_ev = 20;                  // below the brightest
+// Below what is bright: with that as white, less than a code of 8 bits of the sRGB curve.
+static const double unseen_ev = 11.7;
 static const double most_ev = 16.0;
 
 static size_t count_bins(size_t bin[BINS], const struct relume_image *image)
@@ -115,12 +117,23 @@ static size_t count_bins(size_t bin[BINS], const struct relume_image *image)
     return count;
 }
 
+// The bin up to which `count` values are.
+static int bin_of(const size_t bin[BINS], double count)
+{
+    double below = 0.0;
+    int i = 0;
+    while (i < BINS - 1 && below + (double)bin[i] < count)
+        below += (double)bin[i++];
+    return i;
+}
+
+// Beside a few lamps in a dark room, and beside a large object: what a file of 8 bits has as black
+// is not quite 0 under a sky.
 static void forget_black(size_t bin[BINS], size_t *count)
 {
-    int top = BINS - 1;
-    while (top > 0 && !bin[top])
-        top--;
-    for (int i = 0; i < top - black_ev * PER_EV; i++) {
+    const int top = bin_of(bin, (double)*count) - black_ev * PER_EV;
+    const int seen = bin_of(bin, (1.0 - bright) * (double)*count) - (int)(unseen_ev * PER_EV);
+    for (int i = 0; i < (top > seen ? top : seen); i++) {
         *count -= bin[i];
         bin[i] = 0;
     }

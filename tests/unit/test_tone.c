@@ -167,6 +167,19 @@ static void the_meter_is_a_trimmed_log_average(void **state)
     relume_image_destroy(&image);
 }
 
+// A background that should be black is, under a sky, what is left of 8 bits: not quite 0.
+static void the_meter_sees_no_background(void **state)
+{
+    (void)state;
+    enum { PIXELS = 1000 };
+    struct relume_image image;
+    CHECK_OK(relume_image_create(&image, PIXELS / 10, 10, 3));
+    for (int i = 0; i < 3 * PIXELS; i++)
+        image.data[i] = i / 3 < 3 * PIXELS / 4 ? 0.02f : 80.0f;
+    CHECK_NEAR(relume_tone_meter(&image), log2(0.18 / 80), step_ev);
+    relume_image_destroy(&image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -177,6 +190,7 @@ int main(void)
         cmocka_unit_test(mid_grey_needs_no_exposure),
         cmocka_unit_test(a_sun_and_a_black_room_do_not_matter),
         cmocka_unit_test(the_meter_is_a_trimmed_log_average),
+        cmocka_unit_test(the_meter_sees_no_background),
     };
     return cmocka_run_group_tests_name("tone", tests, NULL, NULL);
 }

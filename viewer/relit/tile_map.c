@@ -10,14 +10,17 @@ static int across(int side)
     return (side + TILE_SIDE - 1) / TILE_SIDE;
 }
 
+// A plane is soon there and gets its tiles later; looks into a panorama have only this level.
 static int find_base(const relume_pack *pack, size_t bytes)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
+    const bool planar = info->geometry.projection == RELUME_PLANAR;
     for (int level = 0; level < info->levels; level++) {
         struct relume_codes codes = {.planes = info->planes, .storage = info->storage};
         relume_pack_level_size(&codes.width, &codes.height, pack, level);
-        if ((int64_t)codes.width * codes.height <= MOST_PIXELS &&
-            relighter_view_bytes(&codes) <= bytes / 2)
+        if (planar ? (int64_t)codes.width * codes.height <= MOST_PIXELS &&
+                         relighter_view_bytes(&codes) <= bytes / 2
+                   : relighter_view_bytes(&codes) <= bytes)
             return level;
     }
     return info->levels;

@@ -22,7 +22,8 @@ struct tile {
 };
 
 // The levels finer than the one that a view is known by, which is the first of at most 2 megapixels
-// whose codes and light take half of so many bytes. That is `levels`, 0 the view itself.
+// whose codes and light take half of so many bytes; of panoramas, which have no tiles, the first
+// that takes no more than all of them. That is `levels`, 0 the view itself.
 void tile_map_make(struct tile_map *map, const relume_pack *pack, size_t bytes);
 struct tile tile_map_tile(const struct tile_map *map, int number);
 // The number of the tile in that column and row.

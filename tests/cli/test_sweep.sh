@@ -63,6 +63,25 @@ if grep -q '"coefficients": 16.*"skipped": "16 coefficients of basis sh need at 
 expect_ok 'nothing can be measured' - $sweep --basis sh --coefficients 36 -o none
 [ -e none.svg ] && not_ok 'no diagram without points' 'none.svg exists'
 
+# ---- a photograph that cannot be read, at whatever time, is no reason to leave out a row
+if [ -e "$BUILD/tests/tools/faults.so" ]; then
+    n=2 failed=0
+    while
+        rm -f hit
+        LD_PRELOAD="$BUILD/tests/tools/faults.so" RELUME_FAULT=read:$n+:5 RELUME_FAULT_HIT="$work/hit" RELUME_FAULT_UNDER="$work/small" \
+            "$RELUME" sweep small -q --leave-out 3 --basis sh --coefficients 1,4 >out.txt 2>err.txt
+        status=$?
+        [ -e hit ]
+    do
+        [ $status = 1 ] && failed=$((failed + 1))
+        if [ $status = 0 ] && grep -q skipped out.txt; then not_ok "reading number $n fails" "$(cat out.txt)"; fi
+        n=$((n + 5))
+    done
+    above 'readings that fail end the sweep' $failed 3
+else
+    skip 'readings that fail' 'tests/tools/faults.so is not built'
+fi
+
 # ---- resume: equal seconds mean that nothing was measured again
 expect_ok 'sweep again' - $sweep $grid -o out --json
 same 'finished rows are reused' out.txt out1.json

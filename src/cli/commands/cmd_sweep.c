@@ -280,10 +280,11 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const rel
     return status;
 }
 
-// What one row's data or coder forbid leaves that row out; all else ends the sweep.
+// What one row's data or coder forbid leaves that row out; all else ends the sweep, a photograph that
+// cannot be read as well: every row is of all of them.
 static bool is_skipped(relume_status status)
 {
-    return relume_status_is_input(status) || status == RELUME_EINVAL;
+    return status >= RELUME_ELIMIT && status <= RELUME_EINVAL;
 }
 
 static void skip_row(struct sweep_row *row, const struct listener *l, relume_status status)

@@ -3,24 +3,25 @@
 
 #include "relit/relighter.h"
 
-static const int64_t MOST_PIXELS = 2 << 20;
+static const int64_t LARGE = 64 << 20, MOST_PIXELS = 2 << 20;
 
 static int across(int side)
 {
     return (side + TILE_SIDE - 1) / TILE_SIDE;
 }
 
-// A plane is soon there and gets its tiles later; looks into a panorama have only this level.
+// Passes, near lights and looks into a panorama have only this level, so that it is the finest that
+// is held; but a plane that would be long in coming is known by few pixels.
 static int find_base(const relume_pack *pack, size_t bytes)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     const bool planar = info->geometry.projection == RELUME_PLANAR;
+    const bool large = planar && (int64_t)info->width * info->height > LARGE;
     for (int level = 0; level < info->levels; level++) {
         struct relume_codes codes = {.planes = info->planes, .storage = info->storage};
         relume_pack_level_size(&codes.width, &codes.height, pack, level);
-        if (planar ? (int64_t)codes.width * codes.height <= MOST_PIXELS &&
-                         relighter_view_bytes(&codes) <= bytes / 2
-                   : relighter_view_bytes(&codes) <= bytes)
+        if (relighter_view_bytes(&codes) <= (planar && level ? bytes / 2 : bytes) &&
+            (!large || (int64_t)codes.width * codes.height <= MOST_PIXELS))
             return level;
     }
     return info->levels;

@@ -21,9 +21,9 @@ struct tile {
     struct relume_rect inner, rect;  // pixels of the level: without and with the margin
 };
 
-// The levels finer than the one that a view is known by, which is the first of at most 2 megapixels
-// whose codes and light take half of so many bytes; of panoramas, which have no tiles, the first
-// that takes no more than all of them. That is `levels`, 0 the view itself.
+// The levels finer than the one that a view is known by: the first that so many bytes hold, half of
+// them where there are tiles beside it; of planes above 64 megapixels one of at most 2. That is
+// `levels`, 0 the view itself.
 void tile_map_make(struct tile_map *map, const relume_pack *pack, size_t bytes);
 struct tile tile_map_tile(const struct tile_map *map, int number);
 // The number of the tile in that column and row.

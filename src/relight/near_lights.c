@@ -6,6 +6,7 @@
 // at, as those of distant lights do; in the display domain each light is decoded and made linear.
 #include "relight/near_lights.h"
 
+#include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
 #include "relight/grid.h"
@@ -25,14 +26,25 @@ static void cut(struct near_source *to, const struct relume_light *area, int sid
         to[i].patch = patches[i];
 }
 
+// Into how many patches along a side light `i` is cut; said when it lights nothing.
+static int patches_of(const struct near_lights *near, const struct relume_light *lights, int i)
+{
+    const double distance = relume_area_distance(&lights[i], near->surface);
+    if (isinf(distance))
+        log_line(near->log, RELUME_WARNING,
+                 "light %d shines away from all that is seen; exchange the two half edges of the "
+                 "area to turn it round",
+                 i + 1);
+    return relume_light_patch_side(&lights[i], distance);
+}
+
 relume_status near_lights_create(struct near_lights *near, const struct relume_light *lights, int n)
 {
     int *side = mem_zeroed((size_t)n, sizeof *side);
     size_t count = 0;
     for (int i = 0; side && i < n; i++) {
         if (lights[i].kind == RELUME_LIGHT_AREA)
-            side[i] = relume_light_patch_side(&lights[i],
-                                              relume_area_distance(&lights[i], near->surface));
+            side[i] = patches_of(near, lights, i);
         else
             side[i] = relume_light_is_near(lights[i].kind);
         count += (size_t)side[i] * (size_t)side[i];

@@ -17,6 +17,7 @@ struct near_lights {
     const relume_weight_grid *grid;
     const struct relume_image *surface;
     const struct curve *display;  // of display-domain codes, else NULL
+    const struct relume_log *log;
     int count;
     struct near_source *source;
 };

@@ -494,7 +494,8 @@ static relume_status begin_near(struct job *job, const struct relume_light *ligh
     job->near = (struct near_lights){.codes = job->codes,
                                      .grid = job->grid,
                                      .surface = p->surface,
-                                     .display = job->display ? &job->curve : NULL};
+                                     .display = job->display ? &job->curve : NULL,
+                                     .log = p->log};
     return near_lights_create(&job->near, lights, n);
 }
 

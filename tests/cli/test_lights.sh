@@ -44,6 +44,9 @@ nothing() { # name, three numbers
     check "$1" test "$2" = '0 0 0'
 }
 nothing 'an area turned round' "$(at 0 0 --light "area 100 200 300 3 0 -1 0 3 -2 rgb 12472 12472 12472")"
+expect_ok 'which is said' 'light 2 shines away from all that is seen; exchange the two half edges' \
+    "$RELUME" relight full.exr -o away.exr --light "dir 1 2 3" --light "area 0 0 2 1 0 0 0 1 0"
+expect_ok 'as it should be' - "$RELUME" relight full.exr -o away.exr --light "area 0 0 2 0 1 0 1 0 0"
 nothing 'outside the cone nothing' "$(at 0.9 0.9 --light "spot 0 0 3 0 0 -1 15")"
 above 'inside there is' "$(green 0.05 0.05 --light "spot 0 0 3 0 0 -1 15")" 0.01
 above 'ies along its axis' "$(green 0 0 --light "ies 0 0 3 0 0 -1 lamp.ies")" 0.01

@@ -85,13 +85,15 @@ static void walk(struct grid *g, void (*see)(struct grid *, const float *, const
 
 // f' = m + g (f - m) is black where f / m is below 1 - 1 / g. With m a share a of what a surface
 // facing the light would show, that bound becomes a (1 - 1 / g); `a` is the largest, up to 1, that
-// turns no more than black_share of the picture black.
-static float find_pivot(struct grid *g, float gain)
+// turns no more than black_share of the picture black with the usual gain. A larger one turns more
+// of it black: with an `a` for every gain, all of them would give the same picture.
+static float find_pivot(struct grid *g)
 {
+    static const float usual = (float)RELUME_PASS_GAIN;
     walk(g, keep_ratio);
-    if (!g->n || !(gain > 1.0f))
+    if (!g->n)
         return 1.0f;
-    return fminf(percentile(g->value, g->n, black_share) * gain / (gain - 1.0f), 1.0f);
+    return fminf(percentile(g->value, g->n, black_share) * usual / (usual - 1.0f), 1.0f);
 }
 
 // What is brightest stays as bright.
@@ -143,7 +145,7 @@ relume_status relume_pass_measure(struct relume_pass_range *out, const struct re
     if (g.n && pass == RELUME_PASS_DIFFUSE_GAIN && albedo) {
         gain = gain != 0.0f ? gain : RELUME_PASS_GAIN;
         const float high = out->high;
-        out->pivot = find_pivot(&g, gain);
+        out->pivot = find_pivot(&g);
         out->scale = find_scale(&g, gain, out->pivot, high);
     }
     // one value alone is in the middle

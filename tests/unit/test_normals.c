@@ -356,6 +356,24 @@ static void diffuse_gain_suits_the_picture(void **state)
     free_scene(&s);
 }
 
+// A twentieth is darker than 0.029, so what stays as it is is 0.058 of the full shading; black is
+// what is below 0.058 (1 - 1 / gain).
+static void a_larger_gain_shows_more(void **state)
+{
+    (void)state;
+    static const float gain[] = {1.5f, 5, 20};
+    for (int g = 0; g < 3; g++) {
+        struct scene s = make_dark_scene();
+        apply(&s, RELUME_PASS_DIFFUSE_GAIN, relume_pass_params(.gain = gain[g]));
+        int black = 0;
+        for (int i = 0; i < 1000; i++)
+            black += s.image.data[3 * i] <= 0;
+        const double share = (0.058 * (1 - 1 / (double)gain[g]) - 0.02) / 0.18;
+        CHECK_NEAR(black, 1000 * fmax(share, 0), 2);  // percentiles are those of pixels
+        free_scene(&s);
+    }
+}
+
 static void false_colour_suits_the_picture(void **state)
 {
     (void)state;
@@ -456,6 +474,7 @@ int main(void)
         cmocka_unit_test(unsharp_exaggerates_detail),
         cmocka_unit_test(luminance_and_false_colour),
         cmocka_unit_test(diffuse_gain_suits_the_picture),
+        cmocka_unit_test(a_larger_gain_shows_more),
         cmocka_unit_test(false_colour_suits_the_picture),
         cmocka_unit_test(a_highlight_suits_the_picture),
         cmocka_unit_test(differences_and_wrong_sizes),

@@ -35,14 +35,30 @@ static vec3 step_across(vec3 before, vec3 at, vec3 after)
     return is_on ? on : b > 0.0 ? back : vec3_of(0, 0, 0);
 }
 
-// Which way the scene faces in a pixel, as places beside it tell; 0 where they do not.
-static vec3 scene_normal(const struct relume_image *places, size_t x, size_t y)
+// The next place to one side. In an enlarged picture several pixels in a row show the same one.
+static vec3 place_beside(const struct relume_image *places, int x, int y, int dx, int dy)
 {
-    const size_t right = x + 1 < (size_t)places->width ? x + 1 : x, left = x ? x - 1 : x;
-    const size_t below = y + 1 < (size_t)places->height ? y + 1 : y, above = y ? y - 1 : y;
-    const vec3 at = place_at(places, x, y);
-    const vec3 across = step_across(place_at(places, left, y), at, place_at(places, right, y));
-    const vec3 down = step_across(place_at(places, x, above), at, place_at(places, x, below));
+    enum { MOST = 64 };  // so far enlarged
+    const vec3 at = place_at(places, (size_t)x, (size_t)y);
+    vec3 beside = at;
+    for (int i = 0; i < MOST && at.x == beside.x && at.y == beside.y && at.z == beside.z; i++) {
+        x += dx;
+        y += dy;
+        if (x < 0 || y < 0 || x >= places->width || y >= places->height)
+            break;
+        beside = place_at(places, (size_t)x, (size_t)y);
+    }
+    return beside;
+}
+
+// Which way the scene faces in a pixel, as places beside it tell; 0 where they do not.
+static vec3 scene_normal(const struct relume_image *places, int x, int y)
+{
+    const vec3 at = place_at(places, (size_t)x, (size_t)y);
+    const vec3 across =
+        step_across(place_beside(places, x, y, -1, 0), at, place_beside(places, x, y, 1, 0));
+    const vec3 down =
+        step_across(place_beside(places, x, y, 0, -1), at, place_beside(places, x, y, 0, 1));
     const vec3 normal = vec3_cross(down, across);
     return vec3_length(normal) > 0.0 ? vec3_unit(normal) : vec3_of(0, 0, 0);
 }
@@ -84,8 +100,9 @@ static void add_row(void *context, size_t row, int worker)
         const float *lone = s->lone->data + i;
         const bool lit = lone[0] != 0.0f || lone[1] != 0.0f || lone[2] != 0.0f;
         const vec3 at = place_at(s->places, x, row);
-        const double part =
-            lit && !s->none && !isnan(at.x) ? share(s, at, scene_normal(s->places, x, row)) : 1.0;
+        const double part = lit && !s->none && !isnan(at.x)
+                                ? share(s, at, scene_normal(s->places, (int)x, (int)row))
+                                : 1.0;
         for (size_t c = 0; c < 3; c++)
             s->sum->data[i + c] += (float)(part * (double)lone[c]);
     }

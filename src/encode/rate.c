@@ -176,14 +176,16 @@ static void forget(struct rate *r)
     memset(r->trial, 0, sizeof r->trial);
 }
 
-// How much better than wanted, in dB: half the bytes are about so many.
-static const double EACH_HALF = 5.0;
+// How much better than wanted, in dB: half the bytes are about so many. Of bytes not the last ones
+// are wanted, since too many would not do.
+static const double EACH_HALF = 5.0, SPARE = 0.2;
 
 static double surplus(const struct rate *r, int quantiser)
 {
     const struct trial *t = &r->trial[quantiser];
-    return r->target.psnr_db > 0.0 ? t->psnr_db - r->target.psnr_db
-                                   : EACH_HALF * log2(fmax(t->bytes, 1.0) / r->target.bytes);
+    return r->target.psnr_db > 0.0
+               ? t->psnr_db - r->target.psnr_db
+               : EACH_HALF * log2(fmax(t->bytes, 1.0) / r->target.bytes) + SPARE;
 }
 
 // Where the line through two trials meets the target, between them.
@@ -209,14 +211,16 @@ static int within(int quantiser)
                                       : quantiser;
 }
 
-// So near that another trial is not worth its time: qualities are wanted within 0.3 dB, and bytes
-// that are all but used are used.
-static bool is_close(const struct rate *r, int quantiser)
+// So near that another trial is not worth its time, the less so the more there were: qualities are
+// wanted within 0.3 dB, and bytes that are all but used are used.
+static bool is_close(const struct rate *r, int quantiser, int trials)
 {
     const double s = surplus(r, quantiser);
     if (r->rough)
         return fabs(s) < 0.5;
-    return r->target.psnr_db > 0.0 ? fabs(s) < 0.25 : s <= 0.0 && s > -0.25;
+    if (r->target.psnr_db > 0.0)
+        return fabs(s) < (trials > 1 ? 0.29 : 0.25);
+    return s <= SPARE && s > (trials > 1 ? -0.8 : -0.4);
 }
 
 // Whether a trial is nearer to the target than another: in quality, or with as many bytes as are
@@ -226,7 +230,7 @@ static bool is_better(const struct rate *r, int quantiser, int than)
     const double a = surplus(r, quantiser), b = surplus(r, than);
     if (r->target.psnr_db > 0.0)
         return fabs(a) < fabs(b);
-    return a <= 0.0 ? b > 0.0 || a > b : b > 0.0 && a < b;
+    return a <= SPARE ? b > SPARE || a > b : b > SPARE && a < b;
 }
 
 // What a step is worth, from two trials.
@@ -244,7 +248,7 @@ static relume_status search(struct rate *r, int tried, int speed, int *quantiser
     forget(r);
     r->tried = tried;
     r->speed = speed;
-    for (int q = *quantiser, last = 0;;) {
+    for (int q = *quantiser, last = 0, trials = 1;; trials++) {
         const relume_status status = try_one(r, q);
         if (status || !log_progress(r->p->log, "choosing the step", r->done))
             return status ? status : RELUME_ECANCEL;
@@ -253,7 +257,8 @@ static relume_status search(struct rate *r, int tried, int speed, int *quantiser
             learn_step(r, last, q);
         last = q;
         *(surplus(r, q) >= 0.0 ? &fine : &coarse) = q;
-        const bool found = is_close(r, q), enclosed = fine >= AV1_FINEST && coarse <= AV1_COARSEST;
+        const bool found = is_close(r, q, trials),
+                   enclosed = fine >= AV1_FINEST && coarse <= AV1_COARSEST;
         if (coarse - fine <= 1 || (found && !r->rough))
             return RELUME_OK;
         q = within(enclosed ? between(r, fine, coarse) : beyond(r, q));
@@ -264,12 +269,15 @@ static relume_status search(struct rate *r, int tried, int speed, int *quantiser
     }
 }
 
-// The slow coder where it takes no more than some minutes.
-static int speed_for(relume_coefficients *const *coefficients, int views)
+// The slow coder where it takes no more than some minutes and much is to be gained: the pictures
+// themselves for a quality.
+static int speed_for(relume_coefficients *const *coefficients, int views,
+                     const struct rate_target *target)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(coefficients[0]);
     const double samples = (double)info->width * info->height * info->planes * views;
-    return samples <= MOST_SLOW ? AV1_SLOW : AV1_USUAL;
+    const bool pictures = !relume_coder_info(info->coder)->basis->learned;
+    return target->psnr_db > 0.0 && pictures && samples <= MOST_SLOW ? AV1_SLOW : AV1_USUAL;
 }
 
 // The fast coder finds about where, a slower one the step itself, then that of all groups.
@@ -287,7 +295,7 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                      .p = p,
                      .step_db = 0.1,
                      .target = *target};
-    const int speed = speed_for(coefficients, views_of(groups));
+    const int speed = speed_for(coefficients, views_of(groups), target);
     int *quantiser = &result->quantiser;
     *quantiser = FIRST_GUESS;
     relume_status status = search(&r, tried, AV1_FAST, quantiser);

@@ -9,7 +9,7 @@
 // Samples of equal steps in a row or column.
 struct run {
     size_t begin, end;
-    float step, first, last;  // what is crossed at its ends, where it `slopes`
+    float step, first, last;  // what is crossed at its ends, where it rises there
     bool rises_from, rises_to;
 };
 

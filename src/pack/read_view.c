@@ -110,6 +110,19 @@ static void plane_block(void *context, const struct relume_rect *at, const void 
             (size_t)some.width);
 }
 
+// What was read of depth or of a mask, when it is such values.
+static relume_status end_plane(struct relume_image *out, const relume_pack *pack,
+                               relume_status status)
+{
+    const size_t n = (size_t)out->width * (size_t)out->height;
+    for (size_t i = 0; !status && i < n; i++)
+        if (!(out->data[i] >= 0.0f))
+            status = reader_bad(pack, "depth or mask", "values of 0 or more");
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}
+
 relume_status reader_load_plane(struct relume_image *out, relume_pack *pack, int part,
                                 const struct relume_rect *rect)
 {
@@ -121,13 +134,7 @@ relume_status reader_load_plane(struct relume_image *out, relume_pack *pack, int
         return status;
     struct plane_sink sink = {out, exr_part_info(pack->file, part).sample, *rect};
     status = exr_read(pack->file, part, rect, pack->threads, plane_block, &sink, pack->log);
-    const size_t n = (size_t)out->width * (size_t)out->height;
-    for (size_t i = 0; !status && i < n; i++)
-        if (!(out->data[i] >= 0.0f))
-            status = reader_bad(pack, "depth or mask", "values of 0 or more");
-    if (status)
-        relume_image_destroy(out);
-    return status;
+    return end_plane(out, pack, status);
 }
 
 relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int view)
@@ -190,13 +197,7 @@ relume_status relume_pack_depth_level(struct relume_image *out, relume_pack *pac
     relume_status status = relume_image_create(out, width, height, 1);
     if (!status)
         status = exr_read(pack->file, part, NULL, pack->threads, pick_block, &picking, pack->log);
-    const size_t n = (size_t)width * (size_t)height;
-    for (size_t i = 0; !status && i < n; i++)
-        if (!(out->data[i] >= 0.0f))
-            status = reader_bad(pack, "depth or mask", "values of 0 or more");
-    if (status)
-        relume_image_destroy(out);
-    return status;
+    return end_plane(out, pack, status);
 }
 
 relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view)

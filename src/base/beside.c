@@ -5,8 +5,6 @@
 #include "base/memory.h"
 #include "base/tree.h"
 
-#include <relume/base.h>
-
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -24,6 +22,7 @@ enum { DIGITS = 12, TRIES = 100, NAME = 4096 };
 
 struct beside {
     char *dir, *path, *lock, *new, *old;
+    const struct relume_log *log;
     int fd;        // of the lock
     beside *next;  // of those that this process works in
 };
@@ -54,7 +53,7 @@ static void drop(beside *b)
     mem_free(b);
 }
 
-static beside *of_path(const char *dir, char *path)
+static beside *of_path(const char *dir, char *path, const struct relume_log *log)
 {
     beside *b = path ? mem_zeroed(1, sizeof *b) : NULL;
     if (!b) {
@@ -62,7 +61,7 @@ static beside *of_path(const char *dir, char *path)
         errno = ENOMEM;
         return NULL;
     }
-    *b = (beside){.path = path, .fd = -1, .dir = mem_text(dir)};
+    *b = (beside){.path = path, .log = log, .fd = -1, .dir = mem_text(dir)};
     b->lock = mem_format("%s/lock", path);
     b->new = mem_format("%s/new", path);
     b->old = mem_format("%s/old", path);
@@ -118,18 +117,18 @@ static int take(const beside *b, char name[NAME])
 }
 
 // The lock goes last: what is half removed is still known as ours.
-static void remove_all(const beside *b)
+static void remove_all(const beside *b, const struct relume_log *log)
 {
-    inventory_remove(b->new, b->dir);
-    inventory_remove(b->old, b->dir);
+    inventory_remove(b->new, b->dir, log);
+    inventory_remove(b->old, b->dir, log);
     unlink(b->lock);
     rmdir(b->path);
 }
 
-static void sweep_one(const char *dir, const char *entry)
+static void sweep_one(const char *dir, const char *entry, const struct relume_log *log)
 {
     char name[NAME];
-    beside *b = of_path(dir, mem_format("%s/%s", dir, entry));
+    beside *b = of_path(dir, mem_format("%s/%s", dir, entry), log);
     struct stat s;
     if (!b)
         return;
@@ -141,18 +140,18 @@ static void sweep_one(const char *dir, const char *entry)
             if (target && access(target, F_OK))
                 (void)tree_rename(b->old, target, TREE_NEW);
             mem_free(target);
-            remove_all(b);
+            remove_all(b, log);
         }
     }
     drop(b);
 }
 
-void beside_sweep(const char *dir)
+void beside_sweep(const char *dir, const struct relume_log *log)
 {
     DIR *d = opendir(dir);
     for (struct dirent *e; d && (e = readdir(d));)
         if (is_name(e->d_name))
-            sweep_one(dir, e->d_name);
+            sweep_one(dir, e->d_name, log);
     if (d)
         closedir(d);
 }
@@ -202,22 +201,23 @@ static void leave(const beside *b)
     pthread_mutex_unlock(&open_lock);
 }
 
-// Others may still write there: a folder that was not empty in the end is tried again.
+// Others may still write there: a folder that was not empty in the end is tried again. Their logs
+// may be gone.
 void relume_files_abandon(void)
 {
     pthread_mutex_lock(&open_lock);
     for (const beside *b = open_ones; b; b = b->next)
         for (int i = 0; i < TRIES && !access(b->path, F_OK); i++)
-            remove_all(b);
+            remove_all(b, NULL);
 }
 
-beside *beside_open(const char *dir, const char *name)
+beside *beside_open(const char *dir, const char *name, const struct relume_log *log)
 {
-    beside_sweep(dir);
+    beside_sweep(dir, log);
     for (int i = 0; i < TRIES; i++) {
         char own[sizeof PREFIX + DIGITS];
         random_name(own);
-        beside *b = of_path(dir, mem_format("%s/%s", dir, own));
+        beside *b = of_path(dir, mem_format("%s/%s", dir, own), log);
         if (!b)
             return NULL;
         const bool made = !mkdir(b->path, 0700);
@@ -231,7 +231,7 @@ beside *beside_open(const char *dir, const char *name)
         }
         const int error = errno;
         if (made && locked < 0)
-            remove_all(b);
+            remove_all(b, log);
         drop(b);
         errno = error;
         if (locked < 0)
@@ -245,7 +245,7 @@ void beside_close(beside **b)
 {
     if (*b) {
         leave(*b);
-        remove_all(*b);
+        remove_all(*b, (*b)->log);
         drop(*b);
     }
     *b = NULL;

@@ -10,12 +10,13 @@
 #ifndef BASE_BESIDE_H
 #define BASE_BESIDE_H
 
-#include <stdbool.h>
+#include <relume/base.h>
 
 typedef struct beside beside;
 
-// In the folder `dir`, for an output called `name` there. NULL with errno set.
-beside *beside_open(const char *dir, const char *name);
+// In the folder `dir`, for an output called `name` there. NULL with errno set. `log`, which lives
+// as long, is told what of an old folder could not be removed.
+beside *beside_open(const char *dir, const char *name, const struct relume_log *log);
 const char *beside_new(const beside *b);
 const char *beside_old(const beside *b);
 // Remove it with everything in it. NULL is fine.
@@ -23,7 +24,7 @@ void beside_close(beside **b);
 
 // Remove what stopped processes of this user left in `dir`. An `old` folder whose name is free goes
 // back to it.
-void beside_sweep(const char *dir);
+void beside_sweep(const char *dir, const struct relume_log *log);
 // Whether `path` lies in such a folder.
 bool beside_holds(const char *path);
 

@@ -224,15 +224,20 @@ static void remove_listed(const char *folder, const struct tree_list *made)
     rmdir(folder);
 }
 
-static void set_apart(const char *path, const char *beside)
+static void set_apart(const char *path, const char *beside, const char *why,
+                      const struct relume_log *log)
 {
     char *to = mem_format("%s/kept-by-relume-XXXXXX", beside);
-    if (to && mkdtemp(to) && rename(path, to))
+    const bool made = to && mkdtemp(to), moved = made && !rename(path, to);
+    if (made && !moved)
         rmdir(to);
+    log_line(log, RELUME_WARNING,
+             "%s: this old folder could not be removed: %s; look at it, then remove it yourself",
+             moved ? to : path, why);
     mem_free(to);
 }
 
-void inventory_remove(const char *path, const char *beside)
+void inventory_remove(const char *path, const char *beside, const struct relume_log *log)
 {
     struct tree_list made;
     struct stat s;
@@ -241,7 +246,7 @@ void inventory_remove(const char *path, const char *beside)
     const bool finished = S_ISDIR(s.st_mode) && read_inventory(&made, path);
     if (!finished) {
         if (S_ISDIR(s.st_mode) && errno)
-            set_apart(path, beside);  // it may have a list
+            set_apart(path, beside, strerror(errno), log);  // it may have a list
         else
             tree_remove(path);
         return;
@@ -249,5 +254,5 @@ void inventory_remove(const char *path, const char *beside)
     remove_listed(path, &made);
     tree_list_free(&made);
     if (!lstat(path, &s))
-        set_apart(path, beside);
+        set_apart(path, beside, "it holds what was not made with it", log);
 }

@@ -20,7 +20,7 @@ bool inventory_write(const char *folder);
 relume_status inventory_check(const char *folder, const char *output, const struct relume_log *log);
 
 // Remove what is listed, or everything in a folder that has no list yet: one that is being made.
-// What is not listed moves to a new name in the folder `beside`.
-void inventory_remove(const char *path, const char *beside);
+// What is not listed moves to a new name in the folder `beside`, which a warning names.
+void inventory_remove(const char *path, const char *beside, const struct relume_log *log);
 
 #endif

@@ -96,7 +96,7 @@ static relume_status make_place(relume_making *m)
 {
     char *name = m->target ? tree_base(m->target) : mem_text("");
     errno = ENOMEM;
-    m->beside = name ? beside_open(m->dir, name) : NULL;
+    m->beside = name ? beside_open(m->dir, name, m->log) : NULL;
     mem_free(name);
     if (!m->beside || (m->kind == RELUME_MADE_FOLDER && mkdir(beside_new(m->beside), 0777)))
         return fail(m, "cannot be created");

@@ -110,7 +110,7 @@ static relume_status copy_to_device(outfile *f)
 static relume_status enter_beside(outfile *f)
 {
     char *name = tree_base(f->target);
-    f->beside = name ? beside_open(f->dir, name) : NULL;
+    f->beside = name ? beside_open(f->dir, name, f->log) : NULL;
     mem_free(name);
     return f->beside ? RELUME_OK : fail(f, "cannot be written");
 }
@@ -141,7 +141,7 @@ static bool open_unnamed(outfile *f)
 
 static relume_status open_new(outfile *f)
 {
-    beside_sweep(f->dir);
+    beside_sweep(f->dir, f->log);
     if (open_unnamed(f))
         return RELUME_OK;
     f->kind = BESIDE;

@@ -80,7 +80,7 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
     if (path_ends(path, ".json"))
         return kind_of_json(head, n, path);
     if (n > 4 && !memcmp(head, exr_magic, 4))
-        return picture_is_relume(path, log) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
+        return picture_head_is_relume(head, n) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     if (relume_image_can_save(path) || is_among(path, photographs))
         return path_ends(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     return RELUME_KIND_UNKNOWN;

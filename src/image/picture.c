@@ -77,17 +77,21 @@ const struct picture_kind *picture_kind_at(const char *path)
 }
 
 // The first part's attributes follow each other from the start.
-bool picture_is_relume(const char *path, const struct relume_log *log)
+bool picture_head_is_relume(const char *head, size_t n)
 {
     static const char magic[] = "\x76\x2f\x31\x01", attributes[] = "relume.";
+    return n > 4 && !memcmp(head, magic, 4) && memmem(head, n, attributes, strlen(attributes));
+}
+
+bool picture_is_relume(const char *path)
+{
     char head[4096];
     struct infile in;
-    if (!infile_open(&in, path, NULL, log))
+    if (!infile_open(&in, path, NULL, NULL))
         return false;
     const int64_t n = infile_read(&in, head, sizeof head, 0);
     infile_close(&in);
-    return n > 4 && !memcmp(head, magic, 4) &&
-           memmem(head, (size_t)n, attributes, strlen(attributes));
+    return n > 0 && picture_head_is_relume(head, (size_t)n);
 }
 
 static relume_status open_inside(picture_reader **out, const struct opening *s,

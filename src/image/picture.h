@@ -49,8 +49,10 @@ relume_status picture_need_colour(const picture_reader *reader, const char *path
 // Which of `info->channels` are colour, by their names: red, green and blue, else luminance, else
 // the only one unless it is depth or coverage. Without names (NULL): the first ones.
 void picture_find_colour(struct picture_info *info, const char *const *names);
-// Whether first bytes say that `path` is a relume file; a picture's too, its preview.
-bool picture_is_relume(const char *path, const struct relume_log *log);
+// Whether first bytes, `n` of them or those of a file, are a relume file's; a picture's too, its
+// preview.
+bool picture_head_is_relume(const char *head, size_t n);
+bool picture_is_relume(const char *path);
 // What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
 const char *picture_error(const picture_reader *reader);
 void picture_close(picture_reader **reader);

@@ -31,7 +31,13 @@ sum() {
         esac
     done | md5sum
 }
-litter() { find out tmp -name '.relume-*' -prune; find out -mindepth 1 -maxdepth 1 -name 'kept-*'; find tmp -mindepth 1 -maxdepth 1; }
+# A folder that is kept is no litter where a line says so.
+kept() {
+    for k in out/kept-by-relume-* tmp/kept-by-relume-*; do
+        [ ! -e "$k" ] || grep -q "/${k#*/}: this old folder could not be removed" err.txt || echo "$k"
+    done
+}
+litter() { find out tmp -name '.relume-*' -prune; kept; find tmp -mindepth 1 -maxdepth 1 ! -name 'kept-*'; }
 restore() { for f in $outputs; do rm -rf "out/$f" && cp -rp "kept/$f" "out/$f"; done; rm -f out/*.resume; }
 whole() { # each output is the old or the new one; a folder or file alone is exactly one of them
     for f in $outputs; do
@@ -61,7 +67,7 @@ try() {
         whole || complain "$name, $fault: neither old nor new"
     fi
     [ -z "$(litter)" ] || complain "$name, $fault: left: $(litter)"
-    rm -rf out/.relume-* tmp/* tmp/.relume-*
+    rm -rf out/.relume-* out/kept-* tmp/* tmp/.relume-*
     return 0
 }
 
@@ -80,7 +86,8 @@ hunt() {
         done
     done
     n=1
-    while try "read:$n:$EIO" 0 1 3; do n=$((n + step + (step > 1 ? n / 2 : 0))); done
+    # what a file is, the first readings say
+    while try "read:$n:$EIO" 0 1 3; do n=$((n < 4 ? n + 1 : n + step + (step > 1 ? n / 2 : 0))); done
     # file systems without these
     try "exchange:1+:$ENOSYS" 0
     try "exchange:1+:$EINVAL" 0

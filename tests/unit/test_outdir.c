@@ -7,7 +7,9 @@
 #include "base/outdir.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
@@ -165,7 +167,7 @@ static void test_never_removes_others(void **state)
     assert_int_equal(symlink(other, link), 0);
     write_in(".relume", "relume made this folder, 1\n-1 link\n4 link/photo\n");
     assert_int_equal(outdir_open(&dir, path, true, NULL), RELUME_EINVAL);
-    inventory_remove(path, folder);  // without the check: what is not listed is set apart
+    inventory_remove(path, folder, NULL);  // without the check: what is not listed is set apart
     assert_int_equal(access(photo, F_OK), 0);
     assert_false(has("link"));
     assert_int_equal(entries(folder), 2);
@@ -176,6 +178,50 @@ static void test_never_removes_others(void **state)
     test_folder_remove(other);
     test_folder_remove(path);
     assert_int_equal(entries(folder), 0);
+}
+
+static void expect_kept(const struct test_log *log, const char *name, const char *why)
+{
+    char where[100], entry[160];
+    const char *colon = strstr(log->text, ": this old folder could not be removed");
+    assert_int_equal(log->lines, 1);
+    if (!colon || !strstr(log->text, why))
+        fail_msg("expected where it is kept, and '%s'; found '%s'", why, log->text);
+    snprintf(where, sizeof where, "%.*s", (int)(colon - log->text), log->text);
+    snprintf(entry, sizeof entry, "%s/%s", where, name);
+    assert_int_equal(access(entry, F_OK), 0);
+    test_folder_remove(where);
+    assert_int_equal(entries(folder), 0);
+}
+
+// An old folder that cannot be removed stays, and a line says where.
+static void test_kept(void **state)
+{
+    (void)state;
+    struct test_log log;
+    struct rlimit files, none;
+    test_log_init(&log);
+    make("a", false);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &files), 0);
+    none = files;
+    none.rlim_cur = 0;  // its list cannot be opened
+    setrlimit(RLIMIT_NOFILE, &none);
+    inventory_remove(path, folder, &log.log);
+    setrlimit(RLIMIT_NOFILE, &files);
+    expect_kept(&log, "a", strerror(EMFILE));
+
+    outdir *dir;
+    char old[160], name[200];
+    test_log_init(&log);
+    CHECK_OK(outdir_open(&dir, path, false, &log.log));
+    snprintf(old, sizeof old, "%.*sold", (int)(strlen(outdir_path(dir)) - 3), outdir_path(dir));
+    make("a", false);
+    write_in("notes", "mine");
+    assert_int_equal(rename(path, old), 0);
+    snprintf(name, sizeof name, "%s/a", old);
+    outdir_abort(&dir);
+    assert_int_not_equal(access(name, F_OK), 0);
+    expect_kept(&log, "notes", "what was not made with it");
 }
 
 // Two that began when there was nothing: both are whole, the last has the name.
@@ -254,7 +300,7 @@ static void test_put_back(void **state)
     mkdir(own, 0700);
     test_write(lock, "relume, unfinished, 1\nout", 25);
     assert_int_equal(rename(path, old), 0);
-    beside_sweep(folder);
+    beside_sweep(folder, NULL);
     assert_true(has("precious"));
     assert_int_equal(entries(folder), 1);
     test_folder_remove(path);
@@ -301,6 +347,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_whole_or_not_at_all),
         cmocka_unit_test(test_never_removes_others),
+        cmocka_unit_test(test_kept),
         cmocka_unit_test(test_two_writers),
         cmocka_unit_test(test_litter),
         cmocka_unit_test(test_put_back),

@@ -20,7 +20,7 @@ CXX      ?= g++
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wwrite-strings
 COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off \
             -fno-math-errno -fno-trapping-math -ffile-prefix-map=$(CURDIR)=. $(WARNINGS)
-# What hostile files meet should a reader of ours or of a library be wrong. Checked by test_build.sh.
+# What stops hostile files should a reader of ours or of a library be wrong. Checked by test_build.sh.
 release  := -O3 -DNDEBUG -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3 -fstack-protector-strong \
             -fstack-clash-protection
 debug    := -O0
@@ -66,7 +66,7 @@ LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_
 MODULE_CXX := src/image/oiio.cpp
 # The module that is loaded when the first model needs it (src/mesh/mesh_other.h)
 MESHES_C := src/mesh/mesh_assimp.c
-# Built where OpenCV's stitching is (make deps-stitch); opened when photographs are to be stitched
+# Built where OpenCV's stitching is (make deps-stitch); opened to stitch photographs
 OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/include)))
 STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/multiview/stitch.cpp)
 # The program in which foreign files are read (src/base/helper.h); it lies beside the modules

@@ -49,14 +49,14 @@ static void *memory(size_t n, size_t size)
     return p;
 }
 
-static void tell(void *user, enum relume_level level, const char *text)
+static void print(void *user, enum relume_level level, const char *text)
 {
     (void)user;
     (void)level;
     fprintf(stderr, "figures: %s\n", text);
 }
 
-static const struct relume_log to_stderr = {.message = tell};
+static const struct relume_log to_stderr = {.message = print};
 
 // ---------------------------------------------------------------- files
 

@@ -53,7 +53,7 @@ echo "An attic from its middle: a panorama under 144 lights"
 "$relume" synth attic -o "$out/attic" --lights 144 --hemisphere --size 384 --samples 6
 "$relume" encode "$out/attic" -o "$out/attic.exr" --basis table
 
-# A sun among six weak lights that stand for the sky: any number of lights costs one pass.
+# A sun among six weak lights that imitate the sky: any number of lights costs one pass.
 attic() { # what, file, sun, options...
     what=$1 file=$2 sun=$3
     shift 3

@@ -171,7 +171,7 @@ grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.
     }
     END { exit bad }'
 
-# What draws is told what to show by a frame_request, and does not see the state that events change.
+# What draws gets a frame_request, which holds what to show, and does not see the state that events change.
 drawn=$(grep -rlE 'struct app\b[^_]' viewer/gl viewer/relit viewer/glare viewer/draw || true)
 [ -z "$drawn" ] || {
     echo "layers: uses struct app; expected struct frame_request:" $drawn >&2

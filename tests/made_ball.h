@@ -36,7 +36,7 @@ static inline void made_ray(const struct made_scene *s, double x, double y,
     *ray = vec3_unit(vec3_sub(on, *from));
 }
 
-// Whether the ray meets ball `b`, where and with which normal.
+// Whether the ray hits ball `b`, where and with which normal.
 static inline bool made_hit(const struct made_scene *s, int b, struct relume_vec3 from,
                             struct relume_vec3 ray, struct relume_vec3 *at, struct relume_vec3 *n)
 {
@@ -64,7 +64,7 @@ static inline double made_glint(const struct made_scene *s, struct relume_vec3 l
                                                                                    : 0.0;
 }
 
-// Where a ray that points down meets the table: bright, patterned, with the shadows of the balls,
+// Where a ray that points down hits the table: bright, patterned, with the shadows of the balls,
 // up to some three units from the middle.
 static inline double made_table(const struct made_scene *s, struct relume_vec3 from,
                                 struct relume_vec3 ray)

@@ -102,7 +102,7 @@ RELUME_API struct relume_vec3 relume_ball_ray(const struct relume_ball_camera *c
                                               double y);
 
 // The point nearest to `n` lines from `origin` along unit `direction`, by least squares, and its
-// standard error. RELUME_EUNFIT when the lines are too parallel to meet or fewer than 2.
+// standard error. RELUME_EUNFIT when the lines are nearly parallel or fewer than 2.
 RELUME_RESULT relume_status relume_light_triangulate(struct relume_vec3 *position, double *sigma,
                                                      const struct relume_vec3 *origin,
                                                      const struct relume_vec3 *direction, int n);

@@ -43,7 +43,7 @@ typedef enum relume_status {
 } relume_status;
 
 // Params structs begin with their size, which the macro of the same name fills: a library that
-// knows more fields than its caller takes the default for them. A size of 0 stands for all fields.
+// knows more fields than its caller takes the default for them. A size of 0 means all fields.
 #define RELUME_SIZED(type) .struct_size = sizeof(struct type)
 
 // The RELUME_VERSION_NUMBER of the library that is linked, which may be newer than the headers.

@@ -55,8 +55,8 @@ struct relume_direction_blend {
     // one of its azimuth on their rim.
     struct relume_vec3 direction;
     double rim;  // z asked for over z of `direction`: below 1 only below the rim, never below 0
-    // Of the sum of weight x direction, at most 1: what is linear in the direction, as n.l, comes
-    // out of interpolation so much too small.
+    // Of the sum of weight x direction, at most 1: interpolation multiplies what is linear in the
+    // direction, as n.l, by this length.
     double length;
 };
 // The three around a unit direction.
@@ -217,8 +217,8 @@ RELUME_API const struct relume_btf_fitted_info *relume_btf_fitted_info(
 
 // What a graphics processor has to do for a pixel between the measured directions (2003 paper,
 // Tab. 3): vector operations (of up to four numbers; a power counts as one) and texture fetches (up
-// to four numbers or 16 bytes of one place, bilinear ones as one). Looking up which directions
-// stand for one costs two fetches, from cube maps (thesis, chapter 9).
+// to four numbers or 16 bytes of one place, bilinear ones as one). Looking up the measured
+// directions around one costs two fetches, from cube maps (thesis, chapter 9).
 struct relume_btf_cost {
     int ops, fetches;              // once
     int light_ops, light_fetches;  // and for each light

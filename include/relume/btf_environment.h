@@ -126,10 +126,10 @@ RELUME_API void relume_btf_oriented_light_evaluate(const relume_btf_oriented_lig
 
 // ---------------------------------------------------------------- a material in any orientation
 
-// For surfaces that bend. Between measured lights values are interpolated, so that a light stands
-// for the directions around it; here it stands for a cosine lobe of the same integral, mean
-// direction and mean cosine, and the radiance under that lobe is one lookup: an orientation costs
-// as many as there are lights, and none where a model of lobes is looked up itself.
+// For surfaces that bend. Between measured lights values are interpolated, so that a light
+// represents the directions around it; here by a cosine lobe of the same integral, mean direction
+// and mean cosine, and the radiance under that lobe is one lookup: an orientation costs as many as
+// there are lights, and none where a model of lobes is looked up itself.
 struct relume_btf_light_lobe {
     struct relume_vec3 axis;  // unit, in the frame of the sample
     double exponent;          // [1, 128]
@@ -148,7 +148,7 @@ RELUME_API void relume_btf_environment_destroy(relume_btf_environment **sky);
 // [lights]; they belong to the sky.
 RELUME_API const struct relume_btf_light_lobe *relume_btf_environment_cones(
     const relume_btf_environment *sky);
-// What light number `i` of the model stands for in an orientation:
+// The part of the environment that light number `i` of the model represents in an orientation:
 // relume_btf_oriented_light_weights.
 RELUME_API void relume_btf_environment_weight(float rgb[3], const relume_btf_environment *sky,
                                               const struct relume_btf_frame *frame, int i);

@@ -182,7 +182,7 @@ RELUME_API bool relume_capture_pole_y(const relume_capture *capture);
 RELUME_API bool relume_capture_hemispherical(const relume_capture *capture);
 
 enum { RELUME_DIGEST = 17 };
-// A text that tells captures apart: of the lights, the geometry and the transfer, and of every
+// A fingerprint of the capture: of the lights, the geometry and the transfer, and of every
 // image its size and some bytes from its middle; not of names and dates. An input status,
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_capture_digest(char text[RELUME_DIGEST],

@@ -183,7 +183,7 @@ struct relume_coder_info {
 RELUME_API const struct relume_coder_info *relume_coder_info(const relume_coder *coder);
 
 // The mean becomes the last of the functions, one more than before: its coefficient, a plane behind
-// the others, is 1 where the mean counts and 0 where nothing is to be seen; encoding gives 1. For a
+// the others, is 1 where the mean counts and 0 on the background; encoding gives 1. For a
 // coder that nobody else uses yet; nothing happens to one without a mean, or a robust one.
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_coder_append_mean(relume_coder *coder);

@@ -67,7 +67,7 @@ RELUME_RESULT relume_status relume_captured_lights_load(struct relume_captured_l
                                                         const struct relume_log *log);
 RELUME_API void relume_captured_lights_destroy(struct relume_captured_lights *list);
 
-// Only the directions; `*out` is to be freed with relume_free().
+// Only the directions; free `*out` with relume_free().
 RELUME_RESULT relume_status relume_captured_lights_read(struct relume_vec3 **out, int *n,
                                                         const char *path,
                                                         const struct relume_log *log);

@@ -56,7 +56,7 @@ struct relume_frame_params {
     const struct relume_log *log;
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
-    // Where near lights meet views without depth: this far along every ray, world units; default:
+    // Near lights on views without depth: the surface lies this far along every ray; default:
     // planar views lie on z = 0, others are refused.
     double assume_depth;
     enum relume_pass pass;  // of every view, before they become a frame

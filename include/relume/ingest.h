@@ -34,7 +34,7 @@ struct relume_slab_ingest_params {
     const char *names;
     double baseline;         // world units from the leftmost to the rightmost camera; default 1
     double baseline_v;       // from the highest to the lowest; default: where names hold positions
-                             // by these, else what the photographs tell
+                             // by these, else measured in the photographs
     double distance;         // from the st plane to the cameras; default 3
     double st_z;             // height of the st plane; default 0
     double window;           // width of the st window; default 2
@@ -54,11 +54,11 @@ struct relume_slab_ingest_params {
 // name in which two numbers vary (row and column), or one (row by row of a square grid: Lytro,
 // HCI). Rows count downwards, columns to the right as the cameras see it; u grows to the right, v
 // upwards. Cameras of a grid agree on depth only if rows and columns run as they should or both the
-// other way: the first is checked, and the log told; the second, a world turned inside out (what
+// other way: the first is checked and logged; the second, a world turned inside out (what
 // is near, below, to the left of a camera moves up and right where it should hide what is behind),
 // shows by what hides what, which is looked at and mentioned, no more.
-// Where neither names nor `baseline_v` say how far apart rows are, the photographs are asked: the
-// log tells what they say, or that rows are assumed to be as far apart as columns.
+// Where neither names nor `baseline_v` say how far apart rows are, it is measured in the
+// photographs; the log has the result, or that rows are assumed to be as far apart as columns.
 // The scale of depth follows from baseline and distance, which no photograph shows.
 // RELUME_EINVAL (params), an input status (names that do not match, a camera missing, two for one
 // place, sizes that differ), RELUME_EIO, RELUME_ENOMEM.

@@ -190,7 +190,7 @@ RELUME_API const struct relume_environment_cell *relume_environment_cells(
 RELUME_API struct relume_vec3 relume_environment_turn(struct relume_vec3 direction,
                                                       double rotate_deg);
 
-// `n` directional lights that stand for an environment light, drawn by luminance (spread
+// `n` directional lights that replace an environment light, drawn by luminance (spread
 // evenly; equal seeds give equal lights) and of the same total.
 RELUME_RESULT relume_status relume_environment_sample(struct relume_light *out, int n,
                                                       const struct relume_light *environment,

@@ -116,7 +116,7 @@ struct relume_object_light {
 enum { RELUME_OBJECT_LIGHTS_MOST = 64 };  // of one light
 // The lights as samples, `*n` of them: areas in as many patches as the objects' distance asks for,
 // at most 36; environments in RELUME_OBJECT_LIGHTS_MOST directional lights
-// (relume_environment_sample). `*out` is to be freed with relume_free(). RELUME_ENOMEM;
+// (relume_environment_sample). Free `*out` with relume_free(). RELUME_ENOMEM;
 // RELUME_EINVAL for a light that relume_light_check refuses.
 RELUME_RESULT relume_status relume_objects_lights(struct relume_object_light **out, int *n,
                                                   const relume_objects *objects,

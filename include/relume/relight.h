@@ -178,7 +178,7 @@ RELUME_RESULT relume_status relume_relight_rgba8(uint8_t *out, const struct relu
 // themselves. Sums over books are in the file's domain: linear under all `n` lights, or display
 // under one directional light whose colour is left out. A single codebook gives linear values under
 // all lights in either domain. Near lights are left out. RELUME_EINVAL when there is no such book
-// or when several books in the display domain meet anything but one directional light;
+// or when there are several books in the display domain and anything but one directional light;
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_relight_book(float *rgb, const struct relume_codes *codes,
                                                 int book, const struct relume_light *lights, int n,

@@ -1,4 +1,4 @@
-// slab_set.h - several light slabs around an object, blended where they meet
+// slab_set.h - several light slabs around an object, blended where they overlap
 //
 // Each slab is one of view.h in a frame of its own (struct relume_geometry, `pose`); a frame looks
 // at the object from anywhere: every ray of it is looked up in the slabs whose cameras it passes.
@@ -67,10 +67,10 @@ RELUME_API struct relume_window relume_slab_window(const struct relume_geometry 
                                                    struct relume_vec3 eye);
 
 // A lens before the eye, parallel to the window: a disc of the diameter `aperture`, world units,
-// with the plane in focus so much nearer to the eye than the window's.
+// with the plane in focus `focus` nearer to the eye than the window's.
 // Whether that can be: `aperture` not negative, the plane before the eye, all finite.
 RELUME_API bool relume_lens_fits(const struct relume_window *window, double aperture, double focus);
-// How many pinholes stand for it in a picture so many pixels wide: by the blur of what lies half
+// How many pinholes replace it in a picture of this width: by the blur of what lies half
 // as far again as the window, 8 to 64; 1 without an aperture.
 RELUME_API int relume_lens_points(const struct relume_window *window, double aperture, double focus,
                                   int width);
@@ -86,8 +86,8 @@ RELUME_API double relume_window_distance(const struct relume_window *window);
 RELUME_API double relume_slab_weight(const relume_slab *slab, const double uv[2],
                                      const double st[2]);
 
-// Mark in needed[views] what a frame so many pixels wide can touch; returns how many, 0 when
-// nothing is to be seen.
+// Mark in needed[views] what a frame of this width can touch; returns how many, 0 when
+// it sees nothing.
 RELUME_API int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
                                      const struct relume_window *window, int width,
                                      const struct relume_view_params *params);
@@ -105,7 +105,7 @@ RELUME_API bool relume_slab_set_passes(const relume_slab_set *slabs,
 // of what the pinholes of that lens show, each as above, of those that show anything. `views` and
 // disparities are by view number, read where needed; `out` has the wanted size already.
 // RELUME_EINVAL for a needed view or disparity that is missing or of another size, for a lens that
-// does not fit, and when nothing is to be seen; RELUME_ENOMEM.
+// does not fit, and when the frame sees nothing; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_set_frame(struct relume_image *out,
                                                   const relume_slab_set *slabs,
                                                   const struct relume_window *window,

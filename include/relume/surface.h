@@ -140,7 +140,7 @@ RELUME_API void relume_btf_surface_evaluate(const relume_btf_surface *surface, d
                                             double level, const struct relume_btf_ray *ray,
                                             float rgb[3]);
 
-// Where a pixel meets the surface: its centre, and the way to the centres of the pixels to the
+// Where a pixel sees the surface: its centre, and the way to the centres of the pixels to the
 // right and below, texels.
 struct relume_btf_footprint {
     double x, y;               // the centre

@@ -85,9 +85,9 @@ RELUME_API struct relume_slab_grid relume_slab_grid(const relume_slab *slab);
 // The middle of the uv grid, on the uv plane.
 RELUME_API struct relume_vec3 relume_slab_middle(const relume_slab *slab);
 
-// Where the ray from `eye` through (s, t) on the st plane meets the uv plane. An eye on the uv
-// plane meets it in itself. The eye may stand before, on or behind the uv plane; on the st plane or
-// beyond it there is no light that a camera has seen, and the answer is false.
+// Where the ray from `eye` through (s, t) on the st plane crosses the uv plane. An eye on the uv
+// plane is its own crossing. The eye may stand before, on or behind the uv plane; on the st plane
+// or beyond it there is no light that a camera has seen, and the answer is false.
 RELUME_API bool relume_slab_uv(double uv[2], const relume_slab *slab, struct relume_vec3 eye,
                                double s, double t);
 

@@ -84,7 +84,7 @@ relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
 // Remember the grey region of a photograph; make its mean the colour of all lights.
 relume_status acquire_add_grey(struct acquisition *s, const struct relume_image *image);
 relume_status acquire_whiten(struct acquisition *s);
-// What can be told wrong of the pictures themselves: other scenes, clipping, blackness.
+// What is wrong with the pictures themselves: other scenes, clipping, blackness.
 relume_status acquire_check_pictures(struct acquisition *s);
 // The photograph that shows the balls under a shot's light, linear.
 relume_status acquire_load_balls(struct relume_image *out, const struct acquisition *s, int i);

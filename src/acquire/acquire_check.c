@@ -1,4 +1,5 @@
-// acquire_check.c - what can be told wrong before anybody looks at the result
+// acquire_check.c - warns of faults of the photographs and lights before anybody looks at the
+// result
 #include "acquire/acquire.h"
 
 #include "base/log.h"

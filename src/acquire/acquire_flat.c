@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// What a photograph is to be multiplied by: that makes a photograph of ones of an even surface.
+// The factors by which each photograph is multiplied; they turn that of an even surface into ones.
 static relume_status make_gain(const struct acquisition *s, struct relume_image *gain,
                                const char *path)
 {

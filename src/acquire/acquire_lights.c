@@ -75,12 +75,12 @@ static const char *objection(const struct relume_ball_light *l, bool matte)
 }
 
 enum { CANDIDATES = 16, TRIALS = 6 };
-static const double DOUBTFUL = 3.0;  // degrees: a matte ball that tells less may not be one
-static const double NO_LAMP = 90.0;  // degrees that count where a matte ball tells nothing
+static const double DOUBTFUL = 3.0;  // degrees of error: a matte ball with more may not be one
+static const double NO_LAMP = 90.0;  // degrees that count where a matte ball shows no light
 
-// How badly candidates tell the lamp, in a few photographs spread over all: mirrors 0, or 1 where
-// most show none (a round stone does in few of them); matte ones the error in degrees of what they
-// tell, which is large where something round is shaded as no white ball is.
+// How badly candidates show the lamp, in a few photographs spread over all: mirrors 0, or 1 where
+// most show none (a round stone does in few of them); matte ones the error in degrees of the
+// direction they show, which is large where something round is shaded as no white ball is.
 static relume_status try_candidates(double *bad, const struct acquisition *s,
                                     const struct relume_ball *ball, int n)
 {
@@ -108,15 +108,15 @@ static relume_status try_candidates(double *bad, const struct acquisition *s,
     return RELUME_OK;
 }
 
-struct telling {
+struct candidates {
     int n;
     struct relume_ball ball[MOST_BALLS + 2 * CANDIDATES];
     double bad[MOST_BALLS + 2 * CANDIDATES];
 };
 
-// Take the candidates that tell the lamp best and do not overlap, the first of equals; returns how
-// badly the last of them tells it, infinity where there are too few.
-static double take_best(struct relume_acquisition *out, const struct telling *t)
+// Take the candidates that show the lamp best and do not overlap, the first of equals; returns how
+// badly the last of them shows it, infinity where there are too few.
+static double take_best(struct relume_acquisition *out, const struct candidates *t)
 {
     double worst = 0.0;
     bool used[MOST_BALLS + 2 * CANDIDATES] = {false};
@@ -136,7 +136,7 @@ static double take_best(struct relume_acquisition *out, const struct telling *t)
     return worst;
 }
 
-static relume_status add_candidates(struct telling *t, const struct acquisition *s,
+static relume_status add_candidates(struct candidates *t, const struct acquisition *s,
                                     const struct relume_image *picture, int most,
                                     const struct relume_ball_params *params)
 {
@@ -150,7 +150,7 @@ static relume_status add_candidates(struct telling *t, const struct acquisition 
 }
 
 // Outlines instead of horizons of tables, which are smaller, so that lamps look wider by them;
-// *bad: how badly they tell the lamp then.
+// *bad: how badly they show the lamp then.
 static relume_status seek_tables(struct acquisition *s, double *bad)
 {
     double each[MOST_BALLS];
@@ -166,13 +166,13 @@ static relume_status seek_tables(struct acquisition *s, double *bad)
     return status;
 }
 
-// The circles that tell the lamp best. Where a patterned table hides outlines, in how light changes
-// they show: there the pattern drops out. Where too few tell the lamp at all, others are taken, so
-// that what is wrong with them is told.
-static relume_status find_telling(struct acquisition *s, const struct relume_ball_params *params)
+// The circles that show the lamp best. Where a patterned table hides outlines, look at how light
+// changes from photograph to photograph: there the pattern drops out. Where too few show the lamp
+// at all, take others, so that the message can name what is wrong with them.
+static relume_status find_best(struct acquisition *s, const struct relume_ball_params *params)
 {
     struct relume_acquisition *out = s->out;
-    struct telling t = {0};
+    struct candidates t = {0};
     relume_status status = add_candidates(&t, s, &s->mean, out->balls + CANDIDATES, params);
     double bad = take_best(out, &t);
     if (!status)
@@ -222,7 +222,7 @@ static relume_status find_balls(struct acquisition *s)
                                          .peak = s->p.matte ? NULL : &s->peak};
     relume_status status = mask.data
                                ? relume_ball_find(out->ball, out->balls, &s->mean, &s->camera, &p)
-                               : find_telling(s, &p);
+                               : find_best(s, &p);
     if (status == RELUME_EUNFIT)
         status = no_ball(s);
     relume_image_destroy(&mask);
@@ -282,7 +282,7 @@ static relume_status look_all(const struct acquisition *s, struct relume_ball_li
     return status;
 }
 
-// What the balls tell of the lamp of photograph `i`; `why` the last of them does not.
+// The directions in which the balls show the lamp of photograph `i`; `why` the last one shows none.
 static relume_status gather(struct acquisition *s, int i, const struct relume_ball_light *light,
                             struct ball_lights *to, const char **why)
 {
@@ -310,7 +310,7 @@ static relume_status gather(struct acquisition *s, int i, const struct relume_ba
     return status;
 }
 
-// The mean direction; several balls tell its error by how they disagree.
+// The mean direction; its error is how far several balls disagree.
 static void average(struct shot *shot, const struct ball_lights *seen)
 {
     vec3 sum = vec3_of(0.0, 0.0, 0.0);
@@ -536,8 +536,8 @@ static relume_status lights_from_file(struct acquisition *s)
 
 // ---------------------------------------------------------------- both
 
-// Photographs of other exposures show their lights brighter or darker; what a matte ball tells
-// includes that.
+// Photographs of other exposures show their lights brighter or darker; the brightness that a matte
+// ball measures includes that.
 static relume_status weigh_exposures(struct acquisition *s)
 {
     double least = INFINITY, most = 0.0, sum = 0.0;

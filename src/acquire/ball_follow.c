@@ -100,7 +100,7 @@ static void drop_weak(const struct follower *f)
             f->point[i].weight = 0.0;
 }
 
-// Share of the outline with an edge on it, and how well that tells the middle.
+// Share of the outline with an edge on it, and how well that fixes the middle.
 static void judge(const struct follower *f)
 {
     struct relume_ball *b = f->ball;

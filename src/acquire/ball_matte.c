@@ -1,4 +1,4 @@
-// ball_matte.c - a matte white ball tells the light by its shading
+// ball_matte.c - the direction of a light from the shading of a matte white ball
 //
 // Lit pixels show I (n.L) + A: four unknowns, the lamp's vector and what light there is besides.
 // Reweighted least squares (Cauchy) leaves out the shadow line, highlights and reflections.

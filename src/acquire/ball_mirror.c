@@ -1,6 +1,6 @@
 // ball_mirror.c - the lamp's reflection in a mirror ball
 //
-// Every pixel of the spot stands for a direction, v reflected at the ball: l = 2 (n.v) n - v. On an
+// Every pixel of the spot shows a direction, v reflected at the ball: l = 2 (n.v) n - v. On an
 // orthographic picture equal areas are equal solid angles (dw = 4 dA / r^2), so that the plain mean
 // of the pixels' directions is the middle of the lamp. Clipped pixels weigh alike, those on the
 // spot's slope by how far they stand above half of the peak.
@@ -13,7 +13,7 @@ static const double RIM = 0.975;         // of the radius
 static const double BORDER = 1.0;        // pixels: what lies behind the ball mixes in
 static const double FULL = 0.15;         // share of the disc
 static const double SECOND = 0.1;        // of the first spot's light
-static const double PIXEL_SIGMA = 0.15;  // how well a spot's middle is told, pixels
+static const double PIXEL_SIGMA = 0.15;  // error of a spot's middle, pixels
 
 const char *relume_ball_finding_text(enum relume_ball_finding finding)
 {

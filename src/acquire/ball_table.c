@@ -2,7 +2,7 @@
 //
 // From above such a ball shows the table in a ring inside its outline, and beyond the table's edge
 // a disc whose rim is often clearer than the outline. But the ring is a picture of the table around
-// the ball, by the law of reflection: each outline foretells which pixel of the ring shows which of
+// the ball, by the law of reflection: each outline predicts which pixel of the ring shows which of
 // the table. The outline is the one whose ring agrees with the table best, over all photographs,
 // whose shadows move; the mirror's colour and how brightly the table is lit drop out of the
 // correlation of log light. The table is taken to be level: seen along its normal, somewhere below
@@ -22,7 +22,7 @@ static const double SMALLEST = 1.06, WIDEST = 1.5;  // of the circle found; the 
 static const double PROMISING = 0.45;               // correlation on coarse rings, off the peak
 // Right outlines of balls of 40 pixels and more agree to 0.8; by chance the best of all outlines
 // reaches 0.6 where there are shadows, 0.7 on cloth with an even pattern. Of what moves, the
-// shadows, right ones tell to 0.88, wrong ones to 0.67.
+// shadows, the right ring agrees to 0.88, wrong ones to 0.67.
 static const double LEAST = 0.7, LEAST_MOVING = 0.78;
 // And shadows that lie across the circle agree with themselves: what is explained as well by the
 // table that goes on behind a circle is no reflection. (Right ones: 0.35 and more.)

@@ -1,4 +1,4 @@
-// height.c - the height whose slopes the normals tell
+// height.c - the height of a surface from its normals
 //
 // Slopes p = -n_x / n_z to the right and q = -n_y / n_z upwards stand between neighbouring pixels
 // (mean of both ends). The height z minimises

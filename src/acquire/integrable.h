@@ -1,4 +1,4 @@
-// integrable.h - which linear map of lights makes the surface that they tell one of heights
+// integrable.h - the linear map of the lights for which the normals belong to a surface of heights
 #ifndef ACQUIRE_INTEGRABLE_H
 #define ACQUIRE_INTEGRABLE_H
 

@@ -198,7 +198,7 @@ static bool solve_along(double b[3], const double m[9], vec3 light)
     return square > 0.0 && along > 0.0;
 }
 
-// Reweighted least squares of one light over the pixels that it meets.
+// Reweighted least squares of one light over the pixels that it lights.
 static bool light_from(vec3 *out, const struct refiner *r, size_t item, const struct half *half)
 {
     vec3 light = *out;
@@ -292,13 +292,13 @@ static double degrees_between(vec3 a, vec3 b)
     return vec3_angle(a, b) * 180.0 / M_PI;
 }
 
-// By how much lights as one half tells them differ from what both do, RMS; `sorted` [pixels].
-// Infinite where more than a quarter of the lights is told by one half alone.
+// By how much lights from one half of the surface differ from those of both, RMS; `sorted`
+// [pixels]. Infinite where one half alone gives more than a quarter of the lights.
 static double disagreement(const struct refiner *r, vec3 axis, double *sorted)
 {
     const vec3 back = vec3_scale(axis, -1.0);
     size_t n = 0;
-    int told = 0;
+    int counted = 0;
     double sum = 0.0;
     for (size_t k = 0; k < r->pixels; k++)
         if (r->known[k])
@@ -313,9 +313,9 @@ static double disagreement(const struct refiner *r, vec3 axis, double *sorted)
             continue;
         const double off = 0.5 * degrees_between(a, b);
         sum += off * off;
-        told++;
+        counted++;
     }
-    return 4 * told < 3 * r->lights ? (double)INFINITY : sqrt(sum / told);
+    return 4 * counted < 3 * r->lights ? (double)INFINITY : sqrt(sum / counted);
 }
 
 static relume_status judge(bool *believed, const struct refiner *r, const vec3 *given,

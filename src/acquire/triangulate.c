@@ -1,4 +1,4 @@
-// triangulate.c - where lines that point to one lamp meet
+// triangulate.c - the place of a lamp from several lines that point to it
 //
 // The point with the least sum of squared distances solves sum (1 - d d') x = sum (1 - d d') o; its
 // covariance is the inverse of that matrix times the variance of the distances.
@@ -37,7 +37,7 @@ relume_status relume_light_triangulate(struct relume_vec3 *position, double *sig
     for (int i = 0; i < n; i++) {
         const vec3 to = vec3_sub(*position, origin[i]);
         const double along = vec3_dot(to, direction[i]);
-        if (along <= 0.0)  // the lines meet behind the balls
+        if (along <= 0.0)  // the lines cross behind the balls
             return RELUME_EUNFIT;
         squares += vec3_dot(to, to) - along * along;
     }

@@ -101,8 +101,8 @@ static bool was_written(int fd, char name[NAME])
     return n == 0 || (n > 0 && !strncmp(text, HEADER, sizeof HEADER - 1));
 }
 
-// Its lock, taken; -1 when it is not ours or somebody works there. A file system without locks
-// cannot tell: then nobody's work is touched.
+// Its lock, taken; -1 when it is not ours or somebody works there. On a file system without
+// locks nobody knows: then nobody's work is touched.
 static int take(const beside *b, char name[NAME])
 {
     struct stat s;

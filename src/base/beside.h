@@ -5,7 +5,7 @@
 //                            old    a folder that it replaces, where names cannot be exchanged
 //
 // The name does not depend on the output's, which may have all the 255 bytes that a name may have.
-// A process that is killed lets its lock go, so whoever next writes into DIR can tell what nobody
+// A process that is killed lets its lock go, so whoever next writes into DIR knows what nobody
 // works on any more, and removes it.
 #ifndef BASE_BESIDE_H
 #define BASE_BESIDE_H

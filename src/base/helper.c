@@ -58,7 +58,7 @@ static bool answer_comes(int channel, double processor_s, double *waited_s)
 
 // ---------------------------------------------------------------- the program
 
-// This process' environment, with libraries of mathematics told to start no threads.
+// This process' environment, in which libraries of mathematics start no threads.
 static char **quiet_environment(void)
 {
     static char quiet[][32] = {"OPENBLAS_NUM_THREADS=1", "OMP_NUM_THREADS=1"};

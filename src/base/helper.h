@@ -1,7 +1,7 @@
 // helper.h - work on files that may be made to do harm: in processes of their own
 //
 // Readers of foreign formats run in relume-helper, a program beside the modules. One is started
-// when the first such file is met and loads what it needs once (a third of a second); then it forks
+// for the first such file and loads what it needs once (a third of a second); then it forks
 // processes that have the files they are given, little memory and time, and no way to write, to
 // open anything else or to reach the network (src/helper). What crashes there is one sentence here.
 //
@@ -34,7 +34,7 @@ struct helper_job {
     double processor_s, waited_s;
 };
 
-// A place for the file `path`, whose `processor_s` is to be set. RELUME_ESYSTEM with a sentence,
+// A place for the file `path`; the caller sets its `processor_s`. RELUME_ESYSTEM with a sentence,
 // RELUME_ENOMEM.
 relume_status helper_start(struct helper_job *job, enum helper_kind kind, const char *path,
                            const struct relume_log *log);
@@ -80,7 +80,7 @@ struct helper_order {
     pid_t ended;       // not 0: how this process ended is asked
 };
 struct helper_reply {
-    pid_t process;  // 0: none, `why` tells
+    pid_t process;  // 0: none, `why` says why
     int how;        // as waitpid has it
     int error;      // what the machine lacks: ENOMEM, EMFILE, ...; 0: nothing
     char why[HELPER_WHY];

@@ -25,7 +25,7 @@ struct infile {
     struct infile *newer, *older;  // among those that have a descriptor, by their last use
 };
 
-// What sentences call an input or output: its path, or what stands for one.
+// What sentences call an input or output: its path, or the name given in place of one.
 const char *infile_name(const char *path);
 
 // The input `path` of the log's context (context.h), or `from`, where that is not NULL. A file is

@@ -57,7 +57,7 @@ static const struct {
     [RELUME_EDAMAGED] = {"damaged", "damaged input", 1},
     [RELUME_ELIMIT] = {"limit", "input over the limits", 1},
     [RELUME_EUNSUPPORTED] = {"unsupported", "input of a kind that is not supported", 1},
-    [RELUME_EUNFIT] = {"unfit", "input that does not do here", 1},
+    [RELUME_EUNFIT] = {"unfit", "input that cannot be used here", 1},
     [RELUME_EINVAL] = {"usage", "invalid argument", 2},
     [RELUME_ENOMEM] = {"memory", "out of memory", 3},
     [RELUME_EIO] = {"output", "output cannot be written", 3},

@@ -45,7 +45,7 @@ static relume_status fail(const outfile *f, const char *what)
 
 // ---------------------------------------------------------------- devices
 
-// The descriptor that such a name stands for, -1 for other names. What it leads to may be a file
+// The descriptor that such a name means, -1 for other names. What it leads to may be a file
 // that somebody appends to: it is written, not replaced.
 static int descriptor_of(const char *path)
 {

@@ -23,8 +23,8 @@ relume_status outfile_commit(outfile **file);
 // Drop what was written. NULL is fine.
 void outfile_abort(outfile **file);
 
-// What stands where a file is to be: RELUME_EIO with a sentence when it is a folder or may not be
-// written, RELUME_EINVAL when it is read. `path` is what the sentence calls it.
+// What stands where a file will be written: RELUME_EIO with a sentence when it is a folder or may
+// not be written, RELUME_EINVAL when it is read. `path` is what the sentence calls it.
 relume_status outfile_check(const char *target, const char *path, const struct relume_log *log);
 
 // A whole file in one call, or a whole output.

@@ -233,7 +233,7 @@ double sandbox_time_used(void)
            1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
-// At the softer limit comes a signal that tells what happened, at the hard one merely the end.
+// At the softer limit comes a signal that the caller can recognise, at the hard one merely the end.
 void sandbox_time(double seconds)
 {
     struct rlimit l;

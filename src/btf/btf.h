@@ -56,12 +56,12 @@ int btf_half_side(int side);
 void btf_gather(const relume_btf *btf, size_t first, size_t count, float *out);
 
 // Call `body` for every texel with its values [view][light][3]; which worker takes one is open.
-// RELUME_ENOMEM, RELUME_ECANCEL; `what` names the work for progress, NULL: not told.
+// RELUME_ENOMEM, RELUME_ECANCEL; `what` names the work for progress, NULL: no progress.
 relume_status btf_for_texels(const relume_btf *btf, int threads, const struct relume_log *log,
                              const char *what, void *context,
                              void (*body)(void *context, size_t texel, const float *values));
 
-// Unit vectors of a JSON array; `*out` is to be freed.
+// Unit vectors of a JSON array; the caller frees `*out`.
 struct json_t;
 relume_status btf_read_directions(const struct json_t *array, const char *path, const char *what,
                                   const struct relume_limits *limits, vec3 **out, int *count,

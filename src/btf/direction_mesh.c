@@ -82,7 +82,8 @@ static bool weigh(const vec3 across[3], vec3 d, double weight[3])
     return true;
 }
 
-// The triangle that `d` meets: the one whose smallest weight is largest, for rays through edges.
+// The triangle that `d` points into: the one whose smallest weight is largest, for rays through
+// edges.
 static int search(const relume_direction_mesh *mesh, vec3 d, double weight[3])
 {
     int best = 0;

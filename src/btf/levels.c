@@ -17,7 +17,7 @@ struct halving {
     relume_btf *to;
 };
 
-// The texels [out[0], out[1]) that texel `i` of a side half as long stands for: two, at an odd end
+// The texels [out[0], out[1]) whose mean texel `i` of a side half as long is: two, at an odd end
 // three.
 static void span(int i, int side, int out[2])
 {

@@ -87,7 +87,7 @@ static const struct signature {
 enum { VERSIONS = 4 };
 
 // An 'R' behind the signature says that rotations follow. A header without it may begin with the
-// same byte, which its version then tells.
+// same byte: then its version decides.
 static bool has_rotations(const struct ubo *u)
 {
     if (u->size - u->at < 9 || u->bytes[u->at] != 'R')
@@ -325,7 +325,7 @@ static bool read_extension(struct ubo *u)
 static void read_together(struct ubo *u)
 {
     const bool logarithm = u->extended && read_extension(u);
-    word(u, "its values");  // components, told twice
+    word(u, "its values");  // components, which the file holds twice
     u->colours = ubo_colours_find(logarithm ? UBO_LOG_RGB : UBO_RGB);
     struct ubo_plane *p = u->plane;
     read_factors(u, p, UBO_COLOURS);

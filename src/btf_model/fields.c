@@ -10,7 +10,7 @@
 #include <string.h>
 
 enum { NEAR = 6 };
-// Where a further lobe starts: as sharp as a dozen lights around the peak can tell.
+// Where a further lobe starts: as sharp as a dozen lights around the peak can resolve.
 static const double START_N = 10.0;
 // A lobe may stand this much over the brightest sample: peaks fall between lights.
 static const double OVERSHOOT = 1.5;

@@ -86,7 +86,7 @@ static int least(size_t a, size_t b)
     return (int)(a < b ? a : b);
 }
 
-// As many components as there are pictures to be told apart.
+// As many components as there are pictures.
 static int most_components(const relume_btf_fitted *m)
 {
     const int most = m->model->most_components ? m->model->most_components : 256;
@@ -297,7 +297,7 @@ const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *m, int
     return m;
 }
 
-// What stands for a direction where the model is not gridded: itself.
+// The blend of a model without a grid: the direction itself.
 static struct relume_direction_blend alone(const struct relume_direction_blend *b)
 {
     return (struct relume_direction_blend){

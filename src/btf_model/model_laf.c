@@ -59,7 +59,7 @@ struct texel {
     double albedo[3][UNKNOWNS];  // of each colour: rho_d, rho_j
 };
 
-// What most pairs reach is taken for Lambertian; lobes stand on it.
+// What most pairs reach is treated as Lambertian; lobes add to it.
 static void subtract_diffuse(const struct work *w, struct texel *s)
 {
     const size_t n = w->fitted_count;
@@ -240,7 +240,7 @@ static relume_status fit_all(struct fitting *f, bool scaled)
     relume_btf_fitted *m = f->out;
     const size_t pairs = model_pairs(m), lights = (size_t)m->lights;
     struct work w = {.m = m, .scaled = scaled};
-    // odd strides meet every light, whatever the size of the set
+    // odd strides come to every light, whatever the size of the set
     for (w.stride = 1; (pairs + w.stride - 1) / w.stride > FITTED_PAIRS || w.stride % 2 == 0;)
         w.stride++;
     w.fitted_count = (pairs + w.stride - 1) / w.stride;

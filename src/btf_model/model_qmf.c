@@ -281,7 +281,7 @@ static bool is_sound(const relume_btf_fitted *m)
            m->components <= 8 * m->texel_bytes && m->texel_bytes >= WINDOW;
 }
 
-// Where a component's number lies in the row of a texel, and what it stands for.
+// Where a component's number lies in the row of a texel, and how to read it.
 struct score {
     int byte, shift;  // of a window that ends inside the row
     unsigned mask;

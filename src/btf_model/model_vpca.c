@@ -153,7 +153,7 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     }
 }
 
-// Weights of nine pairs, four at a time, are blended before they meet the textures of three views.
+// Weights of nine pairs, four at a time, are blended before the textures of three views are read.
 static struct relume_btf_cost cost(const relume_btf_fitted *m)
 {
     const int k = m->components, quads = (k + 3) / 4;

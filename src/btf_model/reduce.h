@@ -20,7 +20,7 @@ relume_status reduce_cluster(const struct reduced *r, const struct fitting *f, i
                              int *which);
 
 // The texels of each cluster one after the other; cluster c has those from first[c] to
-// first[c + 1]. RELUME_ENOMEM; both are to be freed.
+// first[c + 1]. RELUME_ENOMEM; the caller frees both.
 struct members {
     size_t *texel;  // [texels]
     size_t *first;  // [clusters + 1]

@@ -1,6 +1,6 @@
 // scalar.h - numbers as one of a few levels, and such numbers of unlike widths in rows of bits
 //
-// A number of `bits` bits stands for
+// A number of `bits` bits is the value
 //     middle + linear t + cubic t^3,   t = -1 ... 1 in 2^bits - 1 equal steps.
 // The cubic term puts levels closer together in the middle, where most numbers are, and costs two
 // multiplications to undo. No bits: `middle`.

@@ -39,9 +39,9 @@ static void fill_cones(struct relume_btf_environment *s)
     for (int i = 0; i < s->model->lights; i++) {
         struct relume_btf_light_lobe *cone = &s->cone[i];
         const double length = vec3_length(cone->axis);
-        const bool met = length > 0.0;  // all are but what is far below the grid
-        cone->exponent = met ? exponent_of(length / cone->weight) : 1.0;
-        cone->axis = met ? vec3_scale(cone->axis, 1.0 / length) : s->model->light[i];
+        const bool lit = length > 0.0;  // all but what is far below the grid
+        cone->exponent = lit ? exponent_of(length / cone->weight) : 1.0;
+        cone->axis = lit ? vec3_scale(cone->axis, 1.0 / length) : s->model->light[i];
     }
 }
 

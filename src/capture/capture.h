@@ -33,7 +33,7 @@ relume_status capture_picture(picture_reader **out, const relume_capture *captur
                               const struct relume_log *log);
 
 // The rows of one image, light intensity divided out, coded by `to`; NaN and infinity are errors
-// unless the capture is to be repaired.
+// unless the capture is repaired.
 relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
                              int light, struct relume_transfer to, const struct relume_log *log);
 

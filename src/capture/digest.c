@@ -1,4 +1,4 @@
-// digest.c - a text that tells captures apart, out of what can be read quickly
+// digest.c - a fingerprint of a capture, from what can be read quickly
 #include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"

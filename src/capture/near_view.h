@@ -34,8 +34,8 @@ vec3 near_view_pixel(const struct near_view *near, int x, int y);
 // `reach` pixels away.
 vec3 near_view_around(const struct near_view *near, double x, double y, int reach);
 
-// The unit direction from `point` to a light, and what the pixel's value is to be multiplied by to
-// be that under a light as bright as this one is at the world's origin.
+// The unit direction from `point` to a light, and the factor that makes the pixel's value that
+// under a light as bright as this one is at the world's origin.
 vec3 near_view_direction(double *gain, const struct near_view *near, int light, vec3 point);
 
 // Multiply one image (three channels) by these gains.

@@ -42,7 +42,7 @@ static bool copy_response(struct draft *d)
     return own != NULL;
 }
 
-// Names stand for pictures in messages.
+// Messages name the pictures by these.
 static bool name_view(struct draft *d, int view, const struct relume_pictures *pictures)
 {
     struct relume_manifest_view *v = &d->view[view];

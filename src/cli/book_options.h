@@ -23,15 +23,15 @@ struct book_options {
         1, 65536),                                                                                 \
     BOOK_FORM_OPTIONS
 #define BOOK_FORM_OPTIONS                                                                          \
-    FLAG("--share", books.share, "codebooks: one set for all views"),                              \
+    FLAG("--share", books.share, "codebooks: use one set for all views"),                              \
     INT("--stages", books.stages, "S",                                                             \
-        "codebooks: S in a row, each codes the error of those before it", 1, 8),                   \
+        "codebooks: S in a row, each corrects the error of those before it", 1, 8),                   \
     OWN("--split", books.split, "HOW",                                                             \
         "codebooks: none, luma (luminance, chrominance) or product:G; default: none", take_split), \
     NAME("--codebook-start", books.start, "S", "codebooks: split or random; default: split",       \
          RELUME_START_RANDOM, "random", "split"),                                                  \
     NUMBER("--dither", books.dither, "D",                                                          \
-           "codebooks: share of the index bytes that dithering may spend against banding", 0, 1),  \
+           "codebooks: dither against banding, with at most this share of the index bytes", 0, 1), \
     INT("--seed", books.seed, "S", "codebooks: seed of the random choices; default: 0",            \
         0, 2147483647)
 // clang-format on

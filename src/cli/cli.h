@@ -12,13 +12,12 @@
 
 // Of every command that reads captures.
 #define ALLOW_OUTSIDE_OPTION                                                                       \
-    FLAG("--allow-outside", allow_outside,                                                         \
-         "files that the capture names may lie outside its folder")
+    FLAG("--allow-outside", allow_outside, "allow files outside the folder of the capture")
 
 // Of every command that relights files.
 #define KEEP_GOING_OPTION                                                                          \
     FLAG("--keep-going", keep_going,                                                               \
-         "leave out damaged tiles of a file coded with loss, and say which")
+         "continue without the damaged tiles of a file coded with loss, and list them")
 
 // What every command gets; the options of its own follow in its struct, whose first member it is.
 struct args {

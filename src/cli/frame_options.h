@@ -30,7 +30,7 @@ struct light_options {
 // clang-format on
 
 // The lights of --rig and --light, "dir 0 0 1" where both are missing; --save-rig is obeyed. They
-// belong to `*rig`, which is to be destroyed.
+// belong to `*rig`, which the caller destroys.
 relume_status parse_lights(const struct args *args, const struct light_options *options,
                            relume_rig **rig, const struct relume_light **lights, int *count);
 // Threads, kernels (a `cpu_mask` of ALL_KERNELS is the default) and depth; the log is still to be

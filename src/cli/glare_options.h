@@ -16,7 +16,7 @@ struct eye_options {
 #define GLARE_OPTIONS                                                                              \
     TEXT("--subject", glare.subject, "FILE", "glare: the viewer's eye (JSON, docs/glare.md)"),     \
     NUMBER("--time", glare.time, "T", "glare: seconds since the eye opened; default: 1", 0, 1e6),  \
-    NUMBER("--nits", glare.nits, "L", "glare: cd/m^2 of the value 1, sets the pupil; default: 100",\
+    NUMBER("--nits", glare.nits, "L", "glare: cd/m^2 of the value 1; sets the pupil; default: 100",\
            0, 1e9),                                                                                \
     NUMBER("--magnify", glare.magnify, "M", "glare: enlarge the halos; default: 1", 0.01, 1000),   \
     NAME("--mode", glare.mode, "M", "glare: fft (default), billboard or hybrid",                   \

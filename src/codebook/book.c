@@ -1,4 +1,4 @@
-// book.c - one codebook as numbers in a file, and what they stand for
+// book.c - one codebook as numbers in a file, and the vectors that they code
 #include "codebook/books.h"
 #include "coder/codes.h"
 #include "coder/coefficients.h"

@@ -1,7 +1,7 @@
 // book_sort.c - an order in which neighbouring codes are alike
 //
 // Vectors are halved along their principal axis, the halves again, until one is left: the leaves of
-// that tree from left to right. Each half is turned so that its near end meets its neighbour.
+// that tree from left to right. Each half is turned so that its near end touches its neighbour.
 #include "codebook/books.h"
 
 #include "base/memory.h"

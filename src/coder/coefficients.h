@@ -48,7 +48,7 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
                                   int height, const struct relume_encode_params *p);
 // Where the rows from `row` on lie in the scratch file.
 off_t coefficients_offset(const relume_coefficients *c, int row);
-// What waits stands for values from the range's minimum on, so far apart.
+// The step between the values of waiting codes, which begin at the range's minimum.
 float coefficients_band_step(struct range r);
 // The power of two, 1 or more, over which all of a range are halves.
 float coefficients_half_scale(struct range r);

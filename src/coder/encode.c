@@ -487,7 +487,7 @@ struct relume_transfer relume_encode_display(const relume_capture *capture)
     return t.curve == RELUME_CURVE_GAMMA ? t : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
 }
 
-// Mean over lights; those that are met exactly count as 100 dB.
+// Mean over lights; those that are reproduced exactly count as 100 dB.
 static double shown_psnr(const struct encoding *e)
 {
     const double each = (double)e->error_count / e->lights;

@@ -5,9 +5,9 @@
 //     [ Phi + nugget I   P ] [a]   [t]
 //     [ Pt               0 ] [b] = [0]            t: the captured samples
 // so that the weights of the samples at d are the first N rows of the inverse times (phi(d), p(d)).
-// Without a nugget the captured samples are met exactly; a nugget smooths. B, the first N x N block
-// of the inverse, also tells how badly light i is predicted by all others: (B t)_i / B_ii (Dubrule
-// 1983), without solving again.
+// Without a nugget the captured samples are reproduced exactly; a nugget smooths. B, the first N x
+// N block of the inverse, also gives the error of predicting light i from all others: (B t)_i /
+// B_ii (Dubrule 1983), without solving again.
 #include "base/log.h"
 #include "base/memory.h"
 #include "coder/basis.h"

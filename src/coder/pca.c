@@ -113,7 +113,7 @@ static void fit_errors(const struct solver *s, const double *error, double *alph
     *alpha = e - *beta * z;
 }
 
-// Interpolants that cannot tell their error are taken to miss a constant part of the signal.
+// Interpolants that do not know their error are assumed to miss a constant part of the signal.
 static relume_status expect_errors(struct solver *s, const vec3 *d)
 {
     const size_t n = s->lights;

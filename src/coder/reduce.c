@@ -20,8 +20,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
-// Beside the mean of the diagonal of the normal equations: what the lights hardly tell stays as in
-// the mean.
+// Beside the mean of the diagonal of the normal equations: what the lights hardly determine stays
+// as in the mean.
 static const double RIDGE = 1e-5;
 
 struct reducing {

@@ -10,7 +10,7 @@ static inline int reduced(int side)
     return (side + 1) / 2;
 }
 
-// What coefficients are in, and how they are to be stored: domain, not AUTO, and its curve;
+// What coefficients are in, and how they will be stored: domain, not AUTO, and its curve;
 // storage, step, threads and the place of temporary data.
 struct reduction {
     enum relume_domain domain;

@@ -1,4 +1,4 @@
-// zone.c - where light was captured, and what stands for light from elsewhere
+// zone.c - where light was captured, and what replaces light from elsewhere
 //
 // Each light covers a cap, a part as wide as it is far from its nearest neighbour. Seen in the
 // stereographic projection from the middle of what no light covers, caps are discs; their convex
@@ -19,9 +19,9 @@
 
 enum { STEPS = RELUME_CAPTURED_REGION_STEPS, LEAST_LIGHTS = 4 };
 // Lights nearer than this to each other are one; those without a neighbour have one so far away;
-// and each speaks for so much around it, or the lights themselves would lie on the border.
+// and each covers that distance around it, or the lights themselves would lie on the border.
 static const double SAME = 1e-3, WIDEST = M_PI / 3.0, LEAST = M_PI / 90.0;
-// Not all of a scene lies flat: so much of light along it is met.
+// Not all of a scene lies flat: this share of light along it still hits something.
 static const double UPRIGHT = 0.05;
 // A zone that ends so near to the opposite of its middle has no border worth the name.
 static const double ALL_AROUND = 170.0 * M_PI / 180.0;
@@ -64,7 +64,7 @@ static bool find_support(double support[STEPS], const struct relume_captured_reg
     return inside;
 }
 
-// The border of the hull is where the first of its tangents is met.
+// The border of the hull is at the first of its tangents.
 static void find_border(struct relume_captured_region *z, const double support[STEPS])
 {
     double least = M_PI;

@@ -373,7 +373,7 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
     return RELUME_OK;
 }
 
-// Which views, or rows of one, are to be encoded.
+// Which views, or rows of one, this part encodes.
 static relume_status find_share(struct encode_share *out, const relume_capture *capture,
                                 const struct relume_pack_encode_params *p)
 {

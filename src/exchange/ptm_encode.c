@@ -3,7 +3,7 @@
 // A unit of a term's code changes the picture by the term's scale times what the term is on average
 // over the hemisphere; steps are chosen so that a step of any plane changes the picture alike. A
 // plane is predicted from what readers decode of another one, not from what it was, so errors do
-// not add up. Where the sum with the reference would leave a byte, or where JPEG is off by so much
+// not add up. Where the sum with the reference would leave a byte, or where JPEG is so far off
 // that 40 bits are a good price for the pixel, a record of the side information gives its value.
 #include "exchange/ptm.h"
 

@@ -22,7 +22,7 @@ struct sheet {
     double weight[SHEET_PLANES];  // error of the picture that a unit of error makes
     bool fixed;                   // codes are 255 x value: no scale of their own
     bool ycbcr;                   // red, green and blue of one thing
-    bool blocks;                  // tell of every block
+    bool blocks;                  // report every block
 };
 
 // Squares of the picture's values, summed over the channels, in a block of 8 x 8 pixels.

@@ -124,7 +124,7 @@ static int halvings(const struct pyramid *p, int side)
 }
 
 // Levels are counted from one tile, or from one pixel. Every tile of the finest must be there
-// before memory is taken for what the description promises.
+// before allocating what the description promises.
 static relume_status find_tiles(struct pyramid *p)
 {
     const int from_pixel = halvings(p, 1);

@@ -24,7 +24,7 @@ struct web_folder {
     int sheets;                  // of the plan
     int kept;                    // sheets worth their bytes
     size_t bytes;                // of those
-    bool blocks;                 // the sheets tell of their blocks
+    bool blocks;                 // the sheets report their blocks
     double error;                // expected squared error, summed over the channels
 };
 
@@ -33,7 +33,7 @@ relume_status web_encode(struct web_folder *w, double step, bool all, int thread
 // Of an encoded plan with chroma planes: how many of the pairs say more than a pair of blank planes
 // costs, at least 1.
 int web_useful_chroma(const struct web_folder *w, double step);
-// Of an encoded folder with blocks: what is to be seen of its quantising, in levels of 255.
+// Of an encoded folder with blocks: the visible error of its quantising, in levels of 255.
 // Nineteen of twenty blocks show less.
 relume_status web_visible_error(const struct web_folder *w, double *levels);
 void web_folder_free(struct web_folder *w);

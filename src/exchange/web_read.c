@@ -398,7 +398,7 @@ static relume_status read_planes(struct folder *w)
     if (!get_whole(jvalue_member(w->root, "width"), 1, 1 << 30, &f->width) ||
         !get_whole(jvalue_member(w->root, "height"), 1, 1 << 30, &f->height))
         return wrong(w, "size", "width and height, whole numbers from 1");
-    // the first picture vouches for the size before memory is taken for all
+    // the first picture proves the size before memory is allocated for all
     relume_status status = read_jpeg(w, 0, &codes);
     if (!status)
         status = foreign_create(f, w->info, f->width, f->height,

@@ -136,7 +136,7 @@ int web_useful_chroma(const struct web_folder *w, double step)
     return 1;
 }
 
-// ---------------------------------------------------------------- what is to be seen
+// ---------------------------------------------------------------- the visible error
 
 // Texture hides errors: the threshold of seeing rises with the 0.7th power of what is there (Watson
 // 1993, contrast masking). Below so many levels of 255 nothing is hidden.

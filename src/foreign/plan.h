@@ -37,7 +37,7 @@ relume_status plan_yab(struct plan *p, const struct source *s, const struct func
 
 // Least squares on the picture's values with the functions ptm, hsh or sh. `form`: channels;
 // luminance, one set for all channels, times a colour (the rows of `map` for the terms then give
-// the sum of the channels, those of the colour the base colour; the terms are to be divided by its
+// the sum of the channels, those of the colour the base colour; divide the terms by its
 // sum); or ycc.
 relume_status plan_fit(struct plan *p, const struct source *s, const struct functions *functions,
                        enum foreign_form form, int threads);

@@ -1,7 +1,7 @@
 // plan_view.h - what a viewer shows of a source's numbers: the ground that every plan stands on
 //
 // Directions: the captured lights, and a spiral over the hemisphere, half of the weight each. A
-// viewer's functions f stand for the picture A(l) x as f(l) N x, N by least squares with a small
+// viewer's functions f approximate the picture A(l) x by f(l) N x, N by least squares with a small
 // pull towards the values at the nodes.
 #ifndef FOREIGN_PLAN_VIEW_H
 #define FOREIGN_PLAN_VIEW_H

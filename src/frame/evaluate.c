@@ -178,7 +178,7 @@ static relume_status load_ahead(struct evaluator *e, int count)
 }
 
 // Lamps a little below the horizon of a hemispherical capture count as on it, when it is encoded
-// and here: nothing is to be warned of.
+// and here: no warning is due.
 static vec3 photographed_from(const struct evaluator *e, int light)
 {
     const struct relume_coder_info *info = relume_coder_info(e->info->coder);

@@ -1,6 +1,6 @@
 // query.c - single rays: the plenoptic-illumination function (Wong 1998, 6.4)
 //
-// Of a few rays only the texels that they meet are relit; of many, whole views. Either is kept for
+// Of a few rays only the texels that they hit are relit; of many, whole views. Either is kept for
 // the rays that follow.
 #include "base/log.h"
 #include "base/memory.h"
@@ -60,7 +60,7 @@ static relume_status planar(struct rays *q, const struct relume_ray *ray, float 
     const struct relume_geometry *g = &info->geometry;
     double at[2], xy[2];
     if (!ray_goes_towards(ray->eye, ray->direction, 0.0) ||
-        !ray_meets_plane(ray->eye, ray->direction, 0.0, at) ||
+        !ray_crosses_plane(ray->eye, ray->direction, 0.0, at) ||
         !ray_window_pixel(g->window_min, g->window_max, info->width, info->height, at, xy))
         return none(q, "it misses the window");
     const relume_status status = need(q, 0);
@@ -113,8 +113,8 @@ static relume_status one_slab(struct rays *q, const struct relume_ray *ray, floa
     relume_status status = RELUME_OK;
     if ((eye.z - g->st_z) * (g->uv_z - g->st_z) <= 0.0 ||
         !ray_goes_towards(eye, direction, g->st_z) ||
-        !ray_meets_plane(eye, direction, g->st_z, st) ||
-        !ray_meets_plane(eye, direction, g->uv_z, uv) ||
+        !ray_crosses_plane(eye, direction, g->st_z, st) ||
+        !ray_crosses_plane(eye, direction, g->uv_z, uv) ||
         !ray_window_pixel(g->st_min, g->st_max, info->width, info->height, st, xy))
         return none(q, "it misses the window");
     const int count = relume_slab_blend(view, weight, q->r->slab, uv, &q->r->view);

@@ -1,4 +1,4 @@
-// ray.c - a single ray and the planes that it meets
+// ray.c - a single ray and the planes that it crosses
 #include "frame/renderer.h"
 
 #include "math/bilinear.h"
@@ -11,7 +11,7 @@ void ray_sample(float rgb[3], const struct relume_image *image, double x, double
         rgb[c] = (float)bilinear_value(&b, image->data, 3, c);
 }
 
-bool ray_meets_plane(vec3 eye, vec3 direction, double z, double xy[2])
+bool ray_crosses_plane(vec3 eye, vec3 direction, double z, double xy[2])
 {
     if (fabs(direction.z) < 1e-12)
         return false;

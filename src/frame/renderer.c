@@ -36,7 +36,7 @@ uint64_t relume_renderer_bytes(const relume_renderer *r)
     return bytes;
 }
 
-// A view of which more or less is kept from now on: its bytes are to be counted again.
+// A view of which more or less is kept from now on: count its bytes again.
 static void change(relume_renderer *r, int view)
 {
     struct kept *k = &r->kept[view];

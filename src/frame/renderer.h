@@ -23,7 +23,7 @@ struct kept {
     struct relume_image surface;  // for near lights; empty: not asked for
     uint64_t code_bytes;          // that the pack holds for it
     uint64_t bytes;               // of all, as the renderer's sum has it
-    bool changed;                 // the sum is to be put right
+    bool changed;                 // the sum must be put right
 };
 
 struct relume_renderer {
@@ -131,8 +131,8 @@ struct relume_view_params frame_parts_params(const relume_renderer *r, bool by_d
 // ---------------------------------------------------------------- one ray
 // Bilinear in linear light with the border clamped; pixel centres are at +0.5.
 void ray_sample(float rgb[3], const struct relume_image *image, double x, double y);
-// Where the line of the ray meets the plane z; false when it never does.
-bool ray_meets_plane(vec3 eye, vec3 direction, double z, double xy[2]);
+// Where the line of the ray crosses the plane z; false when it never does.
+bool ray_crosses_plane(vec3 eye, vec3 direction, double z, double xy[2]);
 bool ray_goes_towards(vec3 eye, vec3 direction, double z);
 // Pixel position of a point of a window; false outside.
 bool ray_window_pixel(const double min[2], const double max[2], int width, int height,

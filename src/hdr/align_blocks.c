@@ -55,7 +55,7 @@ struct guess {
     double score;
 };
 
-// Scores by shift modulo the table's size: climbs from different starts meet.
+// Scores by shift modulo the table's size: climbs from different starts come together.
 struct visited {
     struct guess at[VISITED][VISITED];
 };
@@ -269,7 +269,7 @@ static relume_status match_all(struct grid *out, const struct pyramid *anchor,
 // Blocks move without turning. Where the picture is rolled, their insides are therefore compared
 // smeared, the largest of them most, and what these miss the small ones do not find again. So the
 // homography of small pictures is undone beforehand where it says that there is a roll; where it
-// cannot tell, the affine map that the displacements amount to is undone afterwards and what
+// finds none, the affine map that the displacements amount to is undone afterwards and what
 // remains is searched for again.
 
 static const double clear_match = 0.3;    // correlation of a homography that is believed

@@ -24,7 +24,7 @@ void grid_interpolate(const struct grid *grid, double x, double y, double d[2], 
 // fall with the distance.
 void grid_fill(struct grid *grid, int threads);
 // The affine map of the plane that trusted nodes amount to, wrong ones left aside: rows 0 and 1 of
-// `m` take a place to where it is displaced. False: too few to tell.
+// `m` take a place to where it is displaced. False: too few of them.
 bool grid_affine(double m[3][3], const struct grid *grid);
 // Each displacement becomes the median of the 3 x 3 around it: single wrong matches vanish, shifts,
 // rolls and edges of motion stay. Returns false when memory is short.

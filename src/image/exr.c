@@ -558,7 +558,7 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
         exr_attr_box2i_t box;
         if (tile_of(file, i) < 0)
             return log_fail(log, RELUME_EUNSUPPORTED,
-                            "%s: part %d is of mipmaps or deep; expected scanlines or plain tiles",
+                            "%s: part %d is deep or has mipmaps; expected scanlines or plain tiles",
                             file->path, i);
         if (exr_get_channels(file->exr, i, &channels) || channels->num_channels < 1)
             return log_fail(log, RELUME_EDAMAGED, "%s: part %d has no channels", file->path, i);

@@ -14,7 +14,7 @@
 #define FOOTPRINT_SLACK 1e-4
 // Of so many texels a pixel is not said to be a mean yet.
 #define FOOTPRINT_ONE 1.25
-// Where a pixel may cover any number of texels, so many samples a side stand for them.
+// Where a pixel may cover any number of texels, it takes at most this many samples a side.
 enum { FOOTPRINT_MOST = 64 };
 
 struct footprint {

@@ -332,7 +332,7 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
     return status;
 }
 
-// /dev/stdout and the like have no extension to tell the format.
+// /dev/stdout and the like have no extension that names the format.
 static bool is_device(const char *path)
 {
     const char *slash = strrchr(path, '/');

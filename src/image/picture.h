@@ -4,7 +4,7 @@
 // png.c; all others of the formats that picture_kind.c lists, and EXIF, by OpenImageIO in a process
 // of their own (base/helper.h). That one brings over 200 shared libraries, a third of a second at
 // every start: so the C++ that knows it (oiio.cpp) is a module, librelume-oiio.so. The helper opens
-// it when the first file asks for it, picture.c when one is to be written; nobody else notices.
+// it when the first file asks for it, picture.c before it writes one; nobody else notices.
 #ifndef IMAGE_PICTURE_H
 #define IMAGE_PICTURE_H
 
@@ -34,7 +34,7 @@ relume_status array_picture_open(picture_reader **out, const struct picture_arra
 const struct picture_info *picture_info_of(const picture_reader *reader);
 // Code values of `rows` rows from `row` on, out[row][x][channel]: as they are from files of bytes;
 // as floats from all others, integers map to [0, 1]. Rows must be asked for from the top on, once
-// each. No log: threads that read must not speak; picture_error tells.
+// each. No log: threads that read must not speak; picture_error has the sentence.
 relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out);
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
 // What the camera noted: all but the profile; EXIF of files only. RELUME_ESYSTEM without the

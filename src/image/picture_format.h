@@ -19,7 +19,7 @@ struct infile;
 struct picture_format {
     relume_status (*read_floats)(picture_reader *reader, int row, int rows, float *out);
     relume_status (*read_bytes)(picture_reader *reader, int row, int rows, uint8_t *out);
-    // NULL: the file says nothing of itself. `out` holds what the reader's `info` tells.
+    // NULL: the file says nothing of itself. `out` already holds what the reader's `info` has.
     void (*notes)(const picture_reader *reader, struct relume_exif *out);
     const void *(*profile)(const picture_reader *reader, size_t *size);
     const char *(*error)(const picture_reader *reader);

@@ -47,7 +47,7 @@ static relume_status ask(struct helped *h, struct picture_answer *answer, struct
     return !answer->status || said ? answer->status : RELUME_EDAMAGED;
 }
 
-// Memory of both processes, which the other one is told of.
+// Memory of both processes; the other one gets its descriptor.
 static void *share(struct helped *h, size_t bytes, struct picture_ask what, relume_status *status)
 {
     struct picture_answer answer;

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
-// Each format is told by bytes at a place; a second place where one is not enough.
+// Each format is recognised by bytes at a place; a second place where one is not enough.
 struct magic {
     struct {
         size_t at, size;

@@ -18,7 +18,7 @@ struct lambert_sample {
     int light;     // its place in `direction`
 };
 
-// Whether directions tell all three components of g.
+// Whether directions determine all three components of g.
 bool lambert_spans(const vec3 *direction, int n);
 
 // Fit `n` samples, which change their order; the `*n` that count afterwards begin at the returned

@@ -26,7 +26,7 @@ struct obj {
     const struct relume_log *log;
     int line;
     bool own_normals;     // every corner so far has a normal
-    uint32_t *smooth_of;  // vertex -> position number, while normals are to be made
+    uint32_t *smooth_of;  // vertex -> position number, where normals must be computed
     bool has_materials;   // parts go by usemtl, else by g
     uint32_t part;
 };

@@ -14,7 +14,7 @@ struct tangents {
     uint32_t (*triangles)[3];  // as many as the mesh has, in its order
     size_t flat;               // vertices whose texture has no direction; they have some tangent
 };
-// RELUME_ENOMEM. What is in `out` is to be freed.
+// RELUME_ENOMEM. The caller frees what is in `out`.
 relume_status tangents_make(struct tangents *out, const struct mesh *mesh);
 
 #endif

@@ -78,7 +78,7 @@ static double edge_difference(const struct relume_image *left, const struct relu
     return sum;
 }
 
-// The sides in the order in which a turn to the right meets them.
+// The sides in the order in which a turn to the right shows them.
 static double around(const struct relume_image faces[FACES], bool swapped)
 {
     const int turn[4] = {swapped ? PZ : NZ, PX, swapped ? NZ : PZ, NX};
@@ -112,7 +112,8 @@ static relume_status check_edges(int camera[FACES], const struct panorama_job *j
         camera[NZ] = camera[PZ];
         camera[PZ] = front;
         log_line(job->common->log, RELUME_NOTE,
-                 "edges fit when %s is the face -z (ahead) and %s +z: taken so",
+                 "the edges fit if %s is the face in front (-z) and %s the one behind (+z); relume "
+                 "uses them so",
                  job->set.camera[camera[NZ]].name, job->set.camera[camera[PZ]].name);
     }
     free_faces(faces);

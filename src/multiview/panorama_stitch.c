@@ -122,7 +122,7 @@ static bool project(double xy[2], const struct stitching *s, int camera, vec3 d)
     return look(xy, s, camera, d) >= 0.0;
 }
 
-// Mean linear grey of 9 x 9 pixels; negative where some are too dark or too bright to tell.
+// Mean linear grey of 9 x 9 pixels; negative where some are too dark or too bright to measure.
 static double grey_around(const struct stitch_picture *p, const double xy[2])
 {
     enum { REACH = 4, DARK = 8, BRIGHT = 250 };

@@ -8,7 +8,7 @@ int plane_sweep_factor(int width, int most)
     return (width + most - 1) / most;
 }
 
-// Mean of a block in linear light; the square root stands for display coding.
+// Mean of a block in linear light; the square root approximates display coding.
 static uint8_t block_value(const struct relume_image *image, int x, int y, int c, int factor)
 {
     float sum = 0.0f;

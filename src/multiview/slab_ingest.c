@@ -284,7 +284,7 @@ static relume_status find_spacing(struct grid_spacing *g, const struct slab *s)
 }
 
 // The grid around the origin, as wide as the baseline (one column: as high). Rows are to scale,
-// unless their own baseline is known or the photographs tell it.
+// unless their own baseline is known or found in the photographs.
 static relume_status scale_grid(struct slab *s)
 {
     double u[2], v[2];

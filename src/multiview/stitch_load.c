@@ -1,4 +1,4 @@
-// stitch_load.c - opens the module that knows OpenCV when photographs are to be stitched
+// stitch_load.c - opens the module that knows OpenCV when photographs are stitched
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/module.h"

@@ -23,7 +23,8 @@ struct photo_set {
     const struct relume_vec3 *directions;  // [lights]
 };
 
-// A single folder stands for what it holds. Sizes and counts of lights must agree. An input status.
+// A single folder means the photographs in it. Sizes and counts of lights must agree. An input
+// status.
 relume_status photo_set_open(struct photo_set *out, const char *const *photos, int n,
                              const struct relume_ingest_params *p);
 void photo_set_free(struct photo_set *set);

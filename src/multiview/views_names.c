@@ -1,4 +1,4 @@
-// views_names.c - where a camera stands, told by the name of its photograph
+// views_names.c - where a camera stands, from the name of its photograph
 #include "base/tree.h"
 #include "multiview/views.h"
 

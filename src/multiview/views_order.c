@@ -251,7 +251,7 @@ relume_status grid_order(struct grid_order *out, const struct photo_set *set,
 
 enum { PARTS = 4, RATIOS = 277 };  // the picture in PARTS x PARTS, ratios from 1/4 to 4 by 1 %
 static const double least_ratio = 0.25;
-static const double telling = 2.0;  // texels that a point moves by
+static const double least_move = 2.0;  // texels that a point moves by
 static const size_t few_pixels = 150;
 static const double least_share = 0.4, most_error = 0.1;
 
@@ -290,12 +290,12 @@ static relume_status find_moves(struct moves *m, const struct photo_set *set,
 }
 
 // By how much a point moves over columns and over rows.
-struct told {
+struct moved {
     float across, down;
     int part;
 };
 
-static size_t collect(struct told *told, const struct moves m[2])
+static size_t collect(struct moved *moved, const struct moves m[2])
 {
     size_t n = 0;
     const int width = m[0].width, height = m[0].height;
@@ -303,9 +303,9 @@ static size_t collect(struct told *told, const struct moves m[2])
         for (int x = 0; x < width; x++) {
             const float *a = &m[0].plane[y * width + x], *b = &m[1].plane[y * width + x];
             const double across = (double)*a - m[0].middle, down = (double)*b - m[1].middle;
-            if (*a >= 0.0f && *b >= 0.0f && hypot(across, down) >= telling)
-                told[n++] = (struct told){(float)across, (float)down,
-                                          y * PARTS / height * PARTS + x * PARTS / width};
+            if (*a >= 0.0f && *b >= 0.0f && hypot(across, down) >= least_move)
+                moved[n++] = (struct moved){(float)across, (float)down,
+                                            y * PARTS / height * PARTS + x * PARTS / width};
         }
     return n;
 }
@@ -317,55 +317,55 @@ static double ratio_of(int i)
 
 // How many of a part's pixels (-1: of all) move down by `ratio` times as much as across, either
 // way, to a texel.
-static double agree(const struct told *told, size_t n, int part, double ratio)
+static double agree(const struct moved *moved, size_t n, int part, double ratio)
 {
     double sum[2] = {0.0, 0.0};
     const double scale = 1.0 / hypot(1.0, ratio);
     for (size_t i = 0; i < n; i++)
-        for (int way = 0; way < 2 && (part < 0 || told[i].part == part); way++) {
-            const double expected = (way ? -ratio : ratio) * (double)told[i].across;
-            const double off = scale * ((double)told[i].down - expected);
+        for (int way = 0; way < 2 && (part < 0 || moved[i].part == part); way++) {
+            const double expected = (way ? -ratio : ratio) * (double)moved[i].across;
+            const double off = scale * ((double)moved[i].down - expected);
             sum[way] += fmax(1.0 - off * off, 0.0);
         }
     return fmax(sum[0], sum[1]);
 }
 
-static double best_ratio(const struct told *told, size_t n, int part)
+static double best_ratio(const struct moved *moved, size_t n, int part)
 {
     double most = -1.0, best = 0.0;
     for (int i = 0; i < RATIOS; i++) {
-        const double sum = agree(told, n, part, ratio_of(i));
+        const double sum = agree(moved, n, part, ratio_of(i));
         best = sum > most ? ratio_of(i) : best;
         most = fmax(most, sum);
     }
     return best;
 }
 
-// The error of the mean of what parts of the picture tell by themselves.
-static double disagreement(const struct told *told, size_t n, double ratio)
+// The error of the mean of what parts of the picture show by themselves.
+static double disagreement(const struct moved *moved, size_t n, double ratio)
 {
     double square = 0.0;
     int parts = 0;
     for (int part = 0; part < PARTS * PARTS; part++) {
         size_t own = 0;
         for (size_t i = 0; i < n; i++)
-            own += told[i].part == part;
+            own += moved[i].part == part;
         if (own < few_pixels / 4)
             continue;
-        square += pow(log(best_ratio(told, n, part) / ratio), 2.0);
+        square += pow(log(best_ratio(moved, n, part) / ratio), 2.0);
         parts++;
     }
     return parts > 1 ? sqrt(square / (parts - 1) / parts) : 1.0;
 }
 
-static void judge(struct grid_spacing *out, const struct told *told, size_t n,
+static void judge(struct grid_spacing *out, const struct moved *moved, size_t n,
                   const struct moves m[2])
 {
     if (n < few_pixels)
         return;
-    const double ratio = best_ratio(told, n, -1);
-    out->share = agree(told, n, -1, ratio) / (double)n;
-    out->error = disagreement(told, n, ratio);
+    const double ratio = best_ratio(moved, n, -1);
+    out->share = agree(moved, n, -1, ratio) / (double)n;
+    out->error = disagreement(moved, n, ratio);
     const bool inside = ratio > ratio_of(1) && ratio < ratio_of(RATIOS - 2);
     if (inside && out->share >= least_share && out->error <= most_error)
         out->ratio = ratio * m[0].way / m[1].way;
@@ -379,12 +379,12 @@ relume_status grid_spacing(struct grid_spacing *out, const struct photo_set *set
     relume_status status = find_moves(&m[0], set, grid, false, p);
     if (!status)
         status = find_moves(&m[1], set, grid, true, p);
-    struct told *told = NULL;
-    if (!status && !(told = mem_array((size_t)m[0].width * (size_t)m[0].height, sizeof *told)))
+    struct moved *moved = NULL;
+    if (!status && !(moved = mem_array((size_t)m[0].width * (size_t)m[0].height, sizeof *moved)))
         status = RELUME_ENOMEM;
     if (!status)
-        judge(out, told, collect(told, m), m);
-    mem_free(told);
+        judge(out, moved, collect(moved, m), m);
+    mem_free(moved);
     mem_free(m[0].plane);
     mem_free(m[1].plane);
     return status;

@@ -1,5 +1,5 @@
-// views_order.h - which way the rows and columns of cameras run and how far apart they stand, told
-// by their photographs
+// views_order.h - which way the rows and columns of cameras run and how far apart they stand, from
+// their photographs
 #ifndef MULTIVIEW_VIEWS_ORDER_H
 #define MULTIVIEW_VIEWS_ORDER_H
 
@@ -25,9 +25,9 @@ relume_status grid_order(struct grid_order *out, const struct photo_set *set,
                          const struct camera_grid *grid, const struct relume_ingest_params *p);
 
 struct grid_spacing {
-    double ratio;  // of a unit of v in the world to one of u; 0: not to be told
+    double ratio;  // of a unit of v in the world to one of u; 0: unknown
     double error;  // of the ratio, relative: how far parts of the picture disagree
-    double share;  // of the pixels that tell it, those that agree
+    double share;  // of the pixels that show it, those that agree
 };
 
 // How a point moves from row to row, and how from column to column. Looks at five cameras at most.

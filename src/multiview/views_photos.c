@@ -109,7 +109,7 @@ static relume_status check_lights(struct photo_set *set, const struct relume_ing
     return log_fail(p->log, p->lights ? RELUME_EUNFIT : RELUME_EINVAL,
                     "%s: %d photograph%s of this camera; expected %d, one for every known light%s",
                     set->camera[0].name, set->lights, relume_plural(set->lights), known,
-                    p->lights ? "" : " (--lights says where lights are)");
+                    p->lights ? "" : " (give the lights with --lights)");
 }
 
 relume_status photo_set_open(struct photo_set *out, const char *const *photos, int n,

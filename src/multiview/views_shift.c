@@ -63,8 +63,8 @@ static relume_status measure(struct shifting *s, const struct photo_set *set,
     if (s->width >= 2 && s->height >= 2)
         return RELUME_OK;
     return log_fail(p->log, RELUME_EUNFIT,
-                    "%s: a focus disparity of %g pixels a camera leaves nothing that all %d x %d "
-                    "cameras see; expected less",
+                    "%s: with a focus disparity of %g pixels a camera no part of the scene is seen "
+                    "by all %d x %d cameras; expected a smaller one",
                     set->camera[0].name, disparity, g->columns, g->rows);
 }
 

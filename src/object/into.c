@@ -51,7 +51,7 @@ static vec3 place_beside(const struct relume_image *places, int x, int y, int dx
     return beside;
 }
 
-// Which way the scene faces in a pixel, as places beside it tell; 0 where they do not.
+// Which way the scene faces in a pixel, from the places beside it; 0 where they are too far away.
 static vec3 scene_normal(const struct relume_image *places, int x, int y)
 {
     const vec3 at = place_at(places, (size_t)x, (size_t)y);

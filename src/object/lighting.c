@@ -1,4 +1,4 @@
-// lighting.c - all lights as objects meet them: light samples, and environments on each material
+// lighting.c - all lights as they fall on objects: light samples, and environments on each material
 #include "base/memory.h"
 #include "object/object.h"
 

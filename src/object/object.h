@@ -42,7 +42,7 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
 
 // ---------------------------------------------------------------- rays
 
-// Where a ray meets the objects.
+// Where a ray hits the objects.
 struct surface_point {
     double distance;
     vec3 position;
@@ -58,7 +58,7 @@ struct ray {
     vec3 origin, direction;
 };
 bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin, vec3 direction);
-// How far a pixel spreads over the surface: from the ray that met the point to the rays of the
+// How far a pixel spreads over the surface: from the ray that hit the point to the rays of the
 // pixels to the right and below (Igehy 1999).
 void objects_spread(struct surface_point *point, const relume_objects *o, const struct ray *ray,
                     const struct ray *right, const struct ray *below);
@@ -83,7 +83,7 @@ struct lighting {
     int materials;
     bool no_shadows;
 };
-// RELUME_ENOMEM, RELUME_EINVAL. What is in `out` is to be destroyed, whatever is returned.
+// RELUME_ENOMEM, RELUME_EINVAL. The caller destroys what is in `out`, whatever is returned.
 relume_status lighting_create(struct lighting *out, const relume_objects *o,
                               const struct relume_light *lights, int n,
                               const struct relume_render_params *params);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 // Towards the eye a surface is never seen from below, but where normals are interpolated the frame
-// may say so; the lowest view stands for these.
+// may say so; these take the lowest view.
 static const double LOWEST = 1e-3;
 
 static void copy(float out[3], vec3 v)

@@ -75,7 +75,7 @@ static void forget_header(struct rows_joining *j)
     mem_free(j->header);
 }
 
-// Directions that single precision tells from those of the header are not of this file.
+// Directions that differ from the header's in single precision are not of this file.
 static bool is_near(const struct relume_vec3 *a, const struct relume_vec3 *b, int n)
 {
     for (int i = 0; i < n; i++)

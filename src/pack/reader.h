@@ -41,7 +41,7 @@ struct relume_pack {
     bool part;                                     // the header of a part of several (part.h)
     bool coded;                                    // planes with loss, ...
     bool keep_going;                               // ... of which tiles may be damaged;
-    const struct relume_pack_check_params *check;  // who is told of them; NULL: a warning
+    const struct relume_pack_check_params *check;  // who gets the list of them; NULL: a warning
     int threads;
     const struct relume_log *log;
     struct relume_limits limits;

@@ -1,8 +1,8 @@
 // convolver.c - pictures convolved through their spectra, tile by tile (overlap-save)
 //
 // A tile is `core` pixels and as much around it as the kernel reaches. A picture that fits into one
-// tile and is black outside needs that margin once: what wraps around is black. The kernel stands
-// in the first rows and columns, so that the others cost nothing; what comes out stands so much
+// tile and is black outside needs that margin once: what wraps around is black. The kernel lies
+// in the first rows and columns, so that the others cost nothing; the result lies as much
 // farther right and below.
 #include "post/glare.h"
 

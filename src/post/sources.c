@@ -93,7 +93,7 @@ struct spot {
     struct sources open;
 };
 
-// The pixel's light goes into the spot, and its neighbours are to be seen. What was taken is not
+// The pixel's light goes into the spot, and its neighbours are next. What was taken is not
 // above the threshold any more, so each pixel comes once.
 static bool grow_spot(struct finding *f, struct spot *spot, int x, int y)
 {

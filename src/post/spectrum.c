@@ -63,7 +63,7 @@ relume_status relume_psf_spectrum(struct relume_psf_spectrum *out,
         const double nm = wavelength(&p, i, n), scale = PSF_NM / nm;
         double xyz[3];
         match(xyz, nm);
-        // Equal ratios stand for widths that grow with the wavelength.
+        // Equal ratios mean widths that grow with the wavelength.
         const double light = p.temperature_k > 0.0 ? black_body(nm, p.temperature_k) : 1.0;
         for (int k = 0; k < 3; k++)
             xyz[k] *= light * (p.literal ? 1.0 : nm);

@@ -7,8 +7,8 @@
 // From now on SIGINT, SIGTERM and SIGHUP ask to stop; a second one of its kind stops at once, and
 // nohup's choice is kept. Most phases ask every few milliseconds whether to, and clean up. A
 // library's loop asks nobody: when work goes on for 0.8 s after that, a thread removes what is
-// unfinished and ends the program, with the line "PROGRAM: interrupted". `*midline`, unless
-// `midline` is NULL, tells that the cursor is not at the start of a line.
+// unfinished and ends the program, with the line "PROGRAM: interrupted". `*midline` is
+// whether the cursor is not at the start of a line; `midline` may be NULL.
 void stopping_listen(const char *program, const volatile bool *midline);
 
 // The signal that asked to stop, 0: none.

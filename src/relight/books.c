@@ -1,5 +1,5 @@
 // books.c - with vector quantisation, relight the codebook, not the image: the dot products of its
-// few thousand vectors stand for those of all pixels
+// few thousand vectors replace those of all pixels
 #include "relight/books.h"
 
 #include <string.h>

@@ -1,12 +1,12 @@
 // directions.c - a coder's basis tabulated over directions
 //
 // Rows go by the angle from the pole, columns by azimuth: unlike octahedral and concentric maps
-// this one has no crease inside a cell, and near the pole, where columns meet, a smooth function is
-// linear in the angle. The bilinear error is h^2 / 8 x the second derivative. Rows are closer at
-// the horizon, 1 - t = sqrt(1 - theta / 90 degrees), since hemispherical harmonics rise there like
-// sqrt(cos theta). Interpolants have cusps at the lights (the angular one opposite to them as
-// well), around which cells are divided (cells.c). What is linear over triangles of lights is kept
-// at the lights (triangles.c).
+// this one has no crease inside a cell, and near the pole, where columns run together, a smooth
+// function is linear in the angle. The bilinear error is h^2 / 8 x the second derivative. Rows are
+// closer at the horizon, 1 - t = sqrt(1 - theta / 90 degrees), since hemispherical harmonics rise
+// there like sqrt(cos theta). Interpolants have cusps at the lights (the angular one opposite to
+// them as well), around which cells are divided (cells.c). What is linear over triangles of lights
+// is kept at the lights (triangles.c).
 #include <relume/relight.h>
 
 #include "base/memory.h"

@@ -233,7 +233,7 @@ struct relume_vec3 relume_environment_turn(struct relume_vec3 direction, double 
     return vec3_of(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
 }
 
-// Along the surface so much of what comes from the border of the captured region is met, at most.
+// Of light along the surface at most this share of that from the border of the region is used.
 static const double upright = 0.05, most_upright = 0.25;
 
 // The share of what the border of the captured region gives, for light from beyond it. A single

@@ -39,7 +39,7 @@ static int face_of(vec3 d)
     return d.z >= 0.0 ? 4 : 5;
 }
 
-// The face that a direction meets, and where, in texels.
+// The face that a direction points to, and where, in texels.
 static int place(double xy[2], int side, vec3 d)
 {
     const int face = face_of(d);
@@ -80,7 +80,7 @@ static void copy_across(const struct relume_gonio *g, int face, int x, int y)
            3 * sizeof(float));
 }
 
-// Three faces meet.
+// At a corner of three faces.
 static void fill_corner(const struct relume_gonio *g, int face, int x, int y)
 {
     const int in_x = x < 0 ? 0 : x - 1, in_y = y < 0 ? 0 : y - 1;

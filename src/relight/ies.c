@@ -345,7 +345,7 @@ static float column(const relume_ies *ies, int h, int v, float share)
 
 double relume_ies_value(const relume_ies *ies, double vertical_deg, double horizontal_deg)
 {
-    // Angles are of rays in double precision: an edge is met to a billionth of a degree.
+    // Angles are of rays in double precision: an edge is exact to a billionth of a degree.
     const double slack = 1e-9;
     const double first = ies->vertical[0], last = ies->vertical[ies->verticals - 1];
     float down, around;

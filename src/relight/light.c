@@ -129,7 +129,7 @@ static double radians(double degrees)
     return degrees * (M_PI / 180.0);
 }
 
-// Full inside 0.9 of the half angle, by angle. Most of what lies outside is told from cos x >= 1 -
+// Full inside 0.9 of the half angle, by angle. Most of what lies outside is found by cos x >= 1 -
 // x^2 / 2.
 static bool spot_factor(float rgb[3], const struct relume_light *l, vec3 ray)
 {

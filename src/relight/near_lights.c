@@ -2,8 +2,9 @@
 // direction of its own (Wong 1998, 7.5.5)
 //
 // Pixels go in blocks, planes outside and pixels inside: each pixel's weights stand in a lane. In
-// the linear domain the weights of many lights meet in a pixel before its coefficients are looked
-// at, as those of distant lights do; in the display domain each light is decoded and made linear.
+// the linear domain the weights of many lights are added in a pixel before its coefficients are
+// read, as those of distant lights are; in the display domain each light is decoded and made
+// linear.
 #include "relight/near_lights.h"
 
 #include "base/log.h"
@@ -98,7 +99,7 @@ static bool arrives(vec3 *from, float rgb[3], const struct near_lights *near,
 
 // ---------------------------------------------------------------- blocks
 
-// Pixels that are relit together; [n] stands for `lanes` floats.
+// Pixels that are relit together; [n] means `lanes` floats.
 struct block {
     size_t first;
     int n, lanes;

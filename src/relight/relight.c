@@ -53,7 +53,7 @@ struct job {
     struct pass *passes;
     int count;
     bool display;
-    bool linear;  // passes give linear light; else they are to be made linear, then added
+    bool linear;  // passes give linear light; else they are made linear, then added
     bool guard;   // environments are among what the passes sum
     struct curve curve;
     const relume_weight_grid *grid;  // borrowed, or made
@@ -410,8 +410,8 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
         }
 }
 
-// Told once for all lights, of the one that is farthest off; of one below the horizon, that is
-// said.
+// Logged once for all lights, for the one that is farthest off; for one below the horizon, with
+// that reason.
 static void warn_beyond(const struct relume_codes *codes, const struct relume_light *lights, int n,
                         const struct relume_log *log)
 {

@@ -195,14 +195,14 @@ static relume_status measure_truth(struct goniometer *g)
 
 // ---------------------------------------------------------------- the photographs
 
-struct telling {
+struct reporting {
     const struct relume_log *log;
     int view, views;
 };
 
-static bool tell(void *user, double done)
+static bool report(void *user, double done)
 {
-    const struct telling *t = user;
+    const struct reporting *t = user;
     return log_progress(t->log, "measuring", (t->view + done) / t->views);
 }
 
@@ -235,7 +235,7 @@ static void resample(const struct goniometer *g, const struct relume_image *fine
 static relume_status photograph_view(const struct goniometer *g, int view,
                                      struct relume_image *held)
 {
-    struct telling telling = {g->p.log, view, g->p.views};
+    struct reporting reporting = {g->p.log, view, g->p.views};
     const struct render_job job = {
         .scene = g->scene,
         .camera = {.geometry = {.camera_z = g->top + 0.01},
@@ -250,7 +250,7 @@ static relume_status photograph_view(const struct goniometer *g, int view,
         .seed = random_mix(g->p.seed),
         .threads = g->p.threads,
     };
-    return render_lights(&job, held, tell, &telling);
+    return render_lights(&job, held, report, &reporting);
 }
 
 static relume_status photograph(const struct goniometer *g, relume_btf *btf)

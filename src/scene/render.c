@@ -236,7 +236,7 @@ relume_status render_lights(const struct render_job *job, struct relume_image *o
     if (!r.scratch)
         return RELUME_ENOMEM;
     const size_t tiles = (size_t)r.tiles_across * (size_t)((job->camera.height + TILE - 1) / TILE);
-    // In groups, so that progress is told and cancelling heard from this thread.
+    // In groups, so that this thread can report progress and be cancelled.
     const size_t group = (size_t)threads * 8;
     relume_status status = RELUME_OK;
     for (size_t done = 0; done < tiles && !status; done += group) {

@@ -14,7 +14,7 @@ struct render_job {
     int threads;
 };
 
-// Told the share of the view that is done; false stops.
+// Gets the share of the view that is done; false stops.
 typedef bool render_progress(void *user, double done);
 
 // out[light]: images of the camera's size with three channels, made by the caller.

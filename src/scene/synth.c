@@ -15,7 +15,7 @@
 // Images of as many lights as fit here are held at once; beyond that a view is walked again.
 static const size_t HELD_BYTES = (size_t)512 << 20;
 
-// How many slabs stand around the object, and how much farther than where they meet they reach.
+// How many slabs stand around the object, and how far they overlap.
 static const int ring_around[] = {
     [RELUME_RING_NONE] = 0, [RELUME_RING_4] = 4,    [RELUME_RING_6] = 6,
     [RELUME_RING_8] = 8,    [RELUME_RING_CUBE] = 4,
@@ -160,7 +160,7 @@ static void place_ring(struct synth *s)
     const double distance = s->geometry.uv_z;
     const double spread = overlap * distance * tan(M_PI / around);
     // Half the window through which a camera anywhere within `spread` sees a ball of radius 1
-    // around the origin: where the rays that touch it meet the st plane.
+    // around the origin: where the rays that touch it cross the st plane.
     const double away = hypot(spread, distance);
     const double angle = atan2(spread, distance) + asin(1.0 / away);
     const double window = distance * tan(angle) - spread;
@@ -287,7 +287,7 @@ static relume_status save_lights(struct synth *s, const struct relume_image *ima
     return status;
 }
 
-static bool tell(void *user, double done)
+static bool report(void *user, double done)
 {
     const struct synth *s = user;
     const double lights = s->lights_before + done * s->p.light_count;
@@ -332,7 +332,7 @@ static relume_status write_view(struct synth *s, struct relume_image *held, int 
         job.lights = s->p.lights + first;
         job.light_count = left < held_count ? left : held_count;
         s->lights_before = first;
-        status = render_lights(&job, held, tell, s);
+        status = render_lights(&job, held, report, s);
         if (!status)
             status = save_lights(s, held, first, job.light_count);
     }

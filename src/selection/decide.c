@@ -4,10 +4,11 @@
 // clipped, PSNR of each light, their mean. The usual choice stays where it reaches the quality that
 // is asked for: `pca` of 27 in the capture's own domain. Else hard shadows or highlights are at
 // work. Linear captures then try the display domain, where equal errors are equally visible: errors
-// of dark pixels count, and not so much those of lamps. Then components are added, as many as the
-// quality takes; where the lights could not be met for smoothing, the smoothing goes. Unseen lights
-// are watched by leaving each captured one out (choose.c). So many components may take more bytes
-// than the pictures themselves, which also keep the colours of small things: then it is `table`.
+// of dark pixels count, and those of lamps less. Then components are added, as many as the
+// quality takes; where smoothing keeps the lights from being reproduced, the smoothing goes. Unseen
+// lights are watched by leaving each captured one out (choose.c). So many components may take more
+// bytes than the pictures themselves, which also keep the colours of small things: then it is
+// `table`.
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -36,7 +37,7 @@ enum {
 static const int counts[STEPS] = {3,  6,  9,  12, 15, 18,  21,  24,  27,  32,  38,  44,
                                   52, 60, 70, 80, 90, 100, 112, 128, 160, 200, 256, 384};
 
-static const double MOST_DB = 60.0;     // of one light: black that is met must not hide others
+static const double MOST_DB = 60.0;     // of one light: exact black must not hide others
 static const double FREE_STORE = 0.05;  // of the basis's squared error: 0.2 dB
 static const double LOSSLESS = 3.2e-6;  // squared error, 55 dB: less than a step of 8 bits
 
@@ -137,7 +138,8 @@ static relume_status find_planes(const struct job *job, const relume_coder *code
     return *out ? relume_coder_apply(coder, job->some.data, 3 * n, n, *out, n) : RELUME_ENOMEM;
 }
 
-// How well the coder meets the captured lights: job->psnr, and job->own with all its coefficients.
+// How well the coder reproduces the captured lights: job->psnr, and job->own with all its
+// coefficients.
 static relume_status judge(struct job *job)
 {
     const size_t lights = (size_t)job->manifest->lights;

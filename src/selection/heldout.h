@@ -42,7 +42,7 @@ struct relume_heldout {
     struct relume_sample_sums sums;  // of them
 };
 
-// Codebooks of one fold, and which vectors stand for each pixel.
+// Codebooks of one fold, and which vectors each pixel uses.
 struct fold_books {
     int views;
     relume_books **books;  // [views], or the first for all
@@ -56,7 +56,7 @@ relume_status fold_books_make(struct fold_books *out, const relume_heldout *h,
                               const relume_coder *coder, const float *value,
                               const struct relume_heldout_store *store);
 void fold_books_drop(struct fold_books *b);
-// The coefficients to[plane][pixel] that stand for `n` pixels from `first` on, of one view.
+// The coefficients to[plane][pixel] of `n` pixels from `first` on, of one view.
 void fold_books_restore(const struct fold_books *b, int view, size_t first, size_t n, float *to);
 
 // The rows of a view in memory, which follow each other from pixel `*first` on, whichever strips

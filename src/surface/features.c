@@ -1,5 +1,5 @@
 // features.c - the principal components of a texel's values in some pictures of the sample. All
-// pictures would say little more (thesis, 4.2.1: 150 of 6561 do); square roots stand for display
+// pictures would say little more (thesis, 4.2.1: 150 of 6561 do); square roots approximate display
 // coding, so that a step counts as it is seen.
 #include "surface/features.h"
 

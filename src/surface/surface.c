@@ -239,7 +239,7 @@ static bool is_dark(const struct relume_btf_ray *ray)
     return !(ray->view.z > 0.0) || (!ray->ambient && !ray->sky && !(ray->light.z > 0.0));
 }
 
-// The points that stand for a footprint: `ratio` of them `way` apart, on one level. The outermost
+// The points that sample a footprint: `ratio` of them `way` apart, on one level. The outermost
 // count in part, so that nothing jumps where a footprint grows longer.
 struct points {
     double x, y, way[2], level;
@@ -257,7 +257,7 @@ static void add_points(const relume_btf_surface *s, const struct points *p, cons
     }
 }
 
-// Each measured light alone, times what it stands for.
+// Each measured light alone, times the part of the sky that it represents.
 static void sum_sky(const relume_btf_surface *s, const struct points *p, struct blend *at,
                     const struct relume_btf_frame *frame, float rgb[3])
 {

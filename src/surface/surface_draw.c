@@ -38,7 +38,7 @@ static struct lens make_lens(const struct relume_btf_camera *camera, int width, 
     return l;
 }
 
-// Where the ray through a place of the picture meets the surface, in texels; false above the
+// Where the ray through a place of the picture hits the surface, in texels; false above the
 // horizon.
 static bool hit(const struct drawing *d, double px, double py, double out[2])
 {

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-// A surface closer to the cameras than this is taken for one at this disparity: it would need
+// A surface closer to the cameras than this is treated as one at this disparity: it would need
 // cameras closer together than any slab has.
 static const double most = 64.0;
 

@@ -251,7 +251,7 @@ static void across_edge(float rgb[3], const struct panorama *p, int face, int x,
     panorama_fetch(rgb, p, relume_whole(xy[0]), index_clamped(relume_whole(xy[1]), p->height));
 }
 
-// At a corner three faces meet: the missing fourth texel is the mean of their corner texels, which
+// A corner has three faces: the missing fourth texel is the mean of their corner texels, which
 // is the same seen from each of them.
 static void cube_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
 {

@@ -30,7 +30,7 @@ vec3 disc_ray(const struct panorama *p, double x, double y)
     return vec3_unit(square_ray(p, lower, lower ? x - side : x, y - panorama_rows(p)));
 }
 
-// Where a direction meets the plane of a disc, in pixels from the corner of its square.
+// Where a direction crosses the plane of a disc, in pixels from the corner of its square.
 static void square_pixel(double xy[2], const struct panorama *p, bool lower, vec3 d)
 {
     const double scale = height_of(p, lower) / d.y;

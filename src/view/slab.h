@@ -72,7 +72,7 @@ relume_status slab_frame_lens(const struct slab_frame *frame);
 relume_status slab_value_depth(float rgb[3], const struct slab_frame *frame, const double st[2]);
 // The farthest and the nearest disparity in a frame's views ...
 void slab_depth_extent(double range[2], const struct slab_frame *frame);
-// ... and that its rays can meet.
+// ... and that its rays can hit.
 void slab_depth_range(double range[2], const struct slab_frame *frame);
 struct slab_ray;
 // A ray by depth. Returns the share of the cameras around it that see its surface, 1e-3 of that
@@ -81,7 +81,7 @@ double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const stru
                         const double range[2]);
 // A ray beside the grid, of slab_ray_beside, by depth, `away` from the cameras or towards them;
 // `range` is of all their disparities. 0 where none of the cameras sees what it
-// meets, nor that it meets nothing.
+// hits, nor that it hits nothing.
 double slab_depth_beside(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray,
                          const double range[2], bool away);
 // A ray by the quadralinear basis, or of the nearest camera.
@@ -118,7 +118,7 @@ static inline void slab_need(const struct slab_frame *f, int view, int x, int y)
         f->params.need(f->params.user, view, x, y);
 }
 
-// The ray of a pixel: where it meets the uv plane, and the place in a view (texels, centres at
+// The ray of a pixel: where it crosses the uv plane, and the place in a view (texels, centres at
 // +0.5) that shows its point on the st plane. Rays that miss the grid ask the cameras around `at`,
 // its place nearest to `uv`.
 struct slab_ray {

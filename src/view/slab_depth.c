@@ -3,8 +3,8 @@
 // Gortler, Grzeszczuk, Szeliski, Cohen 1996 (Lumigraph), 3.4 "depth correction". A ray is given by
 // (s, t) and (u, v); its point of disparity q (view.h) appears to the camera at c in
 // (s, t) + q ((u, v) - c): a straight walk over that camera's disparities. The four cameras around
-// the ray walk together from near to far, a texel a step; the first that meets the disparity it
-// walks at has found the surface that the ray meets first. Every texel then counts as far as its
+// the ray walk together from near to far, a texel a step; the first that finds the disparity it
+// walks at has found the surface that the ray hits first. Every texel then counts as far as its
 // own disparity says that it shows this surface, so that neither a camera to which the point is
 // hidden nor a texel beyond a silhouette has a say.
 #include "math/bilinear.h"
@@ -29,7 +29,7 @@ struct camera {
     const float *disparity;   // [height][width]
     double weight;
     double shift[2];  // texels per unit of disparity
-    double speed;     // length of shift, as far as it tells one disparity from another
+    double speed;     // length of shift, as far as it separates one disparity from another
     double pace;      // length of shift
 };
 
@@ -119,8 +119,8 @@ static bool pass(double *q, const struct around *a, const struct camera *c, doub
 }
 
 // Adds the camera's disparity and its weight where it sees what is walked at.
-static void meet(double sum[2], const struct around *a, const struct camera *c, double q,
-                 double step)
+static void add_seen(double sum[2], const struct around *a, const struct camera *c, double q,
+                     double step)
 {
     double found = disparity_at(a, c, q);
     if (!(c->weight > negligible && found > (double)RELUME_SLAB_BACKGROUND))
@@ -151,7 +151,7 @@ static bool walk(double *q, const struct around *a, double from, double to)
     for (int k = 0; k <= steps; k++) {
         double sum[2] = {0.0, 0.0};
         for (int i = 0; i < a->count; i++)
-            meet(sum, a, &a->camera[i], from - k * step, step);
+            add_seen(sum, a, &a->camera[i], from - k * step, step);
         if (sum[1] > 0.0) {
             *q = sum[0] / sum[1];
             return true;
@@ -169,7 +169,7 @@ static bool gather_all(double sum[5], const struct around *a, double q, double s
     return sum[4] > 1e-6;
 }
 
-// The surface that the ray meets first.
+// The surface that the ray hits first.
 static bool gather_surface(double sum[5], const struct around *a, double from, double to)
 {
     double q;
@@ -265,7 +265,7 @@ static bool stretch_of(struct stretch *out, const struct around *a, double least
     return all[0] <= all[1];
 }
 
-// Of the slope: not so deep behind a surface a ray is taken for one beside it.
+// Of the slope: a ray less deep than this behind a surface is treated as one beside it.
 static const double shallow = 1.0 / 3.0;
 
 // Whether a camera sees through all of it: nowhere does the ray pass behind what it sees.
@@ -295,7 +295,7 @@ static const double most_slope = 12.0;
 static const double endless = -0.98;
 
 // Seen from far aside a surface of any slope moves by many texels between disparities: what is one
-// surface is told as by cameras as far apart as those of the grid.
+// surface is decided as by cameras as far apart as those of the grid.
 static void look_from_aside(struct around *a)
 {
     const relume_slab *slab = a->frame->slab;
@@ -326,10 +326,10 @@ double slab_depth_beside(float rgb[3], const struct slab_frame *frame, const str
     look_from_aside(&a);
     const double nearest = away ? fmin(range[1], eye) : range[1];
     const double farthest = away ? range[0] : fmax(range[0], eye);
-    const bool met = stretch_of(&surfaces, &a, farthest, nearest, away) &&
-                     gather_surface(sum, &a, surfaces.from, surfaces.to);
-    if (!met && !(stretch_of(&whole, &a, away ? endless : eye, nearest, away) &&
-                  gather_clear(sum, &a, &whole)))
+    const bool found = stretch_of(&surfaces, &a, farthest, nearest, away) &&
+                       gather_surface(sum, &a, surfaces.from, surfaces.to);
+    if (!found && !(stretch_of(&whole, &a, away ? endless : eye, nearest, away) &&
+                    gather_clear(sum, &a, &whole)))
         return 0.0;
     for (int k = 0; k < 3; k++)
         rgb[k] = (float)(sum[k] / sum[4]);

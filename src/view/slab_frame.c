@@ -1,7 +1,7 @@
 // slab_frame.c - a frame of a light slab: the quadralinear basis, four cameras times four texels
 //
-// A pixel fixes (s, t); its ray meets the uv plane in (u, v). Since u depends on s alone and v on t
-// alone, every weight of a frame is the product of one factor per column and one per row. A pixel
+// A pixel fixes (s, t); its ray crosses the uv plane in (u, v). Since u depends on s alone and v on
+// t alone, every weight of a frame is the product of one factor per column and one per row. A pixel
 // that covers several texels is the mean of several such rays (footprint.h). Frames by depth and
 // through an aperture are in slab_depth.c and slab_lens.c.
 #include "view/slab.h"

@@ -1,7 +1,7 @@
 // slab_lens.c - a frame of a light slab through a synthetic aperture
 //
 // Isaksen, McMillan, Gortler 2000 (dynamically reparameterized light fields): all cameras within
-// the aperture look at the point where the ray meets the plane in focus; what lies on that plane
+// the aperture look at the point where the ray crosses the plane in focus; what lies on that plane
 // adds up, the rest is blurred. A camera counts by the bilinear basis of its place, taken at the
 // point of the aperture nearest to it: whole within the aperture, falling to nothing over one step
 // of the grid beside it. So a pinhole is the quadralinear basis with another plane in focus, and a

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// Texels beside the one that a ray meets: those of its mean; by depth also as far as the surface is
+// Texels beside the one that a ray hits: those of its mean; by depth also as far as the surface is
 // moved while it is placed between texels (slab_depth.c).
 enum { BESIDE = 2, BESIDE_BY_DEPTH = 8 };
 

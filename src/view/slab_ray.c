@@ -36,11 +36,11 @@ struct slab_ray slab_ray_at(const struct slab_frame *f, const double st[2])
     return ray;
 }
 
-// Lines that rise less than so much over the planes cross them too far away.
+// Lines that rise less than this over the planes cross them too far away.
 static const double flattest = 1e-3;
 
 // Where a grid's cameras stand that look at `middle` most as the eye does along `way`: nearest to
-// where the line from there back to the eye meets their plane; past the horizon as far that way.
+// where the line from there back to the eye crosses their plane; past the horizon as far that way.
 static void nearest_cameras(double at[2], const relume_slab *slab, vec3 middle, vec3 way)
 {
     const double up = (slab->geometry.uv_z - middle.z) / fabs(way.z);

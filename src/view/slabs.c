@@ -7,7 +7,7 @@
 // Of the extent of the camera grid, and of the window's: where a slab's word begins to fade.
 static const double fade_uv = 0.25;
 static const double fade_st = 0.0625;
-// Cameras at the border have a say where there is no other slab.
+// Cameras at the border keep this weight where there is no other slab.
 static const double least = 1e-4;
 
 relume_status relume_slab_set_create(relume_slab_set **out, const struct relume_geometry *slab,

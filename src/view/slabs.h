@@ -12,8 +12,8 @@ struct relume_slab_set {
     relume_slab *slab[RELUME_MOST_SLABS];
 };
 
-// The ray from `eye` along `direction` in a slab's own frame: where it meets the two planes. False
-// when it leaves the side on which the cameras stand without meeting the st plane.
+// The ray from `eye` along `direction` in a slab's own frame: where it crosses the two planes.
+// False when it leaves the side on which the cameras stand without crossing the st plane.
 bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, vec3 direction);
 
 #endif

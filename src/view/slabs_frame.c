@@ -34,7 +34,7 @@ struct picture {
 
 // From how far aside cameras still see something of a ray.
 static const double most_aside = 100.0 * M_PI / 180.0;
-// Without depth: less than that, from 44 degrees on, the st plane does not stand for the scene.
+// Without depth: less than that; from 44 degrees on the st plane is too far from the scene.
 static const double least_flat = 1.4;
 // Rays are looked at so far apart to learn which cameras those beside all grids need.
 enum { SAMPLES = 32 };
@@ -57,7 +57,7 @@ static vec3 way_to(const struct seen *s, double x, double y)
     return vec3_add(s->corner, vec3_along(vec3_scale(s->right, x), s->down, y));
 }
 
-// Where the rays of a window meet the st plane of a slab, as a rectangle. The window's corners
+// Where the rays of a window cross the st plane of a slab, as a rectangle. The window's corners
 // bound it unless some of them look away from the plane: then it may be anywhere.
 static bool find_reach(double min[2], double max[2], const struct seen *s)
 {
@@ -419,7 +419,7 @@ static void prepare_slab(struct job *job, int i, const struct slab_frame *common
     }
 }
 
-// RELUME_EINVAL when nothing is to be seen or something needed is missing.
+// RELUME_EINVAL when the window sees nothing or something needed is missing.
 static relume_status prepare(struct job *job, const struct relume_window *window,
                              const struct relume_image *views)
 {

@@ -111,9 +111,9 @@ cannot 'more parts than bands of rows' 1 '9 views of 40 rows cannot be shared by
 cannot 'rows of a codebook' 1 'a codebook is learnt from a whole view; expected at most 9 parts for 9 views' --part 1/10 --basis sh --codebook 4
 cannot 'with loss' 2 '--psnr and --bytes-per-pixel try steps on all views' --part 1/2 --psnr 30
 cannot 'one codebook for all' 2 '--share learns one set of codebooks from all views' --part 1/2 --codebook 4 --share
-cannot 'part 0' 2 '--part: expected which of how many parts' --part 0/2
-cannot 'part 3 of 2' 2 '--part: expected which of how many parts' --part 3/2
-cannot 'a part in words' 2 '--part: expected which of how many parts' --part one
+cannot 'part 0' 2 '--part: expected part I of N' --part 0/2
+cannot 'part 3 of 2' 2 '--part: expected part I of N' --part 3/2
+cannot 'a part in words' 2 '--part: expected part I of N' --part one
 cannot 'both' 2 'expected one of the two' --part 1/2 --commands 2
 
 # ---- very bright highlights: one machine would have taken halves, a part cannot know

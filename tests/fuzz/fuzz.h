@@ -6,9 +6,9 @@
 // with tests/fuzz/corpus, where inputs lie that once failed.
 //
 // With RELUME_LIBFUZZER (config=fuzzer) the same file is a target of libFuzzer instead: its main()
-// runs once and makes what inputs meet; inputs come from the engine, and allocations fail as often
-// as the last byte of an input says. RELUME_FUZZ_SEEDS names a folder to write the seeds and words
-// to.
+// runs once and makes what inputs are tried on; inputs come from the engine, and allocations fail
+// as often as the last byte of an input says. RELUME_FUZZ_SEEDS names a folder to write the seeds
+// and words to.
 #ifndef FUZZ_H
 #define FUZZ_H
 

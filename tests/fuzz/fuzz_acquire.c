@@ -1,5 +1,5 @@
 // fuzz_acquire.c - what comes with photographs, made of noise: lights of domes, camera responses,
-// COLMAP's poses, exposure times, and names that tell a camera's place
+// COLMAP's poses, exposure times, and names that hold a camera's place
 #include "fuzz.h"
 
 #include "cli/commands/capture_times.c"

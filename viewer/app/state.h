@@ -46,7 +46,7 @@ enum {
 };
 enum { APP_CONTROL = 1 << 10 };  // added to a letter: Ctrl is held as well
 
-enum { APP_HINT_S = 8, APP_TOAST_S = 4 };  // seconds that a note is to be seen
+enum { APP_HINT_S = 8, APP_TOAST_S = 4 };  // seconds that a note is shown
 
 struct app_event {
     enum app_event_kind kind;

@@ -207,7 +207,7 @@ static bool add_triangle(struct mesh_list *d, int triangle)
     return true;
 }
 
-// Probes over the cell and its border find what it meets; of a triangle that slips between them no
+// Probes over the cell and its border find the triangles; of a triangle that slips between them no
 // direction is far from one that is listed.
 static bool fill_cell(struct mesh_list *d, int cell)
 {

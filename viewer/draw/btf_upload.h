@@ -56,8 +56,8 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
 void btf_release(struct btf_material *material, const struct gl *gl);
 // The textures of a level for the program in use.
 void btf_use(const struct btf_material *material, const struct gl *gl, int level);
-// For models of lobes the parts of lobes, for others what each light stands for, as sky.glsl.
-// RELUME_ENOMEM, RELUME_ESYSTEM.
+// For models of lobes the parts of lobes, for others the part of the sky that each light
+// represents, as sky.glsl. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status btf_need_table(struct btf_material *material, const struct gl *gl,
                              const struct relume_object_material *from,
                              const relume_prefiltered_maps *prefiltered,

@@ -4,8 +4,8 @@
 
 #include "draw/renderer_state.h"
 
-// `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.
-// RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EUNFIT.
+// `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs places
+// them. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EUNFIT.
 relume_status renderer_create(struct renderer *renderer, const struct gl *gl,
                               const struct code_source *source,
                               const struct relume_geometry *geometry, const double (*uv)[2],
@@ -32,14 +32,14 @@ relume_status renderer_use_tiles(struct renderer *renderer, const struct code_so
 void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
 
 // Objects covered with measured materials, which must outlive the renderer: into the scene whose
-// views' places `places` tells (three channels), or alone on a stage when that is NULL.
+// views' places `places` gives (three channels), or alone on a stage when that is NULL.
 // RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status renderer_use_objects(struct renderer *renderer, relume_objects *objects,
                                    const struct depth_source *places);
 
 // Draw that frame, linear, into renderer->frame. After renderer_stream, views
 // that are still being read are stood in for by their nearest neighbours, and renderer_is_pending
-// tells that another frame would be better.
+// is then true: another frame would be better.
 relume_status renderer_stream(struct renderer *renderer);
 bool renderer_is_pending(const struct renderer *renderer);
 relume_status renderer_draw(struct renderer *renderer, const struct frame_request *request);

@@ -101,7 +101,7 @@ struct gl {
     int max_texture;                               // pixels along one side
     int max_buffer;                                // texels of a buffer texture
     bool software;                                 // it is drawn by the CPU
-    PFNGLGETGRAPHICSRESETSTATUSPROC reset_status;  // NULL: no one would tell
+    PFNGLGETGRAPHICSRESETSTATUSPROC reset_status;  // NULL: the driver has no such call
 };
 
 typedef void (*gl_proc)(void);

@@ -192,7 +192,7 @@ static bool same_view(const struct relume_glare_params *a, const struct relume_g
 
 // ---------------------------------------------------------------- by the library
 
-// Pixels that are no numbers would be told of in every frame.
+// Pixels that are no numbers would be logged in every frame.
 static void say_once(void *user, enum relume_level level, const char *text)
 {
     struct glare *g = user;

@@ -1,4 +1,4 @@
-// panel.cpp - Dear ImGui: made, told of events, turned into triangles
+// panel.cpp - Dear ImGui: made, fed with events, turned into triangles
 #include "panel/panel.h"
 
 #include "panel/panel_parts.h"
@@ -178,7 +178,7 @@ extern "C" bool panel_shown(const struct app *app)
            app->hint_s > 0;
 }
 
-static void tell_imgui(const app_event &e)
+static void feed_imgui(const app_event &e)
 {
     ImGuiIO &io = ImGui::GetIO();
     if (e.kind == APP_PRESS || e.kind == APP_RELEASE || e.kind == APP_MOVE || e.kind == APP_WHEEL)
@@ -221,7 +221,7 @@ static bool dock_row(app *app)
         if (i)
             ImGui::SameLine();
         ImGui::RadioButton(names[i], &dock, i);
-        panel_tip("where this panel is");
+        panel_tip("place of this panel");
     }
     const bool changed = dock != app->dock;
     app->dock = (app_dock)dock;
@@ -239,22 +239,23 @@ static bool section(const char *name, const char *what, bool open = true)
 static bool sections(panel *panel, app *app, const panel_facts *facts)
 {
     bool changed = false;
-    if (section("Lights", "what shines, from where and how strongly"))
+    if (section("Lights", "the lights: direction, place, colour and brightness"))
         changed |= panel_lights(panel, app, facts);
     if (app->file.objects && section("Objects", "the materials of the objects"))
         changed |= panel_objects(app, facts);
-    if (section("Picture", "exposure, views, saving and recording"))
+    if (section("Picture", "exposure, tone, what is shown, saving and recording"))
         changed |= panel_picture(app, facts);
-    if (section("Camera", "from where and how closely it is looked at", false))
+    if (section("Camera", "viewpoint, zoom and focus", false))
         changed |= panel_camera(app);
     if (section("Glare", "the picture as a human eye sees it", app->now.observer.on))
         changed |= panel_glare(app, facts);
-    panel->histogram = section("Histogram", "how often each value is on the screen", false);
+    panel->histogram =
+        section("Histogram", "how often each brightness occurs in the picture", false);
     if (panel->histogram)
         panel_histogram(facts, panel->scale);
-    if (section("File", "what is in it, and another one", false))
+    if (section("File", "what the file holds; open another one", false))
         panel_file(app, facts);
-    if (section("Panel", "where it stands", false))
+    if (section("Panel", "place of this panel", false))
         changed |= dock_row(app);
     return changed;
 }
@@ -336,7 +337,7 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
     const bool browsed = panel->browsing;
     panel->changed = false;
     for (const app_event &e : panel->queue) {
-        tell_imgui(e);
+        feed_imgui(e);
         one_frame(panel, app, facts);
     }
     panel->queue.clear();

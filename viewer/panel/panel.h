@@ -27,7 +27,7 @@ bool panel_has_font(const struct panel *panel);
 // Hear of an event. True when it belongs to the panel, and the app must not have it. What follows a
 // press belongs to who got the press.
 bool panel_takes(struct panel *panel, const struct app_event *event);
-// Whether something of it is to be seen.
+// Whether any of it is visible.
 bool panel_shown(const struct app *app);
 
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.

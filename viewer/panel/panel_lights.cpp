@@ -206,10 +206,10 @@ static void wish_light(app *app, const char *spec)
 static bool light_buttons(panel *panel, app *app)
 {
     bool changed = false;
-    if (panel_button("add", "one more light; also by M"))
+    if (panel_button("add", "add a light; also by M"))
         changed |= keys_press(app, 'm', false);
     ImGui::SameLine();
-    if (panel_button("remove", "the selected light; also by Delete"))
+    if (panel_button("remove", "remove the selected light; also by Delete"))
         changed |= keys_press(app, APP_KEY_DELETE, false);
     ImGui::SameLine();
     if (panel_button("save rig", "save these lights as a rig file, which --rig reads"))

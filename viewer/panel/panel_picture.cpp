@@ -12,9 +12,9 @@ static bool choose_pass(app *app)
 {
     int pass = app->now.pass;
     const bool changed = panel_choice(
-        "view", &pass, app->compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE,
+        "pass", &pass, app->compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE,
         [](int i) { return relume_pass_name((relume_pass)i); },
-        "what is shown: colours, shapes or enhanced detail; also by V");
+        "what is shown (rendering mode): colours, normals, enhanced detail, ...; also by V");
     app->now.pass = (relume_pass)pass;
     return changed;
 }
@@ -32,17 +32,19 @@ bool panel_picture(app *app, const panel_facts *facts)
     bool changed = panel_slider("exposure", &app->now.exposure_ev, -10, 10, "%+.2f EV",
                                 "brightness of the picture: +1 EV doubles it; also by + and -");
     bool automatic = app->now.auto_exposure;
-    if (panel_box("automatic exposure", &automatic, "as an eye adapts to what it sees"))
+    if (panel_box("automatic exposure", &automatic,
+                  "set the exposure by itself, as an eye adapts to what it sees"))
         changed |= keys_press(app, 'e', false);
     changed |= panel_choice(
         "tone", &app->now.tone, count_tones(), [](int i) { return relume_tones[i]->name; },
-        "how bright light is brought into the range of the screen");
+        "how bright light is fitted to the range of the screen");
     changed |= choose_pass(app);
     changed |= panel_enhancement(app, facts);
     changed |=
         panel_box("ball", &app->now.ball, "a ball in the corner shows the light: drag on it");
     ImGui::SameLine();
-    changed |= panel_box("handles", &app->gizmos, "marks of the lights in the picture: drag them");
+    changed |= panel_box("handles", &app->gizmos,
+                         "marks of the lights in the picture: drag them to move a light");
     ImGui::SameLine();
     changed |= panel_box("inspector", &app->inspect,
                          "the reflectance of the pixel under the pointer, in every direction");
@@ -61,7 +63,7 @@ bool panel_picture(app *app, const panel_facts *facts)
             app->wish = w.wish;
         ImGui::SameLine();
     }
-    if (panel_button("reset", "eye, lights and picture as they were at the start")) {
+    if (panel_button("reset", "set viewpoint, lights and picture back to the start")) {
         app_reset(app);
         changed = true;
     }

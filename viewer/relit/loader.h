@@ -5,8 +5,8 @@
 #include <relume/coder.h>
 
 // Where codes come from: a pack, or a test. `drop` (may be NULL) hears that one who asked for a
-// view's codes no longer looks at them. `surface` (may be NULL) tells where a view's pixels lie,
-// for near lights; the caller destroys the image.
+// view's codes no longer looks at them. `surface` (may be NULL) gives the places of a view's
+// pixels, for near lights; the caller destroys the image.
 struct code_source {
     relume_status (*codes)(const struct relume_codes **out, void *user, int view);
     void (*drop)(void *user, int view);

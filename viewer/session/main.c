@@ -15,13 +15,13 @@
 #include <stdio.h>
 #include <string.h>
 
-// A listener may pass on what it is told.
+// A listener may pass messages on.
 static void on_message(void *user, enum relume_level level, const char *text)
 {
     struct session *s = user;
     const struct relume_log *listener = s->listener;
     if (s->listens)
-        snprintf(s->told, sizeof s->told, "%s", text);
+        snprintf(s->notice, sizeof s->notice, "%s", text);
     if (listener) {
         s->listener = NULL;
         listener->message(listener->user, level, text);

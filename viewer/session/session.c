@@ -152,7 +152,7 @@ void session_close_file(struct session *s)
     relume_pack_destroy(&s->pack);
     relume_slab_set_destroy(&s->around);
     relume_slab_set_destroy(&s->stage);
-    s->beside_told = false;
+    s->beside_warned = false;
 }
 
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
@@ -345,13 +345,13 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         .observer = was.now.observer,
     };
     relume_status status = was.keep_lights ? keep_lights(&start, &was.now) : RELUME_OK;
-    s->told[0] = '\0';
+    s->notice[0] = '\0';
     s->listens = true;
     *opened = !status && !session_open(s, path, &start, true);
     s->listens = false;
     light_list_release(&start);
-    if (s->told[0])
-        session_say(s, "%s", s->told);
+    if (s->notice[0])
+        session_say(s, "%s", s->notice);
     if (!*opened)
         return status;
     if (!s->app.near_lights) {
@@ -359,7 +359,7 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         light_list_drop_near(&s->app.start);
         light_list_drop_near(&s->app.now);
     }
-    const double toast_s = s->told[0] ? APP_TOAST_S : 0;
+    const double toast_s = s->notice[0] ? APP_TOAST_S : 0;
     keep_window(&s->app, &was);
     s->app.toast_s = toast_s;
     relume_capture_destroy(&s->capture);
@@ -417,10 +417,10 @@ static double share_beside(const struct frame_request *q, const relume_slab *sla
 }
 
 // Once, not for each step of an eye that goes there.
-static void tell_beside(struct session *s)
+static void warn_beside(struct session *s)
 {
     char text[160];
-    if (s->beside_told || !s->pack)
+    if (s->beside_warned || !s->pack)
         return;
     const double share = share_beside(&s->request, s->renderer.grid, s->around);
     if (share < 0.01)
@@ -430,7 +430,7 @@ static void tell_beside(struct session *s)
              "black where none does",
              100.0 * share);
     s->log->message(s->log->user, RELUME_NOTE, text);
-    s->beside_told = true;
+    s->beside_warned = true;
 }
 
 relume_status session_render(struct session *s)
@@ -439,7 +439,7 @@ relume_status session_render(struct session *s)
     if (!status)
         status = renderer_draw(&s->renderer, &s->request);
     if (!status)
-        tell_beside(s);
+        warn_beside(s);
     return status;
 }
 
@@ -475,7 +475,7 @@ bool session_send(struct session *s, const struct app_event *event)
         return true;
     const bool changed = app_handle(&s->app, event);
     if (!shown && panel_shown(&s->app) && session_build_panel(s, false))
-        return true;  // what went wrong goes wrong again when it is drawn, and is told there
+        return true;  // what went wrong goes wrong again when it is drawn, and is reported there
     return changed || shown || s->app.wish;
 }
 

@@ -70,14 +70,14 @@ struct session {
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
     char message[SESSION_TEXT];            // what was said last
     bool full_screen;
-    double ui_scale;          // of the panel, as context_backend.scale; 0: what that says
-    char font[PATH_MAX];      // of the panel
-    bool font_told;           // that it is missing
-    bool beside_told;         // that the eye stands beside all camera grids of this file
-    char told[SESSION_TEXT];  // by the log while a file was opened
-    bool listens;             // to it
-    int threads;              // that read files
-    size_t vram_bytes;        // for views
+    double ui_scale;            // of the panel, as context_backend.scale; 0: what that says
+    char font[PATH_MAX];        // of the panel
+    bool font_warned;           // that it is missing
+    bool beside_warned;         // that the eye stands beside all camera grids of this file
+    char notice[SESSION_TEXT];  // by the log while a file was opened
+    bool listens;               // to it
+    int threads;                // that read files
+    size_t vram_bytes;          // for views
     enum session_relight relight;
     enum session_relight glare;            // by passes or by the library, likewise
     int glare_size;                        // as glare.size

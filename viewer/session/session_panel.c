@@ -1,4 +1,4 @@
-// session_panel.c - what the panel is told: histogram, inspector, maps to choose from
+// session_panel.c - what the panel shows: histogram, inspector, maps to choose from
 #include "session/session.h"
 
 #include <relume/tone.h>
@@ -91,12 +91,12 @@ static const char *describe_eye(char *text, size_t size, const struct glare *gla
 }
 
 // Only those who see the panel need to know.
-static void tell_font(struct session *s)
+static void warn_font(struct session *s)
 {
     char text[PATH_MAX + 160];
-    if (s->font_told || panel_has_font(s->panel))
+    if (s->font_warned || panel_has_font(s->panel))
         return;
-    s->font_told = true;
+    s->font_warned = true;
     snprintf(text, sizeof text,
              "%s: the panel needs this TrueType font (package fonts-dejavu-core); it is drawn with "
              "a built-in one without accents",
@@ -107,7 +107,7 @@ static void tell_font(struct session *s)
 relume_status session_build_panel(struct session *s, bool histogram)
 {
     char eye[160];
-    tell_font(s);
+    warn_font(s);
     bool plot = false;
     relume_status status = s->app.inspect && s->pack ? inspect(s, &plot) : RELUME_OK;
     if (!status)
@@ -141,7 +141,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
     return status;
 }
 
-// Once more, with what only the frame that has just been drawn tells: its histogram, its range.
+// Once more, with what comes from the frame that has just been drawn: its histogram, its range.
 relume_status session_add_histogram(struct session *s)
 {
     const bool histogram = panel_wants_histogram(s->panel);

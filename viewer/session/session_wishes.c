@@ -114,8 +114,8 @@ static relume_status wish_open(struct session *s)
     return session_drop(s, path);
 }
 
-// Through the middle of an eye that goes around, planes in focus are told by how far before what it
-// looks at they are.
+// For an eye that goes around, the plane in focus is given by its distance in front of the look-at
+// point.
 static double focus_at(const struct session *s, struct relume_vec3 p)
 {
     struct relume_window w;

@@ -86,7 +86,7 @@ vec3 sky_even(mat3 frame, bool with_cosine)
     return with_cosine ? sky_specular(frame[2], 1.0) : sky_diffuse(frame[2]);
 }
 
-// What light number `i` stands for. Twin: relume_btf_environment_weight.
+// The part of the sky that light number `i` represents. Twin: relume_btf_environment_weight.
 vec3 sky_weight(mat3 frame, int i, out vec3 direction)
 {
     vec4 cone = texelFetch(sky_table, 2 * i), light_of = texelFetch(sky_table, 2 * i + 1);

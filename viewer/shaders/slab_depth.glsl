@@ -1,5 +1,5 @@
 // A ray between four cameras, each where it sees the surface of the ray; twin of
-// src/view/slab_depth.c, function by function. `shade` also tells how sure it is.
+// src/view/slab_depth.c, function by function. `shade` also returns how sure it is.
 uniform sampler2D view00;  // low u, low v
 uniform sampler2D view10;  // high u, low v
 uniform sampler2D view01;
@@ -95,7 +95,7 @@ bool pass(inout float q, sampler2D disparity, Camera c, float found, float step)
     return true;
 }
 
-void meet(inout vec2 sum, sampler2D disparity, Camera c, float q, float step)
+void add_seen(inout vec2 sum, sampler2D disparity, Camera c, float q, float step)
 {
     float found = disparity_at(disparity, c, q);
     if (!(c.weight > NEGLIGIBLE && found > BACKGROUND))
@@ -127,10 +127,10 @@ bool walk(out float q, float from, float to)
     for (int k = 0; k <= steps; k++) {
         float at = from - float(k) * step;
         vec2 sum = vec2(0.0);
-        meet(sum, disparity00, camera00, at, step);
-        meet(sum, disparity10, camera10, at, step);
-        meet(sum, disparity01, camera01, at, step);
-        meet(sum, disparity11, camera11, at, step);
+        add_seen(sum, disparity00, camera00, at, step);
+        add_seen(sum, disparity10, camera10, at, step);
+        add_seen(sum, disparity01, camera01, at, step);
+        add_seen(sum, disparity11, camera11, at, step);
         if (sum.y > 0.0) {
             q = sum.x / sum.y;
             return true;

@@ -93,9 +93,9 @@ vec4 slab_depth_beside(Beside ray, vec2 extent)
     float nearest = ray.away ? min(extent.y, from_eye) : extent.y;
     float farthest = ray.away ? extent.x : max(extent.x, from_eye);
     Sum sum;
-    bool met = stretch_of(stretch, farthest, nearest, ray.away) &&
+    bool found = stretch_of(stretch, farthest, nearest, ray.away) &&
                gather_surface(sum, stretch.x, stretch.y);
-    if (!met && !(stretch_of(stretch, ray.away ? ENDLESS : from_eye, nearest, ray.away) &&
+    if (!found && !(stretch_of(stretch, ray.away ? ENDLESS : from_eye, nearest, ray.away) &&
                   gather_clear(sum, stretch)))
         return vec4(0.0);
     return vec4(sum.rgb / sum.weight, sum.weight);

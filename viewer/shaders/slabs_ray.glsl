@@ -7,7 +7,7 @@ uniform vec3 right;
 uniform vec3 down;
 uniform vec2 planes;  // z of uv and st
 uniform vec4 grid;    // the first and the last lines of the cameras: low u, low v, high u, high v
-uniform float slack;  // cells at the border are open so much wider
+uniform float slack;  // by how much cells at the border are wider
 uniform bool beside;  // rays that no slab's cameras are passed by
 uniform sampler2D passed;  // what the others have added up to
 
@@ -28,7 +28,7 @@ bool slabs_ray(out vec2 uv, out vec2 hit, vec3 from, vec3 direction)
     return way > 0.0 && (from.z - planes.y) * (planes.x - planes.y) > 0.0;
 }
 
-// Texels that a pixel whose ray meets the window in `hit` covers along its sides.
+// Texels that a pixel whose ray hits the window in `hit` covers along its sides.
 vec2 slabs_texels(vec2 hit, vec2 at, vec2 per_st)
 {
     vec2 pixel = 1.0 / (picture.zw - picture.xy);

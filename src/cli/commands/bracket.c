@@ -228,7 +228,7 @@ static relume_status leave_out_ghosts(struct bracket *b, double black, const str
     return status;
 }
 
-// A response that was recovered may show a black level: below it nothing can be told apart.
+// A response that was recovered may show a black level: below it all values look the same.
 static relume_status find_response_and_ghosts(struct bracket *b, const struct hdr_options *o)
 {
     const double dark = 0.05;

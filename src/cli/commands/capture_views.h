@@ -23,7 +23,7 @@ struct views_options {
          "the lights are known: a .lp, .dome or capture.json file, or lines x y z")
 // clang-format on
 
-// The lights belong to `*lights`, which is to be freed.
+// The lights belong to `*lights`, which the caller frees.
 relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3 **lights,
                             const struct args *args, const struct views_options *options);
 // That folder `dir` is made and what may be done with it.

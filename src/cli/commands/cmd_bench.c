@@ -19,7 +19,7 @@ static const struct bench_options defaults = {.rounds = 15};
 
 static const struct option options[] = {
     GROUP("measuring"),
-    INT("--rounds", rounds, "N", "how often each loop is timed; default 15", 1, TIMES_MOST),
+    INT("--rounds", rounds, "N", "how often each loop is timed; default: 15", 1, TIMES_MOST),
     GROUP("output"),
     FLAG("--json", json, "print one JSON object"),
     {0},
@@ -86,9 +86,9 @@ static void print_text(const struct row *rows, int n, const char *processor, int
            "% of it", "bound by", "README");
     for (int i = 0; i < n; i++)
         print_row(&rows[i]);
-    printf("\nrelighting at %.2f of the speed of reading (target 0.8), the look-up at %.2f of "
-           "memcpy's (0.5).\n'%% of it': of the speed that memory or arithmetic allows. README: ms "
-           "in docs/measurements, two cores.\n",
+    printf("\nRelighting reaches %.2f of the speed of reading memory (target 0.8), the look-up "
+           "%.2f of the speed of memcpy (0.5).\n'%% of it': share of the speed that memory or "
+           "arithmetic allows. README: ms on the two cores of docs/measurements.\n",
            rows[LOOP_READ].seconds / rows[LOOP_RELIGHT].seconds,
            rows[LOOP_COPY].seconds / rows[LOOP_LOOK_UP].seconds);
 }
@@ -176,8 +176,9 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_bench = {
-    COMMAND("bench", "[--rounds N] [--json]",
-            "measure how fast this machine is, beside what its memory and arithmetic allow",
-            "relume bench --json", 0, 0),
+    COMMAND(
+        "bench", "[--rounds N] [--json]",
+        "measure how fast relume runs on this machine, and what its memory and arithmetic allow",
+        "relume bench --json", 0, 0),
     .defaults = &defaults,
 };

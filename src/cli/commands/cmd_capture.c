@@ -34,9 +34,9 @@ static const struct option options[] = {
     GROUP("finding the lights"),
     POINTS("--ball", ball, "x,y,r",
            "outline of a mirror ball, pixels from the top left; may be repeated; default: found"),
-    INT("--balls", balls, "N", "how many balls are to be found; default 1", 1, 16),
+    INT("--balls", balls, "N", "number of balls to look for; default: 1", 1, 16),
     TEXTS("--ball-photos", ball_photos, "PATH",
-          "the ball was photographed separately: a folder, or a file (then repeated)"),
+          "separate photographs of the ball: a folder, or one file (repeat the option for more)"),
     TRANSFER("--ball-transfer", ball_transfer,
              "--ball-photos: linear, srgb or gamma:G; default: as --transfer, else by file"),
     TEXT("--ball-mask", ball_mask, "FILE", "a mask: white where the ball is"),
@@ -45,31 +45,38 @@ static const struct option options[] = {
          "the lights are known: a .lp, .dome or capture.json file, lines x y z, or COLMAP poses of "
          "a camera on the lamp"),
     FLAG("--near", near,
-         "lights stand near: positions from two balls or more, or those of --lights"),
+         "the lamps stand near: find their positions by two balls or more, or take those of "
+         "--lights"),
     NUMBER("--ball-z", ball_z, "Z",
-           "height of the balls' middle over the plane z = 0, world units; default 0", -1000, 1000),
+           "height of the balls' middle over the plane z = 0, world units; default: 0", -1000,
+           1000),
     NUMBER("--fov", fov, "DEG", "horizontal field of view; default: orthographic", 0.1, 170),
-    NUMBER("--focal", focal, "MM", "the same as a focal length for 36 mm wide film", 5, 5000),
+    NUMBER("--focal", focal, "MM", "the same as a focal length, for a sensor 36 mm wide", 5, 5000),
     FLAG("--refine-lights", refine_lights,
-         "improve directions and intensities from the photographs themselves"),
+         "improve the directions and brightness of the lights from the photographs themselves"),
     FLAG("--refine-brightness", refine_brightness,
-         "estimate each lamp's brightness from the photographs; directions stay"),
+         "estimate the brightness of each lamp from the photographs; keep the directions"),
     FLAG("--integrable", integrable, "--refine-lights: keep the surface physically continuous"),
     GROUP("corrections"),
-    NUMBERS("--white", white, "x,y,w,h", "a region that is grey: the lamps' colour is divided out",
-            4),
-    TEXTS("--flat", flat, "PATH",
-          "photograph of an even surface, divided out; one, or one under each light"),
-    FLAG("--radial", radial, "--flat: as a polynomial of the distance from the middle"),
-    NAME("--align", align, "A", "none, blocks or homography; default: none", ALIGN_NONE, "none",
-         "homography"),
+    NUMBERS("--white", white, "x,y,w,h",
+            "a grey region of the picture: removes the colour of the lamps", 4),
+    TEXTS(
+        "--flat", flat, "PATH",
+        "photograph of an even white surface: removes uneven light; one, or one under each light"),
+    FLAG("--radial", radial,
+         "--flat: use only how it falls off from the middle, as a smooth curve"),
+    NAME("--align", align, "A",
+         "move the photographs onto each other: none, blocks or homography; default: none",
+         ALIGN_NONE, "none", "homography"),
     GROUP("surface"),
     TEXT_AS(OPTION_FLOATS, "--normals", normals, "FILE.exr", "write surface normals"),
     TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "FILE.exr", "write the surface's colour (albedo)"),
     TEXT_AS(OPTION_FLOATS, "--height", height, "FILE.exr",
             "write the surface's height, world units"),
-    TEXT_AS(OPTION_RELUME, "--encode", encode, "FILE.exr", "encode the capture as well"),
-    TEXT_AS(OPTION_PICTURE, "--relight", relight, "PICTURE", "and relight that by --light"),
+    TEXT_AS(OPTION_RELUME, "--encode", encode, "FILE.exr",
+            "also encode the capture to this relume file"),
+    TEXT_AS(OPTION_PICTURE, "--relight", relight, "PICTURE",
+            "--encode: relight the file by --light and write this picture"),
     GROUP("lights"),
     LIGHT_OPTIONS,
     GROUP("machine"),
@@ -143,7 +150,7 @@ static void find_lights_above(struct job *job)
     }
 }
 
-// --lights, or the file of lights that lies with the photographs unless a ball is to tell.
+// --lights, or the file of lights that lies with the photographs unless a ball shows the lights.
 static const char *lights_file(const struct capture_options *o, const struct job *job)
 {
     const char *beside = job->photos.lights;

@@ -97,6 +97,6 @@ static relume_status run(const struct args *args)
 
 const struct command command_check = {
     COMMAND("check", "FILE... [--json]",
-            "read all of a relume file and say what is damaged, and where",
+            "read a whole relume file and report what is damaged, and where",
             "relume check archive/*.exr", 1, 4096),
 };

@@ -111,7 +111,8 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_eval = {
-    COMMAND("eval", "FILE CAPTURE [--json]",
-            "relight with every light of a capture and compare with its images",
-            "relume eval statue.exr photos/heldout.lp --json", 2, 2),
+    COMMAND(
+        "eval", "FILE CAPTURE [--json]",
+        "relight a file with every light of a capture and compare the results with its photographs",
+        "relume eval statue.exr photos/heldout.lp --json", 2, 2),
 };

@@ -18,18 +18,20 @@ static const struct option options[] = {
     GROUP("input"),
     NAME("--layout", layout, "P",
          "cube (six faces), sphere, cylinder or stitch (overlapping photographs); default: sphere "
-         "of one photograph, else stitch",
+         "for one photograph, else stitch",
          RELUME_PANORAMA_SPHERE, LAYOUTS),
     NAME("--panorama", layout, "P", NULL, RELUME_PANORAMA_SPHERE, LAYOUTS),  // of relume capture
     GROUP("picture"),
-    INT("--width", width, "N", "stitch: width of the sphere", 1, 65536),
+    INT("--width", width, "N", "stitch: width of the finished panorama, pixels", 1, 65536),
     INT("--bands", bands, "N",
-        "stitch: bands of blending, 1 to 10; 1: hard seams; default: by the photographs' size", 1,
-        10),
+        "stitch: number of blending bands, 1 (hard seams) to 10; default: by the size of the "
+        "photographs",
+        1, 10),
     GROUP("depth"),
-    TEXT("--depth", depth, "FILE", "a picture of its depth"),
-    NUMBERS("--depth-range", views.depth_range, "A,B", "distance of white and of black in --depth",
-            2),
+    TEXT("--depth", depth, "FILE",
+         "depth of the panorama: an EXR of distances, or a grey picture with --depth-range"),
+    NUMBERS("--depth-range", views.depth_range, "A,B",
+            "--depth: the distances of white and of black", 2),
     {0},
 };
 

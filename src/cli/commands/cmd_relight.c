@@ -37,13 +37,13 @@ static const struct option options[] = {
     GROUP("camera"),
     INT("--view", view, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535),
     NUMBERS("--crop", crop, "x,y,w,h",
-            "of a captured view only the w x h pixels from column x, row y on, in the size of "
-            "--size; reads no more of the file",
+            "captured view: only these w x h pixels, from column x and row y of the picture at "
+            "--size; reads only that part of the file",
             4),
     POINT("--eye", eye, "x,y,z",
           "slab: look at the window from this point; default: the middle of the cameras"),
     POINT("--look-at", look_at, "x,y,z",
-          "--eye: where it looks; default: the middle of the object"),
+          "--eye: the point looked at; default: the middle of the object"),
     POINT("--up", up, "x,y,z", "--eye: the direction that is up in the picture; default: 0,1,0"),
     NUMBER("--fov", fov, "DEG",
            "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a "
@@ -82,7 +82,8 @@ static const struct option options[] = {
     NUMBER("--gain", gain, "G",
            "--pass diffuse-gain, unsharp: how strongly relief is exaggerated; default: 2", 1, 20),
     NUMBER("--highlight", highlight, "H",
-           "--pass specular: brightness against the brightest parts of the picture; default: 0.6",
+           "--pass specular: brightness of the highlight, relative to the brightest parts of the "
+           "picture; default: 0.6",
            0.01, 10),
     NUMBER("--exponent", exponent, "E",
            "--pass specular: how narrow the highlight is, 1 matt to 1000 like a mirror; default: "
@@ -91,19 +92,18 @@ static const struct option options[] = {
     INT("--radius", radius, "PX", "--pass unsharp: sharpen detail finer than this; default: 4", 1,
         64),
     NUMBERS("--range", range, "LOW,HIGH",
-            "--pass false-colour: linear luminance of dark blue and of yellow; default: the "
-            "picture's",
+            "--pass false-colour: linear luminance shown as dark blue and as yellow; default: from "
+            "the picture",
             2),
     FLAG("--alpha", alpha,
-         "make the background transparent where the capture has a mask: .png and .exr of a "
-         "captured view"),
-    TEXT("--capture", capture, "CAPTURE", "--pass difference: the photographs"),
+         "captured view with a mask: make the background transparent (.png and .exr)"),
+    TEXT("--capture", capture, "CAPTURE", "--pass difference: the capture to compare with"),
     GROUP("glare"),
     GLARE_OPTIONS,
     GROUP("objects"),
     TEXT("--objects", objects, "FILE",
          "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth"),
-    INT("--samples", samples, "N", "--objects: N x N rays a pixel; default 3", 1, 16),
+    INT("--samples", samples, "N", "--objects: N x N rays a pixel; default: 3", 1, 16),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
     KEEP_GOING_OPTION,

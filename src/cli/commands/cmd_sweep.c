@@ -24,31 +24,34 @@ struct sweep_options {
 static const struct option options[] = {
     GROUP("output"),
     TEXT_AS(OPTION_OUTPUT, "-o", output, "OUT",
-            "write OUT.csv, OUT.json, OUT.svg, OUT.png; keep OUT.resume"),
+            "write OUT.csv, OUT.json, OUT.svg, OUT.png, and OUT.resume to continue from"),
     FLAG("--json", json, "print one JSON object"),
     FLAG("--csv", csv, "print comma-separated values"),
     GROUP("model"),
     ENTRIES("--basis", basis, "LIST", "bases, separated by commas; default: all", relume_bases,
             NAMES("auto")),
-    WORDS("--coefficients", coefficients, "LIST", "sizes; default: those natural to each basis",
-          OPTION_INT, .min = 1, .max = 4096),
-    ENTRIES("--interpolant", interpolant, "LIST", "of pca and table, also auto; default: their own",
-            relume_interpolants, NAMES("auto")),
-    WORDS("--colour", luminance, "LIST", "rgb, luminance; default: rgb", OPTION_NAME,
-          .names = NAMES("rgb", "luminance")),
+    WORDS("--coefficients", coefficients, "LIST",
+          "numbers of coefficients; default: those that suit each basis", OPTION_INT, .min = 1,
+          .max = 4096),
+    ENTRIES("--interpolant", interpolant, "LIST",
+            "for pca and table: interpolants, or auto; default: their own", relume_interpolants,
+            NAMES("auto")),
+    WORDS("--colour", luminance, "LIST", "rgb, luminance (encode --help); default: rgb",
+          OPTION_NAME, .names = NAMES("rgb", "luminance")),
     WORDS("--bits", bits, "LIST", "8, 10, 12, 16, half; default: 8", OPTION_OWN, .take = take_bits),
-    WORDS("--step", step, "LIST", "plane, common; default: plane", OPTION_NAME,
-          .min = RELUME_STEP_PLANE, .names = NAMES("plane", "common")),
-    WORDS("--codebook", codebook, "LIST", "code vectors, 0: planes; default: 0", OPTION_INT,
-          .max = 65536),
-    INT("--leave-out", leave_out, "K", "lights left out at a time; default: 1", 1, 65535),
+    WORDS("--step", step, "LIST", "rounding steps: plane, common (encode --help); default: plane",
+          OPTION_NAME, .min = RELUME_STEP_PLANE, .names = NAMES("plane", "common")),
+    WORDS("--codebook", codebook, "LIST", "numbers of code vectors; 0: no codebook; default: 0",
+          OPTION_INT, .max = 65536),
+    INT("--leave-out", leave_out, "K", "number of lights left out at a time; default: 1", 1, 65535),
     TEXT("--test", test, "CAPTURE", "measure on the lights of another capture instead"),
     NAME("--domain", domain, "D", "auto, linear or display; default: as encode", RELUME_DOMAIN_AUTO,
          "auto", "linear", "display"),
     GROUP("codebooks"),
     BOOK_FORM_OPTIONS,
     GROUP("machine"),
-    INT("--memory", memory, "MB", "for samples; more than fit are thinned out; default: 1024", 1,
+    INT("--memory", memory, "MB",
+        "memory for pixels; if they do not fit, only some rows are measured; default: 1024", 1,
         1048576),
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
@@ -280,8 +283,8 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const rel
     return status;
 }
 
-// What one row's data or coder forbid leaves that row out; all else ends the sweep, a photograph that
-// cannot be read as well: every row is of all of them.
+// What one row's data or coder forbid leaves that row out; all else ends the sweep, a photograph
+// that cannot be read as well: every row is of all of them.
 static bool is_skipped(relume_status status)
 {
     return status >= RELUME_ELIMIT && status <= RELUME_EINVAL;

@@ -11,8 +11,8 @@ relume_status take_part(void *which, const struct option *o, const char *text,
     if (sscanf(text, "%d/%d%c", &w->part, &w->parts, &rest) == 2 && w->part >= 1 &&
         w->part <= w->parts && w->parts <= MOST_ARGUMENTS)
         return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected which of how many parts, as 3/8; found '%s'",
-               o->name, text);
+    return say(log, RELUME_EINVAL, "%s: expected part I of N, such as 3/8; found '%s'", o->name,
+               text);
 }
 
 bool is_part(struct relume_pack_part *out, const char *path)
@@ -43,7 +43,7 @@ relume_status options_text(struct options_text *out, const struct args *args,
                                       o->name, value ? " " : "", value ? value : "");
             }
     return n < sizeof out->text ? RELUME_OK
-                                : usage_error("the options are too long to be kept in a part; "
+                                : usage_error("the options are too long to be stored in a part; "
                                               "expected fewer than %zu letters",
                                               sizeof out->text);
 }

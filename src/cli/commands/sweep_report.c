@@ -236,7 +236,7 @@ static int place_of(char (*texts)[64], int count, const char *text)
     return different;
 }
 
-// Coders differ by colour and mark; where they are stored in several ways, the mark tells the way.
+// Coders differ by colour and mark; where they are stored in several ways, the mark shows which.
 static int find_series(struct diagram *d, const struct sweep_row *row)
 {
     char coder[64], store[64];

@@ -45,7 +45,7 @@ int cell_of(vec3 d)
     return at.y * CELLS + at.x;
 }
 
-// Twin: relume_direction_mesh_at. A cell lists the triangles that directions in it can meet, each as six
+// Twin: relume_direction_mesh_at. A cell lists the triangles that directions in it can point into, each as six
 // texels: for each corner the vector along which its weight grows and its number (-1: the nadir),
 // then where the corners are.
 Blend mesh_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)

@@ -1,5 +1,5 @@
 #version 330 core
-// What is to be known of a surface to light it: its place and frame, the place in its texture, and
+// What lighting a surface needs: its place and frame, the place in its texture, and
 // what that grows by from pixel to pixel.
 // Rows run down, so that what faces the eye is wound the other way round here. Twin: objects_hit.
 in vec3 at_position, at_normal;

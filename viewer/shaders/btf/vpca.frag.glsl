@@ -8,7 +8,7 @@ uniform samplerBuffer array0;  // mean [views][texels]
 uniform samplerBuffer array1;  // texture [views][components][texels]
 uniform samplerBuffer array2;  // weight [views][lights][components]
 
-// Weights of the three lights are blended first: they meet the texel's textures once.
+// Weights of the three lights are blended first: the texel's textures are read once.
 vec3 model_blend(int texel, Blend v, Blend l)
 {
     vec3 sum = vec3(0.0);

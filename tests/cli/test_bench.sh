@@ -13,7 +13,7 @@ for loop in read 'multiply and add' relight copy look-up apply 'nearest code' re
     'web-plane trellis' "eye's pattern" glare; do
     check "$loop has a row" grep -qE "^$loop +[0-9.]+ +[0-9.]+ - [0-9.]+ " text.txt
 done
-check 'compares with reading and memcpy' grep -qE '^relighting at [0-9.]+ of the speed of reading' text.txt
+check 'compares with reading and memcpy' grep -qE '^Relighting reaches [0-9.]+ of the speed of reading' text.txt
 check 'an empty RELUME_CPU asks for nothing' env RELUME_CPU= "$RELUME" bench --rounds 1 --json
 check 'RELUME_CPU is obeyed' sh -c 'RELUME_CPU=plain "$0" bench --rounds 1 | grep -q ", plain"' "$RELUME"
 if [ "$python" ]; then

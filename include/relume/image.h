@@ -13,8 +13,9 @@ extern "C" {
 // unless a name says otherwise. Thread-safety: plain data.
 struct relume_image {
     int width, height;
-    int channels;  // 1: grey, depth or mask; 3: red, green, blue
-    float *data;   // [height][width][channels], from malloc
+    int channels;   // 1: grey, depth or mask; 3: red, green, blue
+    float *data;    // [height][width][channels], from malloc, ...
+    size_t mapped;  // ... or that many bytes of a temporary file; else 0
 };
 
 // Zero-filled; `*out` is empty on failure. RELUME_EINVAL for sizes below 1, RELUME_ENOMEM.

@@ -37,7 +37,7 @@ struct relume_context_params { size_t struct_size; void *limits; int threads; bo
 struct relume_reader { void *read; void *user; uint64_t size; };
 struct relume_writer { void *write; void *finish; void *user; };
 struct relume_buffer { void *data; size_t size, room; bool whole; };
-struct relume_image { int width, height; int channels; void *data; };
+struct relume_image { int width, height; int channels; void *data; size_t mapped; };
 struct relume_transfer { int curve; float gamma; void *response; };
 struct relume_image_params { size_t struct_size; void *log; struct relume_transfer transfer; void *limits;
     int channels; bool half; int threads; void *reader; void *writer; };
@@ -52,7 +52,8 @@ struct relume_manifest { struct relume_transfer transfer; struct relume_geometry
 struct relume_pictures { int sample; int width, height; int channels; void *data; void *depth;
     void *mask; };
 struct relume_capture_params { size_t struct_size; void *log; void *limits; struct relume_transfer transfer;
-    bool skip_missing; bool allow_outside; bool repair; double assume_depth; size_t keep_bytes; };
+    bool skip_missing; bool allow_outside; bool repair; double assume_depth; size_t keep_bytes;
+    void *scratch; };
 struct relume_directions_params { size_t struct_size; void *log; uint64_t seed; bool hemisphere; bool pole_y; };
 struct relume_coder_params { size_t struct_size; void *log; int coefficients; bool hemispherical; bool pole_y;
     double ridge; bool no_ridge; bool luminance; bool robust; bool force; void *interpolant;

@@ -107,7 +107,7 @@ static relume_status relight_band(const struct fit *f, const struct relume_codes
     for (int i = 0; !status && i < f->lights; i++) {
         const struct relume_light light = {.direction = f->direction[i], .rgb = {1, 1, 1}};
         struct relume_image into = {band->width, band->height, 3,
-                                    f->samples + (size_t)i * f->stride};
+                                    .data = f->samples + (size_t)i * f->stride};
         status = relume_relight(
             &into, band, &light, 1,
             relume_relight_params(.threads = f->params.threads, .cpu_off = f->params.cpu_off));

@@ -98,6 +98,16 @@ void *scratch_map(const char *near, size_t size)
     return memory == MAP_FAILED ? NULL : memory;
 }
 
+// The system brings pages back in runs around each that is asked for, of up to 2 MB: these go.
+void scratch_forget(void *memory, size_t size, size_t first, size_t count)
+{
+    enum { RUN = 1 << 21 };
+    const uintptr_t from = (uintptr_t)memory + first, run = from / RUN * RUN;
+    const uintptr_t at = run > (uintptr_t)memory ? run : (uintptr_t)memory;
+    const size_t wanted = from - at + count + RUN, left = (uintptr_t)memory + size - at;
+    madvise((void *)at, wanted < left ? wanted : left, MADV_DONTNEED);
+}
+
 void scratch_unmap(void *memory, size_t size)
 {
     if (memory)

@@ -18,5 +18,8 @@ const char *scratch_folder(void);
 // out; its space is taken at once. NULL with errno set. Ends with scratch_unmap.
 void *scratch_map(const char *near, size_t size);
 void scratch_unmap(void *memory, size_t size);
+// Some bytes of it are not needed for now: they leave the memory of the process and stay in the
+// file.
+void scratch_forget(void *memory, size_t size, size_t first, size_t count);
 
 #endif

@@ -138,8 +138,9 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
         return copy_plane(out, capture, view, planes);
     const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
     const struct relume_log own = log_of(capture, log);
-    const relume_status status = relume_image_load(
-        out, path, relume_image_params(.log = &own, .channels = 1, .transfer = as_stored));
+    const relume_status status = image_load_large(
+        out, path, relume_image_params(.log = &own, .channels = 1, .transfer = as_stored),
+        capture->scratch);
     if (status || (out->width == capture->width && out->height == capture->height))
         return status;
     const int width = out->width, height = out->height;
@@ -155,15 +156,18 @@ relume_status relume_capture_depth(struct relume_image *out, const relume_captur
     const relume_status status = load_plane(out, capture, view, path, capture->pictures.depth, log);
     if (status || !out->data)
         return status;
-    const size_t n = (size_t)out->width * (size_t)out->height;
-    for (size_t i = 0; i < n; i++)
+    const size_t width = (size_t)out->width, n = width * (size_t)out->height;
+    for (size_t i = 0; i < n; i++) {
         if (!(out->data[i] >= 0.0f)) {
             const float found = out->data[i];
             relume_image_destroy(out);
             return log_fail(log, RELUME_EDAMAGED,
                             "%s: depth %g at pixel (%zu, %zu); expected 0 or more", path,
-                            (double)found, i % (size_t)capture->width, i / (size_t)capture->width);
+                            (double)found, i % width, i / width);
         }
+        if (i % width == width - 1)
+            image_forget(out, (int)(i / width), 1);
+    }
     return RELUME_OK;
 }
 
@@ -176,7 +180,7 @@ relume_status relume_capture_mask(struct relume_image *out, const relume_capture
                                       capture->pictures.mask, log);
     if (status || !g->disc)
         return status;
-    if (!out->data && !(status = relume_image_create(out, width, height, 1)))
+    if (!out->data && !(status = image_create_large(out, width, height, 1, capture->scratch, log)))
         for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
             out->data[i] = 1.0f;
     for (int y = height - g->disc; !status && y < height; y++)

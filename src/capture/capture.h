@@ -14,6 +14,7 @@ struct relume_capture {
     int x, y;     // origin of the images' data windows
     bool floats;  // an image holds floating-point numbers
     bool repair;
+    const char *scratch;  // beside which large depth and masks are kept, or NULL
     double assume_depth;  // of near lights' views without depth; 0: none
     struct image_cache *cache;
     struct relume_limits limits;

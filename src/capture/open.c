@@ -199,6 +199,7 @@ relume_status capture_finish(relume_capture **out, relume_capture *c,
 {
     c->repair = p->repair;
     c->assume_depth = p->assume_depth;
+    c->scratch = p->scratch ? arena_format(&c->draft.arena, "%s", p->scratch) : NULL;
     c->limits = limits_or_default(p->limits);
     c->context = context_of(p->log);
     const relume_status status = finish(c, p);

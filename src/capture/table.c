@@ -262,6 +262,7 @@ static relume_status read(relume_table *table, int rows, float *out, float *near
     repair(table);
     if (table->near)
         thread_for(table->threads, (size_t)lights, level_light, table);
+    image_forget(&table->lamps.depth, 0, table->row);
     if (near)
         memcpy(near, out,
                3 * (size_t)lights * (size_t)rows * (size_t)table->capture->width * sizeof *out);

@@ -14,6 +14,7 @@
 #include "coder/coefficients.h"
 #include "coder/near_fit.h"
 #include "image/encoder.h"
+#include "image/image.h"
 #include "base/half.h"
 
 #include <errno.h>
@@ -335,10 +336,12 @@ static relume_status open_table(struct encoding *e, const relume_capture *captur
                                                                                  : status;
 }
 
+// The band has been looked at.
 static bool say_done(const struct encoding *e, const relume_capture *capture, int view,
                      const char *what, const struct relume_log *log)
 {
     const int views = relume_capture_manifest(capture)->views;
+    image_forget(&e->mask, e->row, e->rows);
     return log_progress(log, what, (view + (e->row + e->rows) / (double)e->height) / views);
 }
 
@@ -437,6 +440,7 @@ static void compare_row(void *context, size_t item, int worker)
                 r->count++;
             }
     }
+    image_forget(&e->mask, (int)item, 1);
 }
 
 static relume_status add_rows(relume_coefficients *c, struct encoding *e, const struct stored *row)

@@ -14,6 +14,7 @@
 #include "coder/coefficients.h"
 #include "image/curve.h"
 #include "image/encoder.h"
+#include "image/image.h"
 #include "math/lsq.h"
 
 #include <errno.h>
@@ -107,6 +108,11 @@ static relume_status prepare_coded(struct reducing *r, struct relume_transfer di
     const relume_status status =
         captured_create(&r->captured, coder, info->directions, info->lights);
     return status ? status : find_map(r, info);
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
 }
 
 // ---------------------------------------------------------------- means
@@ -277,6 +283,7 @@ static void reduce_band(void *context, size_t item, int worker)
         status = reduce_row(r, &m, first + y, m.values + (size_t)y * (size_t)r->to->info.width);
     if (!status)
         status = keep_band(r, &m, first, rows);
+    image_forget(r->share, 2 * first, least(2 * rows, r->share->height - 2 * first));
     mem_free(m.memory);
     if (status)
         atomic_store(&r->status, (int)status);
@@ -313,11 +320,27 @@ relume_status coefficients_reduce(relume_coefficients **out, const relume_coeffi
     return status;
 }
 
-relume_status share_reduce(struct relume_image *out, const struct relume_image *share)
+relume_status share_create(struct relume_image *out, const struct relume_image *mask,
+                           const struct relume_encode_params *p)
+{
+    const size_t width = (size_t)mask->width;
+    const relume_status status =
+        image_create_large(out, mask->width, mask->height, 1, p->scratch, p->log);
+    for (int y = 0; !status && y < mask->height; y++) {
+        for (size_t x = 0, at = (size_t)y * width; x < width; x++, at++)
+            out->data[at] = mask->data[at] > 0.5f;
+        image_forget(mask, y, 1);
+        image_forget(out, y, 1);
+    }
+    return status;
+}
+
+relume_status share_reduce(struct relume_image *out, const struct relume_image *share,
+                           const struct relume_encode_params *p)
 {
     const size_t width = (size_t)share->width;
-    const relume_status status =
-        relume_image_create(out, reduced(share->width), reduced(share->height), 1);
+    const relume_status status = image_create_large(out, reduced(share->width),
+                                                    reduced(share->height), 1, p->scratch, p->log);
     for (int y = 0; !status && y < out->height; y++) {
         const float *above = share->data + 2 * (size_t)y * width;
         const struct row w = {.above = above,
@@ -325,6 +348,8 @@ relume_status share_reduce(struct relume_image *out, const struct relume_image *
                               .from = width,
                               .width = (size_t)out->width};
         mean_of(out->data + (size_t)y * w.width, &w, above, w.below, true);
+        image_forget(share, 2 * y, 1 + (w.below != NULL));
+        image_forget(out, y, 1);
     }
     return status;
 }

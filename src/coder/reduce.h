@@ -23,7 +23,11 @@ struct reduction {
 // beyond it. Not of luminance coefficients, which are no sums. RELUME_EIO, RELUME_ENOMEM.
 relume_status coefficients_reduce(relume_coefficients **out, const relume_coefficients *from,
                                   const struct relume_image *share, const struct reduction *r);
-// The means of 2 x 2 shares.
-relume_status share_reduce(struct relume_image *out, const struct relume_image *share);
+// Of each pixel, whether the mask holds it: 0 or 1; and the means of 2 x 2 shares. RELUME_EIO,
+// RELUME_ENOMEM.
+relume_status share_create(struct relume_image *out, const struct relume_image *mask,
+                           const struct relume_encode_params *p);
+relume_status share_reduce(struct relume_image *out, const struct relume_image *share,
+                           const struct relume_encode_params *p);
 
 #endif

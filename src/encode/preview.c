@@ -61,7 +61,7 @@ relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb)
     const struct relume_image *mask = level ? &view->levels->share[level - 1] : view->mask;
     const struct relume_coefficients_info *info = relume_coefficients_info(coefficients);
     const size_t width = (size_t)info->width, pixels = (size_t)rows * width;
-    struct relume_image out = {info->width, rows, 3, rgb};
+    struct relume_image out = {info->width, rows, 3, .data = rgb};
     struct relume_codes codes = {
         .coder = c->coder,
         .domain = c->domain,

@@ -32,21 +32,12 @@ static relume_status refuse(const struct relume_pack_contents *c,
                 : RELUME_OK;
 }
 
-static relume_status share_of(struct relume_image *out, const struct relume_image *mask)
-{
-    const size_t n = (size_t)mask->width * (size_t)mask->height;
-    const relume_status status = relume_image_create(out, mask->width, mask->height, 1);
-    for (size_t i = 0; !status && i < n; i++)
-        out->data[i] = mask->data[i] > 0.5f;
-    return status;
-}
-
 static relume_status make_levels(struct relume_pack_levels *out, const struct relume_geometry *g,
                                  const struct relume_pack_view *view, const struct reduction *how)
 {
     const relume_coefficients *from = view->coefficients;
     struct relume_image whole = {0}, *share = &whole;
-    relume_status status = view->mask ? share_of(&whole, view->mask) : RELUME_OK;
+    relume_status status = view->mask ? share_create(&whole, view->mask, &how->encode) : RELUME_OK;
     while (!status && out->levels < RELUME_MOST_LEVELS) {
         const struct relume_coefficients_info *info = relume_coefficients_info(from);
         const int i = out->levels;
@@ -54,7 +45,7 @@ static relume_status make_levels(struct relume_pack_levels *out, const struct re
             break;
         status = coefficients_reduce(&out->level[i], from, share, how);
         if (!status && share->data)
-            status = share_reduce(&out->share[i], share);
+            status = share_reduce(&out->share[i], share, &how->encode);
         share = &out->share[i];
         from = out->level[i];
         out->levels += !status;

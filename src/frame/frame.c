@@ -215,7 +215,7 @@ static relume_status draw_straight(relume_renderer *r, const struct relume_camer
                                    const struct relume_target *t)
 {
     struct relume_relit relit;
-    struct relume_image image = {t->width, t->height, 3, t->data};
+    struct relume_image image = {t->width, t->height, 3, .data = t->data};
     renderer_begin(r, SHOWN_LIGHT);
     relume_status status = check_view(r, camera);
     if (!status)

@@ -493,7 +493,7 @@ static relume_status relight_run(relume_renderer *r, int view, size_t first, siz
     struct relume_relit relit;
     struct relume_codes_part part = {.memory = NULL};
     float *to = r->image[SHOWN_LIGHT][view].data + 3 * first;
-    struct relume_image run = {(int)n, 1, 3, to}, surface = {(int)n, 1, 3, NULL};
+    struct relume_image run = {(int)n, 1, 3, .data = to}, surface = {(int)n, 1, 3, .data = NULL};
     relume_status status = renderer_relit(&relit, r, view);
     if (!status)
         status = relume_codes_pick(&part, relit.codes, first, 1, n);

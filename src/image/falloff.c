@@ -86,7 +86,7 @@ static relume_status smoothed(struct relume_image *out, const struct relume_imag
     const int half = flat->width / 128;
     double *sum = mem_array((width > height ? width : height) + 1, sizeof *sum);
     float *data = mem_copy(flat->data, 3 * width * height, sizeof *data);
-    *out = (struct relume_image){flat->width, flat->height, 3, data};
+    *out = (struct relume_image){flat->width, flat->height, 3, .data = data};
     if (!sum || !data) {
         relume_image_destroy(out);
         mem_free(sum);

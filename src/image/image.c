@@ -5,11 +5,13 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "base/scratch.h"
 #include "base/tree.h"
 #include "image/exr.h"
 #include "base/half.h"
 #include "image/picture_kind.h"
 
+#include <errno.h>
 #include <math.h>
 #include <relume/response.h>
 #include <stdio.h>
@@ -23,13 +25,41 @@ relume_status relume_image_create(struct relume_image *out, int width, int heigh
     float *data = mem_zeroed((size_t)width * (size_t)height, (size_t)channels * sizeof *data);
     if (!data)
         return RELUME_ENOMEM;
-    *out = (struct relume_image){width, height, channels, data};
+    *out = (struct relume_image){width, height, channels, .data = data};
     return RELUME_OK;
+}
+
+// From so many bytes on an image is better kept on disk.
+static const size_t LARGE = 64 << 20;
+
+relume_status image_create_large(struct relume_image *out, int width, int height, int channels,
+                                 const char *near, const struct relume_log *log)
+{
+    const size_t bytes = (size_t)width * (size_t)height * (size_t)channels * sizeof *out->data;
+    if (bytes <= LARGE)
+        return relume_image_create(out, width, height, channels);
+    *out = (struct relume_image){width, height, channels, .mapped = bytes};
+    out->data = scratch_map(near, bytes);
+    if (out->data)
+        return RELUME_OK;
+    *out = (struct relume_image){0};
+    return log_fail(log, RELUME_EIO, "%s: no room for temporary data of %zu MB; %s",
+                    near ? near : "$TMPDIR", bytes >> 20, strerror(errno));
+}
+
+void image_forget(const struct relume_image *image, int row, int rows)
+{
+    const size_t line = (size_t)image->width * (size_t)image->channels * sizeof *image->data;
+    if (image->mapped)
+        scratch_forget(image->data, image->mapped, (size_t)row * line, (size_t)rows * line);
 }
 
 void relume_image_destroy(struct relume_image *image)
 {
-    mem_free(image->data);
+    if (image->mapped)
+        scratch_unmap(image->data, image->mapped);
+    else
+        mem_free(image->data);
     *image = (struct relume_image){0};
 }
 
@@ -228,8 +258,21 @@ const char *image_stream_error(const struct image_stream *stream)
 
 // ---------------------------------------------------------------- files
 
-relume_status relume_image_load(struct relume_image *out, const char *path,
-                                const struct relume_image_params *params)
+static relume_status read_rows(struct relume_image *image, struct image_stream *stream)
+{
+    const size_t line = (size_t)image->width * (size_t)image->channels;
+    relume_status status = RELUME_OK;
+    for (int y = 0, rows; !status && y < image->height; y += rows) {
+        rows = image->height - y < IMAGE_STREAM_ROWS ? image->height - y : IMAGE_STREAM_ROWS;
+        status = image_stream_read(stream, y, rows, image->data + (size_t)y * line);
+        image_forget(image, y, rows);
+    }
+    return status;
+}
+
+// `large`: as image_load_large.
+static relume_status load(struct relume_image *out, const char *path,
+                          const struct relume_image_params *params, bool large, const char *near)
 {
     const struct relume_image_params p = PARAMS_WORK(relume_image_params, params);
     const int channels = p.channels == 1 ? 1 : 3;
@@ -255,15 +298,28 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
                                (struct relume_transfer){.curve = RELUME_CURVE_LINEAR}, no_gain);
     if (status)
         return status;
-    status = relume_image_create(out, info.width, info.height, channels);
+    status = large ? image_create_large(out, info.width, info.height, channels, near, p.log)
+                   : relume_image_create(out, info.width, info.height, channels);
     if (!status)
-        status = image_stream_read(&stream, 0, info.height, out->data);
+        status = read_rows(out, &stream);
     if (relume_status_is_input(status))
         (void)log_fail(p.log, status, "%s: %s", path, image_stream_error(&stream));
     if (status)
         relume_image_destroy(out);
     image_stream_close(&stream);
     return status;
+}
+
+relume_status relume_image_load(struct relume_image *out, const char *path,
+                                const struct relume_image_params *params)
+{
+    return load(out, path, params, false, NULL);
+}
+
+relume_status image_load_large(struct relume_image *out, const char *path,
+                               const struct relume_image_params *params, const char *near)
+{
+    return load(out, path, params, true, near);
 }
 
 struct exr_source {

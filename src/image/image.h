@@ -19,6 +19,16 @@ static inline uint64_t image_bytes(const struct relume_image *image)
 struct relume_transfer image_transfer(struct relume_transfer transfer,
                                       const struct picture_info *info);
 
+// As relume_image_create, in a temporary file beside `near` (NULL: $TMPDIR) where the image is so
+// large that memory should hold no more of it than is looked at. RELUME_EIO.
+relume_status image_create_large(struct relume_image *out, int width, int height, int channels,
+                                 const char *near, const struct relume_log *log);
+// As relume_image_load likewise.
+relume_status image_load_large(struct relume_image *out, const char *path,
+                               const struct relume_image_params *params, const char *near);
+// Rows of such an image are not looked at for now. Of others nothing happens.
+void image_forget(const struct relume_image *image, int row, int rows);
+
 enum { IMAGE_STREAM_ROWS = 16 };
 
 // Reads rows of one file as 1 or 3 channels after a per-value function: decode by `from`, divide

@@ -4,6 +4,7 @@
 #include "coder/codes.h"
 #include "coder/coefficients.h"
 #include "base/half.h"
+#include "image/image.h"
 #include "pack/format.h"
 #include "pack/writer.h"
 
@@ -35,6 +36,7 @@ static relume_status depth_rows(void *context, int row, int rows, void *samples)
     const struct relume_image *image = context;
     const size_t width = (size_t)image->width;
     memcpy(samples, image->data + (size_t)row * width, (size_t)rows * width * sizeof(float));
+    image_forget(image, row, rows);
     return RELUME_OK;
 }
 
@@ -46,6 +48,7 @@ static relume_status mask_rows(void *context, int row, int rows, void *samples)
     uint16_t *halves = samples;
     for (size_t i = 0; i < (size_t)rows * width; i++)
         halves[i] = half_from_float(mask[i] > 0.5f ? 1.0f : 0.0f);
+    image_forget(image, row, rows);
     return RELUME_OK;
 }
 
@@ -56,6 +59,7 @@ static relume_status share_rows(void *context, int row, int rows, void *samples)
     const size_t width = (size_t)image->width;
     exr_from_floats(samples, EXR_SAMPLE_HALF, image->data + (size_t)row * width,
                     (size_t)rows * width);
+    image_forget(image, row, rows);
     return RELUME_OK;
 }
 

@@ -79,7 +79,7 @@ static relume_status decode_light(const struct work *w, const struct relume_code
     const struct relume_light lamp = {.direction = w->info->directions[light], .rgb = {1, 1, 1}};
     const struct relume_relight_params *p =
         relume_relight_params(.cpu_off = w->params.cpu_off, .threads = w->params.threads);
-    struct relume_image row = {(int)n, 1, 3, rgb};
+    struct relume_image row = {(int)n, 1, 3, .data = rgb};
     return relume_relight(&row, codes, &lamp, 1, p);
 }
 

@@ -4,6 +4,7 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "coder/coefficients.h"
+#include "image/image.h"
 #include "math/random.h"
 #include "selection/samples.h"
 
@@ -74,6 +75,7 @@ static relume_status sample_view(struct sampler *s, const relume_capture *captur
             break;
         take(s, &mask, (size_t)rows * width, view_first + (size_t)row * width, view_first,
              p->threads);
+        image_forget(&mask, row, rows);
         const int views = relume_capture_manifest(capture)->views;
         if (!log_progress(p->log, "sampling", (view + (row + rows) / (double)height) / views))
             status = RELUME_ECANCEL;

@@ -31,7 +31,7 @@ static void shine(const struct relume_light *lights, int n)
                                        .plane = plane,
                                        .scale = scale,
                                        .offset = offset};
-    const struct relume_image surface = {2, 2, 3, points};
+    const struct relume_image surface = {2, 2, 3, .data = points};
     static relume_weight_grid *grid;
     mem_fail_after(0);
     if (!grid && relume_weight_grid_create(&grid, coder, relume_weight_grid_params(.steps = 16)))

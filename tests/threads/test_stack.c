@@ -86,7 +86,7 @@ static relume_status frame(const void *context)
     float sky[12 * 6 * 3];
     for (int i = 0; i < 12 * 6 * 3; i++)
         sky[i] = 0.2f + (float)(i % 7);
-    const struct relume_image picture = {12, 6, 3, sky};
+    const struct relume_image picture = {12, 6, 3, .data = sky};
     relume_environment *environment = NULL;
     relume_pack *pack = NULL;
     struct relume_image out = {0};

@@ -186,7 +186,8 @@ static void test_similarity(void **state)
     CHECK_NEAR(relume_edge_correlation(&a, &a), 1.0, 1e-3);  // tones come in steps of 1/1024
     assert_true(relume_edge_correlation(&a, &b) > 0.5);
     CHECK_NEAR(relume_edge_correlation(&a, &c), 0.0, 0.1);
-    assert_true(isnan(relume_edge_correlation(&a, &(struct relume_image){8, 8, 3, a.data})));
+    assert_true(
+        isnan(relume_edge_correlation(&a, &(struct relume_image){8, 8, 3, .data = a.data})));
     relume_image_destroy(&a);
     relume_image_destroy(&b);
     relume_image_destroy(&c);

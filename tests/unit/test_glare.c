@@ -367,8 +367,9 @@ static void check_hostile(void **state)
         assert_non_null(strstr(log.text, "3 pixels are not numbers"));
         relume_image_destroy(&out);
     }
-    CHECK_NEAR(relume_glare_luminance(&(struct relume_image){1, 1, 3, frame.data}), 0.0, 0.0);
-    struct relume_image dot = {1, 1, 3, (float[]){1, 1, 1}};
+    CHECK_NEAR(relume_glare_luminance(&(struct relume_image){1, 1, 3, .data = frame.data}), 0.0,
+               0.0);
+    struct relume_image dot = {1, 1, 3, .data = (float[]){1, 1, 1}};
     for (int mode = 0; mode < 3; mode++)
         for (int border = 0; border < 3; border++) {
             p.mode = (enum relume_glare_mode)mode;
@@ -377,7 +378,7 @@ static void check_hostile(void **state)
             assert_true(out.data[0] > 0.0f && out.data[0] <= 1.001f);
             relume_image_destroy(&out);
         }
-    struct relume_image black = {9, 7, 3, calloc(3 * 9 * 7, sizeof(float))};
+    struct relume_image black = {9, 7, 3, .data = calloc(3 * 9 * 7, sizeof(float))};
     for (int mode = 0; mode < 3; mode++) {
         p.mode = (enum relume_glare_mode)mode;
         CHECK_OK(relume_glare_apply(&out, glare, &black, false, psf, &p));

@@ -454,7 +454,7 @@ static void test_other_formats_in_memory(void **state)
 {
     (void)state;
     const struct relume_reader from = relume_memory_reader(file, file_size);
-    const struct relume_image image = {9, 2, 3, (float[54]){1, 2, 3, 4, 5}};
+    const struct relume_image image = {9, 2, 3, .data = (float[54]){1, 2, 3, 4, 5}};
     struct relume_buffer bytes = {0}, again = {0};
     const struct relume_writer writer = relume_buffer_writer(&bytes),
                                other = relume_buffer_writer(&again);

@@ -49,7 +49,7 @@ static void test_spot(void **state)
 
 // A picture of 4 x 2 pixels, whose value tells the place: red 0 .. 3 to the right, green 1 on top.
 static float texels[4 * 2 * 3];
-static const struct relume_image picture = {4, 2, 3, texels};
+static const struct relume_image picture = {4, 2, 3, .data = texels};
 
 static struct relume_light slide(struct relume_vec3 position, struct relume_vec3 direction)
 {
@@ -184,7 +184,7 @@ static void test_area_distance(void **state)
 {
     (void)state;
     float points[4 * 3] = {0, 0, 0, 5, 0, 1, NAN, 0, 0, 0, 0, 9};
-    const struct relume_image surface = {2, 2, 3, points};
+    const struct relume_image surface = {2, 2, 3, .data = points};
     const struct relume_light l = area(2, 1, 1, false);
     CHECK_NEAR(relume_area_distance(&l, &surface), 2, 1e-12);  // the one at z = 9 is behind it
     points[5] = 1.9f;  // beside: 4 to the edge in x, 0.1 below

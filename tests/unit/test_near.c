@@ -278,7 +278,7 @@ static void as_books(struct stored *to, struct setup *s, int books)
 static const char table[] = "TILT=NONE\n1 1 1 3 2 1 2 0 0 0 1 1 1\n0 40 90\n0 90\n5 9 1 5 3 0\n";
 static float picture_texels[3 * 3 * 2] = {1, 0, 0, 0, 1, 0, .2f, .3f, .4f,
                                           1, 1, 1, 0, 0, 1, 2,   1,   0};
-static const struct relume_image picture = {3, 2, 3, picture_texels};
+static const struct relume_image picture = {3, 2, 3, .data = picture_texels};
 
 // What a light gives a pixel by the double-precision reference; areas in `cut` x `cut` midpoints.
 static void reference(double rgb[3], const struct setup *s, int pixel,
@@ -781,7 +781,7 @@ static void test_allocations(void **state)
         {.kind = RELUME_LIGHT_AREA, .position = {0, 0, 2}, .u = {0, 1, 0}, .v = {1, 0, 0}},
         {.direction = {0, 0, 1}}};
     float points[LEARNED_PIXELS * 3] = {0};
-    const struct relume_image surface = {20, LEARNED_PIXELS / 20, 3, points};
+    const struct relume_image surface = {20, LEARNED_PIXELS / 20, 3, .data = points};
     for (int book = TEST_SANITIZED; book < 2; book++) {
         teach(&t, &relume_basis_sh, book);
         t.codes.domain = RELUME_DOMAIN_DISPLAY;

@@ -46,7 +46,7 @@ static int teardown(void **state)
 
 static void save(const char *name, const float *data, int channels)
 {
-    const struct relume_image image = {WIDTH, HEIGHT, channels, (float *)(uintptr_t)data};
+    const struct relume_image image = {WIDTH, HEIGHT, channels, .data = (float *)(uintptr_t)data};
     char path[128];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     CHECK_OK(relume_image_save(&image, path, NULL));

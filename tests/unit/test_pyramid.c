@@ -3,6 +3,8 @@
 #include "test.h"
 
 #include "capture_fixture.h"
+#include "coder/reduce.h"
+#include "image/image.h"
 
 static char folder[64], path[96];
 
@@ -191,12 +193,55 @@ static void test_threads(void **state)
     free(bytes[1]);
 }
 
+// Pages of files that the process has in memory.
+static long mapped_pages(void)
+{
+    long size, resident, shared = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    assert_int_equal(f ? fscanf(f, "%ld %ld %ld", &size, &resident, &shared) : 0, 3);
+    fclose(f);
+    return shared;
+}
+
+// Masks of large views, and their shares, lie on disk: no more of them is in memory than is looked
+// at, and the shares are the means.
+static void test_large_masks_are_not_in_memory(void **state)
+{
+    (void)state;
+    const struct relume_encode_params p = {.scratch = path};
+    const int width = 4203, height = 4001;
+    struct relume_image mask, whole, half;
+    CHECK_OK(image_create_large(&mask, width, height, 1, path, NULL));
+    assert_int_equal(mask.mapped, sizeof(float) * width * height);
+    const long before = mapped_pages();
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++)
+            mask.data[y * width + x] = (x * x + y) % 7 > 3 ? 0.6f : 0.5f;
+        image_forget(&mask, y, 1);
+    }
+    CHECK_OK(share_create(&whole, &mask, &p));
+    CHECK_OK(share_reduce(&half, &whole, &p));
+    // each of the two is 16,000 pages
+    assert_in_range(mapped_pages() - before + 1000, 0, 2000);
+    for (int i = 0; i < 1000; i++) {
+        const int x = i * 2, y = i * 2 % 3999;
+        double sum = 0.0;
+        for (int k = 0; k < 4; k++)
+            sum += ((x + k % 2) * (x + k % 2) + y + k / 2) % 7 > 3;
+        CHECK_NEAR(half.data[y / 2 * half.width + x / 2], sum / 4.0, 0.0);
+    }
+    relume_image_destroy(&mask);
+    relume_image_destroy(&whole);
+    relume_image_destroy(&half);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_levels_show_means, setup, teardown),
         cmocka_unit_test_setup_teardown(test_any_rectangle, setup, teardown),
         cmocka_unit_test_setup_teardown(test_threads, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_large_masks_are_not_in_memory, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

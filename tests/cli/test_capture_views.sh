@@ -159,7 +159,7 @@ mkdir card
 for f in right:posx left:negx top:posy bottom:negy front:posz back:negz; do
     cp faces/${f%:*}.exr card/${f#*:}.exr
 done
-expect_ok 'the z of graphics cards shows at the edges' 'posz.exr is the face -z' \
+expect_ok 'the z of graphics cards shows at the edges' 'posz.exr is the face in front' \
     "$RELUME" panorama card --layout cube -o card_cube
 same 'and is turned round' card_cube/light0000.exr cube/light0000.exr
 rm card/posy.exr

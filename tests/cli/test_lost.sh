@@ -111,7 +111,7 @@ check 'those of one of them' test "$(grep -cxFf two.csv out.txt)" -eq 4
 # ---- signals: the sign of each, nothing left
 for signal in INT TERM HUP; do
     for delay in 1 0.5 0.2 0.1; do
-        timeout --foreground -s $signal $delay "$RELUME" synth box -o slow --size 400 --lights 100 --samples 256 2>err.txt
+        timeout --foreground -s $signal $delay "$RELUME" synth box -o slow --size 400 --lights 100 --samples 256 --threads 1 2>err.txt
         status=$?
         [ $status -eq 0 ] || break
     done
@@ -121,7 +121,7 @@ for signal in INT TERM HUP; do
         ok "SIG$signal"
     fi
 done
-"$RELUME" synth box -o slow --size 400 --lights 100 --samples 256 2>err.txt & pid=$!
+"$RELUME" synth box -o slow --size 400 --lights 100 --samples 256 --threads 1 2>err.txt & pid=$!
 sleep 0.3; kill -HUP $pid; wait $pid 2>/dev/null; status=$?
 if [ $status -eq 129 ]; then ok 'the shell sees the signal'; else not_ok 'the shell sees the signal' "$status, expected 129"; fi
 

@@ -123,7 +123,8 @@ static void test_exact_on_own_span(void **state)
         int counts[LIGHTS];
         const int n = counts_of(*b, counts);
         assert_true(n >= 1);
-        for (int i = 0; i < n && *b != &relume_basis_dct_resampled; i++) {
+        for (int i = 0; i < n && *b != &relume_basis_dct_resampled;
+             i += TEST_SANITIZED && n > 9 ? 5 : 1) {
             if (counts[i] > LIGHTS / 2 && (*b)->fit_count(0, LIGHTS) != counts[i])
                 continue;
             relume_coder *c = create(*b, counts[i], false, RIDGE);

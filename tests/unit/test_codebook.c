@@ -223,7 +223,7 @@ static void test_near_ties(void **state)
 static void test_threads_cpu_and_seed(void **state)
 {
     (void)state;
-    enum { N = 20000, DIM = 12, CODES = 100 };
+    enum { N = TEST_SANITIZED ? 4000 : 20000, DIM = 12, CODES = 100 };
     float *v = clusters(N, DIM, 11);
     for (int start = RELUME_START_RANDOM; start <= RELUME_START_SPLIT; start++) {
         relume_codebook *first = NULL;
@@ -236,7 +236,7 @@ static void test_threads_cpu_and_seed(void **state)
                 v, N, DIM,
                 relume_codebook_params(.codes = CODES, .start = (enum relume_codebook_start)start,
                                        .seed = 9, .threads = ways[w].threads,
-                                       .cpu_off = ways[w].off, .sample = 9000));
+                                       .cpu_off = ways[w].off, .sample = N * 9 / 20));
             if (!first) {
                 first = book;
                 continue;

@@ -25,7 +25,7 @@ release  := -O3 -DNDEBUG -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3 -fstack-protector
             -fstack-clash-protection
 debug    := -O0
 asan     := -O1 -g1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
-tsan     := -O0 -g1 -fsanitize=thread
+tsan     := -O1 -g1 -fsanitize=thread
 # clang's libFuzzer with its sanitizers: make config=fuzzer fuzzers
 fuzzer   := -O1 -g1 -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow \
             -fno-sanitize-recover=all -DRELUME_LIBFUZZER

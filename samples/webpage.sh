@@ -21,7 +21,7 @@ cat <<'PAGE'
 ];
 const n = info.resolution, canvas = document.getElementById('picture');
 const gl = canvas.getContext('webgl2', {preserveDrawingBuffer: true});
-=> const show = text => => { document.getElementById('text').textContent = text; };
+const tell = text => { document.getElementById('text').textContent = text; };
 
 // The light's weight of each plane and colour: the basis is a grid over the hemisphere, unfolded as an octahedron.
 function weights(x, y, z) {
@@ -94,6 +94,6 @@ async function start() {
     };
     light(-0.6, 0.5);
 }
-tell( => start().catch(e => show( => tell('This page cannot show the picture: ' + e));
+start().catch(e => tell('This page cannot show the picture: ' + e));
 </script>
 PAGE

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Run every test of one build: check.sh BUILD_FOLDER. Each on its own, under a time limit, as many at
-# once as there are cores: most of a script's time is the tool's start. Prints what failed and, last, "N passed, N failed, N skipped". Test scripts print one line a case:
+# once as there are cores: most of a script's time is the tool's start. Prints what failed, what each
+# test counted and took, and, last, "N passed, N failed, N skipped". Test scripts print one line a case:
 # "ok NAME", "not ok NAME: why" or "skipped: why".
 set -u
 build=$1
@@ -49,13 +50,13 @@ report() { # test
     [ "$f" -ne 0 ] && { echo "---- $name (status $status)"; cat "$log"; }
     grep -E '^skipped:' "$log" | sed "s|^|$name: |"
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
-    printf '%-28s %3d passed %d failed %d skipped\n' "$name" "$p" "$f" "$s"
+    printf '%-28s %3d passed %d failed %d skipped %4d s\n' "$name" "$p" "$f" "$s" "$(cat "$log.seconds")"
 }
 
 tests >"$logs/list"
 while read -r t; do printf '%s\n%s\n' "$t" "$(log_of "$t")"; done <"$logs/list" |
     xargs -n 2 -P "$(nproc)" sh -c \
-        'timeout "${TEST_LIMIT_S:-300}" "$0" >"$1" 2>&1; echo $? >"$1.status"'
+        'a=$(date +%s); timeout "${TEST_LIMIT_S:-300}" "$0" >"$1" 2>&1; echo $? >"$1.status"; echo $(($(date +%s) - a)) >"$1.seconds"'
 while read -r t; do report "$t"; done <"$logs/list"
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

@@ -91,7 +91,7 @@ interrupted() { # name, output, command...
         ok "$name"
     fi
 }
-interrupted 'synth interrupted' slow "$RELUME" synth box -o slow --size 300 --lights 100 --samples 256
+interrupted 'synth interrupted' slow "$RELUME" synth box -o slow --size 300 --lights 100 --samples 256 --threads 1
 "$sphere" long --size 8 --lights 1
 awk 'BEGIN { print 3000; for (i = 0; i < 3000; i++) printf "long/view00/light0000.exr %g %g 1\n", cos(i), sin(i) }' >long.lp
 interrupted 'encode interrupted' slow.exr "$RELUME" encode long.lp -o slow.exr --basis table

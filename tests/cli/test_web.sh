@@ -56,7 +56,7 @@ compare web
         gl.readPixels(32, 31, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, got);
         if (!got[3]) return;
         clearInterval(timer);
-        show('middle ' + got.join(' '));
+        tell('middle ' + got.join(' '));
     }, 200)</script>"
 } >page.html
 browse

@@ -11,7 +11,8 @@ for program in Xvfb xdotool; do
 done
 
 size=256
-"$sphere" photos --size $size --lights 40 --hemisphere && "$RELUME" encode -q photos -o ball.exr || exit 1
+"$sphere" photos --size $size --lights 20 --hemisphere &&
+    "$RELUME" encode -q photos -o ball.exr --basis hsh --coefficients 9 || exit 1
 
 Xvfb -displayfd 3 -screen 0 800x800x24 -noreset -nolisten tcp 3>display.txt 2>xvfb.txt &
 server=$!

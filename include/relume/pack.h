@@ -40,6 +40,9 @@ struct relume_pack_levels {
     int levels;                                      // how many
     relume_coefficients *level[RELUME_MOST_LEVELS];  // [levels], relume_coefficients_destroy
     struct relume_image share[RELUME_MOST_LEVELS];   // of each pixel, within the mask; or empty
+    // Of views that are coded, as relume_pack_view.coded; mem_free
+    uint32_t *coded[RELUME_MOST_LEVELS];
+    size_t coded_words[RELUME_MOST_LEVELS];  // how many
 };
 
 // What goes into a file beside the coefficients. Borrowed.
@@ -107,7 +110,7 @@ RELUME_API int relume_pack_shown(const struct relume_pack_view *view);
 // The reduced levels of `view`, made of its coefficients, for its `levels`; none where `pyramid`
 // asks for none. What is used of `contents` is what all of a file has in common, and of `params`
 // log, step, threads and scratch. RELUME_EUNFIT with a sentence where YES cannot be had: slabs,
-// luminance coefficients, planes coded with loss. RELUME_EIO, RELUME_ENOMEM. End with
+// luminance coefficients. RELUME_EIO, RELUME_ENOMEM. End with
 // relume_pack_levels_destroy.
 RELUME_RESULT relume_status relume_pack_reduce(struct relume_pack_levels *out,
                                                const struct relume_pack_contents *contents,
@@ -233,7 +236,7 @@ struct relume_pack_info {
     const struct relume_geometry *slab;  // [slabs]; the first is `geometry`
     int width, height;                   // of each view
     int levels;                          // reduced ones of each view
-    int tile;  // side of the tiles that views are kept in, 0: runs of rows
+    int tile;  // side of the tiles that views are kept or coded in, 0: runs of rows
     int views;
     const double (*uv)[2];  // [views]; slab: camera places
     const int *slab_of;     // [views]; several slabs: which one; else NULL

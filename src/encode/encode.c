@@ -227,16 +227,35 @@ static relume_status make_books(struct material *m, const struct relume_manifest
     return status;
 }
 
-static relume_status reduce_views(const struct material *m,
-                                  const struct relume_pack_contents *contents,
-                                  const struct relume_pack_encode_params *p, const char *path)
+// What all of a file has in common.
+static struct relume_pack_contents contents_of(const struct material *m,
+                                               const relume_capture *capture,
+                                               const relume_coder *coder,
+                                               const struct relume_pack_encode_params *p)
 {
+    const struct relume_manifest *manifest = relume_capture_manifest(capture);
+    return (struct relume_pack_contents){
+        .coder = coder,
+        .domain = relume_encode_domain(capture, p->domain),
+        .display = relume_encode_display(capture),
+        .geometry = manifest->geometry,
+        .slabs = manifest->slabs,
+        .slab = manifest->slab,
+        .views = manifest->views,
+        .view = m->view,
+        .preview = relume_pack_preview,
+    };
+}
+
+static relume_status reduce_views(const struct material *m, const relume_capture *capture,
+                                  const relume_coder *coder,
+                                  const struct relume_pack_encode_params *p,
+                                  const struct relume_encode_params *encode)
+{
+    const struct relume_pack_contents contents = contents_of(m, capture, coder, p);
     relume_status status = RELUME_OK;
     for (int i = m->first; !status && !m->rows && i < m->end; i++) {
-        status = relume_pack_reduce(&m->levels[i], contents, &m->view[i], p->pyramid,
-                                    relume_encode_params(.log = p->log, .step = p->step,
-                                                         .threads = p->threads,
-                                                         .scratch = p->writer ? NULL : path));
+        status = relume_pack_reduce(&m->levels[i], &contents, &m->view[i], p->pyramid, encode);
         m->view[i].levels = m->levels[i].levels ? &m->levels[i] : NULL;
     }
     return status;
@@ -247,20 +266,9 @@ static relume_status write_material(const struct material *m, const relume_captu
                                     const struct relume_encode_report *report, const char *path,
                                     const struct relume_pack_encode_params *p)
 {
-    const struct relume_manifest *manifest = relume_capture_manifest(capture);
-    struct relume_pack_contents contents = {
-        .coder = coder,
-        .domain = relume_encode_domain(capture, p->domain),
-        .display = relume_encode_display(capture),
-        .geometry = manifest->geometry,
-        .slabs = manifest->slabs,
-        .slab = manifest->slab,
-        .views = manifest->views,
-        .view = m->view,
-        .report = *report,
-        .preview = relume_pack_preview,
-        .preview_user = &contents,
-    };
+    struct relume_pack_contents contents = contents_of(m, capture, coder, p);
+    contents.report = *report;
+    contents.preview_user = &contents;
     char digest[RELUME_DIGEST];
     const struct relume_pack_share share = {
         .part = p->part,
@@ -283,12 +291,9 @@ static relume_status write_material(const struct material *m, const relume_captu
         if (m->rows || m->first > m->views / 2 || m->views / 2 >= m->end)
             contents.preview = NULL;
     }
-    const relume_status status = reduce_views(m, &contents, p, path);
-    return status
-               ? status
-               : relume_pack_write(&contents, path,
-                                   relume_pack_params(.log = p->log, .compression = p->compression,
-                                                      .threads = p->threads, .writer = p->writer));
+    return relume_pack_write(&contents, path,
+                             relume_pack_params(.log = p->log, .compression = p->compression,
+                                                .threads = p->threads, .writer = p->writer));
 }
 
 // ---------------------------------------------------------------- with loss
@@ -328,6 +333,33 @@ static void set_anchors(struct material *m, const struct view_groups *groups)
         }
 }
 
+// What the levels of a view are expected to take, beside its own bytes.
+static const double OF_LEVELS = 0.12;
+
+// All but the first, which is most of them and which a reader makes of the view. By the effort of
+// the views; where that takes more bytes than are left, more coarsely.
+static relume_status code_levels(struct material *m, struct av1_effort effort, double left,
+                                 const struct relume_encode_params *p)
+{
+    enum { COARSER = 4 * AV1_STEPS };
+    relume_status status = RELUME_OK;
+    double bytes = 0.0;
+    for (int i = 0; !status && i < m->views; i++)
+        for (int k = 1; !status && k < m->levels[i].levels; k++) {
+            struct relume_pack_levels *l = &m->levels[i];
+            struct lossy_words words;
+            status = lossy_encode(&words, &l->level[k], 1, &effort, p->threads, p->log);
+            mem_free(l->coded[k]);
+            l->coded[k] = words.word;
+            l->coded_words[k] = words.count;
+            bytes += 4.0 * (double)words.count;
+        }
+    if (status || bytes <= left || effort.quantiser + COARSER > AV1_COARSEST)
+        return status;
+    effort.quantiser += COARSER;
+    return code_levels(m, effort, left, p);
+}
+
 static relume_status code_planes(struct material *m, const relume_capture *capture,
                                  const relume_coder *coder,
                                  const struct relume_pack_encode_params *p,
@@ -355,15 +387,23 @@ static relume_status code_planes(struct material *m, const relume_capture *captu
         status = groups_make(&groups, manifest, lossy_most_views(coder));
     if (!status)
         set_anchors(m, &groups);
+    if (!status)
+        status = reduce_views(m, capture, coder, p, encode);
     if (!status && !(p->psnr_db > 0.0))
         status = weigh_rest(&rest, m, capture, coder, p);
-    target.bytes = fmax((p->bytes_per_pixel * pixels - rest) / PACKED, 1.0);
+    const double allowed = fmax((p->bytes_per_pixel * pixels - rest) / PACKED, 1.0);
+    target.bytes = allowed / (1.0 + (m->levels[0].levels ? OF_LEVELS : 0.0));
     if (!status)
         status = rate_encode(m->words, &result, m->coefficients, &groups, capture, &target, encode);
+    double words = 0.0;
     for (int i = 0; !status && i < m->views; i++) {
         m->view[i].coded = m->words[i].word;
         m->view[i].coded_words = m->words[i].count;
+        words += 4.0 * (double)m->words[i].count;
     }
+    if (!status)
+        status = code_levels(m, result.effort,
+                             p->psnr_db > 0.0 ? (double)INFINITY : allowed - words, encode);
     groups_destroy(&groups);
     if (status)
         return status;
@@ -473,6 +513,8 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     struct relume_encode_report total = {0};
     if (!status)
         total = encode_report_mean(m.report + m.first, m.end - m.first);
+    if (!status && !coded)
+        status = reduce_views(&m, capture, coder, &p, &encode);
     if (!status && coded)
         status = code_planes(&m, capture, coder, &p, &total, &encode);
     if (!status && report)

@@ -20,11 +20,9 @@ static bool can_be_halved(const struct relume_geometry *g, int width, int height
     return (width > SMALLEST || height > SMALLEST) && !(round && odd);
 }
 
-static relume_status refuse(const struct relume_pack_contents *c,
-                            const struct relume_pack_view *view, const struct relume_log *log)
+static relume_status refuse(const struct relume_pack_contents *c, const struct relume_log *log)
 {
     const char *what = c->slabs || c->geometry.projection == RELUME_SLAB ? "views of a slab"
-                       : view->coded                                     ? "planes coded with loss"
                        : relume_coder_info(c->coder)->luminance          ? "luminance coefficients"
                                                                          : NULL;
     return what ? log_fail(log, RELUME_EUNFIT,
@@ -65,7 +63,7 @@ relume_status relume_pack_reduce(struct relume_pack_levels *out,
     *out = (struct relume_pack_levels){0};
     if (pyramid == RELUME_PYRAMID_NO || (!pyramid && (int64_t)info->width * info->height <= LARGE))
         return RELUME_OK;
-    relume_status status = refuse(contents, view, pyramid ? params->log : NULL);
+    relume_status status = refuse(contents, pyramid ? params->log : NULL);
     if (status)
         return pyramid ? status : RELUME_OK;
     status = make_levels(out, &contents->geometry, view, &how);
@@ -79,6 +77,7 @@ void relume_pack_levels_destroy(struct relume_pack_levels *levels)
     for (int i = 0; i < RELUME_MOST_LEVELS; i++) {
         relume_coefficients_destroy(&levels->level[i]);
         relume_image_destroy(&levels->share[i]);
+        mem_free(levels->coded[i]);
     }
     *levels = (struct relume_pack_levels){0};
 }

@@ -296,7 +296,8 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                      .step_db = 0.1,
                      .target = *target};
     const int speed = speed_for(coefficients, views_of(groups), target);
-    int *quantiser = &result->quantiser;
+    int *quantiser = &result->effort.quantiser;
+    result->effort.speed = speed;
     *quantiser = FIRST_GUESS;
     relume_status status = search(&r, tried, AV1_FAST, quantiser);
     r.rough = false;

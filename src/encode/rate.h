@@ -13,7 +13,7 @@ struct rate_target {
 };
 struct rate_result {
     double psnr_db;  // as the target's
-    int quantiser;
+    struct av1_effort effort;
 };
 
 // words[views] of the coefficients of all views, of the coarsest quantiser that reaches the PSNR

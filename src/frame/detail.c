@@ -27,7 +27,13 @@ static bool is_fine(int first, int side, int level, int pixels)
     return each >= 1.4 || (each >= 1.0 && same);
 }
 
-// The coarsest level that is fine enough for the picture.
+static bool is_coded(const relume_renderer *r)
+{
+    return !strcmp(r->info->compression, "av1");
+}
+
+// The coarsest level that is fine enough for the picture. The first one of coded planes is made of
+// the view, and not as well.
 static int find_level(const relume_renderer *r, const struct relume_rect *rect, int width,
                       int height)
 {
@@ -35,14 +41,13 @@ static int find_level(const relume_renderer *r, const struct relume_rect *rect, 
     while (level < r->info->levels && is_fine(rect->left, rect->width, level + 1, width) &&
            is_fine(rect->top, rect->height, level + 1, height))
         level++;
-    return level;
+    return level == 1 && is_coded(r) ? 0 : level;
 }
 
-// Not of coded planes, whose tiles would be decoded again for every band.
 bool frame_detail_suits(const relume_renderer *r, const struct relume_rect *rect, int width,
                         int height)
 {
-    bool barred = !strcmp(r->info->compression, "av1");
+    bool barred = false;
     for (int i = 0; i < r->light_count; i++)
         barred |= relume_light_is_near(r->lights[i].kind);
     return (r->params.once || find_level(r, rect, width, height) > 0) && r->shown == SHOWN_LIGHT &&
@@ -98,6 +103,7 @@ relume_status frame_detail(struct relume_image *out, relume_renderer *r, int vie
                        .scale = frame_scaling(r)};
     struct relume_image tall;
     find_rect(&d, rect, width, height);
+    const int band = r->info->tile > BAND ? r->info->tile : BAND;
     const bool all = rect->width == r->info->width && rect->height == r->info->height;
     const bool round = d.scale.wrap || d.scale.tiles > 1;
     if (!all) {
@@ -107,9 +113,9 @@ relume_status frame_detail(struct relume_image *out, relume_renderer *r, int vie
     if (!all || !round)
         memcpy(d.scale.from, d.from, sizeof d.from);
     relume_status status = relume_image_create(&tall, width, d.rect.height, 3);
-    for (int y = 0; !status && y < d.rect.height; y += BAND) {
+    for (int y = 0; !status && y < d.rect.height; y += band) {
         const int left = d.rect.height - y;
-        status = narrow_band(&tall, &d, y, left < BAND ? left : BAND);
+        status = narrow_band(&tall, &d, y, left < band ? left : band);
         if (!status && !log_progress(r->params.log, "relighting", (double)y / d.rect.height))
             status = RELUME_ECANCEL;
     }

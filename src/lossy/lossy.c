@@ -349,14 +349,21 @@ static struct relume_rect seen_of(const struct decoding *d, const struct tile *t
                                 least(t->y + t->height, r->top + r->height) - top};
 }
 
+int lossy_side(const struct lossy_words *words)
+{
+    const uint32_t *word = words->word;
+    const bool good = words->count >= HEAD_WORDS && word[WORD_MAGIC] == MAGIC &&
+                      word[WORD_TILE] >= LEAST_SIDE && word[WORD_TILE] <= 4096;
+    return good ? (int)word[WORD_TILE] : 0;
+}
+
 // Of `words` that are tiles of such a view, all within the words.
 static relume_status find_tiles(struct found *f, struct tiles *tiles,
                                 const struct lossy_shape *shape, const struct lossy_words *words)
 {
     const uint32_t *word = words->word;
     f->word = word;
-    if (words->count < HEAD_WORDS || word[WORD_MAGIC] != MAGIC || word[WORD_TILE] < LEAST_SIDE ||
-        word[WORD_TILE] > 4096)
+    if (!lossy_side(words))
         return RELUME_EDAMAGED;
     *tiles = tiles_of(shape, (int)word[WORD_TILE]);
     size_t at = HEAD_WORDS + 2 * (size_t)tiles->count;
@@ -370,6 +377,30 @@ static relume_status find_tiles(struct found *f, struct tiles *tiles,
         at += words_for(word[HEAD_WORDS + 2 * i]);
     }
     return at <= words->count ? RELUME_OK : RELUME_EDAMAGED;
+}
+
+size_t lossy_head(const uint32_t word[3])
+{
+    return HEAD_WORDS + 2 * (size_t)word[WORD_TILES];
+}
+
+// The tiles of a row lie one behind the other.
+relume_status lossy_needs(const struct lossy_shape *shape, const struct relume_rect *rect,
+                          const struct lossy_words *words,
+                          relume_status (*need)(void *user, size_t first, size_t count), void *user)
+{
+    struct decoding d = {.rect = rect};
+    relume_status status = find_tiles(&d.view, &d.tiles, shape, words);
+    if (!status)
+        choose_tiles(&d);
+    for (int i = d.first; !status && i < d.first + d.count / d.across * d.tiles.across;
+         i += d.tiles.across) {
+        const int last = i + d.across - 1;
+        const size_t end = d.view.at[last] + words_for(words->word[HEAD_WORDS + 2 * (size_t)last]);
+        status = need(user, d.view.at[i], end - d.view.at[i]);
+    }
+    mem_free(d.view.at);
+    return status;
 }
 
 static void scatter(const struct decoding *d, const struct tile *t, const uint16_t *samples)
@@ -461,9 +492,4 @@ relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
     mem_free(d.anchor.at);
     mem_free(d.status);
     return status;
-}
-
-int lossy_side(const struct lossy_words *words)
-{
-    return (int)words->word[WORD_TILE];
 }

@@ -47,6 +47,15 @@ struct lossy_lost {
     void (*tile)(void *user, const struct relume_rect *at);
     void *user;
 };
+// What of a view's words a rectangle of it needs, for those who have only the head: `need` is
+// called with the first word and how many. The head is so many words, of which the first three say
+// how many there are: 0 where they cannot.
+size_t lossy_head(const uint32_t word[3]);
+enum { LOSSY_HEAD = 3 };
+relume_status lossy_needs(const struct lossy_shape *shape, const struct relume_rect *rect,
+                          const struct lossy_words *words,
+                          relume_status (*need)(void *user, size_t first, size_t count),
+                          void *user);
 // A rectangle of a view into codes[planes][rect.height][rect.width]; no tile beside it is decoded.
 // `anchor` where the view is not one itself, else NULL. RELUME_EDAMAGED when words are no such
 // tiles, or a tile cannot be decoded and `lost` is NULL. RELUME_ENOMEM.
@@ -54,7 +63,7 @@ relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
                            const struct relume_rect *rect, const struct lossy_words *words,
                            const struct lossy_words *anchor, int threads,
                            const struct lossy_lost *lost);
-// The side of the tiles of words that could be decoded.
+// The side of the tiles; 0 where it cannot be. Of `words` only the first LOSSY_HEAD count.
 int lossy_side(const struct lossy_words *words);
 
 #endif

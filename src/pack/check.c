@@ -38,16 +38,22 @@ static relume_status check_blocks(struct check *c, const char *path)
     return status;
 }
 
+static relume_status check_depth(relume_pack *pack, int view)
+{
+    struct relume_image image;
+    const relume_status status = relume_pack_depth(&image, pack, view);
+    relume_image_destroy(&image);
+    return status;
+}
+
 static relume_status check_whole(relume_pack *pack, int view)
 {
     struct relume_image image;
     const struct relume_codes *codes;
     relume_status status = relume_pack_codes(&codes, pack, view);
     relume_pack_drop(pack, view);
-    if (!status) {
-        status = relume_pack_depth(&image, pack, view);
-        relume_image_destroy(&image);
-    }
+    if (!status)
+        status = check_depth(pack, view);
     if (!status) {
         status = relume_pack_mask(&image, pack, view);
         relume_image_destroy(&image);
@@ -73,7 +79,8 @@ static relume_status check_band(relume_pack *pack, int view, int level,
     relume_codes_part_destroy(&codes);
     if (!status)
         status = check_plane(pack, level ? parts->share[level - 1] : parts->mask, rect);
-    return status || level ? status : check_plane(pack, parts->depth, rect);
+    return status || level || parts->depth_words.count ? status
+                                                       : check_plane(pack, parts->depth, rect);
 }
 
 // Large views are in tiles: no more than some rows of these are there at once.
@@ -81,7 +88,10 @@ static relume_status check_view(relume_pack *pack, int view)
 {
     enum { ROWS = 1024 };
     const struct relume_pack_info *info = relume_pack_info(pack);
-    relume_status status = info->levels ? RELUME_OK : check_whole(pack, view);
+    const bool coded_depth = pack->parts[view].depth_words.count > 0;
+    relume_status status = !info->levels ? check_whole(pack, view)
+                           : coded_depth ? check_depth(pack, view)
+                                         : RELUME_OK;
     for (int level = 0; !status && info->levels && level <= info->levels; level++) {
         struct relume_rect band = {0};
         int height;

@@ -101,19 +101,58 @@ static void load_words(void *context, const struct relume_rect *at, const void *
                (end - begin) * sizeof *to->word);
 }
 
-// Words of a part, which the caller frees.
-static relume_status read_words(struct lossy_words *out, const relume_pack *p, int part,
+// Words of a part into those from `range.first` on.
+static relume_status read_range(uint32_t *to, const relume_pack *p, int part,
                                 struct word_range range)
 {
     const size_t width = (size_t)exr_part_info(p->file, part).width;
     const size_t first = range.first / width, end = (range.first + range.count + width - 1) / width;
     const struct relume_rect rows = {0, (int)first, (int)width, (int)(end - first)};
-    struct words to = {mem_array(range.count, sizeof *to.word), range, width};
-    *out = (struct lossy_words){to.word, range.count};
-    if (!to.word)
-        return RELUME_ENOMEM;
-    return range.count ? exr_read(p->file, part, &rows, p->threads, load_words, &to, p->log)
+    struct words words = {to, range, width};
+    return range.count ? exr_read(p->file, part, &rows, p->threads, load_words, &words, p->log)
                        : RELUME_OK;
+}
+
+// All of them, which the caller frees.
+static relume_status read_words(struct lossy_words *out, const relume_pack *p, int part,
+                                struct word_range range)
+{
+    *out = (struct lossy_words){mem_array(range.count, sizeof *out->word), range.count};
+    return out->word ? read_range(out->word, p, part, range) : RELUME_ENOMEM;
+}
+
+// Words of which only some are there.
+struct sparse {
+    struct lossy_words *words;
+    const relume_pack *pack;
+    int part;
+    size_t first;  // where the words begin in the part
+};
+
+static relume_status read_some(void *user, size_t first, size_t count)
+{
+    const struct sparse *s = user;
+    return read_range(s->words->word + first, s->pack, s->part,
+                      (struct word_range){s->first + first, count});
+}
+
+// Those alone that a rectangle needs: memory that nobody writes takes no room.
+static relume_status read_needed(struct lossy_words *out, const relume_pack *p, int part,
+                                 struct word_range range, const struct lossy_shape *shape,
+                                 const struct relume_rect *rect)
+{
+    struct sparse s = {out, p, part, range.first};
+    *out = (struct lossy_words){mem_array(range.count, sizeof *out->word), range.count};
+    if (!out->word)
+        return RELUME_ENOMEM;
+    if (range.count < LOSSY_HEAD)
+        return RELUME_EDAMAGED;
+    relume_status status = read_some(&s, 0, LOSSY_HEAD);
+    if (!status && !(lossy_head(out->word) <= range.count))
+        return RELUME_EDAMAGED;
+    if (!status)
+        status = read_some(&s, 0, lossy_head(out->word));
+    return status ? status : lossy_needs(shape, rect, out, read_some, &s);
 }
 
 // ---------------------------------------------------------------- planes
@@ -178,20 +217,44 @@ static relume_status say_lost(const struct losing *l)
     return RELUME_OK;
 }
 
-relume_status reader_load_coded(relume_pack *p, int view, const struct relume_rect *rect,
+// The words of a view, or of a reduced level of it, which has a part of its own.
+static int words_of(struct word_range *range, const relume_pack *p, int view, int level)
+{
+    const struct view_parts *v = &p->parts[view];
+    const int part = level ? v->level[level - 1] : v->codes;
+    const struct exr_part_info info = exr_part_info(p->file, part);
+    *range = level ? (struct word_range){0, (size_t)info.width * (size_t)info.height} : v->words;
+    return part;
+}
+
+int reader_coded_tile(const relume_pack *p)
+{
+    uint32_t head[LOSSY_HEAD] = {0};
+    struct word_range range;
+    const int part = words_of(&range, p, 0, 0);
+    const struct lossy_words words = {head, LOSSY_HEAD};
+    const bool there = range.count >= LOSSY_HEAD;
+    range.count = LOSSY_HEAD;
+    return there && !read_range(head, p, part, range) ? lossy_side(&words) : 0;
+}
+
+relume_status reader_load_coded(relume_pack *p, int view, int level, const struct relume_rect *rect,
                                 const struct relume_codes *codes, uint16_t *data)
 {
     const struct view_parts *v = &p->parts[view];
     struct lossy_words words = {0}, anchor = {0};
+    struct word_range range;
+    const int part = words_of(&range, p, view, level);
     int *order = lossy_order(p->coder);
-    const struct lossy_shape shape = {p->info.width, p->info.height, p->info.planes,
-                                      lossy_in_colour(p->coder), order};
+    struct lossy_shape shape = {
+        .planes = p->info.planes, .colour = lossy_in_colour(p->coder), .order = order};
+    relume_pack_level_size(&shape.width, &shape.height, p, level);
     struct losing losing = {.pack = p, .rect = rect, .codes = codes, .data = data, .words = &words};
     const struct lossy_lost lost = {lose_tile, &losing};
-    snprintf(losing.view, sizeof losing.view, "view%04d", view);
-    relume_status status = read_words(&words, p, v->codes, v->words);
+    snprintf(losing.view, sizeof losing.view, level ? "view%04d.level%d" : "view%04d", view, level);
+    relume_status status = read_needed(&words, p, part, range, &shape, rect);
     if (!status && v->anchor >= 0)
-        status = read_words(&anchor, p, v->codes, p->parts[v->anchor].words);
+        status = read_needed(&anchor, p, part, p->parts[v->anchor].words, &shape, rect);
     if (!status)
         status = lossy_decode(data, &shape, rect, &words, v->anchor >= 0 ? &anchor : NULL,
                               p->threads, &lost);

@@ -29,17 +29,20 @@ relume_status reader_mask_plane(relume_pack *p, int view, int level, const struc
     return status;
 }
 
-relume_status reader_mask_codes(relume_pack *p, int view, const struct relume_rect *rect,
+relume_status reader_mask_codes(relume_pack *p, int view, int level, const struct relume_rect *rect,
                                 const struct relume_codes *codes, uint16_t *data)
 {
     const size_t pixels = (size_t)rect->width * (size_t)rect->height;
+    const struct view_parts *parts = &p->parts[view];
+    const float least = level ? 0.0f : 0.5f;
     struct relume_image mask;
-    const relume_status status = reader_load_plane(&mask, p, p->parts[view].mask, rect);
+    const relume_status status =
+        reader_load_plane(&mask, p, level ? parts->share[level - 1] : parts->mask, rect);
     for (int k = 0; !status && mask.data && k < p->info.planes; k++) {
         uint16_t *plane = data + (size_t)k * pixels;
         const long zero = lrintf(-codes->offset[k] / codes->scale[k]);
         for (size_t i = 0; i < pixels; i++)
-            if (mask.data[i] <= 0.5f)
+            if (mask.data[i] <= least)
                 plane[i] = (uint16_t)(zero < 0 ? 0 : zero > 4095 ? 4095 : zero);
     }
     relume_image_destroy(&mask);

@@ -14,6 +14,12 @@ static relume_status check_view_part(relume_pack *p, int part, int view, int lev
     int width, height;
     snprintf(where, sizeof where, level ? "view %d, level %d" : "view %d", view, level);
     relume_pack_level_size(&width, &height, p, level);
+    const bool steps =
+        reader_floats(p, part, ATTR_SCALE, planes) && reader_floats(p, part, ATTR_OFFSET, planes);
+    if (p->coded)
+        return i.channels == 1 && i.uniform && i.sample == EXR_SAMPLE_UINT && !i.tile && steps
+                   ? RELUME_OK
+                   : reader_bad(p, where, "rows of words, and a scale and offset for every plane");
     if (i.width != width || i.height != height)
         return reader_bad(p, where, "the size of the other parts");
     if (p->info.books && !level) {
@@ -23,7 +29,7 @@ static relume_status check_view_part(relume_pack *p, int part, int view, int lev
     }
     if (i.channels != planes || !i.uniform || i.sample != codes_sample(p->info.storage))
         return reader_bad(p, where, "one channel of the stored type for every plane");
-    if (!reader_floats(p, part, ATTR_SCALE, planes) || !reader_floats(p, part, ATTR_OFFSET, planes))
+    if (!steps)
         return reader_bad(p, where, "a finite scale and offset for every plane");
     return RELUME_OK;
 }
@@ -60,8 +66,9 @@ static relume_status find_levels(relume_pack *p, int view, int *part)
 {
     struct view_parts *parts = &p->parts[view];
     char name[48], what[32];
-    int levels = 0;
+    int levels = p->coded;  // of coded planes the first is not kept
     relume_status status = RELUME_OK;
+    parts->level[0] = parts->share[0] = -1;
     for (; !status && levels < RELUME_MOST_LEVELS; levels++) {
         snprintf(what, sizeof what, ".level%d", levels + 1);
         if (!is_next(p, *part, name, view, what))
@@ -76,10 +83,23 @@ static relume_status find_levels(relume_pack *p, int view, int *part)
             return reader_bad(p, name, "one half channel of the level's size");
         parts->share[levels] = (*part)++;
     }
+    levels = levels > p->coded ? levels : 0;
     if (!status && view && levels != p->info.levels)
         return reader_bad(p, name, "as many levels as the first view has");
     p->info.levels = levels;
     return status;
+}
+
+static relume_status check_shares(const relume_pack *p, int view)
+{
+    const struct view_parts *parts = &p->parts[view];
+    char name[48];
+    for (int i = p->coded; i < p->info.levels; i++)
+        if ((parts->share[i] < 0) != (parts->mask < 0)) {
+            snprintf(name, sizeof name, "view%04d.level%d", view, i + 1);
+            return reader_bad(p, name, "a mask where the view has one");
+        }
+    return RELUME_OK;
 }
 
 static relume_status find_view(relume_pack *p, int view, int *part)
@@ -101,12 +121,7 @@ static relume_status find_view(relume_pack *p, int view, int *part)
         parts->mask = (*part)++;
         p->info.has_mask = true;
     }
-    for (int i = 0; !status && !p->coded && i < p->info.levels; i++)
-        if ((parts->share[i] < 0) != (parts->mask < 0)) {
-            snprintf(name, sizeof name, "view%04d.level%d", view, i + 1);
-            return reader_bad(p, name, "a mask where the view has one");
-        }
-    return status;
+    return status || p->coded ? status : check_shares(p, view);
 }
 
 relume_status reader_find_parts(relume_pack *p)
@@ -122,9 +137,12 @@ relume_status reader_find_parts(relume_pack *p)
         p->coded ? reader_find_groups(p, &part) : reader_find_books(p, -1, &part);
     for (int v = 0; !status && v < p->info.views; v++)
         status = find_view(p, v, &part);
+    for (int v = 0; !status && p->coded && v < p->info.views; v++)
+        if (!(status = find_levels(p, v, &part)))
+            status = check_shares(p, v);
     if (status)
         return status;
-    p->info.tile = p->coded ? 0 : exr_part_info(p->file, p->parts[0].codes).tile;
+    p->info.tile = p->coded ? reader_coded_tile(p) : exr_part_info(p->file, p->parts[0].codes).tile;
     p->info.compression = p->coded ? CODING_AV1 : exr_part_info(p->file, p->parts[0].codes).codec;
     return reader_read_members(p);
 }

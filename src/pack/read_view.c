@@ -77,20 +77,22 @@ relume_status reader_load_planes(struct relume_codes_part *to, relume_pack *p, i
     void *data;
     if (!steps)
         return RELUME_ENOMEM;
-    find_steps(steps, p, p->coded ? 0 : part, level, planes);
+    find_steps(steps, p, p->coded && level < 2 ? 0 : part, level, planes);
     stepped.scale = steps;
     stepped.offset = steps + planes;
     relume_status status = codes_part_create(to, &data, &stepped, rect->width, rect->height);
     mem_free(steps);
+    if (!status && p->coded && level == 1)
+        return reader_load_halved(p, view, rect, like, data);
     if (!status)
-        status = p->coded ? reader_load_coded(p, view, rect, &to->codes, data)
+        status = p->coded ? reader_load_coded(p, view, level, rect, &to->codes, data)
                           : reader_load(p, part, rect, data, p->info.planes, 0);
     if (!status && planes > stored)
         status =
             reader_mask_plane(p, view, level, rect,
                               (char *)data + stored * (size_t)rect->width * (size_t)rect->height *
                                                  relume_storage_bytes(like->storage));
-    return !status && p->coded ? reader_mask_codes(p, view, rect, &to->codes, data) : status;
+    return !status && p->coded ? reader_mask_codes(p, view, level, rect, &to->codes, data) : status;
 }
 
 struct plane_sink {
@@ -180,6 +182,16 @@ static void pick_block(void *context, const struct relume_rect *at, const void *
     }
 }
 
+static relume_status pick_coded(struct picking *p, relume_pack *pack, int view)
+{
+    struct relume_image whole;
+    const relume_status status = reader_load_coded_depth(&whole, pack, view);
+    if (!status)
+        pick_block(p, &p->whole, whole.data);
+    relume_image_destroy(&whole);
+    return status;
+}
+
 relume_status relume_pack_depth_level(struct relume_image *out, relume_pack *pack, int view,
                                       int level)
 {
@@ -196,7 +208,10 @@ relume_status relume_pack_depth_level(struct relume_image *out, relume_pack *pac
     relume_pack_level_size(&width, &height, pack, level);
     relume_status status = relume_image_create(out, width, height, 1);
     if (!status)
-        status = exr_read(pack->file, part, NULL, pack->threads, pick_block, &picking, pack->log);
+        status =
+            pack->parts[view].depth_words.count
+                ? pick_coded(&picking, pack, view)
+                : exr_read(pack->file, part, NULL, pack->threads, pick_block, &picking, pack->log);
     return end_plane(out, pack, status);
 }
 

@@ -82,8 +82,13 @@ relume_status reader_load_plane(struct relume_image *out, relume_pack *p, int pa
 // Of files that are coded with loss (read_coded.c): the groups of views that begin at *part, which
 // moves behind them; the planes of a rectangle of a view; its depth, where that has words.
 relume_status reader_find_groups(relume_pack *p, int *part);
-relume_status reader_load_coded(relume_pack *p, int view, const struct relume_rect *rect,
+relume_status reader_load_coded(relume_pack *p, int view, int level, const struct relume_rect *rect,
                                 const struct relume_codes *codes, uint16_t *data);
+// Of the first reduced level, which is not kept: of all planes of `like`.
+relume_status reader_load_halved(relume_pack *p, int view, const struct relume_rect *rect,
+                                 const struct relume_codes *like, uint16_t *data);
+// The side of their tiles, 0 where it cannot be read.
+int reader_coded_tile(const relume_pack *p);
 relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, int view);
 
 // What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
@@ -93,7 +98,7 @@ relume_status reader_mask_plane(relume_pack *p, int view, int level, const struc
                                 void *plane);
 // Codes of coefficients that are 0 where the mask leaves out, into planes that were coded with
 // loss.
-relume_status reader_mask_codes(relume_pack *p, int view, const struct relume_rect *rect,
+relume_status reader_mask_codes(relume_pack *p, int view, int level, const struct relume_rect *rect,
                                 const struct relume_codes *codes, uint16_t *data);
 bool reader_has_nothing(const relume_pack *p, int codes);
 relume_status reader_mask_indices(relume_pack *p, int view, const struct relume_rect *rect,

@@ -82,10 +82,36 @@ static void add_view(struct writer *w, struct words *to, const char **members, f
     w->failed |= !*members;
 }
 
+static void fill(struct exr_part *part, struct words *words)
+{
+    static const char *const channel[] = {CODING_AV1};
+    const size_t rows = rows_of(words->count);
+    words->width = (words->count + rows - 1) / rows;
+    part->codec = EXR_CODEC_NONE;
+    part->sample = EXR_SAMPLE_UINT;
+    part->width = (int)words->width;
+    part->height = (int)rows;
+    part->channels = 1;
+    part->channel = channel;
+    part->rows = words_rows;
+    part->context = words;
+}
+
+void writer_fill_words(struct writer *w, struct exr_part *part, const uint32_t *word, size_t count)
+{
+    struct words *words = arena_array(&w->arena, 1, sizeof *words);
+    struct lossy_words *run = arena_array(&w->arena, 1, sizeof *run);
+    w->failed |= !words || !run;
+    if (w->failed)
+        return;
+    *run = (struct lossy_words){(uint32_t *)(uintptr_t)word, count};
+    *words = (struct words){.run = run, .runs = 1, .count = count};
+    fill(part, words);
+}
+
 // The anchor and the views that are predicted from it.
 static void add_group(struct writer *w, int group, int anchor)
 {
-    static const char *const channel[] = {CODING_AV1};
     const struct relume_pack_contents *c = w->contents;
     struct words *words = arena_array(&w->arena, 1, sizeof *words);
     float *step = arena_array(&w->arena, (size_t)c->views, sizeof *step);
@@ -100,16 +126,7 @@ static void add_group(struct writer *w, int group, int anchor)
     for (int v = 0; v < c->views; v++)
         if (c->view[v].predicted && c->view[v].anchor == anchor)
             add_view(w, words, &members, step, v);
-    const size_t rows = rows_of(words->count);
-    words->width = (words->count + rows - 1) / rows;
-    part->codec = EXR_CODEC_NONE;
-    part->sample = EXR_SAMPLE_UINT;
-    part->width = (int)words->width;
-    part->height = (int)rows;
-    part->channels = 1;
-    part->channel = channel;
-    part->rows = words_rows;
-    part->context = words;
+    fill(part, words);
     writer_text(part, ATTR_GROUP, members);
     writer_floats(w, part, ATTR_STEP, step, words->runs / 2);
     if (c->slabs)

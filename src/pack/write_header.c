@@ -46,7 +46,7 @@ static uint16_t *put_row(uint16_t *out, const float *rgb, size_t width)
 
 int relume_pack_shown(const struct relume_pack_view *view)
 {
-    const int levels = view->levels ? view->levels->levels : 0;
+    const int levels = view->levels && !view->coded ? view->levels->levels : 0;
     for (int i = 0; i < levels; i++) {
         const struct relume_coefficients_info *info =
             relume_coefficients_info(view->levels->level[i]);

@@ -80,6 +80,13 @@ static void add_plane(struct writer *w, const char *name, int view,
     part->context = (void *)(uintptr_t)image;
 }
 
+static void add_steps(struct writer *w, struct exr_part *part,
+                      const struct relume_coefficients_info *info)
+{
+    writer_floats(w, part, ATTR_SCALE, info->scale, info->planes);
+    writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
+}
+
 static void fill_with_planes(struct writer *w, struct exr_part *part,
                              const relume_coefficients *coefficients)
 {
@@ -89,8 +96,7 @@ static void fill_with_planes(struct writer *w, struct exr_part *part,
     part->channel = w->channels;
     part->rows = code_rows;
     part->context = (void *)(uintptr_t)coefficients;
-    writer_floats(w, part, ATTR_SCALE, info->scale, info->planes);
-    writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
+    add_steps(w, part, info);
 }
 
 // Numbers that join needs as they are.
@@ -186,18 +192,25 @@ static void add_codes(struct writer *w, int index, bool shared)
         writer_add_books(w, view->books, index);
 }
 
-static void add_levels(struct writer *w, int index)
+void writer_add_levels(struct writer *w, int index)
 {
     static const char *const channel[] = {"A"};
     const struct relume_pack_levels *levels = w->contents->view[index].levels;
     char name[32];
     for (int i = 0; levels && i < levels->levels; i++) {
+        if (w->contents->view[index].coded && !levels->coded[i])
+            continue;
         const struct relume_coefficients_info *info = relume_coefficients_info(levels->level[i]);
         struct exr_part *part =
             writer_part(w, arena_format(&w->arena, "view%04d.level%d", index, i + 1), info->width,
                         info->height);
-        part->tile = FORMAT_TILE;
-        fill_with_planes(w, part, levels->level[i]);
+        if (levels->coded[i]) {
+            writer_fill_words(w, part, levels->coded[i], levels->coded_words[i]);
+            add_steps(w, part, info);
+        } else {
+            part->tile = FORMAT_TILE;
+            fill_with_planes(w, part, levels->level[i]);
+        }
         snprintf(name, sizeof name, "level%d.mask", i + 1);
         add_plane(w, name, index, levels->share[i].data ? &levels->share[i] : NULL, channel,
                   EXR_SAMPLE_HALF, share_rows);
@@ -212,6 +225,7 @@ void writer_add_view(struct writer *w, int index, bool shared)
         add_codes(w, index, shared);
     if (!view->coded || !(view->depth_step > 0.0f))
         add_plane(w, "depth", index, view->depth, depth_channel, EXR_SAMPLE_FLOAT, depth_rows);
-    add_levels(w, index);
+    if (!view->coded)
+        writer_add_levels(w, index);
     add_plane(w, "mask", index, view->mask, mask_channel, EXR_SAMPLE_HALF, mask_rows);
 }

@@ -108,6 +108,8 @@ static void add_parts(struct writer *w)
         writer_add_groups(w);
     for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
         writer_add_view(w, i, shared);
+    for (int i = 0; c->view[first].coded && i < c->views; i++)
+        writer_add_levels(w, i);
 }
 
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,

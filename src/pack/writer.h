@@ -33,12 +33,17 @@ void writer_doubles(struct writer *w, struct exr_part *part, const char *name, c
 // The first part: the preview, and what all of the file is (write_header.c).
 void writer_add_header(struct writer *w);
 // The parts of a view: its planes unless they are coded, or indices into codebooks and these unless
-// they are `shared`; its mask, and its depth unless that is coded (write_view.c).
+// they are `shared`; its reduced levels, unless they are coded; its mask, and its depth unless that
+// is coded (write_view.c).
 void writer_add_view(struct writer *w, int view, bool shared);
+// The reduced levels of a view, and their masks.
+void writer_add_levels(struct writer *w, int view);
 // What the first part shows of a view: its coefficients, or those of a reduced level.
 const struct relume_coefficients_info *writer_shown(const struct relume_pack_view *view);
 // The parts of all views whose planes are coded, and of their depth (write_coded.c).
 void writer_add_groups(struct writer *w);
+// Words as the rows of a part; they must live as long as the writer.
+void writer_fill_words(struct writer *w, struct exr_part *part, const uint32_t *word, size_t count);
 // The parts of the codebooks of a view, or of all of them (-1); and the indices into them.
 void writer_add_books(struct writer *w, const relume_books *books, int view);
 void writer_fill_indices(struct exr_part *part, const struct relume_pack_view *view);

@@ -172,6 +172,74 @@ static void test_any_rectangle(void **state)
     relume_pack_destroy(&pack);
 }
 
+// How far a level is from the means of the one before, RMS over all of it and some lights: of
+// light, or of display values.
+static double level_error(relume_pack *pack, int level, bool shown)
+{
+    const struct relume_coder_info *coder = relume_coder_info(relume_pack_info(pack)->coder);
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    double sum = 0.0, n = 0.0;
+    for (int light = 0; light < coder->lights; light += 3) {
+        struct relume_image larger, smaller, *both[] = {&larger, &smaller};
+        for (int i = 0; i < 2; i++) {
+            relight_level(both[i], pack, level - 1 + i, coder->directions[light]);
+            for (int k = 0; shown && k < 3 * both[i]->width * both[i]->height; k++)
+                both[i]->data[k] = relume_transfer_encode(srgb, both[i]->data[k]);
+        }
+        for (int i = 0; i < smaller.width * smaller.height; i++)
+            for (int c = 0; c < 3; c++, n++) {
+                const double is = (double)smaller.data[3 * i + c];
+                const double d = is - mean(&larger, i % smaller.width, i / smaller.width, c);
+                sum += d * d;
+            }
+        relume_image_destroy(&larger);
+        relume_image_destroy(&smaller);
+    }
+    return sqrt(sum / n);
+}
+
+static void check_coded(bool linear)
+{
+    const struct fixture f = {.width = 131,
+                              .height = 271,
+                              .lights = 6,
+                              .views = 1,
+                              .hemisphere = true,
+                              .mask = linear,
+                              .depth = linear};
+    relume_pack *pack;
+    fixture_write(&f, folder);
+    CHECK_OK(fixture_encode(
+        folder, path, &relume_basis_pca, 4,
+        relume_pack_encode_params(.domain = linear ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY,
+                                  .psnr_db = 30.0, .pyramid = RELUME_PYRAMID_YES)));
+    CHECK_OK(relume_pack_open(&pack, path, NULL));
+    assert_string_equal(relume_pack_info(pack)->compression, "av1");
+    assert_int_equal(relume_pack_info(pack)->levels, 2);
+    // means of codes, to their rounding: 4 planes of 12 bits
+    CHECK_NEAR(level_error(pack, 1, !linear), 0.0, 5e-4);
+    // what coding it at 30 dB costs, sqrt(0.001)
+    CHECK_NEAR(level_error(pack, 2, false), 0.0, 0.032);
+    for (int level = 1; level <= 2; level++) {
+        struct relume_codes_part whole;
+        const struct relume_rect at = {level == 1 ? 61 : 29, level == 1 ? 120 : 7, 4, 11};
+        read_level(&whole, pack, level);
+        check_crop(pack, &whole.codes, level, &at);
+        relume_codes_part_destroy(&whole);
+    }
+    relume_pack_destroy(&pack);
+    CHECK_OK(relume_pack_check(path, NULL));
+}
+
+// The first level of coded planes is made of the view, the others are coded too; of both any
+// rectangle is what the whole has there.
+static void test_coded_levels(void **state)
+{
+    (void)state;
+    check_coded(false);
+    check_coded(true);
+}
+
 // The same bytes from any number of threads.
 static void test_threads(void **state)
 {
@@ -241,6 +309,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_levels_show_means, setup, teardown),
         cmocka_unit_test_setup_teardown(test_any_rectangle, setup, teardown),
         cmocka_unit_test_setup_teardown(test_threads, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_coded_levels, setup, teardown),
         cmocka_unit_test_setup_teardown(test_large_masks_are_not_in_memory, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

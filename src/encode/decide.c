@@ -4,48 +4,95 @@
 #include "base/params.h"
 #include "encode/rate.h"
 
+#include <string.h>
+
 // Truncation is to cost little beside coding, which makes more components than these nearly free
 // but for their functions in the header; and a usual target where bytes are asked for.
-enum { LEAST_COMPONENTS = 27 };
+enum { LEAST_COMPONENTS = 27, NUGGET = 2 };
 static const double SPARE_DB = 3.0, LEAST_SPARE_DB = 0.5, USUAL_DB = 40.0;
+
+// What pictures must be better by at the same size, since components predict unseen lights better
+// from planes that are as good.
+static const double WORTH_IT_DB = 0.5;
+
+// Of a number of the functions, as text in the header, twelve bits each.
+enum { BYTES_EACH = 2 };
 
 static double wanted(const struct relume_pack_encode_params *p)
 {
     return p->psnr_db > 0.0 ? p->psnr_db : USUAL_DB;
 }
 
-static relume_status bytes_with(double *bytes, const relume_coder *coder,
-                                const relume_capture *capture,
-                                const struct relume_pack_encode_params *p,
-                                const struct relume_encode_params *encode)
+// What is asked for, of the planes of one view.
+static struct rate_target target_of_view(const relume_capture *capture,
+                                         const struct relume_pack_encode_params *p)
 {
+    const double pixels =
+        (double)relume_capture_width(capture) * (double)relume_capture_height(capture);
+    return p->psnr_db > 0.0 ? (struct rate_target){.psnr_db = p->psnr_db}
+                            : (struct rate_target){.bytes = p->bytes_per_pixel * pixels};
+}
+
+// A view's share of the functions.
+static double header_bytes(const relume_coder *coder, int views)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    return info->basis->learned ? 3.0 * info->coefficients * info->functions * BYTES_EACH / views
+                                : 0.0;
+}
+
+static relume_status merit_of(double *merit, const relume_coder *coder,
+                              const relume_capture *capture,
+                              const struct relume_pack_encode_params *p,
+                              const struct relume_encode_params *encode)
+{
+    const int views = relume_capture_manifest(capture)->views;
+    const struct rate_target target = target_of_view(capture, p);
     relume_coefficients *c;
-    relume_status status =
-        relume_encode(&c, coder, capture, relume_capture_manifest(capture)->views / 2, encode);
+    relume_status status = relume_encode(&c, coder, capture, views / 2, encode);
     if (!status)
-        status = rate_estimate(bytes, c, relume_capture_manifest(capture)->views / 2, capture,
-                               wanted(p), encode);
+        status =
+            rate_merit(merit, c, views / 2, capture, &target, header_bytes(coder, views), encode);
     relume_coefficients_destroy(&c);
     return status;
 }
 
-// The better of the two, in *out; the other one is destroyed.
-static relume_status keep_smaller(relume_coder **out, relume_coder *other,
-                                  const relume_capture *capture,
-                                  const struct relume_pack_encode_params *p,
-                                  const struct relume_encode_params *encode)
+// Components in *out or pictures, whichever are better, in *out; the others are destroyed.
+static relume_status keep_better(relume_coder **out, relume_coder *pictures,
+                                 const relume_capture *capture,
+                                 const struct relume_pack_encode_params *p,
+                                 const struct relume_encode_params *encode)
 {
+    const double least = p->psnr_db > 0.0 ? 0.0 : WORTH_IT_DB;
     double ours = 0.0, theirs = 0.0;
-    relume_status status = bytes_with(&ours, *out, capture, p, encode);
+    relume_status status = merit_of(&ours, *out, capture, p, encode);
     if (!status)
-        status = bytes_with(&theirs, other, capture, p, encode);
-    if (!status && theirs < ours) {
-        relume_coder *const worse = *out;
-        *out = other;
-        other = worse;
+        status = merit_of(&theirs, pictures, capture, p, encode);
+    if (!status && theirs > ours + least) {
+        relume_coder *const components = *out;
+        *out = pictures;
+        pictures = components;
     }
-    relume_coder_destroy(&other);
+    relume_coder_destroy(&pictures);
     return status;
+}
+
+// The pictures, with the interpolant of the components; one that smooths would cost quality before
+// coding does.
+static relume_status learn_pictures(relume_coder **out, const relume_coder *components,
+                                    const relume_capture *capture,
+                                    const struct relume_coder_params *coder,
+                                    const struct relume_encode_params *encode)
+{
+    const struct relume_coder_info *info = relume_coder_info(components);
+    struct relume_coder_params all = *coder;
+    all.coefficients = 0;
+    all.choose = false;
+    all.interpolant = info->interpolant;
+    memcpy(all.parameter, info->parameter, sizeof all.parameter);
+    if (coder->choose)
+        all.parameter[NUGGET] = 0.0;
+    return relume_coder_learn(out, &relume_basis_table, capture, &all, encode);
 }
 
 relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,
@@ -72,15 +119,12 @@ relume_status relume_pack_decide(relume_coder **out, const relume_capture *captu
     }
     if (status || 3 * components <= 2 * lights || !relume_coder_info(*out)->basis->learned)
         return status;
-    struct relume_coder_params all = *coder;
-    all.coefficients = 0;
-    all.choose = false;  // an interpolant that smooths would cost quality before coding does
-    status = relume_coder_learn(&pictures, &relume_basis_table, capture, &all, &encode);
-    if (!status && decision.psnr_db < wanted(&p) + LEAST_SPARE_DB) {
+    status = learn_pictures(&pictures, *out, capture, coder, &encode);
+    if (!status && p.psnr_db > 0.0 && decision.psnr_db < p.psnr_db + LEAST_SPARE_DB) {
         relume_coder_destroy(out);
         *out = pictures;
     } else if (!status) {
-        status = keep_smaller(out, pictures, capture, &p, &encode);
+        status = keep_better(out, pictures, capture, &p, &encode);
     }
     if (status)
         relume_coder_destroy(out);

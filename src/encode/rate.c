@@ -318,9 +318,9 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
     return status;
 }
 
-relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, int view,
-                            const relume_capture *capture, double psnr_db,
-                            const struct relume_encode_params *p)
+relume_status rate_merit(double *merit, relume_coefficients *coefficients, int view,
+                         const relume_capture *capture, const struct rate_target *target,
+                         double header, const struct relume_encode_params *p)
 {
     int begin[] = {0, 1}, alone[] = {0};
     const struct view_groups group = {1, begin, alone};
@@ -330,10 +330,14 @@ relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, in
                      .capture = capture,
                      .p = p,
                      .step_db = 0.3,
-                     .target = {.psnr_db = psnr_db}};
+                     .target = *target};
     int quantiser = FIRST_GUESS;
+    r.target.bytes = fmax(target->bytes - header, 1.0);
     const relume_status status = search(&r, 1, AV1_FAST, &quantiser);
-    *bytes = r.trial[quantiser].bytes * exp2(-surplus(&r, quantiser) / EACH_HALF);
+    const struct trial *t = &r.trial[quantiser];
+    const double over = surplus(&r, quantiser);
+    *merit = target->psnr_db > 0.0 ? -EACH_HALF * log2(t->bytes * exp2(-over / EACH_HALF) + header)
+                                   : t->psnr_db - over;
     forget(&r);
     return status;
 }

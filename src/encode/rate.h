@@ -25,9 +25,11 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           const struct view_groups *groups, const relume_capture *capture,
                           const struct rate_target *target, const struct relume_encode_params *p);
 
-// About the bytes of one `view` of the capture at that PSNR. Errors as above.
-relume_status rate_estimate(double *bytes, relume_coefficients *coefficients, int view,
-                            const relume_capture *capture, double psnr_db,
-                            const struct relume_encode_params *p);
+// How good a coder of one `view` of the capture is about, to compare it with others: in dB, the
+// PSNR at the target's bytes, `header` of which are not planes'; or, at the target's PSNR, as if
+// half of all bytes were worth 5 dB. Errors as above.
+relume_status rate_merit(double *merit, relume_coefficients *coefficients, int view,
+                         const relume_capture *capture, const struct rate_target *target,
+                         double header, const struct relume_encode_params *p);
 
 #endif

@@ -38,11 +38,11 @@ struct av1_bytes {
 int av1_most_members(int pictures);
 // A group of sequences, out[members] of samples[members]. The first is decoded alone. Each picture
 // of another one is predicted from the first one's picture of that number and the one before, and
-// from its own last. The bytes depend on the version of libaom, not on the machine. RELUME_ENOMEM,
-// RELUME_ESYSTEM.
+// from its own last. The bytes depend on the version of libaom, not on the machine or `threads`,
+// which are at least two. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status av1_encode(struct av1_bytes *out, const uint16_t *const *samples, int members,
                          const struct av1_shape *shape, const struct av1_effort *effort,
-                         const struct relume_log *log);
+                         int threads, const struct relume_log *log);
 // `first` is the group's first sequence where `bytes` are another one, else NULL. Bytes that are no
 // such sequence are RELUME_EDAMAGED. RELUME_ENOMEM.
 relume_status av1_decode(uint16_t *samples, const struct av1_shape *shape,

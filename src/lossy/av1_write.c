@@ -13,6 +13,10 @@ enum { MOST_KEYFRAME_DISTANCE = 1 << 20 };
 // Slots in which the coder keeps pictures: two for the first sequence, one for each other.
 enum { SLOTS = 8, FIRST_SLOTS = 2, REFERENCES = 7 };
 
+// One thread codes a picture otherwise than several do, by a thousandth of the bytes; with two or
+// more their number does not matter.
+enum { LEAST_THREADS = 2, MOST_THREADS = 16 };
+
 struct group {
     aom_codec_ctx_t codec;
     aom_codec_enc_cfg_t config;
@@ -80,7 +84,7 @@ static bool control(struct group *g)
            !aom_codec_control(&g->codec, AV1E_SET_DELTAQ_MODE, 0);
 }
 
-static bool begin(struct group *g)
+static bool begin(struct group *g, int threads)
 {
     aom_codec_iface_t *av1 = aom_codec_av1_cx();
     const bool grey = g->shape->components == 1;
@@ -92,7 +96,9 @@ static bool begin(struct group *g)
     c.g_profile = 2;
     c.g_bit_depth = AOM_BITS_12;
     c.g_input_bit_depth = AV1_BITS;
-    c.g_threads = 1;
+    c.g_threads = (unsigned)(threads < LEAST_THREADS  ? LEAST_THREADS
+                             : threads > MOST_THREADS ? MOST_THREADS
+                                                      : threads);
     c.g_lag_in_frames = 0;
     c.monochrome = grey;
     c.rc_end_usage = AOM_Q;
@@ -158,11 +164,11 @@ static bool run(struct group *g, const uint16_t *const *samples)
 
 relume_status av1_encode(struct av1_bytes *out, const uint16_t *const *samples, int members,
                          const struct av1_shape *shape, const struct av1_effort *effort,
-                         const struct relume_log *log)
+                         int threads, const struct relume_log *log)
 {
     struct group g = {.out = out, .shape = shape, .effort = effort, .members = members};
     memset(out, 0, (size_t)members * sizeof *out);
-    const bool done = begin(&g) && run(&g, samples);
+    const bool done = begin(&g, threads) && run(&g, samples);
     const bool memory = g.codec.err == AOM_CODEC_OK || g.codec.err == AOM_CODEC_MEM_ERROR;
     relume_status status = done ? RELUME_OK : RELUME_ENOMEM;
     if (!done && !memory)

@@ -170,7 +170,7 @@ static void repeat_edges(uint16_t *plane, const struct tile *t)
 struct encoding {
     struct tiles tiles;
     relume_coefficients *const *from;  // [views]
-    int views;
+    int views, each;                   // threads for each tile
     const struct av1_effort *effort;
     const struct relume_log *log;
     relume_status *status;    // [tiles]
@@ -214,7 +214,7 @@ static void encode_tile(void *context, size_t item, int worker)
     }
     if (!status)
         status = av1_encode(e->bytes + item * (size_t)e->views, (const uint16_t *const *)samples,
-                            e->views, &t.video, e->effort, e->log);
+                            e->views, &t.video, e->effort, e->each, e->log);
     e->status[item] = status;
     for (int v = 0; v < e->views; v++)
         mem_free(samples[v]);
@@ -292,6 +292,7 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
     const size_t n = (size_t)e.tiles.count, sequences = n * (size_t)views;
     e.status = mem_zeroed(n, sizeof *e.status);
     e.bytes = mem_zeroed(sequences, sizeof *e.bytes);
+    e.each = thread_count(threads) / e.tiles.count;
     relume_status status = e.status && e.bytes ? RELUME_OK : RELUME_ENOMEM;
     memset(out, 0, (size_t)views * sizeof *out);
     if (!status)

@@ -19,10 +19,11 @@ hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 acquire:base math image capture multiview:base image directions capture ball photometric acquire photograph align
 coder:base math kernel image:base image capture coder
-codebook:base math kernel image coder:base coder codebook
-selection:base math image coder compare:base image capture coder codebook heldout
+codebook:base math kernel image coder:base coder codebook team
+team:base:base io team
+selection:base math image coder compare:base image capture coder codebook heldout team
 lossy:base:base image coder
-encode:base coder codebook lossy:base image capture codebook coder light relight pack
+encode:base coder codebook lossy:base image capture codebook coder light relight pack team
 pack:base geometry image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange

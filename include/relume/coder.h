@@ -269,6 +269,8 @@ struct relume_encode_params {
     enum relume_step step;        // default: a step per plane
     int threads;                  // default: all cores
     const char *scratch;          // temporary data goes beside this path; default: $TMPDIR
+    const struct relume_team *team;  // relume_samples_read and what learns: each member reads its
+                                     // part of the samples; default: alone
 };
 #define relume_encode_params(...)                                                                  \
     (&(const struct relume_encode_params){RELUME_SIZED(relume_encode_params), __VA_ARGS__})

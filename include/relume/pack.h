@@ -171,6 +171,8 @@ struct relume_pack_encode_params {
     const char *options;  // what parts say they were asked for; those that say otherwise are not
                           // joined
     bool free_storage;    // nobody asked for `storage`: coarse steps are refused when joined
+    const struct relume_team *team;  // the other parts (team.h): `part` is its member; default:
+                                     // nothing is shared with them
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \

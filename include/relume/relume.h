@@ -39,6 +39,7 @@
 #include <relume/viewport.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
+#include <relume/team.h>
 #include <relume/tone.h>
 #include <relume/vec.h>
 #include <relume/view.h>

@@ -63,13 +63,13 @@ struct relume_coder_info { void *basis; int coefficients; bool joint; bool lumin
     int functions; bool hemispherical, pole_y; double ridge; int lights; void *directions;
     void *transform; void *mean; void *interpolant; double parameter[4]; double predicted_rms; };
 struct relume_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int threads;
-    void *scratch; };
+    void *scratch; void *team; };
 struct relume_decision { int domain; int storage; double psnr_db; double unseen_db; };
 struct relume_pack_params { size_t struct_size; void *log; void *limits; int compression; int threads; void *reader;
     void *writer; bool keep_going; };
 struct relume_pack_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int compression;
     int threads; void *books; bool share; bool no_depth; int pyramid; double psnr_db, bytes_per_pixel; void *writer;
-    int part, parts; void *options; bool free_storage; };
+    int part, parts; void *options; bool free_storage; void *team; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
     size_t repaired; int black_images; };
 struct relume_encode_report { double fit_rms; double store_rms; double steps_rms; double psnr_db; double typical;

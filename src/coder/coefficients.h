@@ -95,6 +95,9 @@ struct encode_share {
 };
 // False when there are more parts than bands of rows.
 bool encode_share_of(struct encode_share *out, int part, int parts, int views, int height);
+// The same of a capture: RELUME_EUNFIT with a sentence.
+relume_status encode_share_find(struct encode_share *out, int part, int parts,
+                                const relume_capture *capture, const struct relume_log *log);
 
 // Of all views: root mean squares, means, sums. `steps_rms` of each is set.
 struct relume_encode_report encode_report_mean(const struct relume_encode_report *view, int views);

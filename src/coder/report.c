@@ -1,4 +1,5 @@
 // report.c - views as a whole: how well they were encoded, who encodes which
+#include "base/log.h"
 #include "coder/coefficients.h"
 
 #include <math.h>
@@ -69,4 +70,17 @@ bool encode_share_of(struct encode_share *out, int part, int parts, int views, i
     out->views = (int)((int64_t)views * part / parts) - out->first;
     out->row = out->rows = 0;
     return true;
+}
+
+relume_status encode_share_find(struct encode_share *out, int part, int parts,
+                                const relume_capture *capture, const struct relume_log *log)
+{
+    const int views = relume_capture_manifest(capture)->views;
+    const int height = relume_capture_height(capture);
+    if (encode_share_of(out, part, parts, views, height))
+        return RELUME_OK;
+    return log_fail(log, RELUME_EUNFIT,
+                    "%d views of %d rows cannot be shared by %d parts; expected 16 rows or more "
+                    "for each",
+                    views, height, parts);
 }

@@ -424,12 +424,9 @@ static relume_status find_share(struct encode_share *out, const relume_capture *
         return RELUME_OK;
     if (p->part < 1 || p->part > p->parts || coded || (p->books && p->share))
         return RELUME_EINVAL;
-    if (!encode_share_of(out, p->part, p->parts, views, relume_capture_height(capture)))
-        return log_fail(
-            p->log, RELUME_EUNFIT,
-            "%d views of %d rows cannot be shared by %d parts; expected 16 rows or more "
-            "for each",
-            views, relume_capture_height(capture), p->parts);
+    const relume_status status = encode_share_find(out, p->part, p->parts, capture, p->log);
+    if (status)
+        return status;
     if (out->rows && p->books)
         return log_fail(p->log, RELUME_EUNFIT,
                         "a codebook is learnt from a whole view; expected at most %d part%s for %d "

@@ -58,6 +58,61 @@ relume encode slab --basis pca --part 2/2 -o 2.part --threads 1
 same 'a part made again, by one thread' 2.part before.part
 rm before.part
 
+# ---- learning is shared by files: each part reads its share, missing ones are made
+shared() { # name capture parts options...: learnt first, then the parts, backwards; against one machine
+    name=$1 capture=$2 parts=$3
+    shift 3
+    rm -rf learnt ./*.part
+    relume encode "$capture" "$@" -o whole.exr
+    for i in $(seq "$parts"); do
+        relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" || return
+    done
+    check "$name: a share each, and no part" [ "$(ls learnt | wc -l)" = "$parts" -a ! -e 1.part ]
+    for i in $(seq "$parts" -1 1); do
+        relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt -o "$i.part" || return
+    done
+    relume join ./*.part -o joined.exr
+    same "$name" whole.exr joined.exr
+}
+shared 'learnt together, by itself' slab 4
+shared 'learnt together, masks' masked 3 --basis pca
+shared 'learnt together, rows of JPEGs' cut 5 --basis pca --coefficients 8
+shared 'learnt together, rows, by itself' flat 3
+# parts that find nothing make all shares; one that was killed leaves only that it had begun
+rm -rf learnt ./*.part
+mkdir learnt learnt/samples.2of3.begun
+encode_parts slab 3 --learnt learnt --basis pca
+relume encode slab --basis pca -o whole.exr
+relume join ./*.part -o joined.exr
+same 'without learning first' whole.exr joined.exr
+check 'all shares are there' [ "$(ls learnt | grep -c '^samples.[123]of3$')" = 3 ]
+# three at once
+rm -rf learnt ./*.part
+for i in 1 2 3; do
+    relume encode slab --basis pca --part $i/3 --learnt learnt -o $i.part &
+done
+wait
+relume join ./*.part -o joined.exr
+same 'three at once' whole.exr joined.exr
+check 'nothing else is left' [ "$(ls learnt | wc -l)" = 3 ]
+not_learnt() { # name pattern options...
+    name=$1 pattern=$2
+    shift 2
+    expect_fail "$name" 1 "$pattern" out.part "$RELUME" encode slab --part 1/3 --learnt learnt -o out.part "$@"
+}
+not_learnt 'learnt with other options' "learnt/samples.1of3: learnt in other work; expected 'relume .*options --basis pca --bits 12'" --basis pca --bits 12
+cp learnt/samples.1of3 good
+cp learnt/samples.2of3 learnt/samples.1of3
+not_learnt 'a share doubled' "learnt/samples.1of3: expected 'relume-learnt 1 samples.1of3'; found 'relume-learnt 1 samples.2of3'" --basis pca
+head -c 2000 good >learnt/samples.1of3
+not_learnt 'a damaged share' 'learnt/samples.1of3: damaged; remove it, and it is made again' --basis pca
+rm learnt/samples.1of3
+relume encode slab --basis pca --part 1/3 --learnt learnt -o again.part
+same 'a share made again' 1.part again.part
+same 'the same share' good learnt/samples.1of3
+rm again.part
+
+encode_parts slab 2 --basis pca
 # ---- the lines for the shell
 mkdir 'two words'
 "$RELUME" encode slab --basis 'pca' -o "two words/it's.exr" --commands 3 >lines.txt 2>err.txt
@@ -65,6 +120,7 @@ below 'a line for each part, and one that joins' "$(wc -l <lines.txt)" 4
 sh lines.txt 2>err.txt
 relume encode slab --basis pca -o whole.exr
 same 'the lines make the file' whole.exr "two words/it's.exr"
+check 'what they learn lies beside it' [ -d "two words/it's.learnt" ]
 
 # ---- what a part is
 "$RELUME" info 1.part >info.txt
@@ -114,6 +170,8 @@ cannot 'one codebook for all' 2 '--share learns one set of codebooks from all vi
 cannot 'part 0' 2 '--part: expected part I of N' --part 0/2
 cannot 'part 3 of 2' 2 '--part: expected part I of N' --part 3/2
 cannot 'a part in words' 2 '--part: expected part I of N' --part one
+cannot 'learnt by no parts' 2 '--learnt is what parts share; expected --part or --commands' --learnt learnt
+cannot 'learnt nowhere' 2 '--learn-only: expected --learnt FOLDER' --learn-only --part 1/2
 cannot 'both' 2 'expected one of the two' --part 1/2 --commands 2
 
 # ---- very bright highlights: one machine would have taken halves, a part cannot know

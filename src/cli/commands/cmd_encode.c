@@ -22,6 +22,8 @@ struct encode_options {
     bool robust, force, no_depth, skip_missing, repair, allow_outside;
     struct book_options books;
     struct which_part part;
+    const char *learnt;
+    bool learn_only;
     int commands;
 };
 #define OPTIONS struct encode_options
@@ -86,6 +88,11 @@ static const struct option options[] = {
     BOOK_OPTIONS,
     GROUP("many machines"),
     OWN("--part", part, "I/N", "encode only part I of N, for 'relume join'", take_part),
+    TEXT("--learnt", learnt, "FOLDER",
+         "with --part: what all parts learn from is kept here, of which each part reads its share; "
+         "missing shares are made"),
+    FLAG("--learn-only", learn_only,
+         "with --learnt: leave the share of this part there, and encode nothing"),
     INT("--commands", commands, "N",
         "print the shell commands that encode N parts and join them; encode nothing", 1,
         MOST_ARGUMENTS),
@@ -108,11 +115,19 @@ struct request {
     double quality;  // 0: the usual
     double unseen;   // dB; 0: not known
     struct options_text options;
+    const char *learnt;  // a folder, or NULL
+    bool learn_only;
 };
 
 static bool is_coded(const struct request *r)
 {
     return r->pack.psnr_db > 0.0 || r->pack.bytes_per_pixel > 0.0;
+}
+
+// The capture is looked at before it is encoded.
+static bool learns(const struct request *r)
+{
+    return r->basis->learned || r->coder.choose;
 }
 
 static const char *storage_words(enum relume_storage storage)
@@ -206,7 +221,8 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
     const struct relume_encode_params encode = {.log = r->pack.log,
                                                 .domain = r->pack.domain,
                                                 .storage = r->pack.storage,
-                                                .threads = r->pack.threads};
+                                                .threads = r->pack.threads,
+                                                .team = r->pack.team};
     struct relume_decision decision;
     if (is_coded(r) && r->pack.domain == RELUME_DOMAIN_AUTO)
         r->pack.domain = RELUME_DOMAIN_DISPLAY;
@@ -234,25 +250,31 @@ static relume_status write_file(const relume_capture *capture, const relume_code
     return relume_pack_encode(capture, coder, r->output, report, &r->pack);
 }
 
-static relume_status encode(const struct args *args, struct request *r)
+// The parts of this work, by what all of them say of it.
+static relume_status form_team(relume_team_files **files, const relume_capture *capture,
+                               struct request *r)
 {
-    relume_capture *capture;
-    relume_coder *coder = NULL;
-    struct prefix_log about;
-    r->open.keep_bytes = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
-    relume_status status = relume_capture_open(&capture, r->input, &r->open);
+    char digest[RELUME_DIGEST], about[sizeof r->options.text + 128];
+    relume_status status = relume_capture_digest(digest, capture, r->pack.log);
     if (status)
         return status;
-    r->coder.log = prefix_log(&about, args->log, r->input);
-    r->books.log = r->coder.log;
-    if (ignores_positions(relume_capture_manifest(capture)))
-        about.log.message(about.log.user, RELUME_WARNING,
-                          "the lights stand near; they are treated as distant");
-    status = learn(&coder, capture, r);
+    snprintf(about, sizeof about, "relume %s, capture %s, options %s", RELUME_VERSION, digest,
+             r->options.text);
+    status = relume_team_folder(files, r->learnt, r->pack.part - 1, r->pack.parts, about,
+                                r->learn_only, r->pack.log);
+    r->pack.team = status ? NULL : relume_team_of_folder(*files);
+    return status;
+}
+
+static relume_status encode_team(const struct args *args, struct request *r,
+                                 const relume_capture *capture)
+{
+    relume_coder *coder = NULL;
     struct relume_encode_report report;
-    if (!status)
+    relume_status status = learn(&coder, capture, r);
+    if (!status && !r->learn_only)
         status = write_file(capture, coder, r, &report);
-    if (!status) {
+    if (!status && !r->learn_only) {
         say_census(args, r, &report.census, relume_capture_hemispherical(capture));
         say_result(args, capture, coder, &report, r);
         if ((r->bits || r->pack.parts) && relume_encode_is_coarse(&report))
@@ -261,6 +283,33 @@ static relume_status encode(const struct args *args, struct request *r)
                      r->output, storage_words(r->pack.storage));
     }
     relume_coder_destroy(&coder);
+    return status;
+}
+
+static relume_status encode(const struct args *args, struct request *r)
+{
+    relume_capture *capture;
+    relume_team_files *team = NULL;
+    struct prefix_log about;
+    r->open.keep_bytes = learns(r) ? KEEP_BYTES : 0;
+    relume_status status = relume_capture_open(&capture, r->input, &r->open);
+    if (status)
+        return status;
+    r->coder.log = prefix_log(&about, args->log, r->input);
+    r->books.log = r->coder.log;
+    if (ignores_positions(relume_capture_manifest(capture)))
+        about.log.message(about.log.user, RELUME_WARNING,
+                          "the lights stand near; they are treated as distant");
+    if (r->learnt)
+        status = form_team(&team, capture, r);
+    if (!status)
+        status = encode_team(args, r, capture);
+    if (r->learn_only && (!status || (team && relume_team_folder_waits(team)))) {
+        status = RELUME_OK;
+        announce(args, RELUME_NOTE, "%s: part %d of %d has learnt its share", r->learnt,
+                 r->pack.part, r->pack.parts);
+    }
+    relume_team_folder_destroy(&team);
     relume_capture_destroy(&capture);
     return status;
 }
@@ -268,6 +317,10 @@ static relume_status encode(const struct args *args, struct request *r)
 // What needs all views at once cannot be shared.
 static relume_status check_parts(const struct encode_options *o, const struct request *r)
 {
+    if (o->learn_only && !o->learnt)
+        return usage_error("--learn-only: expected --learnt FOLDER, where the share is left");
+    if (o->learnt && !o->part.parts && !o->commands)
+        return usage_error("--learnt is what parts share; expected --part or --commands with it");
     if (!o->part.parts && !o->commands)
         return RELUME_OK;
     if (o->part.parts && o->commands)
@@ -283,7 +336,8 @@ static relume_status check_parts(const struct encode_options *o, const struct re
 
 static relume_status run(const struct args *args)
 {
-    static const char *const not_kept[] = {"-o", "--part", "--commands", NULL};
+    static const char *const not_kept[] = {"-o",       "--part",       "--commands",
+                                           "--learnt", "--learn-only", NULL};
     const struct encode_options *o = (const void *)args;
     const bool books = o->books.codes > 0;
     const bool choose = given(o, &o->interpolant) ? !o->interpolant : !o->basis;
@@ -323,6 +377,8 @@ static relume_status run(const struct args *args)
                  .threads = args->threads},
         .decide = !o->basis && !books && !o->robust && !o->luminance,
         .quality = o->quality,
+        .learnt = o->learnt,
+        .learn_only = o->learn_only,
     };
     if (r.quality > 0.0 && (!r.decide || o->coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
@@ -341,7 +397,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = options_text(&r.options, args, options, not_kept);
     if (!status && o->commands)
-        print_commands_of_parts(args, o->output, o->commands);
+        print_commands_of_parts(args, o->output, o->commands, learns(&r) && !o->learnt);
     return status || o->commands ? status : encode(args, &r);
 }
 

@@ -66,14 +66,20 @@ static void print_word(const char *word)
     putchar('\'');
 }
 
-// "statue.exr" becomes "statue.3of8.part".
-static void print_part_name(const char *output, int part, int parts)
+// "statue.exr" becomes "statue" and what follows.
+static void print_beside(const char *output, const char *ending)
 {
     char name[4096];
-    const size_t ending = strlen(name_ending(output));
-    snprintf(name, sizeof name, "%.*s.%dof%d.part", (int)(strlen(output) - ending), output, part,
-             parts);
+    const size_t stem = strlen(output) - strlen(name_ending(output));
+    snprintf(name, sizeof name, "%.*s%s", (int)stem, output, ending);
     print_word(name);
+}
+
+static void print_part_name(const char *output, int part, int parts)
+{
+    char ending[64];
+    snprintf(ending, sizeof ending, ".%dof%d.part", part, parts);
+    print_beside(output, ending);
 }
 
 static void print_encode(const struct args *args)
@@ -92,10 +98,14 @@ static void print_encode(const struct args *args)
     }
 }
 
-void print_commands_of_parts(const struct args *args, const char *output, int parts)
+void print_commands_of_parts(const struct args *args, const char *output, int parts, bool learns)
 {
     for (int i = 1; i <= parts; i++) {
         print_encode(args);
+        if (learns) {
+            fputs(" --learnt", stdout);
+            print_beside(output, ".learnt");
+        }
         printf(" --part %d/%d -o", i, parts);
         print_part_name(output, i, parts);
         putchar('\n');

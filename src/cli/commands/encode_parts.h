@@ -20,7 +20,8 @@ struct options_text {
 relume_status options_text(struct options_text *out, const struct args *args,
                            const struct option *table, const char *const *but);
 
-// One line for each of `parts`, and one that joins what they write into `output`.
-void print_commands_of_parts(const struct args *args, const char *output, int parts);
+// One line for each of `parts`, and one that joins what they write into `output`. `learns`: with a
+// folder beside it for what they learn, unless one is given.
+void print_commands_of_parts(const struct args *args, const char *output, int parts, bool learns);
 
 #endif

@@ -68,10 +68,13 @@ struct range range_join(struct range a, struct range b)
     return (struct range){b.min < a.min ? b.min : a.min, b.max > a.max ? b.max : a.max};
 }
 
+// No values yet.
+static const struct range no_range = {FLT_MAX, -FLT_MAX};
+
 // Of two zeros either may come first: the one without a sign is kept.
 struct range range_of(const float *v, size_t n)
 {
-    struct range r = {FLT_MAX, -FLT_MAX};
+    struct range r = no_range;
     kernels_choose(0)->unpack->range(v, n, &r.min, &r.max);
     return (struct range){r.min + 0.0f, r.max + 0.0f};
 }
@@ -174,7 +177,7 @@ relume_status coefficients_share_steps(relume_coefficients *const *c, int count,
     if (!total)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
-        total[p] = range_of(NULL, 0);
+        total[p] = no_range;
     for (int i = 0; i < count; i++)
         for (size_t b = 0; b < (size_t)c[i]->bands * planes; b++)
             total[b % planes] = range_join(total[b % planes], c[i]->band[b]);

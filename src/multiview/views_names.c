@@ -34,9 +34,13 @@ static const char *number_end(double *out, const char *text, bool whole)
     while (isdigit((unsigned char)*c) ||
            (!whole && *c == '.' && !point && isdigit((unsigned char)c[1])))
         point |= *c++ == '.';
-    if (c == digits || (whole && c - digits > MOST_DIGITS) || (!whole && !point))
+    char number[64];  // without what follows, which may look like an exponent
+    const size_t n = (size_t)(c - text);
+    if (c == digits || (whole && c - digits > MOST_DIGITS) || (!whole && !point) ||
+        n >= sizeof number)
         return NULL;
-    *out = strtod(text, NULL);
+    snprintf(number, sizeof number, "%.*s", (int)n, text);
+    *out = strtod(number, NULL);
     return c;
 }
 

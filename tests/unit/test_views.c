@@ -85,6 +85,12 @@ static void name_own(char name[64], int row, int column)
     snprintf(name, 64, "shot7_x%d.y%d.exr", column, row);
 }
 
+// What follows a position is not its exponent.
+static void name_exponent(char name[64], int row, int column)
+{
+    snprintf(name, 64, "at %.1fe4 %.1f.exr", 0.5 * column, 8.0 - 0.5 * row);
+}
+
 struct photos {
     char folder[64], out[96];
     char path[GRID * GRID][160];
@@ -139,7 +145,8 @@ static void test_names(void **state)
                  {name_dated, NULL},
                  {name_own, "*x{column}.y{row}"},
                  {name_lytro, "input_Cam{n}"},
-                 {name_archive, "out_*_{v}_{u}_"}};
+                 {name_archive, "out_*_{v}_{u}_"},
+                 {name_exponent, "at {u}e4 {v}"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct photos p;
         struct test_log log;
@@ -149,7 +156,7 @@ static void test_names(void **state)
                                     relume_slab_ingest_params(.names = cases[i].pattern),
                                     relume_ingest_params(.log = &log.log)));
         // that the grid is square is assumed where names hold no positions
-        const bool positions = cases[i].name == name_archive;
+        const bool positions = cases[i].name == name_archive || cases[i].name == name_exponent;
         assert_int_equal(log.lines, !positions);
         assert_true(positions || strstr(log.text, "as far apart as columns"));
         check_places(&p);

@@ -396,6 +396,19 @@ static struct corners corners_of_triangle(const struct relume_weight_grid *g, ve
     };
 }
 
+struct relume_vec3 grid_shown(const relume_weight_grid *grid, struct relume_vec3 direction)
+{
+    int node[3];
+    float share[3];
+    vec3 sum = {0.0, 0.0, 0.0};
+    if (!grid->triangles)
+        return direction;
+    triangles_find(node, share, grid->triangles, captured(grid, direction));
+    for (int i = 0; i < 3; i++)
+        sum = vec3_along(sum, grid->triangles->point[node[i]], (double)share[i]);
+    return world_from_pole(sum, grid->pole_y);
+}
+
 static struct corners corners_at(const struct relume_weight_grid *g, vec3 direction)
 {
     if (g->triangles)

@@ -235,19 +235,24 @@ struct relume_vec3 relume_environment_turn(struct relume_vec3 direction, double 
 
 // Of light along the surface at most this share of that from the border of the region is used.
 static const double upright = 0.05, most_upright = 0.25;
+// Lamps farther apart than 70 degrees say too little of what is between them.
+static const double most_between = 1.25;
 
-// The share of what the border of the captured region gives, for light from beyond it. A single
-// light's (relume_coder_clamp) is what predicts lamps best, 2 to 4 % too much in the sum; this has
-// the same end along the surface and the mean of a plane's z / z', which is 1/2, so that an even
-// sky shows a white plane as 1: rest + (1 - rest) t^power.
-static double share_of_sky(const struct relume_captured_region *region, vec3 direction, vec3 from,
-                           double share)
+// The share of `shown` (grid_shown), which stands for light from `direction`. Between lamps it is
+// what makes a plane show what it should: flat triangles lie inside the sphere. For light from
+// beyond them a single light's share (relume_coder_clamp, `lone`) is what predicts lamps best, 2 to
+// 4 % too much in the sum; this has the same end along the surface and the mean of a plane's z /
+// z', which is 1/2, so that an even sky shows a white plane as 1: rest + (1 - rest) t^power.
+static double share_of_sky(const struct relume_captured_region *region, vec3 direction, vec3 shown,
+                           double lone)
 {
-    const double to = vec3_dot(direction, region->facing), border = vec3_dot(from, region->facing);
-    if (share >= 1.0 || !(border > 0.0))
-        return share;
+    const double to = vec3_dot(direction, region->facing), border = vec3_dot(shown, region->facing);
+    if (!(border > 0.0))
+        return lone;
+    if (to >= border)
+        return fmin(to / border, most_between);
     const double rest = fmin(upright / (border + upright), most_upright);
-    return rest + (1.0 - rest) * pow(fmin(fmax(to / border, 0.0), 1.0), 0.5 / (0.5 - rest));
+    return rest + (1.0 - rest) * pow(fmax(to / border, 0.0), 0.5 / (0.5 - rest));
 }
 
 void relume_environment_weights(float *weights, float constant[3], const relume_weight_grid *grid,
@@ -264,7 +269,8 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
         if (info->hemispherical && pole_from_world(d, info->pole_y).z < 0.0)
             continue;
         const double lone = relume_coder_clamp(&from, coder, d);
-        const float share = (float)share_of_sky(relume_coder_region(coder), d, from, lone);
+        const float share =
+            (float)share_of_sky(relume_coder_region(coder), d, grid_shown(sums, from), lone);
         for (int c = 0; c < 3; c++)
             value[c] = share * light->rgb[c] * e->cell[i].rgb[c];
         relume_weight_grid_add(weights, constant, sums, from, value);

@@ -41,19 +41,32 @@ static int with_edge(const struct relume_coder_triangles *of, int a, int b)
     return -1;
 }
 
+static int nearest_light(const struct relume_coder_triangles *of, int lights, vec3 direction)
+{
+    int nearest = 0;
+    for (int i = 1; i < lights; i++)
+        if (vec3_dot(of->point[i], direction) > vec3_dot(of->point[nearest], direction))
+            nearest = i;
+    return nearest;
+}
+
+// Where no corner is a light, far from what was captured, the light nearest to its middle has the
+// say.
 static bool make_triangle(struct relume_weight_triangle *out,
                           const struct relume_coder_triangles *of, int lights, int t)
 {
     const int *c = of->corner[t];
     const vec3 p[3] = {of->point[c[0]], of->point[c[1]], of->point[c[2]]};
-    bool any = false, whole = true;
+    bool any = false, whole = lights > 0;
     for (int i = 0; i < 3; i++) {
         out->node[i] = c[i] < lights ? c[i] : -1;
         out->across[i] = with_edge(of, c[(i + 2) % 3], c[(i + 1) % 3]);
         any |= c[i] < lights;
         whole &= out->across[i] >= 0;
     }
-    return any && whole && invert(out->inverse, p);
+    for (int i = 0; i < 3 && whole && !any; i++)
+        out->node[i] = nearest_light(of, lights, vec3_add(p[0], vec3_add(p[1], p[2])));
+    return whole && invert(out->inverse, p);
 }
 
 static int walk(float share[3], const struct triangles *m, int t, vec3 d)

@@ -1,6 +1,8 @@
 // test_environment.c - maps of distant light: solid angles, directions, and the one weight vector
 // that they fold into, against sums over the map
 #include "flat_coder.h"
+
+#include "math/vec.h"
 #include "learned_fixture.h"
 
 static struct test_log heard;
@@ -128,15 +130,46 @@ static void test_oddities(void **state)
 
 enum { MAP_W = 24, MAP_H = 12, CUT = 10 };
 
-// Light from beyond what was captured, as docs/lights.md has it.
+// Over flat triangles, or NULL: what stands for a direction is as its weights of the lights say.
+static relume_coder *triangles_coder(const relume_coder *coder)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    struct relume_coder_triangles unused;
+    relume_coder *out = NULL;
+    if (info->basis == &relume_basis_table || relume_coder_hull(&unused, coder))
+        CHECK_OK(relume_coder_create(
+            &out, &relume_basis_table, info->directions, info->lights,
+            relume_coder_params(.hemispherical = info->hemispherical, .pole_y = info->pole_y,
+                                .interpolant = relume_interpolant_find("delaunay"))));
+    return out;
+}
+
+static struct relume_vec3 shown_for(struct relume_vec3 from, const relume_coder *triangles)
+{
+    struct relume_vec3 sum = {0, 0, 0};
+    float weights[LEARNED_PLANES], constant[3];
+    if (!triangles)
+        return from;
+    const struct relume_coder_info *info = relume_coder_info(triangles);
+    relume_coder_weights(triangles, from, weights, constant);
+    for (int i = 0; i < info->lights; i++)
+        sum = vec3_along(sum, info->directions[i], (double)weights[i]);
+    return sum;
+}
+
+// Light from between lamps and from beyond them, as docs/lights.md has it.
 static double share_of(const struct relume_coder_info *info, const relume_coder *coder,
-                       struct relume_vec3 d, struct relume_vec3 *from)
+                       const relume_coder *triangles, struct relume_vec3 d,
+                       struct relume_vec3 *from)
 {
     const double lone = relume_coder_clamp(from, coder, d);
-    if (lone >= 1.0 || info->pole_y || !info->hemispherical)
+    if (info->pole_y || !info->hemispherical)
         return lone;
-    const double r = fmin(0.05 / (from->z + 0.05), 0.25);
-    return r + (1 - r) * pow(fmin(d.z / from->z, 1.0), 1 / (1 - 2 * r));
+    const struct relume_vec3 shown = shown_for(*from, triangles);
+    if (d.z >= shown.z)
+        return fmin(d.z / shown.z, 1.25);
+    const double r = fmin(0.05 / (shown.z + 0.05), 0.25);
+    return r + (1 - r) * pow(d.z / shown.z, 1 / (1 - 2 * r));
 }
 
 // Sum over the map in CUT x CUT pieces a pixel, the basis evaluated at each: in double.
@@ -146,7 +179,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
     const struct relume_coder_info *info = relume_coder_info(l->coder);
     const int k = info->coefficients;
     float weights[LEARNED_PLANES], constant[3];
-    relume_coder *flat = flat_coder(l->coder);
+    relume_coder *flat = flat_coder(l->coder), *triangles = triangles_coder(l->coder);
     memset(sum, 0, (size_t)(3 * k + 3) * sizeof *sum);
     for (int y = 0; y < MAP_H * CUT; y++)
         for (int x = 0; x < MAP_W * CUT; x++) {
@@ -159,7 +192,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
             if (info->hemispherical && (info->pole_y ? d.y : d.z) < 0)
                 continue;
             struct relume_vec3 from;
-            const double share = share_of(info, l->coder, d, &from);
+            const double share = share_of(info, l->coder, triangles, d, &from);
             relume_coder_weights(flat ? flat : l->coder, from, weights, constant);
             const float *e = map->data + 3 * (y / CUT * MAP_W + x / CUT);
             for (int c = 0; c < 3; c++) {
@@ -170,6 +203,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
             }
         }
     relume_coder_destroy(&flat);
+    relume_coder_destroy(&triangles);
 }
 
 static void fold(float *weights, float constant[3], const struct learned *l,

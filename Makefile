@@ -1,6 +1,6 @@
 # relume - the whole build. `make` builds, `make demo` and `make test` do all set-up by themselves.
 #
-#   config=release (default, into build/) | debug | asan | tsan | fuzzer   (into build/CONFIG/)
+#   config=release (default, into build/) | debug | asan | tsan | fuzzer | msan   (into build/CONFIG/)
 #   FFT=fftw (default) | kiss   (a library without parts under the GPL; after make clean)
 
 config ?= release
@@ -29,16 +29,20 @@ tsan     := -O1 -g1 -fsanitize=thread
 # clang's libFuzzer with its sanitizers: make config=fuzzer fuzzers
 fuzzer   := -O1 -g1 -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow \
             -fno-sanitize-recover=all -DRELUME_LIBFUZZER
+# values used before they are set, in targets of libFuzzer: scripts/msan.sh, make config=msan fuzzers
+msan     := -O1 -g1 -fsanitize=fuzzer-no-link,memory -fsanitize-memory-track-origins -fno-omit-frame-pointer \
+            -fno-sanitize-recover=all -DRELUME_LIBFUZZER -DNO_MODULES
 FUZZ_ENGINE ?= -fsanitize=fuzzer
-ifeq ($(config),fuzzer)
+CLANG    := $(filter fuzzer msan,$(config))
+ifneq ($(CLANG),)
 CC       := clang
 CXX      := clang++
 endif
 # clang's checks of C++ (function, vptr) want its C++ runtime in the program
-LINK     := $(if $(filter fuzzer,$(config)),$(CXX),$(CC))
+LINK     := $(if $(CLANG),$(CXX),$(CC))
 MODE     := $($(config))
 ifeq ($(MODE),)
-$(error config=$(config): expected release, debug, asan, tsan or fuzzer)
+$(error config=$(config): expected release, debug, asan, tsan, fuzzer or msan)
 endif
 C11      := -std=c11 -D_GNU_SOURCE $(COMMON) $(MODE) -Wstrict-prototypes -Wmissing-prototypes
 CXX17    := -std=c++17 $(COMMON) $(MODE)
@@ -51,6 +55,16 @@ IMGUI    = $(call once,IMGUI,pkg-config --cflags imgui)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
 FFT_PC   := $(if $(filter kiss,$(FFT)),kissfft-float,fftw3f)
 PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR jansson libjpeg libpng lcms2 aom dav1d zlib $(FFT_PC))
+ifeq ($(config),msan)
+# The C libraries built for it; of the others tests/tools/preload/msan.c tells.
+MSAN_TOLD := nftw rtcNewDevice rtcReleaseDevice rtcCommitGeometry rtcCommitScene rtcReleaseScene rtcIntersect1 rtcOccluded16 \
+             $(addprefix dav1d_,default_settings open close data_wrap send_data get_picture picture_unref) \
+             $(addprefix aom_,codec_enc_config_default codec_enc_init_ver codec_enc_config_set img_alloc codec_encode \
+             codec_get_cx_data codec_destroy)
+MSAN_TOLD_O := $B/obj/tests/tools/preload/msan.o
+PKG_LIBS  = $(MSAN_TOLD:%=-Wl,--wrap=%) $(MSAN_TOLD_O) -L$B/lib -l:libOpenEXRCore.a -ljansson -ljpeg -lpng -llcms2 -lz \
+            -lImath-3_1 -laom -ldav1d -lfftw3f
+endif
 OIIO_LIBS = $(call once,OIIO_LIBS,pkg-config --libs OpenImageIO)
 EIGEN    = $(call once,EIGEN,pkg-config --cflags eigen3)
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
@@ -185,7 +199,7 @@ $B/librelume.a: $(LIB_O)
 	$(Q)$(AR) rcs $@ $^
 # Where a program or library looks for the module: first where the build left it. Sanitizers open
 # libraries in its name, which only the older kind of run path allows.
-run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer,$(config)),$(comma)--disable-new-dtags)
+run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer msan,$(config)),$(comma)--disable-new-dtags)
 comma := ,
 # Addresses of library functions are looked up at start and cannot be written over afterwards.
 HARD_LD := -Wl,-z,relro,-z,now
@@ -222,7 +236,8 @@ GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(LINK) $(MODE) $(TEST_LD) $(if $(filter fuzzer,$(config)),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS) $(if $(@:%/fuzz_command=),,$(CLI_LIBS))
+	$(Q)$(LINK) $(MODE) $(TEST_LD) $(if $(CLANG),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS) $(if $(@:%/fuzz_command=),,$(CLI_LIBS))
+$(FUZZ): | $(MSAN_TOLD_O)
 # The tool without its main
 $B/tests/fuzz/fuzz_command: $(filter-out %/main.o,$(CLI_O))
 # The viewer without its window

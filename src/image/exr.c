@@ -932,16 +932,17 @@ struct block {
     const void *samples;  // the pipeline's
 };
 
-// Hands the decompressed rows on as they are.
+// Hands the decompressed rows on as they are. The core leaves a block unset that has no bytes, and
+// one that is not compressed and has too many.
 static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
 {
     struct block *b = pipeline->decoding_user_data;
     const void *samples =
         pipeline->unpacked_buffer ? pipeline->unpacked_buffer : pipeline->packed_buffer;
-    const uint64_t size = pipeline->unpacked_buffer && pipeline->decompress_fn
-                              ? pipeline->chunk.unpacked_size
-                              : pipeline->chunk.packed_size;
-    if (!samples || size < pipeline->chunk.unpacked_size)
+    const bool whole = pipeline->decompress_fn
+                           ? pipeline->chunk.packed_size > 0
+                           : pipeline->chunk.packed_size == pipeline->chunk.unpacked_size;
+    if (!samples || !whole)
         return EXR_ERR_CORRUPT_CHUNK;
     b->samples = samples;
     return EXR_ERR_SUCCESS;

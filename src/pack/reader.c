@@ -25,7 +25,7 @@ const float *reader_any_floats(const relume_pack *p, int part, const char *name,
 
 const float *reader_floats(const relume_pack *p, int part, const char *name, int count)
 {
-    int found;
+    int found = 0;
     const float *v = reader_any_floats(p, part, name, &found);
     return found == count ? v : NULL;
 }

@@ -4,6 +4,7 @@
 #include "made_exr.h"
 #include "png_crc.h"
 
+#include "image/jpeg.h"
 #include "image/picture.h"
 #include "image/picture_format.h"
 
@@ -70,6 +71,21 @@ static void add(struct fuzz *f, int channels, bool half, const char *name)
     fuzz_add(f, fuzz_load(path));
 }
 
+static void add_jpeg(struct fuzz *f, int planes, bool baseline)
+{
+    static const int16_t blocks[2 * 5][64] = {{40, 3, -7}, {-20}, {0, 0, 0, 0, 9}};
+    const struct jpeg_picture picture = {.width = 13,
+                                         .height = 37,
+                                         .planes = planes,
+                                         .colour = JPEG_PLANES,
+                                         .baseline = baseline,
+                                         .step = {3, 4, 5},
+                                         .coefficients = {blocks[0], blocks[0], blocks[0]}};
+    struct bytes b;
+    fixture_must(jpeg_encode(&b.data, &b.size, &picture), "jpeg");
+    fuzz_add(f, b);
+}
+
 static float spot(char channel, int x, int y)
 {
     return channel == 'Y' ? (float)(x * y % 7) : x == y ? 1.5f : -0.5f;
@@ -91,8 +107,12 @@ int main(int argc, char **argv)
     fuzz_begin(&f, "fuzz_picture", argc, argv);
     add(&f, 1, false, "grey.png");
     add(&f, 3, false, "colour.png");
+    add_jpeg(&f, 1, true);
+    add_jpeg(&f, 3, false);
+#ifndef NO_MODULES
     add(&f, 1, false, "grey.jpg");
     add(&f, 3, false, "colour.jpg");
+#endif
     add(&f, 1, false, "grey.exr");
     add(&f, 3, true, "colour.exr");
     add_coarse(&f, false);

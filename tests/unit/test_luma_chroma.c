@@ -148,6 +148,27 @@ static void colour_does_not_leak(void **state)
     assert_true(saturation(rgb + 3 * 40) > 0.75 && saturation(rgb + 3 * 38) < 0.8);
 }
 
+// A row without compression that claims the bytes of a longer one: nothing unset is shown.
+static void rows_that_claim_more_are_damaged(void **state)
+{
+    const struct made_exr m = {.width = 32, .height = 32, .at = even};
+    const int claimed = made_row_bytes(&m, 0);
+    long rows = 0;
+    picture_reader *r;
+    (void)state;
+    made_exr_write(path(), &m);
+    for (int row = 1; row < m.height; row++)
+        rows += 8 + made_row_bytes(&m, row);
+    FILE *f = fopen(path(), "r+b");
+    assert_non_null(f);
+    assert_int_equal(fseek(f, 4 - rows, SEEK_END), 0);  // of the second row
+    made_words(f, &claimed, 1);
+    fclose(f);
+    CHECK_OK(picture_open(&r, path(), NULL, NULL, NULL));
+    assert_int_equal(picture_read_floats(r, 0, m.height, rgb), RELUME_EDAMAGED);
+    picture_close(&r);
+}
+
 static void what_is_none_is_refused(void **state)
 {
     const struct made_exr odd = {.x = 1, .width = 8, .height = 8, .at = even};
@@ -167,9 +188,13 @@ static void what_is_none_is_refused(void **state)
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_colour_stays),     cmocka_unit_test(primaries_of_the_file_count),
-        cmocka_unit_test(ramps_are_ramps),      cmocka_unit_test(waves_are_waves),
-        cmocka_unit_test(colour_does_not_leak), cmocka_unit_test(what_is_none_is_refused),
+        cmocka_unit_test(one_colour_stays),
+        cmocka_unit_test(primaries_of_the_file_count),
+        cmocka_unit_test(ramps_are_ramps),
+        cmocka_unit_test(waves_are_waves),
+        cmocka_unit_test(colour_does_not_leak),
+        cmocka_unit_test(what_is_none_is_refused),
+        cmocka_unit_test(rows_that_claim_more_are_damaged),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -70,7 +70,7 @@ external="openexr:src/image/exr.c tests/tools/decode.c tests/unit/test_piz.c
 OpenImageIO:src/image/oiio.cpp
 dlfcn:src/base/module.c tests/tools/preload/faults.c
 opencv:src/multiview/stitch.cpp
-embree:src/mesh/trace.c
+embree:src/mesh/trace.c tests/tools/preload/msan.c
 assimp:src/mesh/mesh_assimp.c
 Eigen:src/kernel/lsq_eigen.cpp
 fftw3:src/math/fft.c
@@ -78,8 +78,8 @@ kissfft:src/math/fft_kiss.c
 jansson:src/base/json.c
 jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
-aom/:src/lossy/av1_write.c
-dav1d:src/lossy/av1_read.c
+aom/:src/lossy/av1_write.c tests/tools/preload/msan.c
+dav1d:src/lossy/av1_read.c tests/tools/preload/msan.c
 zlib:src/lossy/lossy.c src/lossy/disparity.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c

@@ -115,6 +115,15 @@ bool jvalue_integer(const jvalue *value, long long *out)
     return true;
 }
 
+bool jvalue_whole(const jvalue *value, long long least, long long most, int *out)
+{
+    long long whole;
+    if (!jvalue_integer(value, &whole) || whole < least || whole > most)
+        return false;
+    *out = (int)whole;
+    return true;
+}
+
 bool jvalue_truth(const jvalue *value, bool *out)
 {
     *out = json_is_true(value);

@@ -27,10 +27,11 @@ size_t jvalue_count(const jvalue *array);
 // The first member of an object that is not in the NULL-terminated list; NULL when all are.
 const char *jvalue_unknown(const jvalue *object, const char *const *known);
 
-// False unless `value` is a finite number, an integer, true or false, an array of `count` finite
-// numbers.
+// False unless `value` is a finite number, an integer, one from `least` to `most`, true or false,
+// an array of `count` finite numbers.
 bool jvalue_number(const jvalue *value, double *out);
 bool jvalue_integer(const jvalue *value, long long *out);
+bool jvalue_whole(const jvalue *value, long long least, long long most, int *out);
 bool jvalue_truth(const jvalue *value, bool *out);
 bool jvalue_numbers(const jvalue *array, double *out, size_t count);
 

@@ -136,4 +136,16 @@ static inline size_t model_pairs(const relume_btf_fitted *m)
     return (size_t)m->views * (size_t)m->lights;
 }
 
+// Add the components' patterns of one pair, each times the texel's weight for it.
+static inline void model_add_components(float rgb[3], const relume_btf_fitted *m,
+                                        const uint16_t *weight, const uint16_t *pattern)
+{
+    const size_t values = 3 * model_pairs(m);
+    for (int k = 0; k < m->components; k++, pattern += values) {
+        const float w = float_from_half(weight[k]);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += w * float_from_half(pattern[c]);
+    }
+}
+
 #endif

@@ -111,31 +111,23 @@ static relume_status read_model(relume_btf_fitted *m, const jvalue *root, const 
     return m->model ? RELUME_OK : wrong(r, "model", "the name of a model");
 }
 
-static bool read_count(const jvalue *root, const char *key, long long most, int *out)
-{
-    long long value = 0;
-    if (!jvalue_integer(jvalue_member(root, key), &value) || value < 0 || value > most)
-        return false;
-    *out = (int)value;
-    return true;
-}
-
 static relume_status read_counts(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
 {
     const struct relume_btf_model *k = m->model;
     bool cosine = true;
-    if (!read_count(root, "width", r->limits.max_side, &m->width) ||
-        !read_count(root, "height", r->limits.max_side, &m->height) ||
+    if (!jvalue_whole(jvalue_member(root, "width"), 0, r->limits.max_side, &m->width) ||
+        !jvalue_whole(jvalue_member(root, "height"), 0, r->limits.max_side, &m->height) ||
         !limits_allow(&r->limits, m->width, m->height))
         return wrong(r, "width, height", "texels within the limits");
-    if (!read_count(root, "clusters", 65536, &m->clusters) ||
-        !read_count(root, "components", 1024, &m->components) ||
-        !read_count(root, "lobes", MODEL_LOBES, &m->lobes) || !m->clusters != !k->clusters ||
-        !m->components != !k->components || !m->lobes != !k->lobes)
+    if (!jvalue_whole(jvalue_member(root, "clusters"), 0, 65536, &m->clusters) ||
+        !jvalue_whole(jvalue_member(root, "components"), 0, 1024, &m->components) ||
+        !jvalue_whole(jvalue_member(root, "lobes"), 0, MODEL_LOBES, &m->lobes) ||
+        !m->clusters != !k->clusters || !m->components != !k->components || !m->lobes != !k->lobes)
         return wrong(r, "clusters, components, lobes", "counts that fit the model");
-    if (k->is_sound && (!read_count(root, "texel_bytes", 1 << 16, &m->texel_bytes) ||
-                        !read_count(root, "pair_bytes", 1 << 16, &m->pair_bytes) ||
-                        !m->texel_bytes || !m->pair_bytes))
+    if (k->is_sound &&
+        (!jvalue_whole(jvalue_member(root, "texel_bytes"), 0, 1 << 16, &m->texel_bytes) ||
+         !jvalue_whole(jvalue_member(root, "pair_bytes"), 0, 1 << 16, &m->pair_bytes) ||
+         !m->texel_bytes || !m->pair_bytes))
         return wrong(r, "texel_bytes, pair_bytes", "counts of bytes");
     if (!jvalue_truth(jvalue_member(root, "includes_cosine"), &cosine))
         return wrong(r, "includes_cosine", "true or false");
@@ -246,7 +238,8 @@ static relume_status open_level(relume_btf_fitted **out, const char *folder, int
     if (!status)
         status = read_all(m, root, &r);
     const jvalue *count = jvalue_member(root, "levels");
-    if (!status && count && (!read_count(root, "levels", MOST_LEVELS, levels) || *levels < 1))
+    if (!status && count &&
+        (!jvalue_whole(jvalue_member(root, "levels"), 0, MOST_LEVELS, levels) || *levels < 1))
         status = wrong(&r, "levels", "at least 1");
     if (status)
         relume_btf_fitted_destroy(&m);

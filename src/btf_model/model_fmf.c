@@ -40,11 +40,7 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     const uint16_t *weight = model_halfs(m, WEIGHT) + at->texel * (size_t)m->components;
     const uint16_t *pattern = model_halfs(m, PATTERN) + 3 * pair;
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int k = 0; k < m->components; k++, pattern += 3 * model_pairs(m)) {
-        const float w = float_from_half(weight[k]);
-        for (int c = 0; c < 3; c++)
-            rgb[c] += w * float_from_half(pattern[c]);
-    }
+    model_add_components(rgb, m, weight, pattern);
 }
 
 // Patterns of nine pairs.

@@ -339,11 +339,7 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     const uint16_t *weight = model_halfs(m, WEIGHT) + at->texel * components;
     for (int c = 0; c < 3; c++)
         rgb[c] = float_from_half(mean[c]);
-    for (size_t k = 0; k < components; k++, pattern += values) {
-        const float w = float_from_half(weight[k]);
-        for (int c = 0; c < 3; c++)
-            rgb[c] += w * float_from_half(pattern[c]);
-    }
+    model_add_components(rgb, m, weight, pattern);
 }
 
 // Mean and components of nine pairs.

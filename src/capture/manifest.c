@@ -243,13 +243,9 @@ static relume_status read_discs(const struct parser *p, const jvalue *panorama)
 {
     struct relume_geometry *g = &p->d->m.geometry;
     const jvalue *value = jvalue_member(panorama, "discs");
-    long long side = 0;
-    if (!value || jvalue_is_null(value))
+    if (!value || jvalue_is_null(value) || jvalue_whole(value, 0, p->limits.max_side, &g->disc))
         return RELUME_OK;
-    if (!jvalue_integer(value, &side) || side < 0 || side > p->limits.max_side)
-        return wrong(p, "panorama.discs", "the side of a disc's square in pixels, or 0");
-    g->disc = (int)side;
-    return RELUME_OK;
+    return wrong(p, "panorama.discs", "the side of a disc's square in pixels, or 0");
 }
 
 static relume_status read_geometry(const struct parser *p, const jvalue *root)
@@ -297,12 +293,9 @@ static relume_status read_geometry(const struct parser *p, const jvalue *root)
 static relume_status read_member(const struct parser *p, const jvalue *object, int index)
 {
     const struct draft *d = p->d;
-    long long slab;
-    if (!d->m.slabs)
-        return RELUME_OK;
-    const bool known = jvalue_integer(jvalue_member(object, "slab"), &slab) && slab >= 0 &&
-                       slab < RELUME_MOST_SLABS;
-    d->view[index].slab = known ? (int)slab : -1;
+    int *slab = &d->view[index].slab;
+    if (d->m.slabs && !jvalue_whole(jvalue_member(object, "slab"), 0, RELUME_MOST_SLABS - 1, slab))
+        *slab = -1;
     return RELUME_OK;
 }
 

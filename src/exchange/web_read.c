@@ -56,15 +56,6 @@ static bool find_name(const char *name, const char *const *names, int count, int
     return false;
 }
 
-static bool get_whole(const jvalue *value, long long least, long long most, int *out)
-{
-    long long v;
-    if (!jvalue_integer(value, &v) || v < least || v > most)
-        return false;
-    *out = (int)v;
-    return true;
-}
-
 static relume_status read_kinds(struct folder *w)
 {
     int kind = 0, space = 0;
@@ -139,7 +130,7 @@ static relume_status read_functions(struct folder *w)
     if (f->kind == FUNCTIONS_GAUSS)
         return read_lights(w);
     if (f->kind == FUNCTIONS_GRID) {
-        if (!get_whole(jvalue_member(w->root, "resolution"), 2, 64, &f->resolution))
+        if (!jvalue_whole(jvalue_member(w->root, "resolution"), 2, 64, &f->resolution))
             return wrong(w, "resolution", "a whole number from 2 to 64");
         f->count = f->resolution * f->resolution;
     }
@@ -152,15 +143,15 @@ static relume_status read_plane_count(struct folder *w)
     if (w->space == SPACE_MYCC) {
         int b;
         if (jvalue_count(split) != 3 ||
-            !get_whole(jvalue_item(split, 0), 1, FOREIGN_MOST_PLANES / 3, &w->luminance) ||
-            !get_whole(jvalue_item(split, 1), 0, FOREIGN_MOST_PLANES / 3, &w->chroma) ||
-            !get_whole(jvalue_item(split, 2), 0, FOREIGN_MOST_PLANES / 3, &b) || b != w->chroma ||
-            w->chroma > w->luminance)
+            !jvalue_whole(jvalue_item(split, 0), 1, FOREIGN_MOST_PLANES / 3, &w->luminance) ||
+            !jvalue_whole(jvalue_item(split, 1), 0, FOREIGN_MOST_PLANES / 3, &w->chroma) ||
+            !jvalue_whole(jvalue_item(split, 2), 0, FOREIGN_MOST_PLANES / 3, &b) ||
+            b != w->chroma || w->chroma > w->luminance)
             return wrong(w, "yccplanes", "[Y, C, C] with C at most Y");
         w->planes = w->luminance + 2 * w->chroma;
         return RELUME_OK;
     }
-    if (!get_whole(jvalue_member(w->root, "nplanes"), 1, FOREIGN_MOST_PLANES, &w->planes))
+    if (!jvalue_whole(jvalue_member(w->root, "nplanes"), 1, FOREIGN_MOST_PLANES, &w->planes))
         return wrong(w, "nplanes", "a whole number from 1 to 1024");
     return RELUME_OK;
 }
@@ -395,8 +386,8 @@ static relume_status read_planes(struct folder *w)
 {
     struct foreign *f = w->f;
     struct jpeg_codes codes;
-    if (!get_whole(jvalue_member(w->root, "width"), 1, 1 << 30, &f->width) ||
-        !get_whole(jvalue_member(w->root, "height"), 1, 1 << 30, &f->height))
+    if (!jvalue_whole(jvalue_member(w->root, "width"), 1, 1 << 30, &f->width) ||
+        !jvalue_whole(jvalue_member(w->root, "height"), 1, 1 << 30, &f->height))
         return wrong(w, "size", "width and height, whole numbers from 1");
     // the first picture proves the size before memory is allocated for all
     relume_status status = read_jpeg(w, 0, &codes);

@@ -55,18 +55,3 @@ void foreign_weights(const struct foreign *f, struct relume_vec3 light, double *
         }
     }
 }
-
-void foreign_pixel(const struct foreign *f, size_t pixel, const double *weights,
-                   const double constant[3], double rgb[3])
-{
-    const int k = f->terms;
-    for (int c = 0; c < 3; c++) {
-        const double *w = weights + (size_t)c * (size_t)k;
-        rgb[c] = constant[c];
-        for (int i = 0; i < k; i++)
-            rgb[c] +=
-                w[i] * foreign_coefficient(f, f->form == FOREIGN_CHANNELS ? 3 * i + c : i, pixel);
-        if (f->form == FOREIGN_LUMINANCE)
-            rgb[c] *= foreign_coefficient(f, k + c, pixel);
-    }
-}

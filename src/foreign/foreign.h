@@ -49,9 +49,6 @@ static inline size_t foreign_pixels(const struct foreign *f)
 // Forms without joint planes have three equal rows.
 void foreign_weights(const struct foreign *f, struct relume_vec3 light, double *weights,
                      double constant[3]);
-// The value of a pixel for such weights.
-void foreign_pixel(const struct foreign *f, size_t pixel, const double *weights,
-                   const double constant[3], double rgb[3]);
 
 // The value of a coefficient plane at a pixel.
 static inline double foreign_coefficient(const struct foreign *f, int plane, size_t pixel)

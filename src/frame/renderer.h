@@ -101,10 +101,7 @@ bool renderer_takes_depth(const relume_renderer *r);
 // relume_renderer_frame without what stands in the scene.
 relume_status renderer_bare_frame(struct relume_image *out, relume_renderer *r,
                                   const struct relume_camera *camera);
-// A frame of camera->width x camera->height: `*out` is created.
-relume_status frame_render(relume_renderer *r, const struct relume_camera *camera,
-                           struct relume_image *out);
-// Of a slab, or of several.
+// A frame of camera->width x camera->height of a slab, or of several: `*out` is created.
 relume_status frame_eye(relume_renderer *r, const struct relume_camera *camera,
                         struct relume_image *out);
 relume_status frame_around(relume_renderer *r, const struct relume_camera *camera,

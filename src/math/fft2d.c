@@ -78,11 +78,6 @@ int fft2d_columns(const fft2d *f)
     return f->columns;
 }
 
-size_t fft2d_stride(const fft2d *f)
-{
-    return f->stride;
-}
-
 size_t fft2d_size(const fft2d *f)
 {
     return f->stride * (size_t)f->height;

@@ -17,9 +17,8 @@ typedef struct fft2d fft2d;
 relume_status fft2d_create(fft2d **out, int width, int height, bool real, int threads);
 void fft2d_destroy(fft2d **f);
 int fft2d_columns(const fft2d *f);
-// Floats of a spectrum, and from one of its rows to the next.
+// Floats of a spectrum, whose rows are equally long.
 size_t fft2d_size(const fft2d *f);
-size_t fft2d_stride(const fft2d *f);
 
 // Rows [from, to) of the picture, made by `fill` (width floats, or pairs when not real), into
 // `spectrum`. Calls of `fill` come from several threads.

@@ -3,6 +3,7 @@
 #define MATH_SCALAR_H
 
 #include <math.h>
+#include <stddef.h>
 
 // From 0 at `low` to 1 at `high`, level at both ends.
 static inline double smoothstep(double low, double high, double x)
@@ -15,6 +16,14 @@ static inline double smoothstep(double low, double high, double x)
 static inline double decibels(double mse)
 {
     return mse > 1e-20 ? fmin(-10.0 * log10(mse), 200.0) : 200.0;
+}
+
+// to[i] += factor * from[i]; they do not overlap.
+static inline void add_scaled(float *restrict to, const float *restrict from, float factor,
+                              size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        to[i] += factor * from[i];
 }
 
 #endif

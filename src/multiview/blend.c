@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/scalar.h"
 
 #include <math.h>
 #include <string.h>
@@ -131,12 +132,6 @@ static const float *source_row(int *first, const struct adding *a, int y)
     }
     y = y < 0 ? 0 : y >= a->box.height ? a->box.height - 1 : y;
     return a->fine + row_of(a, y);
-}
-
-static void add_scaled(float *to, const float *from, float scale, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        to[i] += scale * from[i];
 }
 
 static void smooth_down(float *line, const struct adding *a, int y)

@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
+#include "math/scalar.h"
 #include "math/vec.h"
 #include "relight/cells.h"
 #include "relight/grid.h"
@@ -66,12 +67,6 @@ static relume_status turn_transform(struct relume_weight_grid *g)
     return g->turned ? RELUME_OK : RELUME_ENOMEM;
 }
 
-static void add_scaled(float *restrict to, const float *restrict from, float factor, int n)
-{
-    for (int i = 0; i < n; i++)
-        to[i] += factor * from[i];
-}
-
 static void evaluate_at(const void *grid, double row, double column, double *value)
 {
     const struct relume_weight_grid *g = grid;
@@ -85,7 +80,7 @@ static void put_node(const struct relume_weight_grid *g, const double *value, fl
     memset(to, 0, (size_t)stride * sizeof *to);
     for (int j = 0; j < raw; j++)
         if (g->turned && value[j] != 0.0)
-            add_scaled(to, g->turned + (size_t)j * (size_t)stride, (float)value[j], stride);
+            add_scaled(to, g->turned + (size_t)j * (size_t)stride, (float)value[j], (size_t)stride);
         else if (!g->turned)
             to[j] = (float)value[j];
 }
@@ -459,7 +454,7 @@ static void blend_shared(float *weights, const struct corners *at, int k, const 
         memset(once, 0, (size_t)n * sizeof *once);
         blend(once, at, first, n, 1.0f);
         for (int c = 0; c < 3; c++)
-            add_scaled(weights + c * k + first, once, value[c], n);
+            add_scaled(weights + c * k + first, once, value[c], (size_t)n);
     }
 }
 

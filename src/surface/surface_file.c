@@ -104,15 +104,6 @@ struct reader {
     const struct relume_log *log;
 };
 
-static bool read_count(const jvalue *root, const char *key, long long most, int *out)
-{
-    long long value = 0;
-    if (!jvalue_integer(jvalue_member(root, key), &value) || value < 1 || value > most)
-        return false;
-    *out = (int)value;
-    return true;
-}
-
 static relume_status read_sizes(struct relume_btf_map_info *s, const jvalue *root,
                                 const struct reader *r)
 {
@@ -120,11 +111,11 @@ static relume_status read_sizes(struct relume_btf_map_info *s, const jvalue *roo
         jvalue_check_format(root, r->json, "relume-btf-surface", VERSION, r->log);
     if (status)
         return status;
-    if (!read_count(root, "tiles", 65536, &s->tiles) ||
-        !read_count(root, "tile_width", r->limits.max_side, &s->width) ||
-        !read_count(root, "tile_height", r->limits.max_side, &s->height) ||
-        !read_count(root, "columns", r->limits.max_side, &s->columns) ||
-        !read_count(root, "rows", r->limits.max_side, &s->rows))
+    if (!jvalue_whole(jvalue_member(root, "tiles"), 1, 65536, &s->tiles) ||
+        !jvalue_whole(jvalue_member(root, "tile_width"), 1, r->limits.max_side, &s->width) ||
+        !jvalue_whole(jvalue_member(root, "tile_height"), 1, r->limits.max_side, &s->height) ||
+        !jvalue_whole(jvalue_member(root, "columns"), 1, r->limits.max_side, &s->columns) ||
+        !jvalue_whole(jvalue_member(root, "rows"), 1, r->limits.max_side, &s->rows))
         return log_fail(r->log, RELUME_ELIMIT,
                         "%s: tiles, tile_width, tile_height, columns, rows; expected counts within "
                         "the limits",

@@ -1,5 +1,6 @@
 // fuzz_exchange.c - .ptm, .rti and relight folders made of noise
 #include "fuzz.h"
+#include "foreign_pixel.h"
 
 #include "exchange/ptm.h"
 #include "exchange/rti.h"

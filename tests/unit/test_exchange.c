@@ -1,4 +1,5 @@
 // .ptm and .rti written by hand and read back: every variant against the numbers that went in.
+#include "foreign_pixel.h"
 #include "in_folder.h"
 
 #include "exchange/ptm.h"

@@ -56,12 +56,9 @@ static relume_status crop(struct relume_image *out, const struct relume_image *i
 // whole only while all that the frame needs are a small share of the memory.
 static relume_status need_range(relume_renderer *r, int view, bool keep)
 {
-    double *range = r->parts->range[view];
-    if (!isnan(range[0]))
+    if (!isnan(r->range[view][0]))
         return RELUME_OK;
     const relume_status status = renderer_need_disparity(r, view);
-    if (!status)
-        (void)relume_slab_range(range, &r->disparity[view]);
     if (!keep)
         relume_image_destroy(&r->disparity[view]);
     return status;
@@ -133,7 +130,7 @@ struct relume_view_params frame_parts_params(const relume_renderer *r, bool by_d
     params.size[0] = r->info->width;
     params.size[1] = r->info->height;
     params.disparity = by_depth ? r->parts->disparity : NULL;
-    params.range = by_depth ? (const double(*)[2])r->parts->range : NULL;
+    params.range = by_depth ? (const double(*)[2])r->range : NULL;
     return params;
 }
 

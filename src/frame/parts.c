@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "image/image.h"
 
-#include <math.h>
 
 uint64_t parts_codes_bytes(const struct relume_codes *codes)
 {
@@ -51,10 +50,7 @@ relume_status parts_create(struct parts **out, int views)
     p->at = mem_zeroed(n, sizeof *p->at);
     p->image = mem_zeroed(n, sizeof *p->image);
     p->disparity = mem_zeroed(n, sizeof *p->disparity);
-    p->range = mem_array(n, sizeof *p->range);
-    for (size_t i = 0; p->range && i < n; i++)
-        p->range[i][0] = p->range[i][1] = NAN;
-    if (p->part && p->at && p->image && p->disparity && p->range) {
+    if (p->part && p->at && p->image && p->disparity) {
         p->views = views;
         return RELUME_OK;
     }
@@ -74,6 +70,5 @@ void parts_destroy(struct parts **parts)
     mem_free(p->at);
     mem_free(p->image);
     mem_free(p->disparity);
-    mem_free(p->range);
     mem_free(p);
 }

@@ -16,7 +16,6 @@ struct parts {
     struct part *part;                       // [views]
     struct relume_rect *at;                  // [views]
     struct relume_image *image, *disparity;  // [views]
-    double (*range)[2];                      // [views]: of whole views' disparities; NaN: not known
 };
 
 // RELUME_ENOMEM.

@@ -15,20 +15,14 @@ struct rays {
     relume_renderer *r;
     bool few;
     bool by_depth;
-    double (*range)[2];  // [views], of disparities
-    const char *none;    // why the file does not hold a ray
+    const char *none;  // why the file does not hold a ray
 };
 
 static relume_status need(struct rays *q, int view)
 {
     relume_renderer *r = q->r;
-    const bool known = r->kept[view].used == r->frame;
-    relume_status status = (q->few ? renderer_need_partly : renderer_need)(r, view);
-    if (!status && q->by_depth)
-        status = renderer_need_disparity(r, view);
-    if (!status && q->by_depth && !known)
-        (void)relume_slab_range(q->range[view], &r->disparity[view]);
-    return status;
+    const relume_status status = (q->few ? renderer_need_partly : renderer_need)(r, view);
+    return !status && q->by_depth ? renderer_need_disparity(r, view) : status;
 }
 
 // Of an image that may be there partly.
@@ -98,7 +92,7 @@ static struct relume_view_params view_params(const struct rays *q)
 {
     struct relume_view_params params = q->r->view;
     params.disparity = q->by_depth ? q->r->disparity : NULL;
-    params.range = q->by_depth ? (const double(*)[2])q->range : NULL;
+    params.range = q->by_depth ? (const double(*)[2])q->r->range : NULL;
     return params;
 }
 
@@ -178,10 +172,7 @@ static relume_status begin(struct rays *q, relume_renderer *r, int n)
     const relume_status status = renderer_check_depth(r);
     if (status || !slab)
         return status;
-    q->range = mem_zeroed((size_t)r->info->views, sizeof *q->range);
-    return !q->range        ? RELUME_ENOMEM
-           : r->info->slabs ? renderer_need_slabs(r)
-                            : renderer_need_slab(r);
+    return r->info->slabs ? renderer_need_slabs(r) : renderer_need_slab(r);
 }
 
 relume_status relume_renderer_rays(float (*rgb)[3], relume_renderer *r,
@@ -201,7 +192,6 @@ relume_status relume_renderer_rays(float (*rgb)[3], relume_renderer *r,
         if (!status && i % 4096 == 4095 && !log_progress(r->params.log, "looking", (double)i / n))
             status = RELUME_ECANCEL;
     }
-    mem_free(q.range);
     return status;
 }
 

@@ -10,6 +10,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <math.h>
 #include <string.h>
 
 static const uint64_t DEFAULT_MEMORY = (uint64_t)1 << 30;
@@ -166,12 +167,15 @@ static bool create_arrays(relume_renderer *r)
     const size_t views = (size_t)r->info->views;
     r->kept = mem_zeroed(views, sizeof *r->kept);
     r->disparity = mem_zeroed(views, sizeof *r->disparity);
+    r->range = mem_array(views, sizeof *r->range);
+    for (size_t i = 0; r->range && i < views; i++)
+        r->range[i][0] = r->range[i][1] = NAN;
     r->needed = mem_zeroed(views, sizeof *r->needed);
     r->changed = mem_zeroed(views, sizeof *r->changed);
     for (int i = 0; i < SHOWN; i++)
         r->image[i] = mem_zeroed(views, sizeof *r->image[i]);
-    return r->kept && r->disparity && r->needed && r->changed && r->image[SHOWN_LIGHT] &&
-           r->image[SHOWN_PLACES];
+    return r->kept && r->disparity && r->range && r->needed && r->changed &&
+           r->image[SHOWN_LIGHT] && r->image[SHOWN_PLACES];
 }
 
 relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
@@ -213,6 +217,7 @@ void relume_renderer_destroy(relume_renderer **renderer)
         mem_free(r->image[i]);
     mem_free(r->kept);
     mem_free(r->disparity);
+    mem_free(r->range);
     mem_free(r->needed);
     mem_free(r->changed);
     mem_free(r->lights);
@@ -403,6 +408,8 @@ relume_status renderer_need_disparity(relume_renderer *r, int view)
     relume_status status = relume_pack_depth(&depth, r->pack, view);
     if (!status)
         status = relume_slab_disparity(&r->disparity[view], slab, r->info->uv[view], &depth);
+    if (!status && isnan(r->range[view][0]))
+        (void)relume_slab_range(r->range[view], &r->disparity[view]);
     if (status == RELUME_EINVAL)
         status = log_fail(r->params.log, RELUME_EUNFIT,
                           "view %d has no depth; expected depth in all views or in none", view);
@@ -539,5 +546,6 @@ relume_status renderer_need_all(relume_renderer *r, bool by_depth)
             status = renderer_need_disparity(r, v);
     }
     r->view.disparity = by_depth ? r->disparity : NULL;
+    r->view.range = by_depth ? (const double(*)[2])r->range : NULL;
     return status;
 }

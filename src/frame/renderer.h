@@ -44,6 +44,7 @@ struct relume_renderer {
     int *changed, changes;              // [views]
     struct relume_image *image[SHOWN];  // [views]
     struct relume_image *disparity;     // [views]
+    double (*range)[2];                 // [views]: of whole disparities; NaN: not known yet
     bool *needed;                       // [views]: by the present frame
     struct parts *parts;                // parts.h; NULL: not needed yet
     relume_status texels;               // of renderer_texels

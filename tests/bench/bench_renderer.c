@@ -1,5 +1,6 @@
 // bench_renderer.c FILE - another light on the same view: a renderer against the bare kernel and
-// against relume_frame, which keeps nothing
+// against relume_frame, which keeps nothing; of a slab also one ray, by its texels and by whole
+// views
 #include "bench.h"
 
 enum { RUNS = 41 };
@@ -69,6 +70,41 @@ static void compare(relume_pack *pack)
     free(rgba8);
 }
 
+// Rays through one point of the window: so many that whole views are relit, or one, whose texels
+// are.
+static void compare_rays(relume_pack *pack)
+{
+    enum { MANY = 65, SINGLE = 200 };
+    struct relume_ray rays[MANY];
+    float(*rgb)[3] = malloc(MANY * sizeof *rgb);
+    struct times whole = {.n = 0}, texels = whole;
+    relume_renderer *r;
+    for (int i = 0; i < MANY; i++)
+        rays[i] = (struct relume_ray){{0.01, 0.02, 3.5}, {0.02, -0.03, -1}};
+    bench_check(relume_renderer_create(&r, pack, NULL));
+    bench_check(relume_renderer_rays(rgb, r, rays, MANY));  // reads the views
+    for (int i = 0; i < RUNS; i++) {
+        struct relume_light light = light_of(i);
+        double t = now_s();
+        bench_check(relume_renderer_set_lights(r, &light, 1));
+        bench_check(relume_renderer_rays(rgb, r, rays, MANY));
+        times_add(&whole, now_s() - t);
+        t = now_s();
+        for (int k = 0; k < SINGLE; k++) {
+            light.direction.x += 1e-4;
+            bench_check(relume_renderer_set_lights(r, &light, 1));
+            bench_check(relume_renderer_rays(rgb, r, rays, 1));
+        }
+        times_add(&texels, (now_s() - t) / SINGLE);
+    }
+    bench_print("many rays, whole views", &whole);
+    bench_print("one ray, its texels", &texels);
+    printf("  whole views / texels: %.0f (target 1000)\n",
+           times_median(&whole) / times_median(&texels));
+    relume_renderer_destroy(&r);
+    free(rgb);
+}
+
 int main(int argc, char **argv)
 {
     relume_pack *pack;
@@ -76,6 +112,8 @@ int main(int argc, char **argv)
         return 0;
     bench_check(relume_pack_open(&pack, argv[1], NULL));
     compare(pack);
+    if (relume_pack_info(pack)->geometry.projection == RELUME_SLAB)
+        compare_rays(pack);
     relume_pack_destroy(&pack);
     return 0;
 }

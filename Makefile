@@ -74,7 +74,7 @@ GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 # Every folder of src is a room of the library, but for the programs.
-LIB_C    := $(filter-out src/cli/% src/helper/% src/program/% src/mesh/mesh_assimp.c,$(wildcard src/*/*.c))
+LIB_C    := $(filter-out src/cli/% src/helper/% src/mpi/% src/program/% src/mesh/mesh_assimp.c,$(wildcard src/*/*.c))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/picture.h)
 MODULE_CXX := src/image/oiio.cpp
@@ -85,6 +85,8 @@ OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/
 STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/multiview/stitch.cpp)
 # The program in which foreign files are read (src/base/helper.h); it lies beside the modules
 HELPER_C := $(wildcard src/helper/*.c)
+# The tool for all processes of an MPI launcher, built where one is (make deps-mpi)
+MPI_C    := $(if $(shell command -v mpicc),$(wildcard src/mpi/*.c))
 # src/program is what the tool and the viewer share.
 CLI_C    := $(wildcard src/program/*.c src/cli/*.c src/cli/*/*.c)
 VIEWER_C := $(wildcard src/program/*.c viewer/*/*.c)
@@ -107,6 +109,7 @@ MODULE   := $B/librelume-oiio.so.$(MAJOR)
 MESHES   := $B/librelume-assimp.so.$(MAJOR)
 STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
 HELPER   := $B/relume-helper
+MPI      := $(if $(MPI_C),$B/relume-mpi)
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
 VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $(VIEWER_CXX:%.cpp=$B/obj/%.o) $B/obj/viewer/shaders.o
 UNIT     := $(UNIT_C:%.c=$B/%)
@@ -116,12 +119,12 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $B/relume-view
 
-.PHONY: all lib cli viewer samples deps deps-web deps-stitch deps-python demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
+.PHONY: all lib cli viewer samples deps deps-web deps-stitch deps-mpi deps-python demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so $(MODULE) $(MESHES) $(HELPER) $(STITCH)
-cli: $B/relume
+cli: $B/relume $(MPI)
 viewer: $(VIEWER)
 samples: $(SAMPLES_C:%.c=$B/%)
 
@@ -137,6 +140,8 @@ deps-web:
 	@scripts/deps.sh web
 deps-stitch:
 	@scripts/deps.sh stitch
+deps-mpi:
+	@scripts/deps.sh mpi
 deps-docs:
 	@scripts/deps.sh docs
 deps-python:
@@ -159,6 +164,8 @@ $B/obj/src/kernel/lsq_eigen_avx512.o: own_flags = $(call eigen_flags,avx512) $(A
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli -Isrc
+$(MPI_C:%.c=$B/obj/%.o):      own_include = -Isrc/cli -Isrc
+$(MPI_C:%.c=$B/obj/%.o):      own_flags = $(patsubst -I%,-isystem %,$(shell mpicc --showme:compile))
 $B/obj/viewer/%.o:            own_include = -Iviewer -Isrc
 $B/obj/viewer/window/context_glfw.o: own_flags = $(GLFW)
 $(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
@@ -223,6 +230,9 @@ $(HELPER): $(HELPER_C:%.c=$B/obj/%.o) $B/librelume.a | $(MODULE) $(MESHES)
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
+$B/relume-mpi: $(MPI_C:%.c=$B/obj/%.o) $(filter-out %/start.o,$(CLI_O)) $B/librelume.a
+	$(call say,LD)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS) $(shell mpicc --showme:link)
 $B/relume-view: $(VIEWER_O) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
@@ -239,7 +249,7 @@ $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/libr
 	$(Q)$(LINK) $(MODE) $(TEST_LD) $(if $(CLANG),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS) $(if $(@:%/fuzz_command=),,$(CLI_LIBS))
 $(FUZZ): | $(MSAN_TOLD_O)
 # The tool without its main
-$B/tests/fuzz/fuzz_command: $(filter-out %/main.o,$(CLI_O))
+$B/tests/fuzz/fuzz_command: $(filter-out %/main.o %/start.o,$(CLI_O))
 # The viewer without its window
 $B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/% $B/obj/src/program/%,$(VIEWER_O))
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
@@ -275,7 +285,7 @@ $(FAULTS): tests/tools/preload/faults.c | $(DEPS)
 	$(Q)$(CC) -std=c11 -O1 $(filter-out -Wpedantic,$(WARNINGS)) -shared -fPIC -o $@ $< -ldl
 
 # Programs open the module when they run.
-$B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES) $(HELPER)
+$B/relume $(MPI) $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES) $(HELPER)
 
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 %.d: ;
@@ -322,7 +332,7 @@ lint:
 	    --cppcheck-build-dir=$B/lint -Iinclude -Isrc -Isrc/cli -Iviewer $(LINTED)
 
 format:
-	clang-format -i $(LIB_C) $(MODULE_CXX) src/kernel/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(MODULE_CXX) src/kernel/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(wildcard src/mpi/*.c) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h src/cli/*/*.h viewer/*/*.h tests/*.h tests/fuzz/*.h samples/*.c)
 
 bench: all $(BENCH)

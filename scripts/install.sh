@@ -15,6 +15,7 @@ link() { ln -sfn "$1" "$2"; }
 
 put 755 "$build/relume" "$dest/bin"
 put 755 "$build/relume-view" "$dest/bin"
+[ ! -e "$build/relume-mpi" ] || put 755 "$build/relume-mpi" "$dest/bin"
 put 644 "$build/librelume.a" "$dest/lib"
 install -m 755 "$build/librelume.so" "$dest/lib/librelume.so.$version"
 link "librelume.so.$version" "$dest/lib/librelume.so.$major"

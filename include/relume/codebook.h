@@ -35,6 +35,8 @@ struct relume_codebook_params {  // zero in a field means its default
                        // rounds from all; default: from all
     int threads;       // default: all cores
     unsigned cpu_off;  // RELUME_CPU_* features not to use; the result is the same
+    const struct relume_team *team;  // close ones share the search of each round; all members train
+                                     // on the same vectors. Default: alone
 };
 #define relume_codebook_params(...)                                                                \
     (&(const struct relume_codebook_params){RELUME_SIZED(relume_codebook_params), __VA_ARGS__})
@@ -134,6 +136,7 @@ struct relume_books_params {  // zero in a field means its default
                    // longest first, until the indices take about that part more bytes; 1: all,
                    // default 0: none
     int threads;
+    const struct relume_team *team;  // as relume_codebook_params
 };
 #define relume_books_params(...)                                                                   \
     (&(const struct relume_books_params){RELUME_SIZED(relume_books_params), __VA_ARGS__})

@@ -76,6 +76,7 @@ struct relume_pack_share {
     bool free_storage;              // nobody asked for the storage: join refuses coarse steps
     enum relume_step step;          // what was asked for
     enum relume_pyramid pyramid;    // likewise
+    bool shared_books;              // all views of all parts have the same
     const struct relume_encode_report *measured;  // [views] of it
 };
 
@@ -165,8 +166,8 @@ struct relume_pack_encode_params {
     double psnr_db, bytes_per_pixel;
     const struct relume_writer *writer;  // write here in place of the file, as
                                          // relume_pack_params; temporary data in $TMPDIR
-    // Only one of several parts of the work, 1 .. parts, for relume_pack_join. Not with loss, not
-    // with `share`. Default: all of it.
+    // Only one of several parts of the work, 1 .. parts, for relume_pack_join. Not with loss, with
+    // `share` only in a team. Default: all of it.
     int part, parts;
     const char *options;  // what parts say they were asked for; those that say otherwise are not
                           // joined

@@ -21,8 +21,9 @@
 
 // What every command gets; the options of its own follow in its struct, whose first member it is.
 struct args {
-    const struct relume_log *log;  // messages and progress to stderr
-    int threads;                   // 0: all
+    const struct relume_log *log;    // messages and progress to stderr
+    int threads;                     // 0: all
+    const struct relume_team *team;  // the other processes of relume-mpi; NULL: there are none
     int inputs;
     const char *const *input;
     bool quiet, help;

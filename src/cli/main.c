@@ -1,4 +1,6 @@
 // main.c - the relume tool: finds the command, has its options read, turns statuses into exit codes
+#include "start.h"
+
 #include "messages.h"
 #include "program/output_name.h"
 #include "program/stopping.h"
@@ -57,6 +59,8 @@ struct parsed {
     struct relume_log log;
     struct relume_limits limits;  // before --max-memory and --max-pixels
     const char *program;
+    const struct relume_team *team;
+    int threads;  // where --threads does not say
 };
 
 // What `capture` did until it became four commands.
@@ -125,7 +129,7 @@ static relume_status unknown_command(const struct relume_log *log, const char *w
 
 // ---------------------------------------------------------------- main
 
-static int exit_code(relume_status status)
+int tool_exit(relume_status status)
 {
     if (status == RELUME_ENOMEM)
         fputs("relume: out of memory\n", people);
@@ -206,6 +210,8 @@ static relume_status fill_options(struct parsed *p, int argc, char **argv)
         memcpy(p->args, c->defaults, c->size);
     p->args->limits = p->limits;
     p->args->program = p->program;
+    p->args->team = p->team;
+    p->args->threads = p->threads;
     p->args->log = p->line.log = &p->log;
     p->log.user = p->args;
     p->line.name = c->name;
@@ -385,7 +391,7 @@ static void put_command_first(int argc, char **argv)
     argv[1] = name;
 }
 
-int main(int argc, char **argv)
+relume_status tool_run(int argc, char **argv, const struct relume_team *team, int threads)
 {
     keep_freed_memory();
     occupy_standard_streams();
@@ -400,18 +406,20 @@ int main(int argc, char **argv)
                RELUME_VERSION);
         print_commands(commands);
         printf("\n'relume COMMAND --help' explains a command and gives an example.\n");
-        return argc < 2 ? 2 : 0;
+        return argc < 2 ? RELUME_EINVAL : RELUME_OK;
     }
     if (!strcmp(argv[1], "--version")) {
         printf("relume %s\n", RELUME_VERSION);
-        return 0;
+        return RELUME_OK;
     }
     struct parsed *p = calloc(1, sizeof *p);
     if (!p)
-        return exit_code(RELUME_ENOMEM);
+        return RELUME_ENOMEM;
     put_command_first(argc, argv);
     p->log = (struct relume_log){.message = on_message, .progress = on_progress};
     p->program = argv[0];
+    p->team = team;
+    p->threads = threads;
     p->command = find_command(commands, argv[1]);
     relume_status status = p->command ? run_command(p, argc - 2, argv + 2)
                                       : unknown_command(&p->log, "command", commands, argv[1]);
@@ -421,5 +429,5 @@ int main(int argc, char **argv)
     relume_context_destroy(&p->log.context);
     free(p->args);
     free(p);
-    return exit_code(status);
+    return status;
 }

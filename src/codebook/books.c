@@ -12,6 +12,7 @@
 #include "coder/coefficients.h"
 #include "math/random.h"
 
+#include <relume/team.h>
 #include <math.h>
 #include <string.h>
 
@@ -57,30 +58,119 @@ static bool alloc_sample(struct sample *s)
     return s->residual && s->part && s->index;
 }
 
-// `n` pixels of all views, each choice equally likely, in their order (Knuth, algorithm 3.4.2 S).
-static relume_status draw_sample(struct sample *s, const relume_coefficients *const *views,
-                                 int count, size_t pixels, uint64_t seed)
+// What is drawn from, and from which of the views here.
+struct drawing {
+    const relume_coefficients *const *views;
+    int count;
+    size_t pixels, wanted;
+    uint64_t seed;
+    const struct books_team *by;  // or NULL
+    const struct relume_coefficients_info *info;
+    const struct relume_log *log;
+};
+
+// One view's rows, of which those pixels are taken that the random numbers say, if `c` holds it.
+static relume_status draw_view(const struct drawing *d, const relume_coefficients *c,
+                               struct random *random, size_t *left, size_t *wanted, float *row,
+                               void *waiting, float **to)
 {
-    const size_t width = (size_t)views[0]->info.width, planes = s->planes;
-    float *row = mem_array(width * planes, sizeof *row);
-    void *waiting = mem_array(width * planes, sizeof *row);
-    relume_status status = row && waiting ? RELUME_OK : RELUME_ENOMEM;
-    struct random random = random_stream(seed, 2, 0);
-    size_t taken = 0, left = pixels;
-    for (int v = 0; !status && v < count; v++)
-        for (int y = 0; !status && y < views[v]->info.height; y++) {
-            status = coefficients_values(views[v], y, waiting, row);
-            for (size_t x = 0; !status && x < width; x++, left--) {
-                if ((double)left * random_next(&random) >= (double)(s->n - taken))
-                    continue;
-                for (size_t p = 0; p < planes; p++)
-                    s->residual[taken * planes + p] = row[p * width + x];
-                taken++;
-            }
+    const size_t width = (size_t)d->info->width, planes = (size_t)d->info->planes;
+    relume_status status = RELUME_OK;
+    for (int y = 0; !status && y < d->info->height; y++) {
+        if (c)
+            status = coefficients_values(c, y, waiting, row);
+        for (size_t x = 0; !status && x < width; x++, --*left) {
+            if ((double)*left * random_next(random) >= (double)*wanted)
+                continue;
+            for (size_t p = 0; c && p < planes; p++)
+                *(*to)++ = row[p * width + x];
+            --*wanted;
         }
+    }
+    return status;
+}
+
+// Of `wanted` pixels of all views, each choice equally likely (Knuth, algorithm 3.4.2 S), those in
+// the views of a share, in their order: to[..][planes], of which *end then is the end.
+static relume_status draw_share(const struct drawing *d, const struct encode_share *share,
+                                float *to, float **end)
+{
+    const size_t row_floats = (size_t)d->info->width * (size_t)d->info->planes;
+    float *row = mem_array(row_floats, sizeof *row);
+    void *waiting = mem_array(row_floats, sizeof *row);
+    relume_status status = row && waiting ? RELUME_OK : RELUME_ENOMEM;
+    struct random random = random_stream(d->seed, 2, 0);
+    size_t left = d->pixels, wanted = d->wanted;
+    for (int v = 0; !status && v < share->first + share->views; v++) {
+        const bool ours = v >= share->first;
+        relume_coefficients *made = NULL;
+        if (ours && !d->views[v])
+            status = d->by->encode(d->by->user, v, &made);
+        if (!status)
+            status = draw_view(d, ours ? (made ? made : d->views[v]) : NULL, &random, &left,
+                               &wanted, row, waiting, &to);
+        relume_coefficients_destroy(&made);
+    }
+    *end = to;
     mem_free(row);
     mem_free(waiting);
     return status;
+}
+
+static relume_status draw_piece(void *context, int member, struct relume_buffer *piece)
+{
+    const struct drawing *d = context;
+    const size_t most = d->wanted * (size_t)d->info->planes;
+    struct encode_share share;
+    float *to = mem_array(most, sizeof *to), *end = to;
+    relume_status status = to ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && !encode_share_of(&share, member + 1, d->by->team->members, d->count, BAND_ROWS))
+        status = RELUME_EINVAL;
+    if (!status)
+        status = draw_share(d, &share, to, &end);
+    if (!status && !(piece->data = mem_array((size_t)(end - to) + 1, sizeof *to)))
+        status = RELUME_ENOMEM;
+    if (!status) {
+        piece->size =
+            (size_t)(end - to + 1) * sizeof *to;  // a number more, so that it is never empty
+        memset(piece->data, 0, sizeof *to);
+        memcpy(piece->data + sizeof *to, to, piece->size - sizeof *to);
+    }
+    mem_free(to);
+    return status;
+}
+
+static relume_status draw_together(struct sample *s, struct drawing *d)
+{
+    const struct relume_team *team = d->by->team;
+    struct relume_buffer *piece = mem_zeroed((size_t)team->members, sizeof *piece);
+    const size_t all = s->n * s->planes * sizeof(float);
+    size_t at = 0;
+    relume_status status =
+        piece ? team->share(team->user, "vectors", draw_piece, d, piece) : RELUME_ENOMEM;
+    for (int i = 0; piece && i < team->members; i++) {
+        const size_t bytes = piece[i].size - sizeof(float);
+        const bool fits =
+            !status && piece[i].size >= sizeof(float) && at <= all && bytes <= all - at;
+        if (fits)
+            memcpy((char *)s->residual + at, piece[i].data + sizeof(float), bytes);
+        at = fits ? at + bytes : SIZE_MAX;
+        relume_buffer_destroy(&piece[i]);
+    }
+    mem_free(piece);
+    return status || at == all
+               ? status
+               : log_fail(d->log, RELUME_EDAMAGED,
+                          "what parts have drawn for the codebooks is not of this capture; remove "
+                          "it and run them again");
+}
+
+static relume_status draw_sample(struct sample *s, struct drawing *d)
+{
+    float *end;
+    return d->by
+               ? draw_together(s, d)
+               : draw_share(d, &(const struct encode_share){.views = d->count}, s->residual, &end);
 }
 
 // ---------------------------------------------------------------- learning
@@ -184,7 +274,7 @@ static relume_status learn_book(relume_books *books, int i, struct sample *s,
         &trained, s->part, s->n, b->dim,
         relume_codebook_params(.log = p->log, .start = p->start, .seed = p->seed + (uint64_t)i,
                                .codes = b->codes, .threads = p->threads,
-                               .sample = usual_sample(p, b->codes),
+                               .sample = usual_sample(p, b->codes), .team = p->team,
                                .max_rounds = p->max_rounds ? p->max_rounds : DEFAULT_ROUNDS));
     if (status)
         return status;
@@ -282,13 +372,17 @@ static size_t sample_size(const struct relume_books_params *p, int codes, size_t
     return n < pixels ? n : pixels;
 }
 
-relume_status relume_books_train(relume_books **out, const relume_coefficients *const *views, int n,
-                                 const struct relume_books_params *params)
+relume_status books_train(relume_books **out, const relume_coefficients *const *views, int n,
+                          const struct relume_books_params *params, const struct books_team *by)
 {
     const struct relume_books_params p = PARAMS_WORK(relume_books_params, params);
-    const struct relume_coder_info *coder = relume_coder_info(views[0]->info.coder);
+    int first = 0;
+    while (!views[first])
+        first++;
+    const struct relume_coefficients_info *info = &views[first]->info;
+    const struct relume_coder_info *coder = relume_coder_info(info->coder);
     const int codes = p.codes ? p.codes : DEFAULT_CODES;
-    const size_t pixels = (size_t)views[0]->info.width * (size_t)views[0]->info.height * (size_t)n;
+    const size_t pixels = (size_t)info->width * (size_t)info->height * (size_t)n;
     *out = NULL;
     relume_status status = check(coder, &p, codes, pixels);
     if (status)
@@ -303,13 +397,13 @@ relume_status relume_books_train(relume_books **out, const relume_coefficients *
         .codes = books->codes,
     };
     for (int stage = 0; stage < (p.stages ? p.stages : 1); stage++)
-        add_stage(books, coder, &p, codes, views[0]->info.storage);
+        add_stage(books, coder, &p, codes, info->storage);
 
     struct sample s = {.n = sample_size(&p, codes, pixels, (size_t)coder->planes),
                        .planes = (size_t)coder->planes};
     status = alloc_sample(&s) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = draw_sample(&s, views, n, pixels, p.seed);
+        status = draw_sample(&s, &(struct drawing){views, n, pixels, s.n, p.seed, by, info, p.log});
     for (int i = 0; !status && i < books->info.books; i++)
         status = learn_book(books, i, &s, &p);
     mem_free(s.residual);
@@ -319,4 +413,10 @@ relume_status relume_books_train(relume_books **out, const relume_coefficients *
         relume_books_destroy(&books);
     *out = books;
     return status;
+}
+
+relume_status relume_books_train(relume_books **out, const relume_coefficients *const *views, int n,
+                                 const struct relume_books_params *params)
+{
+    return books_train(out, views, n, params, NULL);
 }

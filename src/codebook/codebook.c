@@ -11,6 +11,7 @@
 #include "base/thread.h"
 #include "math/random.h"
 
+#include <relume/team.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -30,6 +31,9 @@ struct search {
     const double *drift, *furthest;  // NULL: every vector is looked at
     float *scratch;                  // [workers][...]
     atomic_bool changed;
+    size_t begin;  // the chunk with which the items begin
+    int threads;
+    const struct relume_team *team;  // or NULL
 };
 
 // Whether vector i keeps its code: no other has come near enough (Hamerly 2010). The margin is far
@@ -47,7 +51,8 @@ static bool keeps_code(struct search *s, size_t i)
 static void search_chunk(void *context, size_t item, int worker)
 {
     struct search *s = context;
-    const size_t first = item * CHUNK, last = first + CHUNK < s->n ? first + CHUNK : s->n;
+    const size_t first = (s->begin + item) * CHUNK;
+    const size_t last = first + CHUNK < s->n ? first + CHUNK : s->n;
     uint16_t before[CHUNK];
     uint32_t which[CHUNK];
     size_t count = 0;
@@ -61,6 +66,69 @@ static void search_chunk(void *context, size_t item, int worker)
         atomic_store(&s->changed, true);
 }
 
+// The chunks of a member of the team, or all of them.
+static void search_share(struct search *s, int member, size_t *first, size_t *end)
+{
+    const size_t chunks = (s->n + CHUNK - 1) / CHUNK;
+    const size_t members = s->team ? (size_t)s->team->members : 1;
+    s->begin = chunks * (size_t)member / members;
+    *end = chunks * ((size_t)member + 1) / members * CHUNK;
+    *end = *end < s->n ? *end : s->n;
+    *first = s->begin * CHUNK < *end ? s->begin * CHUNK : *end;
+}
+
+// A piece: whether any changed, and then what was found of each vector.
+enum { FOUND = sizeof(uint16_t) + sizeof(double) + sizeof(float) };
+
+static relume_status search_piece(void *context, int member, struct relume_buffer *piece)
+{
+    struct search *s = context;
+    size_t first, end;
+    search_share(s, member, &first, &end);
+    atomic_store(&s->changed, false);
+    thread_for(s->threads, (end - first + CHUNK - 1) / CHUNK, search_chunk, s);
+    const size_t n = end - first;
+    if (!(piece->data = mem_array(1 + n * FOUND, 1)))
+        return RELUME_ENOMEM;
+    unsigned char *to = piece->data;
+    piece->size = 1 + n * FOUND;
+    *to++ = atomic_load(&s->changed);
+    memcpy(to, s->index + first, n * sizeof *s->index);
+    memcpy(to += n * sizeof *s->index, s->distance + first, n * sizeof *s->distance);
+    memcpy(to + n * sizeof *s->distance, s->apart + first, n * sizeof *s->apart);
+    return RELUME_OK;
+}
+
+static void take_found(struct search *s, int member, const struct relume_buffer *piece,
+                       bool *changed)
+{
+    size_t first, end;
+    search_share(s, member, &first, &end);
+    const size_t n = end - first;
+    const unsigned char *from = piece->data;
+    *changed |= *from++ != 0;
+    memcpy(s->index + first, from, n * sizeof *s->index);
+    memcpy(s->distance + first, from += n * sizeof *s->index, n * sizeof *s->distance);
+    memcpy(s->apart + first, from + n * sizeof *s->distance, n * sizeof *s->apart);
+}
+
+static relume_status search_together(struct search *s)
+{
+    const struct relume_team *team = s->team;
+    struct relume_buffer *piece = mem_zeroed((size_t)team->members, sizeof *piece);
+    bool changed = false;
+    const relume_status status =
+        piece ? team->share(team->user, "search", search_piece, s, piece) : RELUME_ENOMEM;
+    for (int i = 0; piece && i < team->members; i++) {
+        if (!status)
+            take_found(s, i, &piece[i], &changed);
+        relume_buffer_destroy(&piece[i]);
+    }
+    atomic_store(&s->changed, changed);
+    mem_free(piece);
+    return status;
+}
+
 static relume_status search(struct search *s, int codes, int dim, int threads, unsigned cpu_off)
 {
     struct nearest nearest;
@@ -71,10 +139,13 @@ static relume_status search(struct search *s, int codes, int dim, int threads, u
     s->nearest = &nearest;
     s->scratch =
         mem_array((size_t)thread_count(threads) * nearest_scratch(&nearest), sizeof(float));
-    if (s->scratch)
-        thread_for(threads, (s->n + CHUNK - 1) / CHUNK, search_chunk, s);
-    else
+    s->threads = threads;
+    if (!s->scratch)
         status = RELUME_ENOMEM;
+    else if (s->team)
+        status = search_together(s);
+    else
+        thread_for(threads, (s->n + CHUNK - 1) / CHUNK, search_chunk, s);
     mem_free(s->scratch);
     nearest_destroy(&nearest);
     s->nearest = NULL;
@@ -107,6 +178,7 @@ relume_status training_assign(struct training *t)
         .apart = t->apart,
         .drift = t->bounded ? t->drift : NULL,
         .furthest = t->furthest,
+        .team = t->team,
     };
     const relume_status status = search(&s, t->codes, t->dim, t->threads, t->cpu_off);
     if (status)
@@ -367,6 +439,7 @@ relume_status relume_codebook_train(relume_codebook **out, const float *vectors,
         .most_codes = codes,
         .threads = p.threads,
         .cpu_off = p.cpu_off,
+        .team = p.team && p.team->close ? p.team : NULL,
     };
     float *begun = NULL;
     if (p.sample && p.sample < n)

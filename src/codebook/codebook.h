@@ -33,6 +33,7 @@ struct training {
     bool changed;        // by the last assignment
     int rounds, moved, threads;
     unsigned cpu_off;
+    const struct relume_team *team;  // or NULL
 };
 
 // Every vector to its nearest of the present codes; fills all that describes cells. RELUME_ENOMEM.

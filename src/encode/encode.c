@@ -207,20 +207,38 @@ static relume_status judge_books(const struct material *m, const relume_capture 
     return status;
 }
 
-static relume_status make_books(struct material *m, const struct relume_manifest *manifest,
-                                const struct relume_pack_encode_params *p)
+// A view of another part, for what is learnt from it.
+struct other_views {
+    const relume_coder *coder;
+    const relume_capture *capture;
+    const struct relume_encode_params *encode;
+};
+
+static relume_status encode_other(void *user, int view, relume_coefficients **out)
+{
+    const struct other_views *o = user;
+    return relume_encode(out, o->coder, o->capture, view, o->encode);
+}
+
+static relume_status make_books(struct material *m, const relume_capture *capture,
+                                const relume_coder *coder,
+                                const struct relume_pack_encode_params *p,
+                                const struct relume_encode_params *encode)
 {
     struct relume_books_params books = *p->books;
-    if (books.codes == 65536)
-        books.codes = most_codes(manifest);
+    struct other_views others = {coder, capture, encode};
+    const struct books_team by = {p->team, encode_other, &others};
     relume_status status = RELUME_OK;
+    if (books.codes == 65536)
+        books.codes = most_codes(relume_capture_manifest(capture));
     books.threads = p->threads;
+    books.team = p->share ? p->team : NULL;
     for (int i = m->first; !status && i < m->end; i++) {
         const int set = p->share ? 0 : i;
-        if (set == i)
-            status = relume_books_train(&m->books[i],
-                                        (const relume_coefficients *const *)m->coefficients + i,
-                                        p->share ? m->views : 1, &books);
+        if (set == i || i == m->first)
+            status = books_train(&m->books[set],
+                                 (const relume_coefficients *const *)m->coefficients + set,
+                                 p->share ? m->views : 1, &books, books.team ? &by : NULL);
         if (!status)
             status = assign_view(m, i, set, &books);
     }
@@ -280,6 +298,7 @@ static relume_status write_material(const struct material *m, const relume_captu
         .free_storage = p->free_storage,
         .step = p->step,
         .pyramid = p->pyramid,
+        .shared_books = p->books && p->share,
         .measured = m->report + m->first,
     };
     if (p->parts) {
@@ -422,7 +441,7 @@ static relume_status find_share(struct encode_share *out, const relume_capture *
     *out = (struct encode_share){.views = views};
     if (!p->parts)
         return RELUME_OK;
-    if (p->part < 1 || p->part > p->parts || coded || (p->books && p->share))
+    if (p->part < 1 || p->part > p->parts || coded || (p->books && p->share && !p->team))
         return RELUME_EINVAL;
     const relume_status status = encode_share_find(out, p->part, p->parts, capture, p->log);
     if (status)
@@ -504,7 +523,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     for (int i = m.first; !status && i < m.end; i++)
         status = encode_view(&m, i, coder, capture, !p.no_depth, &encode);
     if (!status && !coded && p.books)
-        status = make_books(&m, manifest, &p);
+        status = make_books(&m, capture, coder, &p, &encode);
     if (!status && !coded && p.books && report)
         status = judge_books(&m, capture, &encode);
     struct relume_encode_report total = {0};

@@ -77,16 +77,33 @@ static relume_status refuse_other(const struct part_file *p, const struct part_f
                     p->path, first->path, what);
 }
 
+// Codebooks that all views share are in all parts: they were trained to the same numbers.
+static const char *difference_of_books(struct joining *j, const struct part_file *p,
+                                       relume_status *status)
+{
+    struct exr_part own, first;
+    for (int k = 1; k <= p->books && !*status; k++) {
+        *status = exr_part_again(&own, p->file, k, &j->arena);
+        if (!*status)
+            *status = exr_part_again(&first, j->part->file, k, &j->arena);
+        if (!*status && difference(&own, &first))
+            return own.name;
+    }
+    return p->books == j->part->books ? NULL : ATTR_BOOKS;
+}
+
 static relume_status compare_headers(struct joining *j, const struct exr_part *first, int i)
 {
     struct exr_part header;
     const struct part_file *p = &j->part[i];
-    const relume_status status = exr_part_again(&header, p->file, 0, &j->arena);
+    relume_status status = exr_part_again(&header, p->file, 0, &j->arena);
+    const char *const books = status ? NULL : difference_of_books(j, p, &status);
     if (status)
         return status == RELUME_ENOMEM
                    ? status
                    : log_fail(j->log, status, "%s: damaged header; run this part again", p->path);
     const char *what = difference(&header, first);
+    what = what ? what : books;
     if (what || p->info.parts != j->part->info.parts)
         return refuse_other(p, j->part, what, j->log);
     return RELUME_OK;
@@ -163,7 +180,7 @@ static relume_status add_views(struct joining *j, const struct part_file *p)
 {
     relume_status status = RELUME_OK;
     int view = p->info.first;
-    for (int k = 1; !status && k < exr_part_count(p->file); k++) {
+    for (int k = 1 + p->books; !status && k < exr_part_count(p->file); k++) {
         if (!strchr(exr_part_info(p->file, k).name, '.'))
             (void)!part_measured(&j->measured[view++], p,
                                  k);  // it has been when the part was opened
@@ -217,6 +234,8 @@ static relume_status gather(struct joining *j, struct relume_encode_report *repo
     j->exr = arena_array(&j->arena, exrs, sizeof *j->exr);
     j->measured = arena_array(&j->arena, (size_t)j->part->info.all_views, sizeof *j->measured);
     relume_status status = j->exr && j->measured ? add_header(j) : RELUME_ENOMEM;
+    for (int k = 1; !status && k <= j->part->books; k++)
+        status = add_again(j, j->part, k);
     for (int i = 0; !status && i < j->count; i++)
         status = add_views(j, j->order[i]);
     return status ? status : set_report(j, report);

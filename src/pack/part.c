@@ -87,13 +87,24 @@ bool part_measured(struct relume_encode_report *out, const struct part_file *par
            isfinite(out->psnr_db) && isfinite(out->typical);
 }
 
+// "book0" and so on: codebooks of all views.
+static void count_books(struct part_file *p)
+{
+    char name[32];
+    p->books = 0;
+    do
+        snprintf(name, sizeof name, "book%d", p->books);
+    while (1 + p->books < exr_part_count(p->file) &&
+           !strcmp(exr_part_info(p->file, 1 + p->books).name, name) && ++p->books);
+}
+
 // "view0007" and what belongs to it, "view0007.depth", in the order of their names.
 static relume_status check_names(const struct part_file *p, const struct relume_log *log)
 {
     const char *before = "preview";
     char view[32] = "";
     int next = p->info.first;
-    for (int k = 1; k < exr_part_count(p->file); k++) {
+    for (int k = 1 + p->books; k < exr_part_count(p->file); k++) {
         const char *name = exr_part_info(p->file, k).name;
         const size_t length = strlen(view);
         if (length && !strncmp(name, view, length) && name[length] == '.' &&
@@ -126,8 +137,10 @@ relume_status part_open(struct part_file *out, const char *path, const struct re
          !copy_text(i->options, sizeof i->options, exr_get_text(out->file, 0, ATTR_OPTIONS)) ||
          !exr_get_text(out->file, 0, ATTR_CAPTURE)))
         status = bad(out, "header", log);
-    if (!status)
+    if (!status) {
+        count_books(out);
         status = check_names(out, log);
+    }
     if (status)
         part_close(out);
     else

@@ -11,6 +11,7 @@ struct part_file {
     const char *path;
     struct relume_pack_part info;
     bool free_storage;
+    int books;  // that all views share, behind the first part
 };
 
 // The file `path`, which must outlive it, or what `from` reads. An input status with a sentence

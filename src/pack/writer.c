@@ -99,11 +99,11 @@ static bool shares_books(const struct relume_pack_contents *c)
 static void add_parts(struct writer *w)
 {
     const struct relume_pack_contents *c = w->contents;
-    const bool shared = !c->share && shares_books(c);
     const int first = c->share ? c->share->first : 0;
+    const bool shared = c->share ? c->share->shared_books : shares_books(c);
     writer_add_header(w);
     if (shared)
-        writer_add_books(w, c->view[0].books, -1);
+        writer_add_books(w, c->view[first].books, -1);
     if (c->view[first].coded)
         writer_add_groups(w);
     for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)

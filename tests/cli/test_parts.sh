@@ -78,6 +78,18 @@ shared 'learnt together, by itself' slab 4
 shared 'learnt together, masks' masked 3 --basis pca
 shared 'learnt together, rows of JPEGs' cut 5 --basis pca --coefficients 8
 shared 'learnt together, rows, by itself' flat 3
+codebook_of_all() { # name options...: nothing was learnt first
+    name=$1
+    shift
+    rm -rf learnt
+    encode_parts slab 3 --learnt learnt --share "$@"
+    relume encode slab --share "$@" -o whole.exr
+    relume join 3.part 1.part 2.part -o joined.exr
+    same "$name" whole.exr joined.exr
+}
+codebook_of_all 'one codebook of all views' --basis sh --coefficients 4 --codebook 40
+codebook_of_all 'two stages, dithered' --basis pca --coefficients 6 --codebook 16 --stages 2 --dither 0.5
+check 'a part with them is whole' relume check 2.part
 # parts that find nothing make all shares; one that was killed leaves only that it had begun
 rm -rf learnt ./*.part
 mkdir learnt learnt/samples.2of3.begun
@@ -166,7 +178,7 @@ cannot() { # name status pattern options...
 cannot 'more parts than bands of rows' 1 '9 views of 40 rows cannot be shared by 28 parts; expected 16 rows or more' --part 1/28 --basis sh
 cannot 'rows of a codebook' 1 'a codebook is learnt from a whole view; expected at most 9 parts for 9 views' --part 1/10 --basis sh --codebook 4
 cannot 'with loss' 2 '--psnr and --bytes-per-pixel try steps on all views' --part 1/2 --psnr 30
-cannot 'one codebook for all' 2 '--share learns one set of codebooks from all views' --part 1/2 --codebook 4 --share
+cannot 'one codebook for all' 2 '--share learns one set of codebooks from all views; expected --learnt' --part 1/2 --codebook 4 --share
 cannot 'part 0' 2 '--part: expected part I of N' --part 0/2
 cannot 'part 3 of 2' 2 '--part: expected part I of N' --part 3/2
 cannot 'a part in words' 2 '--part: expected part I of N' --part one

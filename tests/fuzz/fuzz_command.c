@@ -1,10 +1,12 @@
 // fuzz_command.c - whole command lines made of bytes, an argument a line, run in a folder that has
 // a file of every kind. Work that is refused or stopped leaves no output and changes nothing,
 // nothing unfinished stays, and what is asked to end ends.
-int tool_main(int argc, char **argv);
-#define main tool_main
 #include "cli/main.c"
-#undef main
+
+static int tool_main(int argc, char **argv)
+{
+    return tool_exit(tool_run(argc, argv, NULL, 0));
+}
 
 #include "fuzz.h"
 

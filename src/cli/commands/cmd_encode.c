@@ -127,7 +127,7 @@ static bool is_coded(const struct request *r)
 // The capture is looked at before it is encoded.
 static bool learns(const struct request *r)
 {
-    return r->basis->learned || r->coder.choose;
+    return r->basis->learned || r->coder.choose || (r->pack.books && r->pack.share);
 }
 
 static const char *storage_words(enum relume_storage storage)
@@ -266,6 +266,94 @@ static relume_status form_team(relume_team_files **files, const relume_capture *
     return status;
 }
 
+// ---------------------------------------------------------------- relume-mpi
+
+struct together {
+    const struct args *args;
+    const struct request *r;
+    struct relume_encode_report *report;
+};
+
+static relume_status give_byte(struct relume_buffer *out, unsigned char byte)
+{
+    const struct relume_writer writer = relume_buffer_writer(out);
+    return writer.write(writer.user, &byte, 1, 0) ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static relume_status say_written(void *context, int member, struct relume_buffer *out)
+{
+    (void)context;
+    return give_byte(out, (unsigned char)(member & 1));
+}
+
+// The first process joins; its piece says whether the steps are too coarse.
+static relume_status join_parts(void *context, int member, struct relume_buffer *out)
+{
+    const struct together *t = context;
+    const struct args *args = t->args;
+    const int parts = args->team->members;
+    if (member)
+        return give_byte(out, 0);
+    struct part_name *name = calloc((size_t)parts, sizeof *name);
+    const char **path = calloc((size_t)parts, sizeof *path);
+    relume_status status = name && path ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < parts; i++) {
+        name_part(&name[i], t->r->output, i + 1, parts);
+        path[i] = name[i].text;
+    }
+    if (!status)
+        status = relume_pack_join(path, parts, t->r->output, t->report,
+                                  relume_pack_params(.log = args->log, .limits = &args->limits,
+                                                     .threads = args->threads));
+    free(path);
+    free(name);
+    return status ? status : give_byte(out, relume_encode_is_coarse(t->report));
+}
+
+// Everybody's piece is there; `first` (or NULL) receives the byte of the first process.
+static relume_status share_byte(const struct relume_team *team, const char *what,
+                                relume_team_make *make, void *context, bool *first)
+{
+    struct relume_buffer *piece = calloc((size_t)team->members, sizeof *piece);
+    const relume_status status =
+        piece ? team->share(team->user, what, make, context, piece) : RELUME_ENOMEM;
+    if (!status && first)
+        *first = piece->data[0];
+    for (int i = 0; piece && i < team->members; i++)
+        relume_buffer_destroy(&piece[i]);
+    free(piece);
+    return status;
+}
+
+// All processes write their parts, and the first joins them.
+static relume_status write_together(const struct args *args, const relume_capture *capture,
+                                    const relume_coder *coder, struct request *r,
+                                    struct relume_encode_report *report)
+{
+    const struct relume_team *team = args->team;
+    struct together t = {args, r, report};
+    struct relume_encode_report own;
+    struct part_name name;
+    bool again = true;
+    relume_status status = RELUME_OK;
+    name_part(&name, r->output, r->pack.part, r->pack.parts);
+    r->pack.free_storage = false;
+    while (!status && again) {
+        status = relume_pack_encode(capture, coder, name.text, &own, &r->pack);
+        if (!status)
+            status = share_byte(team, "written", say_written, NULL, NULL);
+        if (!status)
+            status = share_byte(team, "joined", join_parts, &t, &again);
+        again = again && !r->bits && r->pack.storage != RELUME_STORE_HALF;
+        r->pack.storage = again ? RELUME_STORE_HALF : r->pack.storage;
+    }
+    remove(name.text);
+    r->pack.part = r->pack.parts = 0;
+    return status;
+}
+
+// ---------------------------------------------------------------- one capture
+
 static relume_status encode_team(const struct args *args, struct request *r,
                                  const relume_capture *capture)
 {
@@ -273,8 +361,9 @@ static relume_status encode_team(const struct args *args, struct request *r,
     struct relume_encode_report report;
     relume_status status = learn(&coder, capture, r);
     if (!status && !r->learn_only)
-        status = write_file(capture, coder, r, &report);
-    if (!status && !r->learn_only) {
+        status = (args->team ? write_together(args, capture, coder, r, &report)
+                             : write_file(capture, coder, r, &report));
+    if (!status && !r->learn_only && !(args->team && args->team->member)) {
         say_census(args, r, &report.census, relume_capture_hemispherical(capture));
         say_result(args, capture, coder, &report, r);
         if ((r->bits || r->pack.parts) && relume_encode_is_coarse(&report))
@@ -291,7 +380,7 @@ static relume_status encode(const struct args *args, struct request *r)
     relume_capture *capture;
     relume_team_files *team = NULL;
     struct prefix_log about;
-    r->open.keep_bytes = learns(r) ? KEEP_BYTES : 0;
+    r->open.keep_bytes = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
     relume_status status = relume_capture_open(&capture, r->input, &r->open);
     if (status)
         return status;
@@ -300,6 +389,11 @@ static relume_status encode(const struct args *args, struct request *r)
     if (ignores_positions(relume_capture_manifest(capture)))
         about.log.message(about.log.user, RELUME_WARNING,
                           "the lights stand near; they are treated as distant");
+    if (args->team) {
+        r->pack.team = args->team;
+        r->pack.part = args->team->member + 1;
+        r->pack.parts = args->team->members;
+    }
     if (r->learnt)
         status = form_team(&team, capture, r);
     if (!status)
@@ -317,20 +411,23 @@ static relume_status encode(const struct args *args, struct request *r)
 // What needs all views at once cannot be shared.
 static relume_status check_parts(const struct encode_options *o, const struct request *r)
 {
+    if (o->args.team && (o->part.parts || o->commands || o->learnt || o->learn_only))
+        return usage_error("relume-mpi makes the parts, and joins them; expected without --part, "
+                           "--commands and --learnt");
     if (o->learn_only && !o->learnt)
         return usage_error("--learn-only: expected --learnt FOLDER, where the share is left");
     if (o->learnt && !o->part.parts && !o->commands)
         return usage_error("--learnt is what parts share; expected --part or --commands with it");
-    if (!o->part.parts && !o->commands)
+    if (!o->part.parts && !o->commands && !o->args.team)
         return RELUME_OK;
     if (o->part.parts && o->commands)
         return usage_error("--commands prints the lines with --part; expected one of the two");
     if (is_coded(r))
         return usage_error("--psnr and --bytes-per-pixel try steps on all views; expected without "
                            "--part and --commands: encode in one go");
-    if (r->pack.books && r->pack.share)
-        return usage_error("--share learns one set of codebooks from all views; expected without "
-                           "--part and --commands: leave it out, or encode in one go");
+    if (r->pack.books && r->pack.share && !o->learnt && o->part.parts)
+        return usage_error("--share learns one set of codebooks from all views; expected --learnt "
+                           "FOLDER, where the parts share what it is learnt from");
     return RELUME_OK;
 }
 

@@ -67,19 +67,24 @@ static void print_word(const char *word)
 }
 
 // "statue.exr" becomes "statue" and what follows.
-static void print_beside(const char *output, const char *ending)
+static void name_beside(struct part_name *out, const char *output, const char *ending)
 {
-    char name[4096];
     const size_t stem = strlen(output) - strlen(name_ending(output));
-    snprintf(name, sizeof name, "%.*s%s", (int)stem, output, ending);
-    print_word(name);
+    snprintf(out->text, sizeof out->text, "%.*s%s", (int)stem, output, ending);
+}
+
+void name_part(struct part_name *out, const char *output, int part, int parts)
+{
+    char ending[64];
+    snprintf(ending, sizeof ending, ".%dof%d.part", part, parts);
+    name_beside(out, output, ending);
 }
 
 static void print_part_name(const char *output, int part, int parts)
 {
-    char ending[64];
-    snprintf(ending, sizeof ending, ".%dof%d.part", part, parts);
-    print_beside(output, ending);
+    struct part_name name;
+    name_part(&name, output, part, parts);
+    print_word(name.text);
 }
 
 static void print_encode(const struct args *args)
@@ -103,8 +108,10 @@ void print_commands_of_parts(const struct args *args, const char *output, int pa
     for (int i = 1; i <= parts; i++) {
         print_encode(args);
         if (learns) {
+            struct part_name folder;
+            name_beside(&folder, output, ".learnt");
             fputs(" --learnt", stdout);
-            print_beside(output, ".learnt");
+            print_word(folder.text);
         }
         printf(" --part %d/%d -o", i, parts);
         print_part_name(output, i, parts);

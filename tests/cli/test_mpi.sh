@@ -1,0 +1,63 @@
+#!/bin/sh
+# relume-mpi: the file of all processes of an MPI launcher is that of one process byte for byte; one voice.
+. "$(dirname "$0")/lib.sh"
+
+mpi=${RELUME%/*}/relume-mpi
+if ! command -v mpirun >/dev/null || [ ! -x "$mpi" ]; then
+    echo "skipped: no MPI (make deps-mpi)"
+    exit 0
+fi
+# in a container one is root; processes share cores and wait without turning
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl=self,vader,tcp OMPI_MCA_mpi_yield_when_idle=1
+processes() { # number, command line
+    n=$1
+    shift
+    timeout -k 1 120 mpirun --oversubscribe -n "$n" "$mpi" "$@"
+}
+
+"$RELUME" synth teapot -o slab --size 40 --views 3x3 --lights 8 --samples 1 -q
+"$RELUME" synth bust -o flat --size 70 --lights 12 --samples 1 -q
+
+as_one() { # name processes capture options...
+    name=$1 n=$2 capture=$3
+    shift 3
+    rm -f whole.exr together.exr
+    relume encode "$capture" "$@" -o whole.exr
+    processes "$n" encode "$capture" "$@" -o together.exr -q
+    same "$name" whole.exr together.exr
+}
+as_one 'by itself' 3 slab
+as_one 'one codebook for all views' 3 slab --basis sh --coefficients 4 --codebook 64 --share
+as_one 'of two stages, by splitting' 2 slab --basis pca --coefficients 6 --codebook 32 --share --stages 2 --codebook-start split
+as_one 'rows' 3 flat --basis pca
+as_one 'one process' 1 slab --basis sh
+# halves where 8 bits turn out too few
+"$sphere" lamp --size 32 --lights 1 --views 3 --hemisphere
+for view in lamp/view0?; do
+    "$mkimage" poke "$view/light0000.exr" lit.exr 16 16 1000 && mv lit.exr "$view/light0000.exr"
+done
+as_one 'very bright highlights' 2 lamp --basis table
+check 'no part is left' [ "$(ls | grep -c '\.part$')" = 0 ]
+
+# ---- one voice
+processes 3 encode slab -o said.exr >out.txt 2>err.txt
+check 'the result is said once' [ "$(grep -c 'reproduces your photographs' err.txt)" = 1 ]
+silent() { # name status pattern, processes, command line: one line of ours, no output
+    name=$1 want=$2 pattern=$3
+    shift 3
+    rm -f no.exr
+    processes "$@" >out.txt 2>err.txt
+    got=$?
+    if [ $got = "$want" ] && [ "$(grep -c '^relume: ' err.txt)" = 1 ] && grep -q "^relume: $pattern" err.txt && [ ! -e no.exr ]; then
+        ok "$name"
+    else
+        not_ok "$name" "status $got; $(head -5 err.txt)"
+    fi
+}
+silent 'no capture' 1 'none: ' 3 encode none -o no.exr
+silent 'a part of a part' 2 'relume-mpi makes the parts' 2 encode slab --part 1/2 -o no.exr
+silent 'more than rows' 1 '1 views of 70 rows cannot be shared by 6 parts' 6 encode flat -o no.exr
+head -c 900 slab/view07/light0003.exr >short && cp short slab/view07/light0003.exr
+silent 'a damaged photograph of the last process' 1 '.*light0003.exr: ' 3 encode slab -o no.exr
+check 'no part is left of it' [ "$(ls | grep -c '\.part$')" = 0 ]
+finish

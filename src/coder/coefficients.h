@@ -5,7 +5,8 @@
 #include <relume/coder.h>
 #include <sys/types.h>
 
-enum { BAND_ROWS = 16 };
+// Bands are encoded together; the blocks of a file have no more rows than this, or a part of it.
+enum { BAND_ROWS = 16, ENCODE_BLOCK = 32 };
 
 struct range {
     float min, max;
@@ -28,6 +29,14 @@ struct encode_rows {
     double *shown_error;  // [lights]: squared, of display values
     double root_sum;
     size_t error_count, lit_count;
+    struct encode_stored *stored;  // [height of the view], or NULL: steps are not known yet
+};
+
+// What storing costs on a row.
+struct encode_stored {
+    double square, shown;
+    size_t count;
+    relume_status status;
 };
 
 // Planes of integer codes wait as 16-bit numbers with a scale of their own per band of rows, finer
@@ -86,6 +95,16 @@ relume_status encode_some_rows(relume_coefficients **out, const relume_coder *co
 relume_status encode_finish_rows(relume_coefficients *c, const struct relume_image *mask,
                                  struct relume_transfer display,
                                  const struct relume_encode_params *p);
+
+// Some rows wait in `c`, its bands are those of all rows: choose the steps, and measure what
+// storing costs on those that are here, into `some.stored`. `masked` and the rest are as above.
+relume_status encode_settle_rows(relume_coefficients *c, const struct relume_image *mask,
+                                 struct relume_transfer display,
+                                 const struct relume_encode_params *p);
+// The report of a view, of what was added up and measured of all its rows; its census is left
+// empty.
+struct relume_encode_report encode_rows_report(const struct encode_rows *all, int height,
+                                               int lights);
 
 // Which of `parts` parts holds what: whole views, or where there are fewer views than parts rows of
 // one.

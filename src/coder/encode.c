@@ -367,13 +367,6 @@ static relume_status encode_bands(struct encoding *e, const relume_capture *capt
     return status;
 }
 
-// What storing costs on a row.
-struct stored {
-    double square, shown;
-    size_t count;
-    relume_status status;
-};
-
 // One worker's.
 struct stored_row {
     uint16_t *waiting, *codes;  // [planes][x], [x]
@@ -384,8 +377,8 @@ struct stored_row {
 struct storage {
     const struct encoding *e;
     relume_coefficients *c;
-    struct stored *row;       // [height]
-    struct stored_row *work;  // [workers]
+    struct encode_stored *row;  // [height]
+    struct stored_row *work;    // [workers]
 };
 
 static bool alloc_row(struct stored_row *w, size_t width, size_t planes, size_t lights)
@@ -424,9 +417,11 @@ static void compare_row(void *context, size_t item, int worker)
     const struct storage *s = context;
     const struct encoding *e = s->e;
     const struct stored_row *w = &s->work[worker];
-    struct stored *r = &s->row[item];
+    struct encode_stored *r = &s->row[item];
     const size_t width = (size_t)e->width, size = (size_t)e->lights * width;
-    if (!is_measured(s->c, (int)item))
+    const struct encode_rows *some = &s->c->some;
+    if (!is_measured(s->c, (int)item) ||
+        (some->rows && ((int)item < some->row || (int)item >= some->row + some->rows)))
         return;
     r->status = read_row(s->c, (int)item, w);
     for (int channel = 0; !r->status && channel < 3; channel++) {
@@ -443,37 +438,36 @@ static void compare_row(void *context, size_t item, int worker)
     image_forget(&e->mask, (int)item, 1);
 }
 
-static relume_status add_rows(relume_coefficients *c, struct encoding *e, const struct stored *row)
+static relume_status add_rows(struct relume_encode_report *r, struct encoding *e,
+                              const struct encode_stored *row)
 {
-    struct stored all = {0};
+    struct encode_stored all = {0};
     for (int y = 0; y < e->height && !all.status; y++) {
         all.status = row[y].status;
         all.square += row[y].square;
         all.shown += row[y].shown;
         all.count += row[y].count;
     }
-    c->report.store_rms = all.count ? sqrt(all.square / (double)all.count) : 0.0;
+    r->store_rms = all.count ? sqrt(all.square / (double)all.count) : 0.0;
     e->stored_error = all.shown / (all.count ? (double)all.count : 1.0);
     return all.status;
 }
 
 // What storing cost, over the captured lights, on the same rows.
-static relume_status measure_storage(relume_coefficients *c, struct encoding *e)
+static relume_status measure_storage(struct encode_stored *row, relume_coefficients *c,
+                                     struct encoding *e)
 {
     const int workers = thread_count(e->threads);
-    struct storage s = {e, c, mem_zeroed((size_t)e->height, sizeof *s.row),
-                        mem_zeroed((size_t)workers, sizeof *s.work)};
+    struct storage s = {e, c, row, mem_zeroed((size_t)workers, sizeof *s.work)};
     bool good = s.row && s.work;
     for (int i = 0; good && i < workers; i++)
         good = alloc_row(&s.work[i], (size_t)e->width, (size_t)e->planes, (size_t)e->lights);
     if (good)
         thread_for(e->threads, (size_t)e->height, compare_row, &s);
-    const relume_status status = good ? add_rows(c, e, s.row) : RELUME_ENOMEM;
     for (int i = 0; s.work && i < workers; i++)
         free_row(&s.work[i]);
     mem_free(s.work);
-    mem_free(s.row);
-    return status;
+    return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
 enum relume_domain relume_encode_domain(const relume_capture *capture, enum relume_domain domain)
@@ -587,10 +581,10 @@ static relume_status begin(struct encoding *e, const relume_coder *coder,
     return relume_capture_mask(&e->mask, capture, view, p->log);
 }
 
-// Steps are chosen, and what was measured becomes the report.
-static relume_status finish(relume_coefficients *c, struct encoding *e, enum relume_step step)
+// What was measured becomes the report.
+static relume_status fill_report(struct relume_encode_report *r, struct encoding *e,
+                                 const struct encode_stored *row)
 {
-    struct relume_encode_report *r = &c->report;
     relume_status status = RELUME_OK;
     double error = 0.0;
     for (int y = 0; y < e->height; y++)
@@ -598,11 +592,25 @@ static relume_status finish(relume_coefficients *c, struct encoding *e, enum rel
     r->fit_rms = e->error_count ? sqrt(error / (double)e->error_count) : 0.0;
     const double root = e->lit_count ? e->root_sum / (double)e->lit_count : 0.0;
     r->typical = root * root;
-    coefficients_choose_steps(c, e->total, e->mask.data != NULL, step);
-    if (relume_storage_top(c->info.storage))
-        status = measure_storage(c, e);
+    if (row)
+        status = add_rows(r, e, row);
     r->steps_rms = r->store_rms;
     r->psnr_db = shown_psnr(e);
+    return status;
+}
+
+static relume_status finish(relume_coefficients *c, struct encoding *e, enum relume_step step)
+{
+    struct encode_stored *row = NULL;
+    relume_status status = RELUME_OK;
+    coefficients_choose_steps(c, e->total, e->mask.data != NULL, step);
+    if (relume_storage_top(c->info.storage)) {
+        row = mem_zeroed((size_t)e->height, sizeof *row);
+        status = measure_storage(row, c, e);
+    }
+    if (!status)
+        status = fill_report(&c->report, e, row);
+    mem_free(row);
     return status;
 }
 
@@ -676,12 +684,13 @@ static void join_bands(struct encoding *e, const relume_coefficients *c)
     }
 }
 
-relume_status encode_finish_rows(relume_coefficients *c, const struct relume_image *mask,
-                                 struct relume_transfer display,
-                                 const struct relume_encode_params *p)
+// What rows of several know of the view, before steps are chosen.
+static relume_status begin_rows(struct encoding *e, relume_coefficients *c,
+                                const struct relume_image *mask, struct relume_transfer display,
+                                const struct relume_encode_params *p)
 {
     const bool coded = p->domain == RELUME_DOMAIN_DISPLAY;
-    struct encoding e = {
+    *e = (struct encoding){
         .coder = c->info.coder,
         .out = c,
         .lights = c->info.coder->info.lights,
@@ -694,20 +703,71 @@ relume_status encode_finish_rows(relume_coefficients *c, const struct relume_ima
         .error_count = c->some.error_count,
         .lit_count = c->some.lit_count,
     };
-    relume_status status = alloc_measuring(&e, display);
-    e.total = mem_array((size_t)e.planes, sizeof *e.total);
-    if (!status && !e.total)
+    relume_status status = alloc_measuring(e, display);
+    e->total = mem_array((size_t)e->planes, sizeof *e->total);
+    if (!status && !e->total)
         status = RELUME_ENOMEM;
-    if (!status) {
-        memcpy(e.row_error, c->some.error, (size_t)e.height * sizeof *e.row_error);
-        memcpy(e.shown_error, c->some.shown_error, (size_t)e.lights * sizeof *e.shown_error);
-        join_bands(&e, c);
-        e.mask = *mask;
+    if (status)
+        return status;
+    memcpy(e->row_error, c->some.error, (size_t)e->height * sizeof *e->row_error);
+    memcpy(e->shown_error, c->some.shown_error, (size_t)e->lights * sizeof *e->shown_error);
+    join_bands(e, c);
+    e->mask = *mask;
+    return RELUME_OK;
+}
+
+static void end_rows(struct encoding *e)
+{
+    e->mask = (struct relume_image){0};
+    free_encoder(e);
+}
+
+relume_status encode_finish_rows(relume_coefficients *c, const struct relume_image *mask,
+                                 struct relume_transfer display,
+                                 const struct relume_encode_params *p)
+{
+    struct encoding e;
+    relume_status status = begin_rows(&e, c, mask, display, p);
+    if (!status)
         status = finish(c, &e, p->step);
-        e.mask = (struct relume_image){0};
-    }
-    free_encoder(&e);
+    end_rows(&e);
     return status;
+}
+
+relume_status encode_settle_rows(relume_coefficients *c, const struct relume_image *mask,
+                                 struct relume_transfer display,
+                                 const struct relume_encode_params *p)
+{
+    struct encoding e;
+    relume_status status = begin_rows(&e, c, mask, display, p);
+    c->some.stored = mem_zeroed((size_t)e.height, sizeof *c->some.stored);
+    if (!status && !c->some.stored)
+        status = RELUME_ENOMEM;
+    if (!status)
+        coefficients_choose_steps(c, e.total, mask->data != NULL, p->step);
+    if (!status && relume_storage_top(c->info.storage))
+        status = measure_storage(c->some.stored, c, &e);
+    for (int y = c->some.row; !status && y < c->some.row + c->some.rows; y++)
+        status = c->some.stored[y].status;
+    end_rows(&e);
+    return status;
+}
+
+struct relume_encode_report encode_rows_report(const struct encode_rows *all, int height,
+                                               int lights)
+{
+    struct relume_encode_report report = {0};
+    struct encoding e = {
+        .height = height,
+        .lights = lights,
+        .row_error = all->error,
+        .shown_error = all->shown_error,
+        .root_sum = all->root_sum,
+        .error_count = all->error_count,
+        .lit_count = all->lit_count,
+    };
+    (void)!fill_report(&report, &e, all->stored);  // rows that could not be read have been noticed
+    return report;
 }
 
 // ---------------------------------------------------------------- other coefficients

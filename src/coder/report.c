@@ -46,17 +46,20 @@ static int first_part(int v, int parts, int views)
     return (int)((int64_t)parts * v / views);
 }
 
+// Where there are enough of them parts hold whole blocks of the file, which join then copies.
 static bool share_rows(struct encode_share *out, int part, int parts, int views, int height)
 {
-    const int bands = (height + BAND_ROWS - 1) / BAND_ROWS;
     int v = 0;
     while (first_part(v + 1, parts, views) < part)
         v++;
     const int before = first_part(v, parts, views);
     const int64_t of = first_part(v + 1, parts, views) - before, i = part - 1 - before;
-    const int first = (int)(bands * i / of), end = (int)(bands * (i + 1) / of);
-    *out = (struct encode_share){.first = v, .views = 1, .row = first * BAND_ROWS};
-    out->rows = (end < bands ? end * BAND_ROWS : height) - out->row;
+    const int blocks = (height + ENCODE_BLOCK - 1) / ENCODE_BLOCK;
+    const int unit = of <= blocks ? ENCODE_BLOCK : BAND_ROWS;
+    const int units = (height + unit - 1) / unit;
+    const int first = (int)(units * i / of), end = (int)(units * (i + 1) / of);
+    *out = (struct encode_share){.first = v, .views = 1, .row = first * unit};
+    out->rows = (end < units ? end * unit : height) - out->row;
     return true;
 }
 

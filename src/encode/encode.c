@@ -6,9 +6,12 @@
 #include "base/params.h"
 #include "codebook/books.h"
 #include "coder/coefficients.h"
+#include "encode/pyramid.h"
 #include "encode/rate.h"
 
+#include <relume/team.h>
 #include <math.h>
+#include <string.h>
 
 struct material {
     struct relume_pack_view *view;
@@ -279,6 +282,16 @@ static relume_status reduce_views(const struct material *m, const relume_capture
     return status;
 }
 
+// Rows of others stay black.
+static relume_status show_rows(void *contents, int row, int rows, float *rgb)
+{
+    const struct relume_pack_contents *c = contents;
+    const struct encode_rows *some = &c->view[c->views / 2].coefficients->some;
+    return row < some->row || row >= some->row + some->rows
+               ? RELUME_OK
+               : relume_pack_preview(contents, row, rows, rgb);
+}
+
 static relume_status write_material(const struct material *m, const relume_capture *capture,
                                     const relume_coder *coder,
                                     const struct relume_encode_report *report, const char *path,
@@ -307,8 +320,9 @@ static relume_status write_material(const struct material *m, const relume_captu
             return status;
         contents.share = &share;
         contents.report = (struct relume_encode_report){0};
-        if (m->rows || m->first > m->views / 2 || m->views / 2 >= m->end)
-            contents.preview = NULL;
+        const bool middle = m->first <= m->views / 2 && m->views / 2 < m->end;
+        const bool waits = m->rows && !m->coefficients[m->first]->some.stored;
+        contents.preview = !middle || waits ? NULL : m->rows ? show_rows : relume_pack_preview;
     }
     return relume_pack_write(&contents, path,
                              relume_pack_params(.log = p->log, .compression = p->compression,
@@ -454,6 +468,80 @@ static relume_status find_share(struct encode_share *out, const relume_capture *
     return RELUME_OK;
 }
 
+// ---------------------------------------------------------------- rows whose view others have too
+
+// Whether parts that run at the same time tell each other their ranges, so that each packs its own
+// rows: in whole blocks, and of views that are no pyramid, whose levels need all rows.
+static bool may_settle(const struct material *m, const relume_capture *capture,
+                       const struct relume_pack_encode_params *p)
+{
+    const int width = relume_capture_width(capture), height = relume_capture_height(capture);
+    struct encode_share share = {0};
+    bool whole =
+        m->rows && p->team && p->team->close && !pyramid_is_wanted(p->pyramid, width, height);
+    for (int i = 1; whole && i <= p->parts; i++) {
+        encode_share_of(&share, i, p->parts, m->views, height);
+        whole = share.first != m->first || share.row % ENCODE_BLOCK == 0;
+    }
+    return whole;
+}
+
+// The bands of a part's rows.
+static struct range *bands_of(relume_coefficients *c, const struct encode_share *share,
+                              size_t *size)
+{
+    const size_t planes = (size_t)c->info.planes;
+    const size_t bands = (size_t)(share->rows + BAND_ROWS - 1) / BAND_ROWS;
+    *size = bands * planes * sizeof *c->band;
+    return c->band + (size_t)(share->row / BAND_ROWS) * planes;
+}
+
+static relume_status own_ranges(void *context, int member, struct relume_buffer *out)
+{
+    struct material *m = context;
+    const struct encode_share own = {.row = m->row, .rows = m->rows};
+    const struct relume_writer writer = relume_buffer_writer(out);
+    size_t size;
+    const struct range *bands = bands_of(m->coefficients[m->first], &own, &size);
+    (void)member;
+    return writer.write(writer.user, bands, size, 0) ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static void take_ranges(struct material *m, int height, int parts,
+                        const struct relume_buffer *piece)
+{
+    struct encode_share share = {0};
+    for (int i = 0; i < parts; i++) {
+        size_t size;
+        encode_share_of(&share, i + 1, parts, m->views, height);
+        if (share.first != m->first)
+            continue;
+        struct range *to = bands_of(m->coefficients[m->first], &share, &size);
+        memcpy(to, piece[i].data, size < piece[i].size ? size : piece[i].size);
+    }
+}
+
+static relume_status settle_rows(struct material *m, const relume_capture *capture,
+                                 const struct relume_pack_encode_params *p,
+                                 const struct relume_encode_params *encode)
+{
+    struct relume_buffer *piece = mem_zeroed((size_t)p->parts, sizeof *piece);
+    struct relume_image *mask = &m->mask[m->first];
+    relume_status status =
+        piece ? p->team->share(p->team->user, "ranges", own_ranges, m, piece) : RELUME_ENOMEM;
+    if (!status)
+        take_ranges(m, relume_capture_height(capture), p->parts, piece);
+    for (int i = 0; piece && i < p->parts; i++)
+        relume_buffer_destroy(&piece[i]);
+    mem_free(piece);
+    if (!status && m->row)
+        status = relume_capture_mask(mask, capture, m->first, p->log);
+    m->view[m->first].mask = mask->data ? mask : NULL;
+    return status ? status
+                  : encode_settle_rows(m->coefficients[m->first], mask,
+                                       relume_encode_display(capture), encode);
+}
+
 // What is said of the work on all views, as that of a part.
 struct part_log {
     struct relume_log log;
@@ -522,6 +610,8 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         place_views(&m, manifest);
     for (int i = m.first; !status && i < m.end; i++)
         status = encode_view(&m, i, coder, capture, !p.no_depth, &encode);
+    if (!status && may_settle(&m, capture, &p))
+        status = settle_rows(&m, capture, &p, &encode);
     if (!status && !coded && p.books)
         status = make_books(&m, capture, coder, &p, &encode);
     if (!status && !coded && p.books && report)

@@ -1,5 +1,5 @@
 // pyramid.c - the reduced levels of a large view
-#include <relume/pack.h>
+#include "encode/pyramid.h"
 
 #include "base/log.h"
 #include "base/memory.h"
@@ -52,6 +52,11 @@ static relume_status make_levels(struct relume_pack_levels *out, const struct re
     return status;
 }
 
+bool pyramid_is_wanted(enum relume_pyramid pyramid, int width, int height)
+{
+    return pyramid == RELUME_PYRAMID_YES || (!pyramid && (int64_t)width * height > LARGE);
+}
+
 relume_status relume_pack_reduce(struct relume_pack_levels *out,
                                  const struct relume_pack_contents *contents,
                                  const struct relume_pack_view *view, enum relume_pyramid pyramid,
@@ -61,7 +66,7 @@ relume_status relume_pack_reduce(struct relume_pack_levels *out,
     const struct reduction how = {
         .domain = contents->domain, .display = contents->display, .encode = *params};
     *out = (struct relume_pack_levels){0};
-    if (pyramid == RELUME_PYRAMID_NO || (!pyramid && (int64_t)info->width * info->height <= LARGE))
+    if (!pyramid_is_wanted(pyramid, info->width, info->height))
         return RELUME_OK;
     relume_status status = refuse(contents, pyramid ? params->log : NULL);
     if (status)

@@ -358,10 +358,26 @@ static void write_tiles(struct writing *w, int threads)
 static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int block,
                                  void **packed, size_t *room, const struct relume_log *log);
 
+int exr_block_rows(enum exr_codec codec)
+{
+    return codecs[codec].rows;
+}
+
 static int blocks_of(const struct exr_part *p)
 {
     const int rows = p->tile ? p->tile : codecs[p->codec].rows;
     return (p->height + rows - 1) / rows * (p->tile ? tiles_across(p->width, p->tile) : 1);
+}
+
+// Where the block of a part lies that is copied.
+static struct exr_source source_of(const struct exr_part *part, int *block)
+{
+    const int rows = codecs[part->codec].rows;
+    struct exr_source s = {part->from, part->from_part, 0, 0};
+    for (int i = 0; i < part->sources && part->source[i].row <= *block * rows; i++)
+        s = part->source[i];
+    *block -= part->sources ? (s.row - s.from_row) / rows : 0;
+    return s;
 }
 
 // Blocks go from file to file as they are.
@@ -373,7 +389,9 @@ static relume_status copy_part(struct writing *w, const struct exr_part *part, i
     const int across = part->tile ? tiles_across(part->width, part->tile) : 1;
     for (int block = 0; !w->status && block < blocks_of(part); block++) {
         exr_chunk_info_t chunk, to;
-        w->status = read_packed(part->from, part->from_part, &chunk, block, &packed, &room, log);
+        int there = block;
+        const struct exr_source s = source_of(part, &there);
+        w->status = read_packed(s.from, s.from_part, &chunk, there, &packed, &room, log);
         exr_result_t e = w->status ? 0 : written_chunk(&to, w, part, index, block);
         if (!w->status && !e && part->tile)
             e = exr_write_tile_chunk(w->exr, index, block % across, block / across, 0, 0, packed,

@@ -46,7 +46,18 @@ struct exr_part {
     // In place of `rows`: the blocks of a part of another file, packed as they are there.
     const exr_file *from;
     int from_part;
+    // Or of several: from `row` of the whole on those that begin at `from_row` of each, rows of
+    // whole blocks of scanlines. They follow one another.
+    int sources;
+    const struct exr_source *source;  // [sources]
 };
+struct exr_source {
+    const exr_file *from;
+    int from_part, row, from_row;
+};
+
+// Rows of a block of scanlines.
+int exr_block_rows(enum exr_codec codec);
 
 // Write all parts into `path`, or `writer` (outfile.h), whole or not at all. RELUME_EIO,
 // RELUME_ENOMEM, RELUME_ECANCEL or what a `rows` function returned.

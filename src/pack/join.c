@@ -189,6 +189,117 @@ static relume_status add_views(struct joining *j, const struct part_file *p)
     return status;
 }
 
+// ---------------------------------------------------------------- rows that are packed
+
+static int count_lights(const struct joining *j)
+{
+    int count = 0;
+    return exr_get_floats(j->part->file, 0, ATTR_LIGHTS, &count) ? count / 3 : 0;
+}
+
+static int height_of_views(const struct joining *j)
+{
+    return exr_part_info(j->part->file, 0).height;
+}
+
+// Part `exr` of a file as a piece of what those of the other parts of the view are.
+static bool is_piece(const struct exr_part *piece, const struct exr_part *all,
+                     const struct part_file *p)
+{
+    const struct exr_attribute *a = piece->attribute, *b = all->attribute;
+    bool same = piece->height == p->info.rows && piece->width == all->width &&
+                piece->codec == all->codec && piece->sample == all->sample &&
+                piece->channels == all->channels && piece->attributes == all->attributes &&
+                !piece->tile && p->info.row % exr_block_rows(piece->codec) == 0;
+    for (int i = 0; same && i < piece->attributes; i++)
+        same = !strncmp(a[i].name, ATTR_PART, sizeof ATTR_PART - 1) || is_same(&a[i], &b[i]);
+    return same;
+}
+
+// The blocks of rows of a view from all its parts, the first of which is order[*i]; *i moves behind
+// them.
+static relume_status add_rows_of_view(struct joining *j, int *i)
+{
+    const struct part_file *first = j->order[*i];
+    const int view = first->info.first, lights = count_lights(j), height = height_of_views(j);
+    struct exr_part *to = &j->exr[j->exrs];
+    struct exr_source *source = arena_array(&j->arena, (size_t)j->count, sizeof *source);
+    struct encode_rows sums = {
+        .error = arena_array(&j->arena, (size_t)height, sizeof *sums.error),
+        .shown_error = arena_array(&j->arena, (size_t)lights, sizeof *sums.shown_error),
+        .stored = arena_array(&j->arena, (size_t)height, sizeof *sums.stored),
+    };
+    struct relume_encode_report *measured =
+        arena_array(&j->arena, (size_t)j->count, sizeof *measured);
+    relume_status status = source && sums.error && sums.shown_error && sums.stored && measured
+                               ? exr_part_again(to, first->file, 1, &j->arena)
+                               : RELUME_ENOMEM;
+    int n = 0;
+    for (; !status && *i < j->count && j->order[*i]->info.first == view; ++*i, n++) {
+        const struct part_file *p = j->order[*i];
+        struct exr_part piece;
+        source[n] = (struct exr_source){p->file, 1, p->info.row, 0};
+        status = exr_part_again(&piece, p->file, 1, &j->arena);
+        if (!status && (!is_piece(&piece, to, p) || !rows_add_errors(&sums, p, lights) ||
+                        !rows_add_stored(&sums, p) || !part_measured(&measured[n], p, 1)))
+            status = RELUME_EDAMAGED;
+        if (status == RELUME_EDAMAGED)
+            return damaged(j, p);
+    }
+    if (status)
+        return status;
+    j->measured[view] = encode_rows_report(&sums, height, lights);
+    j->measured[view].census = encode_report_mean(measured, n).census;
+    to->height = height;
+    to->source = source;
+    to->sources = n;
+    keep_attributes(to);
+    j->exrs++;
+    for (int k = 2; !status && k < exr_part_count(first->file); k++)
+        status = add_again(j, first, k);
+    return status;
+}
+
+static relume_status add_rows(struct joining *j)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < j->count;)
+        status = add_rows_of_view(j, &i);
+    return status;
+}
+
+// Each part has its own rows of the preview.
+static relume_status gather_preview(struct joining *j, const struct part_file *first)
+{
+    struct exr_source *source = arena_array(&j->arena, (size_t)j->count, sizeof *source);
+    if (!source)
+        return RELUME_ENOMEM;
+    j->exr->source = source;
+    for (int i = 0; i < j->count; i++)
+        if (j->order[i]->info.first == first->info.first) {
+            const int row = j->order[i]->info.row;
+            source[j->exr->sources++] = (struct exr_source){j->order[i]->file, 0, row, row};
+        }
+    return RELUME_OK;
+}
+
+// All parts, or none; more of them than one process has made wait for the ranges of the others.
+static relume_status find_packed(const struct joining *j, bool *packed)
+{
+    int count = 0;
+    for (int i = 0; i < j->count; i++)
+        count += exr_get_text(j->part[i].file, 1, ATTR_STORED) != NULL;
+    *packed = count == j->count;
+    return !count || *packed
+               ? RELUME_OK
+               : log_fail(j->log, RELUME_EUNFIT,
+                          "%s: some parts hold packed rows and others do not; run all parts again "
+                          "in the same way",
+                          j->part->path);
+}
+
+// ---------------------------------------------------------------- all of it
+
 // The part that holds the middle view made the preview.
 static const struct part_file *with_preview(const struct joining *j)
 {
@@ -201,7 +312,10 @@ static const struct part_file *with_preview(const struct joining *j)
 
 static relume_status add_header(struct joining *j)
 {
-    const relume_status status = add_again(j, with_preview(j), 0);
+    const struct part_file *const first = with_preview(j);
+    relume_status status = add_again(j, first, 0);
+    if (!status && first->info.rows)
+        status = gather_preview(j, first);
     struct exr_attribute *format = status ? NULL : find_attribute(j->exr, ATTR_FORMAT);
     if (format)
         format->text = FORMAT_NAME;
@@ -236,7 +350,9 @@ static relume_status gather(struct joining *j, struct relume_encode_report *repo
     relume_status status = j->exr && j->measured ? add_header(j) : RELUME_ENOMEM;
     for (int k = 1; !status && k <= j->part->books; k++)
         status = add_again(j, j->part, k);
-    for (int i = 0; !status && i < j->count; i++)
+    if (!status && j->part->info.rows)
+        status = add_rows(j);
+    for (int i = 0; !status && !j->part->info.rows && i < j->count; i++)
         status = add_views(j, j->order[i]);
     return status ? status : set_report(j, report);
 }
@@ -271,12 +387,15 @@ relume_status relume_pack_join(const char *const *parts, int count, const char *
     j.count = open;
     if (!status)
         status = check_parts(&j);
+    bool packed = true;
     if (!status && j.part->info.rows)
-        status = join_rows(j.order, j.count, path, report ? report : &ignored, &p);
-    else if (!status)
+        status = find_packed(&j, &packed);
+    if (!status && packed)
         status = gather(&j, report);
-    if (!status && !j.part->info.rows)
+    if (!status && packed)
         status = exr_write(path, p.writer, j.exr, j.exrs, p.threads, p.log);
+    else if (!status)
+        status = join_rows(j.order, j.count, path, report ? report : &ignored, &p);
     for (int i = 0; i < open; i++)
         part_close(&j.part[i]);
     arena_free(&j.arena);

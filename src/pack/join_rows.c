@@ -172,9 +172,8 @@ static bool read_bands(const struct part_file *part, relume_coefficients *c)
     return true;
 }
 
-static bool read_errors(const struct part_file *part, relume_coefficients *c, int lights)
+bool rows_add_errors(struct encode_rows *s, const struct part_file *part, int lights)
 {
-    struct encode_rows *s = &c->some;
     const char *text = exr_get_text(part->file, 1, ATTR_ERRORS);
     double head[3], one;
     if (!text || !read_numbers(&text, head, 3) || !(head[1] >= 0.0 && head[1] < 0x1p53) ||
@@ -189,6 +188,20 @@ static bool read_errors(const struct part_file *part, relume_coefficients *c, in
         s->shown_error[i] += one;
     }
     return read_numbers(&text, s->error + part->info.row, (size_t)part->info.rows);
+}
+
+bool rows_add_stored(struct encode_rows *s, const struct part_file *part)
+{
+    const char *text = exr_get_text(part->file, 1, ATTR_STORED);
+    double numbers[3];
+    for (int y = part->info.row; y < part->info.row + part->info.rows; y++) {
+        if (!text || !read_numbers(&text, numbers, 3) ||
+            !(numbers[2] >= 0.0 && numbers[2] < 0x1p53))
+            return false;
+        s->stored[y] =
+            (struct encode_stored){numbers[0], numbers[1], (size_t)numbers[2], RELUME_OK};
+    }
+    return true;
 }
 
 // The part behind the rows that is called so; -1: none.
@@ -237,7 +250,7 @@ static relume_status gather_view(struct rows_joining *j, int v, int *i)
     if (!c->some.error || !c->some.shown_error)
         return RELUME_ENOMEM;
     for (; !status && *i < j->count && j->part[*i]->info.first == v; ++*i) {
-        status = read_bands(j->part[*i], c) && read_errors(j->part[*i], c, lights)
+        status = read_bands(j->part[*i], c) && rows_add_errors(&c->some, j->part[*i], lights)
                      ? read_rows(j, j->part[*i], c)
                      : damaged(j, j->part[*i]);
     }

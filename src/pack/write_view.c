@@ -19,6 +19,7 @@ static relume_status code_rows(void *context, int row, int rows, void *samples)
     const size_t width = (size_t)info->width, planes = (size_t)info->planes;
     const size_t code = width * relume_storage_bytes(info->storage);
     const size_t sample = width * exr_sample_bytes(codes_sample(info->storage));
+    row += coefficients->some.row;
     char *codes = mem_array(planes, code), *to = samples;  // a row stays in the cache
     relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
     for (int y = row; !status && y < row + rows; y++, to += planes * sample) {
@@ -78,6 +79,18 @@ static void add_plane(struct writer *w, const char *name, int view,
     part->channel = channel;
     part->rows = rows;
     part->context = (void *)(uintptr_t)image;
+}
+
+// What join adds up of rows whose steps are known.
+static const char *stored_text(struct writer *w, const struct encode_rows *s)
+{
+    enum { EACH = 80 };
+    char *text = arena_array(&w->arena, (size_t)s->rows + 1, EACH), *to = text;
+    w->failed |= !text;
+    for (int y = s->row; text && y < s->row + s->rows; y++)
+        to += snprintf(to, EACH, "%a %a %zu ", s->stored[y].square, s->stored[y].shown,
+                       s->stored[y].count);
+    return text;
 }
 
 static void add_steps(struct writer *w, struct exr_part *part,
@@ -160,20 +173,19 @@ static void fill_with_waiting(struct writer *w, struct exr_part *part,
     const int bands = (c->some.rows + BAND_ROWS - 1) / BAND_ROWS;
     part->codec = EXR_CODEC_NONE;
     part->sample = c->info.storage == RELUME_STORE_FLOAT ? EXR_SAMPLE_FLOAT : EXR_SAMPLE_HALF;
-    part->height = c->some.rows;
     part->channels = planes;
     part->channel = waiting_channels(w, planes);
     part->rows = waiting_rows;
     part->context = (void *)(uintptr_t)c;
     writer_floats(w, part, ATTR_BANDS, &c->band[(size_t)first * (size_t)planes].min,
                   2 * bands * planes);
-    writer_text(part, ATTR_ERRORS, errors_text(w, c));
 }
 
 static void add_codes(struct writer *w, int index, bool shared)
 {
     const struct relume_pack_view *view = &w->contents->view[index];
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
+    const struct encode_rows *some = &view->coefficients->some;
     struct exr_part *part =
         writer_part(w, arena_format(&w->arena, "view%04d", index), info->width, info->height);
     part->tile = view->levels ? FORMAT_TILE : 0;
@@ -184,10 +196,16 @@ static void add_codes(struct writer *w, int index, bool shared)
         writer_text(part, ATTR_MEASURED, measured_text(w, index));
     if (view->books)
         writer_fill_indices(part, view);
-    else if (view->coefficients->some.rows)
+    else if (some->rows && !some->stored)
         fill_with_waiting(w, part, view);
     else
         fill_with_planes(w, part, view->coefficients);
+    if (some->rows) {
+        part->height = some->rows;
+        writer_text(part, ATTR_ERRORS, errors_text(w, view->coefficients));
+    }
+    if (some->rows && some->stored)
+        writer_text(part, ATTR_STORED, stored_text(w, some));
     if (view->books && !shared)
         writer_add_books(w, view->books, index);
 }
@@ -227,5 +245,6 @@ void writer_add_view(struct writer *w, int index, bool shared)
         add_plane(w, "depth", index, view->depth, depth_channel, EXR_SAMPLE_FLOAT, depth_rows);
     if (!view->coded)
         writer_add_levels(w, index);
-    add_plane(w, "mask", index, view->mask, mask_channel, EXR_SAMPLE_HALF, mask_rows);
+    add_plane(w, "mask", index, view->coefficients->some.row ? NULL : view->mask, mask_channel,
+              EXR_SAMPLE_HALF, mask_rows);
 }

@@ -1,0 +1,10 @@
+// pyramid.h - which views have reduced levels
+#ifndef ENCODE_PYRAMID_H
+#define ENCODE_PYRAMID_H
+
+#include <relume/pack.h>
+
+// Whether a view of that size is to have them; some cannot.
+bool pyramid_is_wanted(enum relume_pyramid pyramid, int width, int height);
+
+#endif

@@ -370,10 +370,10 @@ static int blocks_of(const struct exr_part *p)
 }
 
 // Where the block of a part lies that is copied.
-static struct exr_source source_of(const struct exr_part *part, int *block)
+static struct exr_copied source_of(const struct exr_part *part, int *block)
 {
     const int rows = codecs[part->codec].rows;
-    struct exr_source s = {part->from, part->from_part, 0, 0};
+    struct exr_copied s = {part->from, part->from_part, 0, 0};
     for (int i = 0; i < part->sources && part->source[i].row <= *block * rows; i++)
         s = part->source[i];
     *block -= part->sources ? (s.row - s.from_row) / rows : 0;
@@ -390,7 +390,7 @@ static relume_status copy_part(struct writing *w, const struct exr_part *part, i
     for (int block = 0; !w->status && block < blocks_of(part); block++) {
         exr_chunk_info_t chunk, to;
         int there = block;
-        const struct exr_source s = source_of(part, &there);
+        const struct exr_copied s = source_of(part, &there);
         w->status = read_packed(s.from, s.from_part, &chunk, there, &packed, &room, log);
         exr_result_t e = w->status ? 0 : written_chunk(&to, w, part, index, block);
         if (!w->status && !e && part->tile)

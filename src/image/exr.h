@@ -49,9 +49,9 @@ struct exr_part {
     // Or of several: from `row` of the whole on those that begin at `from_row` of each, rows of
     // whole blocks of scanlines. They follow one another.
     int sources;
-    const struct exr_source *source;  // [sources]
+    const struct exr_copied *source;  // [sources]
 };
-struct exr_source {
+struct exr_copied {
     const exr_file *from;
     int from_part, row, from_row;
 };

@@ -97,7 +97,7 @@ static bool listen_to(bool first)
     return true;
 }
 
-static void say(const char *text)
+static void speak(const char *text)
 {
     hear(NULL, text, strlen(text));
 }
@@ -108,7 +108,7 @@ static void repeat(char *text)
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
         fflush(hearing);
         if (!heard || !strstr(heard, line))
-            say(line), say("\n");
+            speak(line), speak("\n");
     }
 }
 
@@ -150,9 +150,9 @@ static int exit_of_all(struct processes *p, relume_status status)
 {
     const bool stopped = status == RELUME_ECANCEL && p->broken;
     if (status == RELUME_ENOMEM)
-        say("relume: out of memory\n");
+        speak("relume: out of memory\n");
     if (status == RELUME_ECANCEL && !stopped)
-        say("relume: interrupted; nothing was written\n");
+        speak("relume: interrupted; nothing was written\n");
     const int64_t own = stopped ? 0 : relume_status_exit(status);
     int code = 0;
     gather_texts(p, stopped);

@@ -223,7 +223,7 @@ static relume_status add_rows_of_view(struct joining *j, int *i)
     const struct part_file *first = j->order[*i];
     const int view = first->info.first, lights = count_lights(j), height = height_of_views(j);
     struct exr_part *to = &j->exr[j->exrs];
-    struct exr_source *source = arena_array(&j->arena, (size_t)j->count, sizeof *source);
+    struct exr_copied *source = arena_array(&j->arena, (size_t)j->count, sizeof *source);
     struct encode_rows sums = {
         .error = arena_array(&j->arena, (size_t)height, sizeof *sums.error),
         .shown_error = arena_array(&j->arena, (size_t)lights, sizeof *sums.shown_error),
@@ -238,7 +238,7 @@ static relume_status add_rows_of_view(struct joining *j, int *i)
     for (; !status && *i < j->count && j->order[*i]->info.first == view; ++*i, n++) {
         const struct part_file *p = j->order[*i];
         struct exr_part piece;
-        source[n] = (struct exr_source){p->file, 1, p->info.row, 0};
+        source[n] = (struct exr_copied){p->file, 1, p->info.row, 0};
         status = exr_part_again(&piece, p->file, 1, &j->arena);
         if (!status && (!is_piece(&piece, to, p) || !rows_add_errors(&sums, p, lights) ||
                         !rows_add_stored(&sums, p) || !part_measured(&measured[n], p, 1)))
@@ -271,14 +271,14 @@ static relume_status add_rows(struct joining *j)
 // Each part has its own rows of the preview.
 static relume_status gather_preview(struct joining *j, const struct part_file *first)
 {
-    struct exr_source *source = arena_array(&j->arena, (size_t)j->count, sizeof *source);
+    struct exr_copied *source = arena_array(&j->arena, (size_t)j->count, sizeof *source);
     if (!source)
         return RELUME_ENOMEM;
     j->exr->source = source;
     for (int i = 0; i < j->count; i++)
         if (j->order[i]->info.first == first->info.first) {
             const int row = j->order[i]->info.row;
-            source[j->exr->sources++] = (struct exr_source){j->order[i]->file, 0, row, row};
+            source[j->exr->sources++] = (struct exr_copied){j->order[i]->file, 0, row, row};
         }
     return RELUME_OK;
 }

@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "encode_parts.h"
 
+#include <stdlib.h>
 #include <sys/stat.h>
 
 struct encode_options {
@@ -294,6 +295,8 @@ static relume_status join_parts(void *context, int member, struct relume_buffer 
     const int parts = args->team->members;
     if (member)
         return give_byte(out, 0);
+    struct relume_log log = *args->log;
+    log.leave_unnoted = true;  // parts are written again where 8 bits are too few
     struct part_name *name = calloc((size_t)parts, sizeof *name);
     const char **path = calloc((size_t)parts, sizeof *path);
     relume_status status = name && path ? RELUME_OK : RELUME_ENOMEM;
@@ -302,9 +305,9 @@ static relume_status join_parts(void *context, int member, struct relume_buffer 
         path[i] = name[i].text;
     }
     if (!status)
-        status = relume_pack_join(path, parts, t->r->output, t->report,
-                                  relume_pack_params(.log = args->log, .limits = &args->limits,
-                                                     .threads = args->threads));
+        status = relume_pack_join(
+            path, parts, t->r->output, t->report,
+            relume_pack_params(.log = &log, .limits = &args->limits, .threads = args->threads));
     free(path);
     free(name);
     return status ? status : give_byte(out, relume_encode_is_coarse(t->report));

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
+#include "image/picture.h"
 
 #include <ctype.h>
 #include <libgen.h>
@@ -412,6 +413,12 @@ relume_status manifest_read(struct draft *out, const char *path,
 {
     *out = (struct draft){0};
     jvalue *root;
+    if (picture_is_relume(path, params->log))
+        return log_fail(
+            params->log, RELUME_EFORMAT,
+            "%s: this is a relume file, encoded already; expected the capture.json, the "
+            ".lp file or the folder of its photographs",
+            path);
     if (is_picture(path, params->log))
         return log_fail(params->log, RELUME_EFORMAT,
                         "%s: this is a photograph; give the .lp file, or use 'relume capture'",

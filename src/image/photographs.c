@@ -46,7 +46,7 @@ static const char *why_none(const char *path, const struct relume_log *log)
         kind && (kind->listed || (kind->reader && *kind->reader && log &&
                                   limits_or_default(limits_of(NULL, log)).any_format));
     if (readable)
-        return picture_is_relume(path) ? relume_file : NULL;
+        return picture_is_relume(path, NULL) ? relume_file : NULL;
     return has_picture_name(path) ? NULL : kind && kind->what ? kind->what : "";
 }
 

@@ -83,11 +83,11 @@ bool picture_head_is_relume(const char *head, size_t n)
     return n > 4 && !memcmp(head, magic, 4) && memmem(head, n, attributes, strlen(attributes));
 }
 
-bool picture_is_relume(const char *path)
+bool picture_is_relume(const char *path, const struct relume_log *log)
 {
     char head[4096];
     struct infile in;
-    if (!infile_open(&in, path, NULL, NULL))
+    if (!infile_open(&in, path, NULL, log))
         return false;
     const int64_t n = infile_read(&in, head, sizeof head, 0);
     infile_close(&in);

@@ -52,7 +52,7 @@ void picture_find_colour(struct picture_info *info, const char *const *names);
 // Whether first bytes, `n` of them or those of a file, are a relume file's; a picture's too, its
 // preview.
 bool picture_head_is_relume(const char *head, size_t n);
-bool picture_is_relume(const char *path);
+bool picture_is_relume(const char *path, const struct relume_log *log);
 // What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
 const char *picture_error(const picture_reader *reader);
 void picture_close(picture_reader **reader);

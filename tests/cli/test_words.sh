@@ -54,6 +54,7 @@ for n in 239 251; do
 done
 
 # ---- sentences that say what to do
+expect_fail 'a relume file for a capture' 1 'this is a relume file, encoded already; expected the capture.json' x.exr "$RELUME" encode "$long.exr" -o x.exr
 expect_fail 'a photograph for a capture' 1 "b.png: this is a photograph; give the .lp file, or use 'relume capture'" x.exr "$RELUME" encode b.png -o x.exr
 "$BUILD/samples/sphere" few --size 32 --lights 4 --hemisphere --format png
 expect_ok 'lamps to add, in words' 'add lamps: .*, [0-9]* degrees above the table \([0-9]* degrees counter-clockwise' \

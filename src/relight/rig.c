@@ -139,7 +139,7 @@ static relume_status find_resource(struct resource **out, relume_rig *rig,
 static relume_status attach(relume_rig *rig, struct relume_rig_entry *e,
                             const struct relume_log *log)
 {
-    struct resource *r;
+    struct resource *r = NULL;
     const relume_status status = find_resource(&r, rig, e->light.kind, e->file, log);
     if (status)
         return status;

@@ -131,7 +131,8 @@ struct relume_capture_params {
     size_t keep_bytes;  // images of 8 bits that a table has read stay decoded in memory up to this
                         // many bytes, so that later tables of the view are cheap; default: none
     const char *scratch;  // depth and masks of more than 64 MB lie in temporary files beside this
-                          // path; default: $TMPDIR
+                          // path (default: $TMPDIR), and where it is given images that do not fit
+                          // into keep_bytes, up to half of limits.max_memory
 };
 #define relume_capture_params(...)                                                                 \
     (&(const struct relume_capture_params){RELUME_SIZED(relume_capture_params), __VA_ARGS__})

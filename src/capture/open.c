@@ -179,7 +179,9 @@ static relume_status finish(relume_capture *c, const struct relume_capture_param
     if (!status)
         status = check_discs(c, p->log);
     if (!status)
-        status = image_cache_create(&c->cache, c->draft.m.views * c->draft.m.lights, p->keep_bytes);
+        status = image_cache_create(&c->cache, c->draft.m.views * c->draft.m.lights, p->keep_bytes,
+                                    p->scratch && p->keep_bytes ? c->limits.max_memory / 2 : 0,
+                                    c->scratch);
     if (status)
         return status;
     struct relume_geometry *g = &c->draft.m.geometry;

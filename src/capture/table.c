@@ -44,15 +44,20 @@ static void use_kept(relume_table *t, struct image_stream *stream, int light)
     struct image_cache *cache = t->capture->cache;
     if (!picture_info_of(stream->reader)->bytes)
         return;
-    stream->kept = image_cache_find(cache, t->view * t->capture->draft.m.lights + light);
-    stream->keep = stream->kept ? NULL : image_cache_reserve(cache, file_bytes(stream));
+    struct kept_image kept = image_cache_find(cache, t->view * t->capture->draft.m.lights + light);
+    stream->kept = kept.rows;
+    if (!stream->kept) {
+        kept = image_cache_reserve(cache, file_bytes(stream));
+        stream->keep = kept.rows;
+    }
+    stream->mapped = kept.mapped;
 }
 
 static void close_stream(relume_table *t, struct image_stream *stream, int light)
 {
     if (stream->keep)
         image_cache_settle(t->capture->cache, t->view * t->capture->draft.m.lights + light,
-                           stream->keep, file_bytes(stream),
+                           (struct kept_image){stream->keep, stream->mapped}, file_bytes(stream),
                            t->row == t->capture->height && !t->status[light]);
     image_stream_close(stream);
 }

@@ -166,10 +166,21 @@ static bool convert_floats(const struct image_stream *s, const struct picture_in
     return sum == 0.0f;
 }
 
+// Of rows that are mapped no more than some MB stay in memory behind those that are fetched.
+static void let_go(const struct image_stream *s, size_t at, size_t bytes)
+{
+    enum { RUN = 1 << 20 };
+    const size_t first = at > 2 * RUN ? at - 2 * RUN : 0;
+    if (s->mapped && at / RUN != (at + bytes) / RUN)
+        scratch_forget(s->keep ? s->keep : (uint8_t *)(uintptr_t)s->kept, s->mapped, first,
+                       at - first);
+}
+
 relume_status image_stream_fetch(struct image_stream *s, int row, int rows, const uint8_t **bytes)
 {
     const struct picture_info *info = picture_info_of(s->reader);
-    const size_t at = (size_t)row * (size_t)info->width * (size_t)info->channels;
+    const size_t line = (size_t)info->width * (size_t)info->channels, at = (size_t)row * line;
+    let_go(s, at, (size_t)rows * line);
     if (s->kept) {
         *bytes = s->kept + at;
         return RELUME_OK;

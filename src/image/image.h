@@ -45,6 +45,7 @@ struct image_stream {
     void *scratch;        // IMAGE_STREAM_ROWS rows of the file
     const uint8_t *kept;  // or all its rows, in place of reading, 8-bit files
     uint8_t *keep;        // or NULL: where all its rows go as they are read, 8-bit files
+    size_t mapped;        // either is mapped from a file of so many bytes; else 0
 };
 
 // Takes over `reader`, also on failure. RELUME_ENOMEM.

@@ -24,7 +24,7 @@ static void write_images(int version)
     relume_image_destroy(&image);
 }
 
-static relume_capture *open_capture(size_t keep_bytes)
+static relume_capture *open_with(const struct relume_capture_params *params)
 {
     char path[128];
     relume_capture *capture;
@@ -32,8 +32,13 @@ static relume_capture *open_capture(size_t keep_bytes)
     FILE *lp = fopen(path, "w");
     fprintf(lp, "%d\n0.png 0 0 1\n1.png 0.6 0 0.8\n2.png 0 0.6 0.8\n", LIGHTS);
     fclose(lp);
-    CHECK_OK(relume_capture_open(&capture, path, relume_capture_params(.keep_bytes = keep_bytes)));
+    CHECK_OK(relume_capture_open(&capture, path, params));
     return capture;
+}
+
+static relume_capture *open_capture(size_t keep_bytes)
+{
+    return open_with(relume_capture_params(.keep_bytes = keep_bytes));
 }
 
 // Reads `rows` rows, all of which must show versions[light].
@@ -52,16 +57,22 @@ static void check_table(const relume_capture *capture, int rows, const int versi
 }
 
 // Files that change after the first table tell where the second one has its rows from.
-static void check_kept(size_t keep_bytes, int first_rows, const int second[LIGHTS])
+static void check_kept_with(const struct relume_capture_params *params, int first_rows,
+                            const int second[LIGHTS])
 {
     static const int old[LIGHTS] = {0};
     write_images(0);
-    relume_capture *capture = open_capture(keep_bytes);
+    relume_capture *capture = open_with(params);
     check_table(capture, first_rows, old);
     write_images(1);
     check_table(capture, HEIGHT, second);
     check_table(capture, HEIGHT, second);
     relume_capture_destroy(&capture);
+}
+
+static void check_kept(size_t keep_bytes, int first_rows, const int second[LIGHTS])
+{
+    check_kept_with(relume_capture_params(.keep_bytes = keep_bytes), first_rows, second);
 }
 
 static void test_nothing_is_kept(void **state)
@@ -80,6 +91,21 @@ static void test_budget(void **state)
 {
     (void)state;
     check_kept(3 * BYTES - 1, HEIGHT, (const int[]){0, 0, 1});
+}
+
+// What memory does not hold is in files beside a path, up to half of what one picture may take.
+static void test_the_rest_is_on_disk(void **state)
+{
+    (void)state;
+    char out[128];
+    snprintf(out, sizeof out, "%s/out.exr", folder);
+    const struct relume_limits limits = {.max_memory = 2 * 2 * BYTES};
+    check_kept_with(relume_capture_params(.keep_bytes = BYTES, .scratch = out), HEIGHT,
+                    (const int[]){0, 0, 0});
+    check_kept_with(relume_capture_params(.keep_bytes = 1, .scratch = out, .limits = &limits),
+                    HEIGHT, (const int[]){0, 0, 1});
+    check_kept_with(relume_capture_params(.keep_bytes = BYTES, .scratch = out), HEIGHT - 8,
+                    (const int[]){1, 1, 1});
 }
 
 // A table that was closed early leaves nothing, and gives its room back.
@@ -164,6 +190,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_fetched_rows, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_all_are_kept, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_budget, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_the_rest_is_on_disk, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_part_is_not_kept, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_two_tables, make_folder, remove_folder),
     };

@@ -85,7 +85,12 @@ relume_status renderer_use_depth(struct renderer *r, const struct depth_source *
     int slabs = r->grid != NULL;
     for (; r->around && slabs < relume_slab_set_count(r->around); slabs++)
         slab[slabs] = relume_slab_set_slab(r->around, slabs);
-    return slabs ? depths_create(&r->depths, r->gl, slab, slabs, source) : RELUME_OK;
+    if (!slabs)
+        return RELUME_OK;
+    const relume_status status = depths_create(&r->depths, r->gl, slab, slabs, source);
+    r->depths.budget = r->relighter.budget / 4;
+    r->relighter.budget -= r->depths.budget;
+    return status;
 }
 
 void renderer_use_parts(struct renderer *r, const struct part_source *parts,

@@ -16,7 +16,8 @@ void renderer_destroy(struct renderer *renderer);
 void renderer_use_slabs(struct renderer *renderer, const relume_slab_set *slabs,
                         const double (*uv)[2], const int *slab_of);
 
-// The views of a slab, or of several, have depth. RELUME_ENOMEM.
+// The views of a slab, or of several, have depth, which takes a quarter of the budget of codes and
+// relit views. RELUME_ENOMEM.
 relume_status renderer_use_depth(struct renderer *renderer, const struct depth_source *source);
 
 // Where the views that an eye of a slab needs would not fit into the graphics memory, parts of them

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const size_t budget = (size_t)256 << 20;
-
 static void place_views(struct depths *d, const relume_slab *slab)
 {
     const struct relume_slab_grid grid = relume_slab_grid(slab);
@@ -105,7 +103,7 @@ static void make_room(struct depths *d, const bool *needed)
     size_t all = 0;
     for (int i = 0; i < d->views; i++)
         all += d->bytes[i];
-    for (int i = 0; all > budget && i < d->views; i++) {
+    for (int i = 0; all > d->budget && i < d->views; i++) {
         if (needed[i])
             continue;
         all -= d->bytes[i];

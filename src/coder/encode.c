@@ -800,7 +800,9 @@ relume_status encode_judge(struct encode_judgement *out, relume_coefficients *c,
         if (!status && !say_done(&e, capture, view, "measuring", p->log))
             status = RELUME_ECANCEL;
     }
-    *out = (struct encode_judgement){shown_psnr(&e), shown_square(&e)};
+    *out = (struct encode_judgement){0.0, 0.0};
+    if (!status)
+        *out = (struct encode_judgement){shown_psnr(&e), shown_square(&e)};
     near_fit_destroy(&e.near);
     relume_table_destroy(&e.table);
     free_encoder(&e);

@@ -240,6 +240,29 @@ static void test_coded_levels(void **state)
     check_coded(true);
 }
 
+static bool remove_mask(void *user, const char *what, double done)
+{
+    char mask[96];
+    (void)user;
+    (void)done;
+    snprintf(mask, sizeof mask, "%s/mask.exr", folder);
+    if (!strcmp(what, "choosing the step"))
+        remove(mask);
+    return true;
+}
+
+// It was a crash: what could not be read was judged all the same.
+static void test_a_mask_that_goes_away(void **state)
+{
+    (void)state;
+    const struct fixture f = {.width = 20, .height = 20, .lights = 4, .views = 1, .mask = true};
+    const struct relume_log log = {.progress = remove_mask};
+    fixture_write(&f, folder);
+    assert_int_equal(fixture_encode(folder, path, &relume_basis_pca, 2,
+                                    relume_pack_encode_params(.log = &log, .psnr_db = 35.0)),
+                     RELUME_ENOTFOUND);
+}
+
 // The same bytes from any number of threads.
 static void test_threads(void **state)
 {
@@ -310,6 +333,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_any_rectangle, setup, teardown),
         cmocka_unit_test_setup_teardown(test_threads, setup, teardown),
         cmocka_unit_test_setup_teardown(test_coded_levels, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_a_mask_that_goes_away, setup, teardown),
         cmocka_unit_test_setup_teardown(test_large_masks_are_not_in_memory, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

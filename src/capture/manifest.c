@@ -393,19 +393,28 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
     return status;
 }
 
-// Somebody gave a photograph where its list belongs.
-static bool is_picture(const char *path, const struct relume_log *log)
+// Somebody gave a photograph where its list belongs, or a file that is encoded already.
+static relume_status refuse_picture(const char *path, const struct relume_log *log)
 {
     static const char *const magic[] = {"\xff\xd8\xff", "\x89PNG", "II*", "MM", "\x76\x2f\x31\x01"};
-    char begin[8] = "";
+    char head[4096] = "";
     FILE *f = input_open(path, log);
+    const size_t n = f ? fread(head, 1, sizeof head - 1, f) : 0;
     bool is = false;
-    if (f && fread(begin, 1, sizeof begin - 1, f))
-        for (size_t i = 0; i < sizeof magic / sizeof *magic; i++)
-            is |= !strncmp(begin, magic[i], strlen(magic[i]));
+    for (size_t i = 0; i < sizeof magic / sizeof *magic; i++)
+        is |= !strncmp(head, magic[i], strlen(magic[i]));
     if (f)
         fclose(f);
-    return is;
+    if (picture_head_is_relume(head, n))
+        return log_fail(
+            log, RELUME_EFORMAT,
+            "%s: this is a relume file, encoded already; expected the capture.json, the "
+            ".lp file or the folder of its photographs",
+            path);
+    return is ? log_fail(log, RELUME_EFORMAT,
+                         "%s: this is a photograph; give the .lp file, or use 'relume capture'",
+                         path)
+              : RELUME_OK;
 }
 
 relume_status manifest_read(struct draft *out, const char *path,
@@ -413,17 +422,9 @@ relume_status manifest_read(struct draft *out, const char *path,
 {
     *out = (struct draft){0};
     jvalue *root;
-    if (picture_is_relume(path, params->log))
-        return log_fail(
-            params->log, RELUME_EFORMAT,
-            "%s: this is a relume file, encoded already; expected the capture.json, the "
-            ".lp file or the folder of its photographs",
-            path);
-    if (is_picture(path, params->log))
-        return log_fail(params->log, RELUME_EFORMAT,
-                        "%s: this is a photograph; give the .lp file, or use 'relume capture'",
-                        path);
-    relume_status status = jvalue_load(&root, path, params->log);
+    relume_status status = refuse_picture(path, params->log);
+    if (!status)
+        status = jvalue_load(&root, path, params->log);
     if (status)
         return status;
     char *copy = mem_text(path);

@@ -9,6 +9,7 @@ if ! command -v mpirun >/dev/null || [ ! -x "$mpi" ]; then
 fi
 # in a container one is root; processes share cores and wait without turning
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl=self,vader,tcp OMPI_MCA_mpi_yield_when_idle=1
+export ASAN_OPTIONS="${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0"  # OpenMPI keeps what it has until the end
 processes() { # number, command line
     n=$1
     shift

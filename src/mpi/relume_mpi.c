@@ -9,6 +9,7 @@
 #include "start.h"
 
 #include <mpi.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -155,6 +156,7 @@ static int exit_of_all(struct processes *p, relume_status status)
         speak("relume: interrupted; nothing was written\n");
     const int64_t own = stopped ? 0 : relume_status_exit(status);
     int code = 0;
+    signal(SIGTERM, SIG_IGN);  // the launcher sends it when the first of several ends with an error
     gather_texts(p, stopped);
     MPI_Allgather(&own, 1, MPI_INT64_T, p->number, 1, MPI_INT64_T, MPI_COMM_WORLD);
     for (int i = 0; i < p->team.members && !code; i++)

@@ -27,24 +27,10 @@ static struct relume_light light_of_mouse(GLFWwindow *window)
     return (struct relume_light){.direction = {x, y, z}, .rgb = {1, 1, 1}};
 }
 
-static relume_status draw(GLFWwindow *window, relume_renderer *renderer, const void *pixels,
-                          const struct relume_target *target)
-{
-    const struct relume_light light = light_of_mouse(window);
-    relume_status status = relume_renderer_set_lights(renderer, &light, 1);
-    if (!status)
-        status = relume_renderer_draw(renderer, &(struct relume_camera){0}, target);
-    if (status)
-        return status;
-    glRasterPos2f(-1.0f, -1.0f);
-    glDrawPixels(target->width, target->height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
-    glfwSwapBuffers(window);
-    return RELUME_OK;
-}
-
 int main(int argc, char **argv)
 {
     const struct relume_log log = {.message = say};
+    const struct relume_camera camera = {0};
     relume_pack *pack = NULL;
     relume_renderer *renderer = NULL;
     if (argc != 2)
@@ -55,24 +41,31 @@ int main(int argc, char **argv)
     if (status)
         return 1;
     const struct relume_pack_info *info = relume_pack_info(pack);
-    const int width = info->width, height = info->height, row = 4 * width;
-    unsigned char *pixels = malloc((size_t)row * (size_t)height);
+    const struct relume_target target = {.data =
+                                             malloc((size_t)info->width * (size_t)info->height * 4),
+                                         .format = RELUME_TARGET_RGBA8,
+                                         .width = info->width,
+                                         .height = info->height};
     glfwInit();
     glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
-    GLFWwindow *window = glfwCreateWindow(width, height, argv[1], NULL, NULL);
-    if (!window || !pixels)
+    GLFWwindow *window = glfwCreateWindow(info->width, info->height, argv[1], NULL, NULL);
+    if (!window || !target.data)
         return fprintf(stderr, "viewer: no window can be opened; is there a display?\n"), 3;
     glfwMakeContextCurrent(window);
-    // OpenGL begins with the lowest row: the rows go upwards from the last.
-    const struct relume_target target = {.data = pixels + (size_t)row * (size_t)(height - 1),
-                                         .format = RELUME_TARGET_RGBA8,
-                                         .width = width,
-                                         .height = height,
-                                         .stride = -row};
-    for (; !status && !glfwWindowShouldClose(window); glfwWaitEvents())
-        status = draw(window, renderer, pixels, &target);
+    glRasterPos2f(-1.0f, 1.0f);  // relume's first row is the top, OpenGL's the bottom
+    glPixelZoom(1.0f, -1.0f);
+    for (; !glfwWindowShouldClose(window); glfwWaitEvents()) {
+        const struct relume_light light = light_of_mouse(window);
+        status = relume_renderer_set_lights(renderer, &light, 1);
+        if (!status)
+            status = relume_renderer_draw(renderer, &camera, &target);
+        if (status)
+            break;
+        glDrawPixels(target.width, target.height, GL_RGBA, GL_UNSIGNED_BYTE, target.data);
+        glfwSwapBuffers(window);
+    }
     glfwTerminate();
-    free(pixels);
+    free(target.data);
     relume_renderer_destroy(&renderer);
     relume_pack_destroy(&pack);
     return status ? 1 : 0;

@@ -15,7 +15,7 @@
 typedef struct beside beside;
 
 // In the folder `dir`, for an output called `name` there. NULL with errno set. `log`, which lives
-// as long, is told what of an old folder could not be removed.
+// as long, gets a message about an old folder that could not be removed.
 beside *beside_open(const char *dir, const char *name, const struct relume_log *log);
 const char *beside_new(const beside *b);
 const char *beside_old(const beside *b);

@@ -238,7 +238,7 @@ static const double upright = 0.05, most_upright = 0.25;
 // Lamps farther apart than 70 degrees say too little of what is between them.
 static const double most_between = 1.25;
 
-// The share of `shown` (grid_shown), which stands for light from `direction`. Between lamps it is
+// The share of `shown` (grid_shown), which replaces light from `direction`. Between lamps it is
 // what makes a plane show what it should: flat triangles lie inside the sphere. For light from
 // beyond them a single light's share (relume_coder_clamp, `lone`) is what predicts lamps best, 2 to
 // 4 % too much in the sum; this has the same end along the surface and the mean of a plane's z /

@@ -11,7 +11,7 @@ void grid_blend(float *out, const relume_weight_grid *grid, struct relume_vec3 d
 // interpolates. It belongs to `grid`, or is it.
 const relume_weight_grid *grid_for_sums(const relume_weight_grid *grid);
 
-// What a matte surface takes light from `direction` for: the sum of the lights that stand for it,
+// What a matte surface takes light from `direction` for: the sum of the lights that represent it,
 // each by its share. Shorter than `direction` over a flat triangle; the direction itself where no
 // triangles are.
 struct relume_vec3 grid_shown(const relume_weight_grid *grid, struct relume_vec3 direction);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Import and export: files that are broken and wishes that cannot be met are refused with a sentence.
+# Import and export: files that are broken and wishes that cannot be fulfilled are refused with a sentence.
 . "$(dirname "$0")/lib.sh"
 "$sphere" dome --size 40 --lights 40 --hemisphere --format png || exit 1
 relume encode dome -o pca.exr --basis pca --coefficients 27

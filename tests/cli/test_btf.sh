@@ -68,7 +68,7 @@ if diff -r wide wide1 >/dev/null; then ok 'tiles for any threads'; else not_ok '
 "$mkimage" poke sky.exr odd.exr 3 4 nan
 expect_ok 'an environment' - "$RELUME" btf render wide -o lit.exr --light 'env sky.exr 30' --light 'dir 0 0 1' -q
 "$RELUME" btf render wide -o odd-lit.exr --light 'env odd.exr' -q 2>err.txt
-if grep -q '3 pixels are negative, not finite' err.txt; then ok 'NaN in an environment is told of'; else not_ok 'NaN in an environment is told of' "$(cat err.txt)"; fi
+if grep -q '3 pixels are negative, not finite' err.txt; then ok 'NaN in an environment is reported'; else not_ok 'NaN in an environment is reported' "$(cat err.txt)"; fi
 expect_fail 'no environment' 1 'nothing.hdr: no such file' x.exr "$RELUME" btf render wide -o x.exr --light 'env nothing.hdr'
 { printf '\223NUMPY\001\000v\000'; printf '%-117s\n' "{'descr': '<u2', 'fortran_order': False, 'shape': (1, 2), }"; printf '\001\000\100\000'; } >large.npy
 expect_ok 'a surface from a camera' - "$RELUME" btf render wide -o view.png --camera 0,-1.5,0.7 --picture 64x40 --light 'dir -1 0 1' --light 'spot 0 1 1 0 -1 -1 30' -q

@@ -33,7 +33,7 @@ for f in relume relume-view librelume.so librelume-oiio.so.0 librelume-assimp.so
         case $f in *.so.*) ;; *) check "$f: checked copies" reads "$BUILD/$f" -sW '__(memcpy|snprintf|fprintf)_chk' ;; esac
     fi
 done
-# What differs between two builds of one tree is where they were made; no file may say that.
+# What differs between two builds of one tree is where they were made; no file may show that.
 for f in relume relume-view librelume.so librelume.a; do
     if grep -qF "$TOP/" "$BUILD/$f"; then
         not_ok "$f does not depend on where it was built" "it holds $TOP"

@@ -59,7 +59,7 @@ for r in 0 1 2 3; do for c in 0 1 2 3 4 5 6; do
     cp seven/view$(printf %02d $((14 * r + c)))/light0000.exr even/view_0$((2 * r))_0$c.exr
 done; done
 "$RELUME" lightfield even -o spaced --force 2>spacing.txt
-above 'rows by their numbers: what stands there is told' "$(spacing)" 1.94
+above 'rows by their numbers: the spacing is reported' "$(spacing)" 1.94
 spaced 1 0 "$all" "$all"
 check 'a square grid is one exactly' grep -q '"uv": \[-0.5, 0.5\]' spaced/capture.json
 check 'what was found is said' grep -q 'by the photographs (error . %, .. % of the pixels agree); if not, give --baseline-v' spacing.txt

@@ -8,12 +8,12 @@ encode() { # capture, options: into e.exr, its facts into told.json, its sentenc
 }
 psnr() { "$RELUME" eval "$1" "$2" -q | sed -n 's/^PSNR *\([0-9.]*\) dB (mean.*/\1/p'; }
 
-# A ball in few lights is met by what was always chosen.
+# A ball in few lights is reproduced by what was always chosen.
 "$sphere" ball --size 32 --lights 12 --hemisphere
 encode ball
 check 'a smooth thing: 27 coefficients' [ "$(told coefficients)" = 27 ]
 check 'in 8 bits' [ "$(told bits)" = 8 ]
-check 'told in one sentence' grep -q '^relume: e.exr: reproduces your photographs at [0-9.]* dB PSNR (differences [a-z ]*) with 27 coefficients, 8 bits, [0-9.]* bytes a pixel; unseen light directions: about [0-9]* dB$' said.txt
+check 'one sentence reports it' grep -q '^relume: e.exr: reproduces your photographs at [0-9.]* dB PSNR (differences [a-z ]*) with 27 coefficients, 8 bits, [0-9.]* bytes a pixel; unseen light directions: about [0-9]* dB$' said.txt
 
 # Sun through slats: 22 dB in linear light with 27 coefficients.
 scene="attic --projection cylindrical --size 48 --samples 4"

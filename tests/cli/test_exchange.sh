@@ -94,7 +94,7 @@ for n in 1 3; do relume export ptm-back.exr --to ptm -o threads$n.ptm --quality 
 same '.ptm of JPEG planes with 1 and 3 threads' threads1.ptm threads3.ptm
 "$sphere" odd --size 37 --lights 12 --hemisphere --format png
 relume encode odd -o odd.exr --basis ptm --coefficients 6
-expect_ok 'a width that RTIViewer cannot take is told of' 'warning: odd.ptm: width 37 is not a multiple of 8' "$RELUME" export odd.exr --to lptm -o odd.ptm --quality 80
+expect_ok 'a width that RTIViewer cannot read is reported' 'warning: odd.ptm: width 37 is not a multiple of 8' "$RELUME" export odd.exr --to lptm -o odd.ptm --quality 80
 
 # ---- relight folders of every type
 for kind in bilinear rbf bilinear:mycc rbf:mycc ptm lptm hsh sh ptm:ycc hsh:ycc sh:ycc; do

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a stranger meets first: folders with other things beside the photographs, sentences that say
+# What a stranger sees first: folders with other things beside the photographs, sentences that say
 # how good a picture is and what comes next.
 . "$(dirname "$0")/lib.sh"
 
@@ -82,7 +82,7 @@ sed -i '2s/ [-0-9.e]* [-0-9.e]* [-0-9.e]*$/ 0.999 0 -0.045/' "$lp"
 expect_ok 'a lamp a little below the horizon' - "$RELUME" encode "$lp" -o low.exr --basis sh --coefficients 4
 expect_ok 'is nothing to warn of when its own capture is judged' - "$RELUME" eval low.exr "$lp"
 
-# ---- an output that cannot be is met before the work
+# ---- an output that cannot be made is refused before the work
 mkdir taken && echo mine >taken/mine
 expect_fail 'a relume file under the name of a folder' 3 'taken: cannot be written; Is a directory' - \
     timeout 5 "$RELUME" encode photos/second.lp -o taken

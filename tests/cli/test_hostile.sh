@@ -198,7 +198,7 @@ check "a helper that never answers is given up" grep -q 'good.tif: the module fo
 check "as the machine's fault" test "$(tail -n 1 deaf.txt)" = 3
 
 # ---------------------------------------------------------------- work that asks nobody
-# A helper that never answers stands for any loop of a library: SIGTERM must do, without SIGKILL.
+# A helper that never answers acts as any loop of a library: SIGTERM must do, without SIGKILL.
 mkdir stuck && cp "$RELUME" "$VIEWER" stuck/
 printf '#!/bin/sh\nexec sleep 20\n' >stuck/relume-helper
 chmod +x stuck/relume-helper

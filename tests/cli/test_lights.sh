@@ -114,7 +114,7 @@ check 'its files are relative to it' grep -qF '../a slide.png' sub/rig.json
 relume relight full.exr -o b.exr --rig sub/rig.json --light 'dir 0 0 1'
 above '--light adds to it' "$(diff a.exr b.exr)" 0.1
 
-# ---- depth: a slab knows where its surfaces are, or is told, or refuses
+# ---- depth: a slab has its surfaces, or is given them, or refuses
 "$sphere" slab --size 24 --lights 20 --views 3 --hemisphere
 relume encode slab -o slab.exr --basis sh --coefficients 4
 relume encode slab -o flat.exr --basis sh --coefficients 4 --no-depth

@@ -90,7 +90,7 @@ if cmp -s shot.png open.png; then not_ok 'a shot shows the panel' 'it is the pic
 "$RELUME" compare dark.png shot.png >dark.txt 2>&1
 if cmp -s dark.png open.png; then not_ok 'a click turns the light off' 'nothing changed'; else ok 'a click turns the light off'; fi
 
-# letters: a font beside the program is taken before the packaged one; one that is no font is told
+# letters: a font beside the program is taken before the packaged one; one that is no font is reported
 # once to who sees the panel; the panel grows
 mkdir own
 cp "$VIEWER" own/relume-view
@@ -148,7 +148,7 @@ END
 differ 'a page and a list' page.png folder.png
 differ 'a list and what was opened from it' folder.png opened.png
 check 'what was opened' cmp frame.png want.png
-check 'a file that is not there is told' grep -q 'none.exr: no such file' err.txt
+check 'a file that is not there is reported' grep -q 'none.exr: no such file' err.txt
 
 # a rig in, the same rig out
 "$RELUME" relight teapot.exr -o rigged.png --light "$light" --light "dir -1 0 1 rgb 0 0 1" --save-rig rig.json

@@ -157,7 +157,7 @@ static double share_off(struct around *t, const struct relume_view_params *param
 
 // Rays beside all grids may graze a slab's planes and cross them thousands of texels away, where
 // floats place them to hundredths of a texel and the library's doubles better. The noise of these
-// views changes by about 1 from texel to texel, so another texel, camera or cell still tells.
+// views changes by about 1 from texel to texel, so another texel, camera or cell still shows.
 static const double of_grazing = 0.03;
 
 // Before a slab, between two, near, far, high, on a corner of two uv planes, and at a camera.

@@ -178,7 +178,7 @@ static int runs_of(struct panel *panel, struct app *app, const struct panel_fact
 }
 
 // The pointer goes over `width` x `height` pixels in steps finer than the smallest control, and
-// nothing under it is without a tip. Returns how often it met a tip.
+// nothing under it is without a tip. Returns how often it found a tip.
 static int walk(struct panel *panel, struct app *app, const struct panel_facts *facts, int width,
                 int height)
 {

@@ -113,7 +113,7 @@ static const double EXACT = 2e-4, RIDGE = 1e-12;
 static const double FILLED = 2e-3;
 
 // What its own functions make of coefficients comes back as these coefficients. Not where the map
-// is no fit (dct-resampled) or the interpolant does not meet the captured lights.
+// is no fit (dct-resampled) or the interpolant does not reproduce the captured lights.
 static void test_exact_on_own_span(void **state)
 {
     (void)state;

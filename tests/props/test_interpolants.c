@@ -263,7 +263,7 @@ static void test_rbf_closed_form(void **state)
     rbf->release(data);
 }
 
-// The nodes are met, the middle of four weighs them alike, other lights are refused.
+// The nodes are reproduced, the middle of four weighs them alike, other lights are refused.
 static void test_octahedral_grid(void **state)
 {
     (void)state;

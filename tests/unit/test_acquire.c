@@ -72,7 +72,7 @@ static void check_positions(double fov_deg, double tolerance)
     test_folder_remove(p.folder);
 }
 
-// The target is 2 %; balls of 42 pixels are less than half of what the guide asks for.
+// The target is 2 %; balls of 42 pixels are less than half of what the guide recommends.
 static void positions_orthographic(void **state)
 {
     (void)state;
@@ -123,7 +123,7 @@ static void a_round_stone_is_no_ball(void **state)
     check_stone(true);
 }
 
-// The horizon of a table in a mirror on it looks like an outline, too: what a small circle tells of
+// The horizon of a table in a mirror on it looks like an outline, too: what a small circle shows of
 // low lamps is that they stand behind the ball.
 static void an_outline_too_small(void **state)
 {

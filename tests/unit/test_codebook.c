@@ -202,7 +202,7 @@ static void test_ties_go_to_the_lowest(void **state)
     relume_codebook_destroy(&book);
 }
 
-// Vectors far from a tight bundle of codes: single precision alone cannot tell them apart.
+// Vectors far from a tight bundle of codes: single precision alone cannot separate them.
 static void test_near_ties(void **state)
 {
     (void)state;

@@ -32,7 +32,7 @@ static void test_known_places(void **state)
     CHECK_NEAR(up.x, 0.5, 1e-15);
     CHECK_NEAR(up.y, 0.5 - 0.5 * radius, 1e-15);
     assert_true(up.lower);
-    // a corner of the square stands for the border at its azimuth
+    // a corner of the square repeats the border at its azimuth
     const vec3 corner = disc_to_direction((struct disc_point){1.0, 0.0, false});
     CHECK_NEAR(corner.x, sqrt(0.5), 1e-12);
     CHECK_NEAR(corner.y, sqrt(0.5), 1e-12);

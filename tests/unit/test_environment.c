@@ -130,7 +130,7 @@ static void test_oddities(void **state)
 
 enum { MAP_W = 24, MAP_H = 12, CUT = 10 };
 
-// Over flat triangles, or NULL: what stands for a direction is as its weights of the lights say.
+// Over flat triangles, or NULL: a direction is the sum of the lights by its weights.
 static relume_coder *triangles_coder(const relume_coder *coder)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);

@@ -121,7 +121,7 @@ static void check_long(void **state)
     relume_eye_destroy(&eye);
 }
 
-// The muscle moves the equator as told, the axis not at all, and what is between in between.
+// The muscle moves the equator as far as is set, the axis not at all, and points between less.
 static void check_lens(void **state)
 {
     struct relume_subject subject = relume_subject_default();
@@ -301,7 +301,7 @@ static void check_lash_picture(void **state)
     assert_int_equal(a->lashes.count, 2 * 49);
     CHECK_NEAR((double)upper[0].x[0], 0.0, 1e-5);
     CHECK_NEAR((double)upper[0].y[0], (double)a->upper[0], 1e-5);
-    // half a pixel is how well a row's run tells its middle; the last piece goes on by a quarter of
+    // half a pixel is how well a row's run gives its middle; the last piece goes on by a quarter of
     // up to one
     CHECK_NEAR((double)upper[48].x[1], end, 0.05 + 0.25 * 0.1);
     CHECK_NEAR((double)upper[48].y[1],

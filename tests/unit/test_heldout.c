@@ -109,7 +109,7 @@ static struct relume_heldout_quality by_files(const relume_capture *capture, con
     return sum;
 }
 
-// The path in memory says what files and eval say.
+// The path in memory gives the figures of files and eval.
 static void test_against_files(void **state)
 {
     (void)state;
@@ -204,7 +204,7 @@ static void test_second_capture(void **state)
     relume_capture_destroy(&rest);
 }
 
-// Bands of rows stand for the whole where memory is short: the same object, fewer pixels.
+// Where memory is short, bands of rows represent the whole: the same object, fewer pixels.
 static void test_bands(void **state)
 {
     (void)state;

@@ -47,7 +47,7 @@ static void test_spot(void **state)
     }
 }
 
-// A picture of 4 x 2 pixels, whose value tells the place: red 0 .. 3 to the right, green 1 on top.
+// A picture of 4 x 2 pixels, whose value gives the place: red 0 .. 3 to the right, green 1 on top.
 static float texels[4 * 2 * 3];
 static const struct relume_image picture = {4, 2, 3, .data = texels};
 

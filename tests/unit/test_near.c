@@ -9,7 +9,7 @@
 
 // ---------------------------------------------------------------- the grid
 
-// Smooth functions, and those that have their creases where the grid has nodes, are met to 1e-3,
+// Smooth functions, and those that have their creases where the grid has nodes, agree to 1e-3,
 // what is linear over triangles of the lights but for rounding. Cells of dct-resampled have creases
 // inside grid cells: as wide as the cell, 1/10 of the spacing of 64 lights.
 static double bound_of(const struct relume_basis *b)
@@ -58,7 +58,7 @@ static void test_grid(void **state)
         }
 }
 
-// What `delaunay` says of values in [0, 1] is met whatever they are: weights differ by rounding.
+// `delaunay` of any values in [0, 1] is reproduced: weights differ by rounding.
 // Even lights all around, on a dome, on common circles, on a cap with a gap beyond, and few.
 static void test_triangles(void **state)
 {
@@ -106,7 +106,7 @@ static void test_triangles(void **state)
         relume_weight_grid_destroy(&grid);
         relume_coder_destroy(&coder);
     }
-    // three lights have no triangles, and who asks for a grid gets one
+    // three lights have no triangles, so a grid is made when it is wanted
     const struct relume_vec3 three[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     relume_coder *coder;
     relume_weight_grid *grid;

@@ -384,7 +384,7 @@ static void scenes_without_depth_hide(void **state)
 }
 
 // Under an even sky a square takes its form factor off, in closed form. Half of the 64 lamps that
-// stand for the sky are above the plane: over 25 seeds such a lattice takes 0.94 to 1.06 of it,
+// represent the sky are above the plane: over 25 seeds such a lattice takes 0.94 to 1.06 of it,
 // 3 % off on average; draws that were stratified one way only took 0.67 to 1.19. Without the
 // cosine it was 0.376.
 static void check_sky_shadow(const char *material, int side)

@@ -20,7 +20,7 @@ struct panorama {
 };
 
 // Linear interpolation of unit directions over a step h errs by at most h^2/8 for each axis (their
-// second derivatives are at most 1). Over a cube's edge a texel stands for a place up to half a
+// second derivatives are at most 1). Over a cube's edge a texel shows a place up to half a
 // texel (1 / side) beside it, with at most half the weight; over the rim of a disc up to half a row
 // of the cylinder (2.75 / 128), of which a unit vector there turns by 0.39.
 static const struct panorama panoramas[] = {

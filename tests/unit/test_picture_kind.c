@@ -63,7 +63,7 @@ static void the_rest_is_named(void **state)
     assert_null(KIND("", "a")->what);
 }
 
-// Whatever says that it is a picture of one colour may be one; nothing is worth more.
+// Whatever claims to be a picture of one colour may be one; nothing counts more.
 static void claims_are_bounded(void **state)
 {
     (void)state;

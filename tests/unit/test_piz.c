@@ -114,7 +114,7 @@ static uint16_t grey(size_t i, uint32_t *seed)
     return 0x1234;
 }
 
-// Runs of all lengths, also those about the longest that one code tells.
+// Runs of all lengths, also those about the longest that one code holds.
 static uint16_t runs(size_t i, uint32_t *seed)
 {
     static size_t until, value;

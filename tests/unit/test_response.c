@@ -30,7 +30,7 @@ static void test_curve(void **state)
     CHECK_NEAR(relume_response_decode(&r, 0, -1.0f), 0.0, 0.0);
     CHECK_NEAR(relume_response_decode(&r, 0, 2.0f), 1.0, 0.0);
     CHECK_NEAR(relume_response_decode(&r, 0, NAN), 0.0, 0.0);
-    // as the transfer of a file: green stands for all
+    // as the transfer of a file: green is used for all
     r.exposure[1][128] = 0.25f;
     const struct relume_transfer t = {.curve = RELUME_CURVE_RESPONSE, .response = &r};
     CHECK_NEAR(relume_transfer_decode(t, 128.0f / 255.0f), 0.25, 1e-6);
@@ -251,7 +251,7 @@ static void test_fine_texture(void **state)
         relume_image_destroy(&codes[i]);
 }
 
-// With noise of a whole code the true curve leaves 1.8 %; the target is 2 % all told.
+// With noise of a whole code the true curve leaves 1.8 %; the target is 2 % in all.
 static void test_much_noise(void **state)
 {
     (void)state;
@@ -285,7 +285,7 @@ static void test_threads(void **state)
     forget(&b);
 }
 
-// One time given as half of the true one is told from the others.
+// One time that is given as half of the true one is found among the others.
 static void test_wrong_time(void **state)
 {
     (void)state;

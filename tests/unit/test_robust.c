@@ -73,8 +73,8 @@ static void test_outliers_do_not_pull(void **state)
     assert_true(error[1] < 0.5 / 255);
 }
 
-// Where there is nothing to leave out, both fits meet the samples as closely as the assumed values
-// at the horizon allow.
+// Where there is nothing to leave out, both fits reproduce the samples as closely as the assumed
+// values at the horizon allow.
 static void test_clean_samples_are_met(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-// test_status.c - every status by the public functions: what was wrong is told apart
+// test_status.c - every status by the public functions: each kind of fault has its own
 #include "test.h"
 
 #include "base/memory.h"

@@ -290,7 +290,7 @@ static double under_a_sky(const relume_scene *scene, int bounces)
     return sum;
 }
 
-// In a furnace of radiance 1 a white world cannot be told from the sky (and no other is brighter).
+// In a furnace of radiance 1 a white world looks like the sky (and no other is brighter).
 static void indirect_light_completes_the_furnace(void **state)
 {
     (void)state;

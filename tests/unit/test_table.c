@@ -3,7 +3,7 @@
 
 enum { LIGHTS = 3, WIDTH = 20, HEIGHT = 40, BYTES = 3 * WIDTH * HEIGHT };
 
-// Every image flat, its value telling light and version.
+// Every image flat, its value encodes light and version.
 static float value_of(int version, int light)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
@@ -56,7 +56,7 @@ static void check_table(const relume_capture *capture, int rows, const int versi
     relume_table_destroy(&table);
 }
 
-// Files that change after the first table tell where the second one has its rows from.
+// Files that change after the first table show where the second one has its rows from.
 static void check_kept_with(const struct relume_capture_params *params, int first_rows,
                             const int second[LIGHTS])
 {

@@ -548,7 +548,7 @@ static void test_other_lights(void **state)
     assert_non_null(strstr(log.text, "the lights of view 0 are used for all"));
     CHECK_NEAR(value(btf, 1, 13, 4), known(1, 13, 4), 0.0);
     relume_btf_destroy(&btf);
-    // two lights in one place, told with the file's name
+    // two lights in one place: the message names the file
     double same[LIGHTS][2] = {{0, 0}, {0.5, 0}, {0.7, 0}, {0.9, 0}, {1.1, 0}};
     m.light = (const double(*)[2])same;
     refuse_made(&m, "great circle");

@@ -167,7 +167,7 @@ static void find(struct relume_captured_region *zone, const struct relume_vec3 *
     relume_coder_destroy(&coder);
 }
 
-// All around, one side only, too few to tell, one ring.
+// All around, one side only, too few to decide, one ring.
 static void test_other_sets(void **state)
 {
     (void)state;

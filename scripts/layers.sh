@@ -22,7 +22,7 @@ coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder:base coder codebook team
 team:base:base io team
 selection:base math image coder compare:base image capture coder codebook heldout team
-lossy:base:base image coder
+lossy:base math:base image coder
 encode:base coder codebook lossy:base image capture codebook coder light relight pack team
 pack:base geometry image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight

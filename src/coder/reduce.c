@@ -16,6 +16,7 @@
 #include "image/encoder.h"
 #include "image/image.h"
 #include "math/lsq.h"
+#include "math/scalar.h"
 
 #include <errno.h>
 #include <stdatomic.h>
@@ -108,11 +109,6 @@ static relume_status prepare_coded(struct reducing *r, struct relume_transfer di
     const relume_status status =
         captured_create(&r->captured, coder, info->directions, info->lights);
     return status ? status : find_map(r, info);
-}
-
-static int least(int a, int b)
-{
-    return a < b ? a : b;
 }
 
 // ---------------------------------------------------------------- means
@@ -283,7 +279,7 @@ static void reduce_band(void *context, size_t item, int worker)
         status = reduce_row(r, &m, first + y, m.values + (size_t)y * (size_t)r->to->info.width);
     if (!status)
         status = keep_band(r, &m, first, rows);
-    image_forget(r->share, 2 * first, least(2 * rows, r->share->height - 2 * first));
+    image_forget(r->share, 2 * first, smaller_of(2 * rows, r->share->height - 2 * first));
     mem_free(m.memory);
     if (status)
         atomic_store(&r->status, (int)status);

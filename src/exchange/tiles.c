@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "base/thread.h"
+#include "math/scalar.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -27,24 +28,15 @@ struct level {
     struct sheet_result *tile;
 };
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-static int most(int a, int b)
-{
-    return a > b ? a : b;
-}
-
 static relume_status cut(const struct level *l, int column, int row, struct sheet *tile,
                          float **room)
 {
     const struct sheet *s = &l->sheet;
-    const int x = most(column * l->side - OVERLAP, 0), y = most(row * l->side - OVERLAP, 0);
+    const int x = larger_of(column * l->side - OVERLAP, 0),
+              y = larger_of(row * l->side - OVERLAP, 0);
     *tile = *s;
-    tile->width = least((column + 1) * l->side + OVERLAP, s->width) - x;
-    tile->height = least((row + 1) * l->side + OVERLAP, s->height) - y;
+    tile->width = smaller_of((column + 1) * l->side + OVERLAP, s->width) - x;
+    tile->height = smaller_of((row + 1) * l->side + OVERLAP, s->height) - y;
     const size_t width = (size_t)tile->width, pixels = width * (size_t)tile->height;
     *room = mem_array(pixels * (size_t)s->planes, sizeof **room);
     if (!*room)
@@ -118,7 +110,8 @@ static float *halve(const float *from, int width, int height)
     float *to = mem_array((size_t)w * (size_t)h, sizeof *to);
     for (int y = 0; to && y < h; y++)
         for (int x = 0; x < w; x++) {
-            const int right = least(2 * x + 1, width - 1), below = least(2 * y + 1, height - 1);
+            const int right = smaller_of(2 * x + 1, width - 1),
+                      below = smaller_of(2 * y + 1, height - 1);
             const float *a = from + (size_t)(2 * y) * (size_t)width;
             const float *b = from + (size_t)below * (size_t)width;
             to[(size_t)y * (size_t)w + (size_t)x] =
@@ -171,11 +164,11 @@ static relume_status write_sheet(const struct web_folder *w, int index, double s
                                  const char *path, int threads, const struct relume_log *log)
 {
     struct level l = {.sheet = web_sheet(w, index), .step = step};
-    const int longer = most(l.sheet.width, l.sheet.height);
+    const int longer = larger_of(l.sheet.width, l.sheet.height);
     char *dzi = mem_format("%s/plane_%d.dzi", path, index);
     char *files = mem_format("%s/plane_%d_files", path, index);
     char *jpeg = mem_format("%s/plane_%d.jpg", path, index);
-    l.side = least(longer, MOST_TILE);
+    l.side = smaller_of(longer, MOST_TILE);
     relume_status status =
         dzi && files && jpeg ? write_dzi(dzi, &l.sheet, l.side, log) : RELUME_ENOMEM;
     if (!status)

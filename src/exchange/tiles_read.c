@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "exchange/bytes.h"
+#include "math/scalar.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -21,16 +22,6 @@ struct pyramid {
     const struct relume_limits *limits;
     const struct relume_log *log;
 };
-
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-static int most(int a, int b)
-{
-    return a > b ? a : b;
-}
 
 static int tiles_of(const struct pyramid *p, int side)
 {
@@ -118,7 +109,7 @@ static int is_there(const struct pyramid *p, int level, int column, int row)
 static int halvings(const struct pyramid *p, int side)
 {
     int n = 0;
-    for (int longer = most(p->width, p->height); longer > side; longer = (longer + 1) / 2)
+    for (int longer = larger_of(p->width, p->height); longer > side; longer = (longer + 1) / 2)
         n++;
     return n;
 }
@@ -151,10 +142,11 @@ static relume_status place_tile(const struct pyramid *p, int column, int row,
                                 struct jpeg_codes *out)
 {
     const int x = column * p->tile, y = row * p->tile;
-    const int left = most(x - p->overlap, 0), top = most(y - p->overlap, 0);
-    const int right = least(x + p->tile, p->width), bottom = least(y + p->tile, p->height);
-    const int width = least(right + p->overlap, p->width) - left;
-    const int height = least(bottom + p->overlap, p->height) - top;
+    const int left = larger_of(x - p->overlap, 0), top = larger_of(y - p->overlap, 0);
+    const int right = smaller_of(x + p->tile, p->width),
+              bottom = smaller_of(y + p->tile, p->height);
+    const int width = smaller_of(right + p->overlap, p->width) - left;
+    const int height = smaller_of(bottom + p->overlap, p->height) - top;
     if (tile->width != width || tile->height != height || tile->planes != 3)
         return log_fail(p->log, RELUME_EDAMAGED,
                         "%s: %d x %d pixels, %d components; expected %d x %d and 3", path,

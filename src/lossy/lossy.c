@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/scalar.h"
 
 #include <string.h>
 #include <zlib.h>
@@ -39,16 +40,11 @@ static int padded(int side)
     return whole > LEAST_SIDE ? whole : LEAST_SIDE;
 }
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 static struct tile tile_at(const struct tiles *t, int index)
 {
     struct tile tile = {.x = index % t->across * t->size, .y = index / t->across * t->size};
-    tile.width = least(t->size, t->shape.width - tile.x);
-    tile.height = least(t->size, t->shape.height - tile.y);
+    tile.width = smaller_of(t->size, t->shape.width - tile.x);
+    tile.height = smaller_of(t->size, t->shape.height - tile.y);
     const int components = t->shape.colour ? 3 : 1;
     tile.video = (struct av1_shape){padded(tile.width), padded(tile.height), components,
                                     t->shape.planes / components};
@@ -346,8 +342,8 @@ static struct relume_rect seen_of(const struct decoding *d, const struct tile *t
 {
     const struct relume_rect *r = d->rect;
     const int left = t->x > r->left ? t->x : r->left, top = t->y > r->top ? t->y : r->top;
-    return (struct relume_rect){left, top, least(t->x + t->width, r->left + r->width) - left,
-                                least(t->y + t->height, r->top + r->height) - top};
+    return (struct relume_rect){left, top, smaller_of(t->x + t->width, r->left + r->width) - left,
+                                smaller_of(t->y + t->height, r->top + r->height) - top};
 }
 
 int lossy_side(const struct lossy_words *words)

@@ -5,6 +5,16 @@
 #include <math.h>
 #include <stddef.h>
 
+static inline int smaller_of(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static inline int larger_of(int a, int b)
+{
+    return a > b ? a : b;
+}
+
 // From 0 at `low` to 1 at `high`, level at both ends.
 static inline double smoothstep(double low, double high, double x)
 {

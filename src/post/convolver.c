@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/fft2d.h"
+#include "math/scalar.h"
 
 #include <math.h>
 #include <string.h>
@@ -141,11 +142,6 @@ static float pixel_at(const struct work *w, int x, int y)
                   : w->in[3 * ((size_t)y * (size_t)w->c->width + (size_t)at) + (size_t)w->channel];
 }
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 static void fill_tile(void *context, int row, float *line)
 {
     const struct work *w = context;
@@ -156,7 +152,8 @@ static void fill_tile(void *context, int row, float *line)
     memset(line, 0, (size_t)c->fft_w * sizeof *line);
     if (y < 0)
         return;
-    const int from = left < 0 ? least(-left, used_w) : 0, to = least(c->width - left, used_w);
+    const int from = left < 0 ? smaller_of(-left, used_w) : 0,
+              to = smaller_of(c->width - left, used_w);
     const float *const in = w->in + 3 * (ptrdiff_t)y * c->width + w->channel;
     for (int x = 0; x < from; x++)
         line[x] = pixel_at(w, left + x, y);
@@ -182,7 +179,7 @@ static void take_row(void *context, int row, const float *line)
     const convolver *const c = w->c;
     const float scale = 1.0f / ((float)c->fft_w * (float)c->fft_h);
     const int y = w->y0 + row - c->margin - c->reach_y;
-    const int count = least(c->width - w->x0, c->core_w);
+    const int count = smaller_of(c->width - w->x0, c->core_w);
     float *const to =
         w->out + 3 * ((size_t)y * (size_t)c->width + (size_t)w->x0) + (size_t)w->channel;
     for (int x = 0; x < count; x++)
@@ -229,8 +226,8 @@ static void transform(struct work *w, int rows, void (*fill)(void *, int, float 
     fft2d_pass_columns(c->fft, c->spectrum, &pass);
     const int first = c->margin + c->reach_y;
     if (back)
-        fft2d_rows_back(c->fft, c->spectrum, first, first + least(c->height - w->y0, c->core_h),
-                        take_row, w);
+        fft2d_rows_back(c->fft, c->spectrum, first,
+                        first + smaller_of(c->height - w->y0, c->core_h), take_row, w);
 }
 
 static void transform_tile(struct work *w, bool back)

@@ -37,13 +37,14 @@ struct relume_team {
     void *user;
 };
 
+// Pieces as files in a folder.
+typedef struct relume_team_files relume_team_files;
 // A team whose pieces are files in the folder `path`, "samples.3of8": read where they are there,
 // else made, whoever's they are, and left for the others. The folder is made if need be.
 // `about` says in one line what pieces belong together: a piece of others is RELUME_EUNFIT with a
 // sentence. With `own_only` a member makes its own piece alone: `share` then returns
 // RELUME_ECANCEL unless all pieces were there. Errors: RELUME_EINVAL (member out of range),
 // RELUME_ENOMEM.
-typedef struct relume_team_files relume_team_files;
 RELUME_RESULT relume_status relume_team_folder(relume_team_files **out, const char *path,
                                                int member, int members, const char *about,
                                                bool own_only, const struct relume_log *log);

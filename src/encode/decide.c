@@ -29,8 +29,7 @@ static struct rate_target target_of_view(const relume_capture *capture,
 {
     const double pixels =
         (double)relume_capture_width(capture) * (double)relume_capture_height(capture);
-    return p->psnr_db > 0.0 ? (struct rate_target){.psnr_db = p->psnr_db}
-                            : (struct rate_target){.bytes = p->bytes_per_pixel * pixels};
+    return (struct rate_target){.psnr_db = p->psnr_db, .bytes = p->bytes_per_pixel * pixels};
 }
 
 // A view's share of the functions.

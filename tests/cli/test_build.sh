@@ -19,7 +19,7 @@ fi
 if make -C "$TOP" config=fast all >make.txt 2>&1; then
     not_ok "an unknown config is refused" "status 0"
 else
-    check "an unknown config is refused" grep -q "expected release, debug, asan, tsan or fuzzer" make.txt
+    check "an unknown config is refused" grep -q "expected release, debug, asan, tsan, fuzzer or msan" make.txt
 fi
 
 # ---------------------------------------------------------------- hardened and reproducible

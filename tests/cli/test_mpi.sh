@@ -38,7 +38,7 @@ for view in lamp/view0?; do
     "$mkimage" poke "$view/light0000.exr" lit.exr 16 16 1000 && mv lit.exr "$view/light0000.exr"
 done
 as_one 'very bright highlights' 2 lamp --basis table
-check 'no part is left' [ "$(ls | grep -c '\.part$')" = 0 ]
+check 'no part is left' [ "$(ls | grep -c '\.relume-mpi$')" = 0 ]
 
 # ---- one voice
 processes 3 encode slab -o said.exr >out.txt 2>err.txt
@@ -60,5 +60,13 @@ silent 'a part of a part' 2 'relume-mpi makes the parts' 2 encode slab --part 1/
 silent 'more than rows' 1 '1 views of 70 rows cannot be shared by 6 parts' 6 encode flat -o no.exr
 head -c 900 slab/view07/light0003.exr >short && cp short slab/view07/light0003.exr
 silent 'a damaged photograph of the last process' 1 '.*light0003.exr: ' 3 encode slab -o no.exr
-check 'no part is left of it' [ "$(ls | grep -c '\.part$')" = 0 ]
+check 'no part is left of it' [ "$(ls | grep -c '\.relume-mpi$')" = 0 ]
+
+# ---- parts that somebody made by --part are theirs, whether the work succeeds or not
+relume encode flat --part 1/3 --basis sh -o theirs.part
+cp theirs.part no.1of3.part && cp theirs.part together.1of3.part
+silent 'a damaged photograph beside parts' 1 '.*light0003.exr: ' 3 encode slab -o no.exr
+as_one 'beside parts' 3 flat --basis sh
+same 'a part of --part stays where work fails' theirs.part no.1of3.part
+same 'and where it succeeds' theirs.part together.1of3.part
 finish

@@ -269,6 +269,9 @@ static relume_status form_team(relume_team_files **files, const relume_capture *
 
 // ---------------------------------------------------------------- relume-mpi
 
+// What relume-mpi's own parts end in: they are removed, and those of --part are the user's.
+static const char OWN_PART[] = "relume-mpi";
+
 struct together {
     const struct args *args;
     const struct request *r;
@@ -301,7 +304,7 @@ static relume_status join_parts(void *context, int member, struct relume_buffer 
     const char **path = calloc((size_t)parts, sizeof *path);
     relume_status status = name && path ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < parts; i++) {
-        name_part(&name[i], t->r->output, i + 1, parts);
+        name_part(&name[i], t->r->output, i + 1, parts, OWN_PART);
         path[i] = name[i].text;
     }
     if (!status)
@@ -339,7 +342,7 @@ static relume_status write_together(const struct args *args, const relume_captur
     struct part_name name;
     bool again = true;
     relume_status status = RELUME_OK;
-    name_part(&name, r->output, r->pack.part, r->pack.parts);
+    name_part(&name, r->output, r->pack.part, r->pack.parts, OWN_PART);
     r->pack.free_storage = false;
     while (!status && again) {
         status = relume_pack_encode(capture, coder, name.text, &own, &r->pack);

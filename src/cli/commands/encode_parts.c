@@ -73,17 +73,17 @@ static void name_beside(struct part_name *out, const char *output, const char *e
     snprintf(out->text, sizeof out->text, "%.*s%s", (int)stem, output, ending);
 }
 
-void name_part(struct part_name *out, const char *output, int part, int parts)
+void name_part(struct part_name *out, const char *output, int part, int parts, const char *kind)
 {
     char ending[64];
-    snprintf(ending, sizeof ending, ".%dof%d.part", part, parts);
+    snprintf(ending, sizeof ending, ".%dof%d.%s", part, parts, kind);
     name_beside(out, output, ending);
 }
 
 static void print_part_name(const char *output, int part, int parts)
 {
     struct part_name name;
-    name_part(&name, output, part, parts);
+    name_part(&name, output, part, parts, "part");
     print_word(name.text);
 }
 

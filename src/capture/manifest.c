@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "math/vec.h"
 #include "image/picture.h"
+#include "image/picture_kind.h"
 
 #include <ctype.h>
 #include <libgen.h>
@@ -396,25 +397,28 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
 // Somebody gave a photograph where its list belongs, or a file that is encoded already.
 static relume_status refuse_picture(const char *path, const struct relume_log *log)
 {
-    static const char *const magic[] = {"\xff\xd8\xff", "\x89PNG", "II*", "MM", "\x76\x2f\x31\x01"};
     char head[4096] = "";
+    struct picture_look look = {0};
     FILE *f = input_open(path, log);
     const size_t n = f ? fread(head, 1, sizeof head - 1, f) : 0;
-    bool is = false;
-    for (size_t i = 0; i < sizeof magic / sizeof *magic; i++)
-        is |= !strncmp(head, magic[i], strlen(magic[i]));
     if (f)
         fclose(f);
+    memcpy(look.head, head, sizeof look.head);
+    const struct picture_kind *kind = picture_kind_of(&look, path);
     if (picture_head_is_relume(head, n))
         return log_fail(
             log, RELUME_EFORMAT,
             "%s: this is a relume file, encoded already; expected the capture.json, the "
             ".lp file or the folder of its photographs",
             path);
-    return is ? log_fail(log, RELUME_EFORMAT,
-                         "%s: this is a photograph; give the .lp file, or use 'relume capture'",
-                         path)
-              : RELUME_OK;
+    if (kind->listed)
+        return log_fail(log, RELUME_EFORMAT,
+                        "%s: this is a photograph; give the .lp file, or use 'relume capture', for "
+                        "a panorama 'relume panorama'",
+                        path);
+    return kind->what ? log_fail(log, RELUME_EFORMAT, "%s: this is %s, no capture; %s", path,
+                                 kind->what, kind->advice)
+                      : RELUME_OK;
 }
 
 relume_status manifest_read(struct draft *out, const char *path,

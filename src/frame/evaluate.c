@@ -20,11 +20,13 @@ struct sums {
     size_t pixels, images, structured;
 };
 
-// Sentences about the file begin with its name.
+// Sentences about the file begin with its name. While lights are shown one by one, what the
+// renderer would warn of each is left out: warn_beyond has said it of all.
 struct about {
     struct relume_log log;
     const struct relume_log *to;
     const char *name;
+    bool drawing;
 };
 
 struct evaluator {
@@ -48,7 +50,8 @@ struct evaluator {
 static void say_about(void *user, enum relume_level level, const char *text)
 {
     const struct about *a = user;
-    log_line(a->to, level, "%s: %s", a->name, text);
+    if (!(a->drawing && level == RELUME_WARNING))
+        log_line(a->to, level, "%s: %s", a->name, text);
 }
 
 static bool pass_progress(void *user, const char *what, double done)
@@ -186,6 +189,28 @@ static vec3 photographed_from(const struct evaluator *e, int light)
     if (info->hemispherical && relume_capture_hemispherical(e->capture))
         d.z = fmax(d.z, 0.0);
     return world_from_pole(d, info->pole_y);
+}
+
+static void warn_beyond(const struct evaluator *e)
+{
+    static const double little = 3.0;  // degrees that nobody sees
+    double most = 0.0;
+    int beyond = 0;
+    for (int i = 0; i < e->manifest->lights; i++) {
+        const vec3 d = vec3_unit(photographed_from(e, i));
+        vec3 from;
+        (void)relume_coder_clamp(&from, e->info->coder, d);
+        const double off = vec3_angle(from, d) * (180.0 / M_PI);
+        beyond += off > little;
+        most = fmax(off, most);
+    }
+    if (beyond)
+        log_line(
+            &e->about.log, RELUME_WARNING,
+            "%d of %d light%s %s outside the directions that were photographed for it, by up to "
+            "%.0f degrees; shown from the nearest of them, dimmed",
+            beyond, e->manifest->lights, relume_plural(e->manifest->lights),
+            beyond == 1 ? "lies" : "lie", most);
 }
 
 static relume_status compare_light(struct evaluator *e, const struct relume_image *captured,
@@ -352,6 +377,9 @@ relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
     if (e.manifest->transfer.curve == RELUME_CURVE_GAMMA)
         e.display = e.manifest->transfer;
     status = create(&e, out) ? make_renderer(&e) : RELUME_ENOMEM;
+    if (!status && !e.manifest->positions)
+        warn_beyond(&e);
+    e.about.drawing = true;
     for (int view = 0; !status && view < e.manifest->views; view++)
         status = evaluate_view(&e, view);
     if (!status)

@@ -81,6 +81,11 @@ lp=$(ls low/*.lp)
 sed -i '2s/ [-0-9.e]* [-0-9.e]* [-0-9.e]*$/ 0.999 0 -0.045/' "$lp"
 expect_ok 'a lamp a little below the horizon' - "$RELUME" encode "$lp" -o low.exr --basis sh --coefficients 4
 expect_ok 'is nothing to warn of when its own capture is judged' - "$RELUME" eval low.exr "$lp"
+awk 'NF == 1 { next } $4 > 0.5' known/lights.lp >high && { wc -l <high; cat high; } >known/high.lp
+expect_ok 'lamps all above the rest' - "$RELUME" encode known/high.lp -o high.exr
+expect_ok 'lights beyond them are one remark' 'high.exr: [1-9] of 9 lights lie outside the directions that were photographed for it, by up to [0-9]+ degrees' \
+    "$RELUME" eval high.exr known
+check 'and no other' test "$(wc -l <err.txt)" -eq 1
 
 # ---- an output that cannot be made is refused before the work
 mkdir taken && echo mine >taken/mine

@@ -55,7 +55,11 @@ done
 
 # ---- sentences that say what to do
 expect_fail 'a relume file for a capture' 1 'this is a relume file, encoded already; expected the capture.json' x.exr "$RELUME" encode "$long.exr" -o x.exr
-expect_fail 'a photograph for a capture' 1 "b.png: this is a photograph; give the .lp file, or use 'relume capture'" x.exr "$RELUME" encode b.png -o x.exr
+expect_fail 'a photograph for a capture' 1 "b.png: this is a photograph; give the .lp file, or use 'relume capture', for a panorama 'relume panorama'" x.exr "$RELUME" encode b.png -o x.exr
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\nabcd' >sky.hdr
+expect_fail 'an HDR map for a capture' 1 "sky.hdr: this is a photograph; give the .lp file, .* for a panorama 'relume panorama'" x.exr "$RELUME" encode sky.hdr -o x.exr
+printf 'PTM_1.2\n' >coin.ptm
+expect_fail 'a PTM for a capture' 1 "coin.ptm: this is a PTM file, no capture; use 'relume import'" x.exr "$RELUME" encode coin.ptm -o x.exr
 "$BUILD/samples/sphere" few --size 32 --lights 4 --hemisphere --format png
 expect_ok 'lamps to add, in words' 'add lamps: .*, [0-9]* degrees above the table \([0-9]* degrees counter-clockwise' \
     "$RELUME" capture few/view00/light*.png --lights few/dirs.lp -o uneven

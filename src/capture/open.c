@@ -66,28 +66,43 @@ static void keep_lights(struct draft *d, const bool *keep)
     d->m.lights = n;
 }
 
+// The first image of a light that does not exist; NULL when all do.
+static const char *missing_image(const struct draft *d, int light, const struct relume_log *log)
+{
+    for (int v = 0; v < d->m.views; v++)
+        if (!input_exists(d->view[v].images[light], log))
+            return d->view[v].images[light];
+    return NULL;
+}
+
 static relume_status skip_missing(relume_capture *c, const struct relume_log *log)
 {
     struct draft *d = &c->draft;
     const int before = d->m.lights;
+    const char *first = NULL;
+    int missing = 0;
     bool *keep = mem_array((size_t)before, sizeof *keep);
     if (!keep)
         return RELUME_ENOMEM;
     for (int i = 0; i < before; i++) {
-        keep[i] = true;
-        for (int v = 0; v < d->m.views && keep[i]; v++) {
-            keep[i] = input_exists(d->view[v].images[i], log);
-            if (!keep[i])
-                log_line(log, RELUME_WARNING,
-                         "%s: image '%s' does not exist; its light is left out", c->path,
-                         d->view[v].images[i]);
-        }
+        const char *image = missing_image(d, i, log);
+        keep[i] = !image;
+        missing += !!image;
+        first = first ? first : image;
     }
+    if (missing == before)
+        log_fail(log, RELUME_ENOTFOUND, "%s: no image exists; expected %d", c->path, before);
+    else if (missing == 1)
+        log_line(log, RELUME_WARNING, "%s: image '%s' does not exist; its light is left out",
+                 c->path, first);
+    else if (missing)
+        log_line(log, RELUME_WARNING,
+                 "%s: image '%s' and those of %d other lights do not exist; these %d of %d lights "
+                 "are left out",
+                 c->path, first, missing - 1, missing, before);
     keep_lights(d, keep);
     mem_free(keep);
-    if (d->m.lights == 0)
-        return log_fail(log, RELUME_ENOTFOUND, "%s: no image exists; expected %d", c->path, before);
-    return RELUME_OK;
+    return missing == before ? RELUME_ENOTFOUND : RELUME_OK;
 }
 
 // Before images are looked at one by one.

@@ -16,6 +16,8 @@ encoded missing-skipped "warning.*light0003.png' does not exist; its light is le
 encoded missing-skipped-lp "warning.*light0003.png' does not exist; its light is left out" c/dirs.lp $L --skip-missing
 "$RELUME" info missing-skipped.exr --json >info.json
 below 'nine lights are left' "$(field lights info.json)" 9
+rm c/view00/light0004.png c/view00/light0007.png
+encoded missing-three "warning.*light0003.png' and those of 2 other lights do not exist; these 3 of 10 lights are left out" c $L --skip-missing
 rm -f c/view00/*.png
 not_encoded 'nothing left to skip to' "c/capture.json: no image exists" c --skip-missing
 fresh good c; : >c/$image

@@ -73,6 +73,9 @@ bad() { # name, pattern, options...
     expect_fail "$name" 1 "$pattern" out "$RELUME" capture "$@" -o out
 }
 bad 'a matte sphere is no mirror' 'photos/.*: no mirror ball found; give --lights lights.txt' photos
+cp known/lights.lp photos/dirs.lp
+bad 'photographs by name, their list beside them' 'no mirror ball found; give --lights photos/dirs.lp,' photos/light000[0-5].png
+rm photos/dirs.lp
 bad 'highlight off the ball' 'light.*0000.*ball at 15' photos --ball 15,15,8
 head -n 11 lights.txt >few.txt
 bad 'too few lights' 'few.txt: 11 lights; expected 12' photos --lights few.txt

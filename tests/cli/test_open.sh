@@ -27,6 +27,8 @@ for file in i.ptm i.rti web web/info.json zoom; do
     same "$file: the picture of the imported file" want.exr got.exr
     "$RELUME" info $file --json >info.json
     check "info $file" grep -q '"source": "RTI of another format"' info.json
+    case $file in *.ptm | *.rti) bytes=$(wc -c <$file) ;; *) bytes=null ;; esac
+    check "and its own bytes: $bytes" grep -q "\"file_bytes\": $bytes," info.json
 done
 relume query i.ptm --eye 0,0,4 --direction 0,0,-1 --light "$light" >got.txt
 "$RELUME" import i.ptm -o imported.exr -q

@@ -86,7 +86,7 @@ static const struct option options[] = {
 
 struct job {
     struct relume_photographs photos, balls, flats;
-    char above[4096];  // a list of lights there
+    char likely_lights[4096];  // beside the photographs or above their folder
     struct relume_acquire_params p;
     struct relume_acquisition acquisition;
 };
@@ -120,34 +120,45 @@ static relume_status gather(const struct capture_options *o, struct job *job)
     return status;
 }
 
-// A list that nobody named counts where it has a light for every photograph.
+// A list that nobody named counts where it has a light for every photograph; an .lp file, which
+// names them, also where it has more.
 static bool fits(const char *path, const struct job *job)
 {
     struct relume_captured_lights list;
+    const size_t length = strlen(path);
+    const bool names = length > 3 && !strcasecmp(path + length - 3, ".lp");
     const bool good = !relume_captured_lights_load(&list, path, false, NULL);
-    const bool fits = good && list.count == job->photos.count;
+    const bool fits =
+        good && (names ? list.count >= job->photos.count : list.count == job->photos.count);
     relume_captured_lights_destroy(&list);
     return fits;
 }
 
-// Data sets of several objects keep one list above their folders.
-static void find_lights_above(struct job *job)
+// A list of lights in the folder whose name has `length` bytes.
+static bool find_lights_in(struct job *job, const char *folder, int length)
 {
     static const char *const names[] = {"light_directions.txt", "lights.txt", "lights.lp",
                                         "dirs.lp"};
-    const char *const first = job->photos.path[0], *slash = strrchr(first, '/');
-    if (!slash)
-        return;
-    const char *above = slash;
-    while (above > first && above[-1] != '/')
-        above--;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        snprintf(job->above, sizeof job->above, "%.*s%s", (int)(above - first), first, names[i]);
-        if (fits(job->above, job)) {
-            job->p.likely_lights = job->above;
-            return;
+        snprintf(job->likely_lights, sizeof job->likely_lights, "%.*s%s", length, folder, names[i]);
+        if (fits(job->likely_lights, job)) {
+            job->p.likely_lights = job->likely_lights;
+            return true;
         }
     }
+    return false;
+}
+
+// Beside photographs that are named one by one; data sets of several objects keep one list above
+// their folders.
+static void find_likely_lights(struct job *job)
+{
+    const char *const first = job->photos.path[0], *slash = strrchr(first, '/');
+    if (find_lights_in(job, first, slash ? (int)(slash + 1 - first) : 0) || !slash)
+        return;
+    while (slash > first && slash[-1] != '/')
+        slash--;
+    (void)find_lights_in(job, first, (int)(slash - first));
 }
 
 // --lights, or the file of lights that lies with the photographs unless a ball shows the lights.
@@ -231,7 +242,7 @@ static void read_options(const struct capture_options *o, struct job *job)
         .threads = o->args.threads,
     };
     if (!job->p.lights)
-        find_lights_above(job);
+        find_likely_lights(job);
     for (int i = 0; i < 4; i++)
         job->p.white[i] = fabs(o->white[i]) < 1e6 ? (int)o->white[i] : -1;
 }

@@ -2,6 +2,9 @@
 #include "cli.h"
 
 #include <math.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
 
 struct info_options {
     struct args args;
@@ -16,13 +19,25 @@ static const struct option options[] = {
     KEEP_GOING_OPTION, {0},
 };
 
-static double bits_per_pixel(const struct relume_pack_info *i)
+// Of the file that was named; NAN for folders and for lists of other files.
+static double bytes_of(const char *path, enum relume_kind kind, const struct relume_pack_info *i)
 {
-    return 8.0 * (double)i->file_bytes / ((double)i->views * (double)i->width * (double)i->height);
+    const char *dot = strrchr(path, '.');
+    struct stat s;
+    if (kind == RELUME_KIND_RELUME)
+        return (double)i->file_bytes;
+    if (kind == RELUME_KIND_CAPTURE || (dot && !strcasecmp(dot, ".json")))
+        return (double)NAN;
+    return !stat(path, &s) && S_ISREG(s.st_mode) ? (double)s.st_size : (double)NAN;
+}
+
+static double bits_per_pixel(const struct relume_pack_info *i, double bytes)
+{
+    return 8.0 * bytes / ((double)i->views * (double)i->width * (double)i->height);
 }
 
 static void print_json(const struct relume_pack_info *i, const struct relume_coder_info *c,
-                       const char *display, enum relume_kind kind)
+                       const char *display, enum relume_kind kind, double bytes)
 {
     printf("{\"format\": \"relume\", \"source\": \"%s\", \"version\": %d, \"projection\": \"%s\", "
            "\"views\": %d, "
@@ -45,10 +60,14 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
     json_number(stdout, i->report.fit_rms);
     printf(", \"store_rms\": ");
     json_number(stdout, i->report.store_rms);
-    printf(", \"depth\": %s, \"mask\": %s, \"file_bytes\": %llu, \"bits_per_pixel\": ",
-           i->has_depth ? "true" : "false", i->has_mask ? "true" : "false",
-           (unsigned long long)i->file_bytes);
-    json_number(stdout, bits_per_pixel(i));
+    printf(", \"depth\": %s, \"mask\": %s, \"file_bytes\": ", i->has_depth ? "true" : "false",
+           i->has_mask ? "true" : "false");
+    if (isfinite(bytes))
+        printf("%.0f", bytes);
+    else
+        json_number(stdout, bytes);
+    printf(", \"bits_per_pixel\": ");
+    json_number(stdout, bits_per_pixel(i, bytes));
     printf("}\n");
 }
 
@@ -63,7 +82,7 @@ static const char *percent(char text[24], double share)
 }
 
 static void print_text(const struct relume_pack_info *i, const struct relume_coder_info *c,
-                       const char *display, enum relume_kind kind)
+                       const char *display, enum relume_kind kind, double bytes)
 {
     char model[24], rounding[24];
     if (kind != RELUME_KIND_RELUME)
@@ -104,8 +123,9 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
            i->has_mask    ? "mask"
            : i->has_depth ? ""
                           : "none");
-    printf("file          %llu bytes, %.3f bits per pixel and view\n",
-           (unsigned long long)i->file_bytes, bits_per_pixel(i));
+    if (isfinite(bytes))
+        printf("file          %.0f bytes, %.3f bits per pixel and view\n", bytes,
+               bits_per_pixel(i, bytes));
 }
 
 static void print_part(const struct relume_pack_part *p, bool json)
@@ -147,8 +167,9 @@ static relume_status run(const struct args *args)
     const struct relume_pack_info *info = relume_pack_info(pack);
     char display[32];
     relume_transfer_text(info->display, display, sizeof display);
-    (o->json ? print_json : print_text)(info, relume_coder_info(info->coder), display,
-                                        relume_kind_of(path));
+    const enum relume_kind kind = relume_kind_of(path);
+    (o->json ? print_json : print_text)(info, relume_coder_info(info->coder), display, kind,
+                                        bytes_of(path, kind, info));
     relume_pack_destroy(&pack);
     return RELUME_OK;
 }

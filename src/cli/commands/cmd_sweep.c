@@ -177,20 +177,46 @@ static int group_end(const struct sweep *sweep, int first)
     return end;
 }
 
+// What the capture was warned of: rows have the same to say.
+struct warnings {
+    char text[8][200];
+    int count;
+};
+
 // Keeps the last sentence, as the reason for leaving a row out, and maps progress to the whole.
 struct listener {
     struct relume_log log, inner;  // `inner` is for steps whose own progress is not shown
+    struct relume_log parts;       // for coders of some of the lights, whose warnings say nothing
     const struct relume_log *to;
+    struct warnings *warnings;
     double first, extent, last;
     char said[200];
 };
+
+static bool is_new(struct warnings *w, const char *text)
+{
+    enum { MOST = sizeof w->text / sizeof *w->text };
+    for (int i = 0; i < w->count; i++)
+        if (!strncmp(w->text[i], text, sizeof w->text[i] - 1))
+            return false;
+    if (w->count < MOST)
+        snprintf(w->text[w->count++], sizeof w->text[0], "%s", text);
+    return true;
+}
+
+static void hear_errors(void *user, enum relume_level level, const char *text)
+{
+    struct listener *l = user;
+    if (level == RELUME_ERROR)
+        snprintf(l->said, sizeof l->said, "%s", text);
+}
 
 static void hear(void *user, enum relume_level level, const char *text)
 {
     struct listener *l = user;
     if (level == RELUME_ERROR)
-        snprintf(l->said, sizeof l->said, "%s", text);
-    else
+        hear_errors(user, level, text);
+    else if (is_new(l->warnings, text))
         l->to->message(l->to->user, level, text);
 }
 
@@ -210,12 +236,14 @@ static bool hold_progress(void *user, const char *what, double done)
     return l->to->progress(l->to->user, "sweeping", l->last);
 }
 
-static struct listener *listen_to(struct listener *l, const struct relume_log *to, double first,
-                                  double extent)
+static struct listener *listen_to(struct listener *l, const struct relume_log *to,
+                                  struct warnings *warnings, double first, double extent)
 {
     *l = (struct listener){.log = {hear, pass_progress, l, to->context, false},
                            .inner = {hear, hold_progress, l, to->context, false},
+                           .parts = {hear_errors, pass_progress, l, to->context, false},
                            .to = to,
+                           .warnings = warnings,
                            .first = first,
                            .extent = extent,
                            .last = first};
@@ -228,6 +256,7 @@ struct work {
     relume_heldout *heldout;
     sweep_resume *resume;
     relume_making *folder;  // for files whose size is wanted
+    struct warnings warnings;
 };
 
 static struct relume_coder_params coder_params(const struct sweep_row *row,
@@ -306,7 +335,7 @@ static relume_status measure_apart(struct work *w, struct sweep_row **rows, int 
     const double first = l->first, extent = l->extent / n;
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < n; i++) {
-        listen_to(l, l->to, first + i * extent, extent);
+        listen_to(l, l->to, l->warnings, first + i * extent, extent);
         status = measure_rows(w, &rows[i], 1, l);
     }
     return status;
@@ -317,7 +346,7 @@ static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n
 {
     struct relume_heldout_store store[MOST_ROWS];
     struct relume_heldout_quality before, after[MOST_ROWS];
-    const struct relume_coder_params params = coder_params(rows[0], &l->log);
+    const struct relume_coder_params params = coder_params(rows[0], &l->parts);
     for (int i = 0; i < n; i++) {
         rows[i]->books.log = &l->inner;
         store[i] = rows[i]->store;
@@ -363,7 +392,7 @@ static relume_status measure_group(struct work *w, int first, int end)
     for (int i = first; i < end; i++)
         if (!w->sweep->row[i].known)
             rows[n++] = &w->sweep->row[i];
-    listen_to(&l, w->sweep->args->log, first / all, (end - first) / all);
+    listen_to(&l, w->sweep->args->log, &w->warnings, first / all, (end - first) / all);
     const relume_status status = n ? measure_rows(w, rows, n, &l) : RELUME_OK;
     if (status && *l.said)
         l.to->message(l.to->user, RELUME_ERROR, l.said);

@@ -416,9 +416,15 @@ static relume_status refuse_picture(const char *path, const struct relume_log *l
                         "%s: this is a photograph; give the .lp file, or use 'relume capture', for "
                         "a panorama 'relume panorama'",
                         path);
-    return kind->what ? log_fail(log, RELUME_EFORMAT, "%s: this is %s, no capture; %s", path,
-                                 kind->what, kind->advice)
-                      : RELUME_OK;
+    if (kind->what)
+        return log_fail(log, RELUME_EFORMAT, "%s: this is %s, no capture; %s", path, kind->what,
+                        kind->advice);
+    if (!strchr("{[", head[strspn(head, " \t\r\n")]) || !n)
+        return log_fail(log, RELUME_EFORMAT,
+                        "%s: %s, no capture; expected a capture.json, a .lp file or a folder that "
+                        "holds one",
+                        path, n ? "not JSON" : "an empty file");
+    return RELUME_OK;
 }
 
 relume_status manifest_read(struct draft *out, const char *path,

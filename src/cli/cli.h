@@ -39,6 +39,7 @@ struct command {
     const char *summary;  // one line
     const char *example;  // complete command line
     int min_inputs, max_inputs;
+    bool names_built_in;                 // inputs are names of what is built in, never files
     const struct option *options;        // common options are added
     const char *groups;                  // help shows these groups only; NULL: all
     size_t size;                         // of the struct that they fill

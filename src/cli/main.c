@@ -187,7 +187,7 @@ static relume_status check_outputs_differ(const struct command_line *l)
 static relume_status note_inputs(struct parsed *p)
 {
     relume_status status = RELUME_OK;
-    for (int i = 0; i < p->line.input_count; i++)
+    for (int i = 0; !p->command->names_built_in && i < p->line.input_count; i++)
         relume_context_note(p->log.context, p->line.input[i]);
     for (int i = 0; i < p->line.given_count; i++) {
         const enum option_kind kind = p->line.given[i].option->kind;

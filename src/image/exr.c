@@ -661,6 +661,20 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
     return RELUME_OK;
 }
 
+// The library says "error reading from stream" of a folder, and of a text that its header is bad.
+static const char *why_unread(exr_file *file, exr_result_t r)
+{
+    char magic[4];
+    const ssize_t n = infile_read(&file->in, magic, sizeof magic, 0);
+    if (n <= 0)
+        return "it is empty, or a folder";
+    if (n < (ssize_t)sizeof magic || memcmp(magic, "\x76\x2f\x31\x01", sizeof magic))
+        return "it is a file of another kind";
+    return r == EXR_ERR_READ_IO || r == EXR_ERR_FILE_BAD_HEADER || r == EXR_ERR_MISSING_REQ_ATTR
+               ? "it is damaged or cut off in its header"
+               : exr_get_default_error_message(r);
+}
+
 static relume_status start_read(exr_file *file, const struct relume_limits *limits,
                                 const struct relume_log *log)
 {
@@ -675,8 +689,7 @@ static relume_status start_read(exr_file *file, const struct relume_limits *limi
                         r == EXR_ERR_FILE_BAD_HEADER           ? RELUME_EFORMAT
                         : r == EXR_ERR_FEATURE_NOT_IMPLEMENTED ? RELUME_EUNSUPPORTED
                                                                : RELUME_EDAMAGED,
-                        "%s: cannot be read as OpenEXR; %s", file->path,
-                        exr_get_default_error_message(r));
+                        "%s: cannot be read as OpenEXR; %s", file->path, why_unread(file, r));
     return check_parts(file, limits, log);
 }
 

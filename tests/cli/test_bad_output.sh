@@ -100,8 +100,10 @@ interrupted 'encode interrupted' slow.exr "$RELUME" encode long.lp -o slow.exr -
 info() { expect_fail "$1" 1 "$2" - "$RELUME" info "$3"; }
 info 'no such file' 'nothing.exr: no such file' nothing.exr
 info 'a folder' 'folder: a folder without capture.json' folder
-: >empty.exr; info 'empty file' 'empty.exr: cannot be read as OpenEXR' empty.exr
-echo text >text.exr; info 'text file' 'text.exr: cannot be read as OpenEXR' text.exr
+: >empty.exr; info 'empty file' 'empty.exr: cannot be read as OpenEXR; it is empty' empty.exr
+echo text >text.exr; info 'text file' 'text.exr: cannot be read as OpenEXR; it is a file of another kind' text.exr
+head -c 900 good.exr >head.exr; info 'a beginning' 'head.exr: cannot be read as OpenEXR; it is damaged or cut off in its header' head.exr
+expect_fail 'a folder to check' 1 'folder: cannot be read as OpenEXR; it is empty, or a folder' - "$RELUME" check folder
 expect_fail 'an ordinary EXR' 1 'light0000.exr: an OpenEXR file, but not a relume file' - "$RELUME" eval good/view00/light0000.exr good
 $relight picture.png; info 'a PNG' 'picture.png: one photograph under one light cannot be relit' picture.png
 "$mkimage" bigexr big.exr 1000000 1000000; info 'an EXR that claims 1000000 x 1000000' 'big.exr: ' big.exr

@@ -14,6 +14,10 @@ for p in 'box planar' 'teapot slab' 'attic cylindrical' 'chessboard spherical' '
     # halves of the images come back as they are, so that 8-bit codes agree
     above "eval $p" "$(field psnr_db eval.json)" 90
 done
+expect_ok 'a folder called as its scene' - "$RELUME" synth box -o box --size 8 --lights 3
+expect_ok 'is replaced like any other' - "$RELUME" synth box -o box --size 8 --lights 3 --force
+expect_ok 'a material likewise' - "$RELUME" synth --btf knit -o knit --size 4 --directions coarse
+expect_ok 'and once more' - "$RELUME" synth --btf knit -o knit --size 4 --directions coarse --force
 # A cylinder with discs shows what a sphere shows, upwards and downwards and over both rims; without
 # them there is black.
 "$RELUME" synth attic -o discs --discs --size 48 --lights 1 --hemisphere --samples 4 -q

@@ -58,6 +58,8 @@ expect_fail 'a relume file for a capture' 1 'this is a relume file, encoded alre
 expect_fail 'a photograph for a capture' 1 "b.png: this is a photograph; give the .lp file, or use 'relume capture', for a panorama 'relume panorama'" x.exr "$RELUME" encode b.png -o x.exr
 printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\nabcd' >sky.hdr
 expect_fail 'an HDR map for a capture' 1 "sky.hdr: this is a photograph; give the .lp file, .* for a panorama 'relume panorama'" x.exr "$RELUME" encode sky.hdr -o x.exr
+printf 'light 1 2 3' >plain.txt
+expect_fail 'a text for a capture' 1 'plain.txt: not JSON, no capture; expected a capture.json, a .lp file or a folder' x.exr "$RELUME" encode plain.txt -o x.exr
 printf 'PTM_1.2\n' >coin.ptm
 expect_fail 'a PTM for a capture' 1 "coin.ptm: this is a PTM file, no capture; use 'relume import'" x.exr "$RELUME" encode coin.ptm -o x.exr
 "$BUILD/samples/sphere" few --size 32 --lights 4 --hemisphere --format png

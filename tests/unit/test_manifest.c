@@ -166,7 +166,7 @@ static void test_directions(void **state)
         {"{\"format\": \"other\", \"version\": 1}", "relume-capture"},
         {"[]", "format"},
         {"3", "JSON"},
-        {"", "JSON"},
+        {"", "an empty file, no capture"},
         {"{\"format\": \"relume-capture\", \"version\": 1, \"lights\": {\"directions\": []}}",
          "directions"},
         {"{\"format\": \"relume-capture\", \"version\": 1, \"lights\": {\"directions\": "

@@ -16,6 +16,15 @@ struct synth_options {
 };
 #define OPTIONS struct synth_options
 
+// A name, no file that would have to be kept.
+static relume_status take_material(void *member, const struct option *option, const char *text,
+                                   const struct relume_log *log)
+{
+    (void)option, (void)log;
+    *(const char **)member = text;
+    return RELUME_OK;
+}
+
 static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_OUTPUT, output, "DIR", "the capture folder to make"),
@@ -51,9 +60,9 @@ static const struct option options[] = {
     INT("--bounces", bounces, "N", "bounces of indirect light; default: 0", 0, 64),
     INT("--seed", seed, "S", "seed of random patterns and sampling; default: 0", 0, 2147483647),
     GROUP("material"),
-    TEXT("--btf", btf, "MATERIAL",
-         "measure a built-in material as a BTF instead of a scene; --size is in texels, default: "
-         "64"),
+    OWN("--btf", btf, "MATERIAL",
+        "measure a built-in material as a BTF instead of a scene; --size is in texels, default: 64",
+        take_material),
     INT("--extent", extent, "N",
         "--btf: N times as many stones, threads, ... along a side; default: 1", 1, 16),
     TEXT("--directions", directions, "SET",
@@ -222,5 +231,6 @@ const struct command command_synth = {
     COMMAND("synth", "SCENE|--btf MATERIAL -o DIR",
             "render a built-in scene (box, teapot, bust, attic, chessboard) under many lights",
             "relume synth teapot -o teapot --views 5x5 --lights 100", 0, 1),
+    .names_built_in = true,
     .defaults = &(const OPTIONS){.lights = 100, .directions = "bonn"},
 };

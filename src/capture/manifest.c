@@ -9,6 +9,7 @@
 #include "image/picture_kind.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <libgen.h>
 #include <relume/response.h>
 #include <stdio.h>
@@ -400,9 +401,10 @@ static relume_status refuse_picture(const char *path, const struct relume_log *l
     char head[4096] = "";
     struct picture_look look = {0};
     FILE *f = input_open(path, log);
-    const size_t n = f ? fread(head, 1, sizeof head - 1, f) : 0;
-    if (f)
-        fclose(f);
+    if (!f)
+        return relume_input_fail(log, path, "cannot be opened", errno);
+    const size_t n = fread(head, 1, sizeof head - 1, f);
+    fclose(f);
     memcpy(look.head, head, sizeof look.head);
     const struct picture_kind *kind = picture_kind_of(&look, path);
     if (picture_head_is_relume(head, n))

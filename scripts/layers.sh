@@ -19,11 +19,11 @@ hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 acquire:base math image capture multiview:base image directions capture ball photometric acquire photograph align
 coder:base math kernel image:base image capture coder
-codebook:base math kernel image coder:base coder codebook team
+codebook:base math kernel image coder team:base coder codebook team
 team:base:base io team
 selection:base math image coder compare:base image capture coder codebook heldout team
 lossy:base math:base image coder
-encode:base coder codebook lossy:base image capture codebook coder light relight pack team
+encode:base coder codebook lossy team:base image capture codebook coder light relight pack team
 pack:base geometry image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange
@@ -94,11 +94,11 @@ immintrin:$(echo src/kernel/*_avx*.c)
 arm_neon:src/kernel/kernels_neon.c"
 
 # Files are opened by base alone, which notes what is read (inputs.h) and replaces nothing else
-# (outfile.h, outdir.h). Elsewhere: what base has noted before, what no output could replace, and the
-# rows that a sweep appends.
+# (outfile.h, outdir.h). Elsewhere: what base has noted before, what no output could replace, the
+# rows that a sweep appends, and the marks of a team, which are new.
 opens="src/image/png.c src/image/picture.c src/mesh/mesh_other.c src/exchange/open.c src/post/subject.c
 src/acquire/report_picture.c src/cli/main.c src/cli/commands/capture_times.c src/cli/rays.c src/cli/commands/sweep_resume.c
-viewer/app/script.c viewer/session/settings.c"
+src/team/folder.c viewer/app/script.c viewer/session/settings.c"
 found=$(grep -rlE '(^|[^a-z_>.:])(fopen|open|openat|creat|rename|mkstemp|mkostemp|mkdtemp|tmpfile)\(' src viewer --include='*.c' --include='*.cpp' |
     grep -v -e '^src/base/' -e '^src/helper/' | while read -r f; do
         case " $(echo $opens) " in *" $f "*) ;; *) echo "$f" ;; esac

@@ -77,7 +77,9 @@ struct relume_pack_share {
     enum relume_step step;          // what was asked for
     enum relume_pyramid pyramid;    // likewise
     bool shared_books;              // all views of all parts have the same
-    const struct relume_encode_report *measured;  // [views] of it
+    const struct relume_encode_report *measured;  // [views] of it; `coded`: one of all views
+    bool coded;  // planes are coded with loss: it holds the views that have `coded` words
+    int group;   // then: the number of its first group
 };
 
 // What is written. Everything is borrowed while relume_pack_write runs.
@@ -166,14 +168,16 @@ struct relume_pack_encode_params {
     double psnr_db, bytes_per_pixel;
     const struct relume_writer *writer;  // write here in place of the file, as
                                          // relume_pack_params; temporary data in $TMPDIR
-    // Only one of several parts of the work, 1 .. parts, for relume_pack_join. Not with loss, with
-    // `share` only in a team. Default: all of it.
+    // Only one of several parts of the work, 1 .. parts, for relume_pack_join. With `share` only in
+    // a team. With loss a part holds groups of views, of which there may be fewer than parts;
+    // without a team each part codes all of them, to find the steps. Default: all of it.
     int part, parts;
     const char *options;  // what parts say they were asked for; those that say otherwise are not
                           // joined
     bool free_storage;    // nobody asked for `storage`: coarse steps are refused when joined
     const struct relume_team *team;  // the other parts (team.h): `part` is its member; default:
                                      // nothing is shared with them
+    bool learn_only;  // with loss: share what the team needs for its steps, and write nothing
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \
@@ -202,6 +206,7 @@ struct relume_pack_part {
     char creator[64];    // "relume 0.1.0"
     char options[4096];  // as they were given to relume_pack_encode
     uint64_t file_bytes;
+    bool coded;  // with loss: it holds groups of neighbours, of which `first` is the lowest view
 };
 // An input status with a sentence when `path` is no part. Of `params` log, limits and reader are
 // used.

@@ -69,7 +69,7 @@ struct relume_pack_params { size_t struct_size; void *log; void *limits; int com
     void *writer; bool keep_going; };
 struct relume_pack_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int compression;
     int threads; void *books; bool share; bool no_depth; int pyramid; double psnr_db, bytes_per_pixel; void *writer;
-    int part, parts; void *options; bool free_storage; void *team; };
+    int part, parts; void *options; bool free_storage; void *team; bool learn_only; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
     size_t repaired; int black_images; };
 struct relume_encode_report { double fit_rms; double store_rms; double steps_rms; double psnr_db; double typical;

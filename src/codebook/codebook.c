@@ -10,8 +10,8 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "math/random.h"
+#include "team/gather.h"
 
-#include <relume/team.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -34,6 +34,8 @@ struct search {
     size_t begin;  // the chunk with which the items begin
     int threads;
     const struct relume_team *team;  // or NULL
+    bool any_changed;                // of any member
+    const struct relume_log *log;
 };
 
 // Whether vector i keeps its code: no other has come near enough (Hamerly 2010). The margin is far
@@ -99,33 +101,28 @@ static relume_status search_piece(void *context, int member, struct relume_buffe
     return RELUME_OK;
 }
 
-static void take_found(struct search *s, int member, const struct relume_buffer *piece,
-                       bool *changed)
+static relume_status take_found(void *context, int member, const struct relume_buffer *piece)
 {
+    struct search *s = context;
     size_t first, end;
     search_share(s, member, &first, &end);
     const size_t n = end - first;
     const unsigned char *from = piece->data;
-    *changed |= *from++ != 0;
+    if (piece->size != 1 + n * FOUND)
+        return RELUME_EDAMAGED;
+    s->any_changed |= *from++ != 0;
     memcpy(s->index + first, from, n * sizeof *s->index);
     memcpy(s->distance + first, from += n * sizeof *s->index, n * sizeof *s->distance);
     memcpy(s->apart + first, from + n * sizeof *s->distance, n * sizeof *s->apart);
+    return RELUME_OK;
 }
 
 static relume_status search_together(struct search *s)
 {
-    const struct relume_team *team = s->team;
-    struct relume_buffer *piece = mem_zeroed((size_t)team->members, sizeof *piece);
-    bool changed = false;
+    s->any_changed = false;
     const relume_status status =
-        piece ? team->share(team->user, "search", search_piece, s, piece) : RELUME_ENOMEM;
-    for (int i = 0; piece && i < team->members; i++) {
-        if (!status)
-            take_found(s, i, &piece[i], &changed);
-        relume_buffer_destroy(&piece[i]);
-    }
-    atomic_store(&s->changed, changed);
-    mem_free(piece);
+        team_gather(s->team, "search", search_piece, take_found, s, s->log);
+    atomic_store(&s->changed, s->any_changed);
     return status;
 }
 
@@ -179,6 +176,7 @@ relume_status training_assign(struct training *t)
         .drift = t->bounded ? t->drift : NULL,
         .furthest = t->furthest,
         .team = t->team,
+        .log = t->log,
     };
     const relume_status status = search(&s, t->codes, t->dim, t->threads, t->cpu_off);
     if (status)

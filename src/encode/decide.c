@@ -3,6 +3,7 @@
 
 #include "base/params.h"
 #include "encode/rate.h"
+#include "team/gather.h"
 
 #include <string.h>
 
@@ -56,6 +57,47 @@ static relume_status merit_of(double *merit, const relume_coder *coder,
     return status;
 }
 
+// Components and pictures, judged by two members of a team.
+struct choice {
+    const relume_coder *coder[2];
+    const relume_capture *capture;
+    const struct relume_pack_encode_params *p;
+    const struct relume_encode_params *encode;
+    double merit[2];
+};
+
+static bool is_his(const struct choice *c, int member, int which)
+{
+    return which % (c->p->team ? c->p->team->members : 1) == member;
+}
+
+// A number for each, which is 0 where it is another's to say.
+static relume_status make_merits(void *context, int member, struct relume_buffer *out)
+{
+    const struct choice *c = context;
+    const struct relume_writer writer = relume_buffer_writer(out);
+    double merit[2] = {0.0, 0.0};
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < 2; i++)
+        if (is_his(c, member, i))
+            status = merit_of(&merit[i], c->coder[i], c->capture, c->p, c->encode);
+    if (!status && !writer.write(writer.user, merit, sizeof merit, 0))
+        status = RELUME_ENOMEM;
+    return status;
+}
+
+static relume_status take_merits(void *context, int member, const struct relume_buffer *piece)
+{
+    struct choice *c = context;
+    double merit[2];
+    if (piece->size != sizeof merit)
+        return RELUME_EDAMAGED;
+    memcpy(merit, piece->data, sizeof merit);
+    for (int i = 0; i < 2; i++)
+        c->merit[i] = is_his(c, member, i) ? merit[i] : c->merit[i];
+    return RELUME_OK;
+}
+
 // Components in *out or pictures, whichever are better, in *out; the others are destroyed.
 static relume_status keep_better(relume_coder **out, relume_coder *pictures,
                                  const relume_capture *capture,
@@ -63,11 +105,10 @@ static relume_status keep_better(relume_coder **out, relume_coder *pictures,
                                  const struct relume_encode_params *encode)
 {
     const double least = p->psnr_db > 0.0 ? 0.0 : WORTH_IT_DB;
-    double ours = 0.0, theirs = 0.0;
-    relume_status status = merit_of(&ours, *out, capture, p, encode);
-    if (!status)
-        status = merit_of(&theirs, pictures, capture, p, encode);
-    if (!status && theirs > ours + least) {
+    struct choice c = {{*out, pictures}, capture, p, encode, {0.0, 0.0}};
+    const relume_status status =
+        team_gather(p->team, "merits", make_merits, take_merits, &c, p->log);
+    if (!status && c.merit[1] > c.merit[0] + least) {
         relume_coder *const components = *out;
         *out = pictures;
         pictures = components;
@@ -103,7 +144,8 @@ relume_status relume_pack_decide(relume_coder **out, const relume_capture *captu
                                                 .domain = RELUME_DOMAIN_DISPLAY,
                                                 .storage = RELUME_STORE_12,
                                                 .step = RELUME_STEP_COMMON,
-                                                .threads = p.threads};
+                                                .threads = p.threads,
+                                                .team = p.team};
     const int lights = relume_capture_manifest(capture)->lights;
     struct relume_decision decision;
     relume_coder *pictures = NULL;

@@ -4,6 +4,8 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 struct camera {
     double uv[2];
@@ -71,15 +73,38 @@ static void halve(struct view_groups *to, struct camera *c, int at, int n, int g
     halve(to, c + first, at + first, n - first, groups - groups / 2);
 }
 
+// In the order of their anchors, as the file has them.
+static void sort_groups(struct view_groups *to, const struct view_groups *from, int views)
+{
+    int at = 0;
+    for (int anchor = 0; anchor < views; anchor++)
+        for (int g = 0; g < from->count; g++) {
+            const int *view = from->view + from->begin[g], n = from->begin[g + 1] - from->begin[g];
+            if (*view != anchor)
+                continue;
+            to->begin[to->count++] = at;
+            memcpy(to->view + at, view, (size_t)n * sizeof *view);
+            at += n;
+        }
+    to->begin[to->count] = at;
+}
+
+static bool groups_create(struct view_groups *out, size_t views)
+{
+    *out = (struct view_groups){.begin = mem_array(views + 1, sizeof *out->begin),
+                                .view = mem_array(views, sizeof *out->view)};
+    return out->begin && out->view;
+}
+
 relume_status groups_make(struct view_groups *out, const struct relume_manifest *manifest, int most)
 {
     const size_t views = (size_t)manifest->views;
     const int side_by_side = manifest->geometry.projection == RELUME_SLAB ? most : 1;
     struct camera *camera = mem_array(views, sizeof *camera);
-    *out = (struct view_groups){.begin = mem_array(views + 1, sizeof *out->begin),
-                                .view = mem_array(views, sizeof *out->view)};
-    int at = 0;
-    for (int s = 0; camera && out->begin && out->view && at < manifest->views; s++) {
+    struct view_groups halved;
+    const bool made = groups_create(&halved, views);
+    const bool good = groups_create(out, views) && made && camera;
+    for (int s = 0, at = 0; good && at < manifest->views; s++) {
         int n = 0;
         for (int v = 0; v < manifest->views; v++) {
             const struct relume_manifest_view *view = &manifest->view[v];
@@ -87,14 +112,21 @@ relume_status groups_make(struct view_groups *out, const struct relume_manifest 
                 camera[n++] = (struct camera){{view->uv[0], view->uv[1]}, v};
         }
         if (n)
-            halve(out, camera, at, n, (n + side_by_side - 1) / side_by_side);
+            halve(&halved, camera, at, n, (n + side_by_side - 1) / side_by_side);
         at += n;
     }
+    if (good) {
+        halved.begin[halved.count] = manifest->views;
+        sort_groups(out, &halved, manifest->views);
+    }
     mem_free(camera);
-    if (at < manifest->views)
-        return RELUME_ENOMEM;
-    out->begin[out->count] = at;
-    return RELUME_OK;
+    groups_destroy(&halved);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+int groups_first(const struct view_groups *groups, int member, int members)
+{
+    return (int)((int64_t)groups->count * member / members);
 }
 
 void groups_destroy(struct view_groups *groups)

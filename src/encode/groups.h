@@ -11,9 +11,12 @@ struct view_groups {
 };
 
 // Views of a slab that stand side by side, at most `most` of them, with the one nearest to their
-// middle as the anchor. Views of other captures are alone. RELUME_ENOMEM.
+// middle as the anchor. Views of other captures are alone. Groups come in the order of their
+// anchors. To be destroyed also on failure. RELUME_ENOMEM.
 relume_status groups_make(struct view_groups *out, const struct relume_manifest *manifest,
                           int most);
+// The first group of a member's share; that of the next member ends it, which may be at once.
+int groups_first(const struct view_groups *groups, int member, int members);
 void groups_destroy(struct view_groups *groups);
 
 #endif

@@ -57,6 +57,11 @@ bool pyramid_is_wanted(enum relume_pyramid pyramid, int width, int height)
     return pyramid == RELUME_PYRAMID_YES || (!pyramid && (int64_t)width * height > LARGE);
 }
 
+bool pyramid_is_possible(const struct relume_pack_contents *contents)
+{
+    return !refuse(contents, NULL);
+}
+
 relume_status relume_pack_reduce(struct relume_pack_levels *out,
                                  const struct relume_pack_contents *contents,
                                  const struct relume_pack_view *view, enum relume_pyramid pyramid,

@@ -6,5 +6,7 @@
 
 // Whether a view of that size is to have them; some cannot.
 bool pyramid_is_wanted(enum relume_pyramid pyramid, int width, int height);
+// Whether views of such a file can have them.
+bool pyramid_is_possible(const struct relume_pack_contents *contents);
 
 #endif

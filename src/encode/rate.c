@@ -6,8 +6,10 @@
 #include "base/thread.h"
 #include "coder/codes.h"
 #include "coder/coefficients.h"
+#include "team/gather.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // At the same quantiser the slow coder is about a whole step better in quality, and in bytes two.
@@ -22,6 +24,7 @@ static const double MOST_SLOW = 64e6;
 
 struct trial {
     struct lossy_words *words;  // [views], of the groups that are tried; NULL: not tried
+    double *square;             // [views]: their mean squared differences
     double psnr_db, bytes;
 };
 
@@ -35,7 +38,8 @@ struct rate {
     double step_db;    // what a step of the quantiser is worth
     const relume_capture *capture;
     const struct relume_encode_params *p;
-    struct rate_target target;  // bytes of all views
+    const struct rate_team *by;  // or NULL
+    struct rate_target target;   // bytes of all views
     struct trial trial[AV1_COARSEST + 1];
 };
 
@@ -48,16 +52,23 @@ static int views_of(const struct view_groups *g)
 
 struct job {
     const struct rate *rate;
-    int quantiser, each;        // threads for each
-    struct lossy_words *words;  // [views]
-    relume_status *status;      // [tried]
+    int quantiser, each;  // threads for each
+    int first;            // of the groups that are tried
+    struct trial *trial;
+    relume_status *status;  // [groups that are coded]
 };
 
-// The views of the i-th group that is tried, *count of them.
-static const int *group_at(const struct rate *r, int i, int *count)
+// Which group is the i-th that is tried.
+static int group_at(const struct rate *r, int i)
+{
+    return (int)((2LL * i + 1) * r->groups->count / (2LL * r->tried));
+}
+
+// Its views, *count of them.
+static const int *views_at(const struct rate *r, int i, int *count)
 {
     const struct view_groups *g = r->groups;
-    const int group = (int)((2LL * i + 1) * g->count / (2LL * r->tried));
+    const int group = group_at(r, i);
     *count = g->begin[group + 1] - g->begin[group];
     return g->view + g->begin[group];
 }
@@ -67,7 +78,7 @@ static void code_group(void *context, size_t item, int worker)
     struct job *j = context;
     const struct rate *r = j->rate;
     int n;
-    const int *view = group_at(r, (int)item, &n);
+    const int *view = views_at(r, j->first + (int)item, &n);
     const struct av1_effort effort = {j->quantiser, r->speed};
     relume_coefficients *from[AV1_MOST_MEMBERS] = {0};
     struct lossy_words words[AV1_MOST_MEMBERS];
@@ -76,19 +87,21 @@ static void code_group(void *context, size_t item, int worker)
         from[i] = r->coefficients[view[i]];
     j->status[item] = lossy_encode(words, from, n, &effort, j->each, r->p->log);
     for (int i = 0; i < n; i++)
-        j->words[view[i]] = words[i];
+        j->trial->words[view[i]] = words[i];
 }
 
-static relume_status code_groups(const struct rate *r, struct lossy_words *words, int quantiser)
+// The groups `first` .. `end` of those that are tried.
+static relume_status code_groups(struct trial *t, const struct rate *r, int first, int end,
+                                 int quantiser)
 {
-    const int threads = thread_count(r->p->threads);
-    struct job j = {r, quantiser, r->tried < threads ? threads / r->tried : 1, words, NULL};
-    j.status = mem_zeroed((size_t)r->tried, sizeof *j.status);
+    const int threads = thread_count(r->p->threads), n = end - first;
+    struct job j = {r, quantiser, n < threads ? threads / (n ? n : 1) : 1, first, t, NULL};
+    j.status = mem_zeroed((size_t)n + 1, sizeof *j.status);
     if (!j.status)
         return RELUME_ENOMEM;
-    thread_for(threads, (size_t)r->tried, code_group, &j);
+    thread_for(threads, (size_t)n, code_group, &j);
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < r->tried; i++)
+    for (int i = 0; !status && i < n; i++)
         status = j.status[i];
     mem_free(j.status);
     return status;
@@ -130,50 +143,183 @@ static relume_status judge_view(double *square, const struct rate *r, int view,
     if (!status)
         status = encode_judge(&judgement, c, r->capture, r->first + view, true,
                               &(const struct encode_values){shown_row, &shown}, r->p);
-    *square += judgement.square;
+    *square = judgement.square;
     mem_free(order);
     mem_free(codes);
     return status;
 }
 
-// Their bytes and quality.
-static relume_status judge(struct trial *t, const struct rate *r)
+static relume_status judge_groups(struct trial *t, const struct rate *r, int first, int end)
 {
     relume_status status = RELUME_OK;
+    int n;
+    for (int i = first; !status && i < end; i++) {
+        const int *view = views_at(r, i, &n);
+        for (int k = 0; !status && k < n; k++)
+            status = judge_view(&t->square[view[k]], r, view[k], &t->words[view[k]],
+                                k ? &t->words[view[0]] : NULL);
+    }
+    return status;
+}
+
+// The bytes and the quality of all that is tried.
+static void sum_up(struct trial *t, const struct rate *r)
+{
     double square = 0.0;
     int views = 0, n;
     t->bytes = 0.0;
-    for (int i = 0; !status && i < r->tried; i++) {
-        const int *view = group_at(r, i, &n);
-        for (int k = 0; !status && k < n; k++, views++) {
-            status =
-                judge_view(&square, r, view[k], &t->words[view[k]], k ? &t->words[view[0]] : NULL);
+    for (int i = 0; i < r->tried; i++) {
+        const int *view = views_at(r, i, &n);
+        for (int k = 0; k < n; k++, views++) {
+            square += t->square[view[k]];
             t->bytes += 4.0 * (double)t->words[view[k]].count;
         }
     }
     t->bytes *= (double)views_of(r->groups) / views;
     t->psnr_db = -10.0 * log10(fmax(square / views, 1e-20));
+}
+
+// ---------------------------------------------------------------- by a team
+
+static relume_status trial_create(struct trial *t, const struct rate *r)
+{
+    const size_t views = (size_t)views_of(r->groups);
+    t->words = mem_zeroed(views, sizeof *t->words);
+    t->square = mem_zeroed(views, sizeof *t->square);
+    return t->words && t->square ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static void trial_destroy(struct trial *t, int views)
+{
+    for (int i = 0; t->words && i < views; i++)
+        mem_free(t->words[i].word);
+    mem_free(t->words);
+    mem_free(t->square);
+    *t = (struct trial){0};
+}
+
+struct trying {
+    struct rate *rate;
+    struct trial *trial;
+    int quantiser;
+};
+
+// The groups of a member, among those that are tried.
+static void share_of(const struct rate *r, int member, int *first, int *end)
+{
+    const int members = r->by ? r->by->team->members : 1;
+    for (*first = 0; *first < r->tried; ++*first)
+        if (group_at(r, *first) >= groups_first(r->groups, member, members))
+            break;
+    for (*end = *first; *end < r->tried; ++*end)
+        if (group_at(r, *end) >= groups_first(r->groups, member + 1, members))
+            break;
+}
+
+// Of each view the difference, the number of its words, and they.
+struct put_view {
+    double square;
+    uint64_t words;
+};
+
+static bool put_views(const struct trial *t, const struct rate *r, int first, int end,
+                      struct relume_buffer *out)
+{
+    const struct relume_writer writer = relume_buffer_writer(out);
+    uint64_t at = 1;
+    int n;
+    bool good = writer.write(writer.user, "w", 1, 0);  // a piece is never empty
+    for (int i = first; good && i < end; i++) {
+        const int *view = views_at(r, i, &n);
+        for (int k = 0; good && k < n; k++) {
+            const struct lossy_words *w = &t->words[view[k]];
+            const struct put_view head = {t->square[view[k]], w->count};
+            good = writer.write(writer.user, &head, sizeof head, at) &&
+                   writer.write(writer.user, w->word, 4 * w->count, at + sizeof head);
+            at += sizeof head + 4 * w->count;
+        }
+    }
+    return good;
+}
+
+static relume_status make_trial(void *context, int member, struct relume_buffer *out)
+{
+    const struct trying *try = context;
+    struct rate *r = try->rate;
+    struct trial own = {0};
+    int first, end;
+    share_of(r, member, &first, &end);
+    relume_status status = trial_create(&own, r);
+    for (int i = first, n; !status && r->by && i < end; i++) {
+        const int *view = views_at(r, i, &n);
+        for (int k = 0; !status && k < n; k++)
+            status = r->by->load(r->by->user, view[k]);
+    }
+    if (!status)
+        status = code_groups(&own, r, first, end, try->quantiser);
+    if (!status)
+        status = judge_groups(&own, r, first, end);
+    if (!status && !put_views(&own, r, first, end, out))
+        status = RELUME_ENOMEM;
+    trial_destroy(&own, views_of(r->groups));
     return status;
+}
+
+static relume_status take_view(struct trial *t, int view, const struct relume_buffer *piece,
+                               size_t *at)
+{
+    struct put_view head;
+    struct lossy_words *w = &t->words[view];
+    if (piece->size - *at < sizeof head)
+        return RELUME_EDAMAGED;
+    memcpy(&head, piece->data + *at, sizeof head);
+    *at += sizeof head;
+    if (!head.words || head.words > (piece->size - *at) / 4 || !(head.square >= 0.0))
+        return RELUME_EDAMAGED;
+    *w = (struct lossy_words){mem_array((size_t)head.words, sizeof *w->word), (size_t)head.words};
+    if (!w->word)
+        return RELUME_ENOMEM;
+    memcpy(w->word, piece->data + *at, 4 * w->count);
+    *at += 4 * w->count;
+    t->square[view] = head.square;
+    return RELUME_OK;
+}
+
+static relume_status take_trial(void *context, int member, const struct relume_buffer *piece)
+{
+    const struct trying *try = context;
+    size_t at = 1;
+    int first, end, n;
+    relume_status status = piece->size < at ? RELUME_EDAMAGED : RELUME_OK;
+    share_of(try->rate, member, &first, &end);
+    for (int i = first; !status && i < end; i++) {
+        const int *view = views_at(try->rate, i, &n);
+        for (int k = 0; !status && k < n; k++)
+            status = take_view(try->trial, view[k], piece, &at);
+    }
+    return status || at == piece->size ? status : RELUME_EDAMAGED;
 }
 
 // ---------------------------------------------------------------- search
 
 static relume_status try_one(struct rate *r, int quantiser)
 {
-    struct trial *t = &r->trial[quantiser];
-    t->words = mem_zeroed((size_t)views_of(r->groups), sizeof *t->words);
-    relume_status status = t->words ? code_groups(r, t->words, quantiser) : RELUME_ENOMEM;
-    return status ? status : judge(t, r);
+    struct trying try = {r, &r->trial[quantiser], quantiser};
+    char what[32];
+    snprintf(what, sizeof what, "words.%d.%d.%d", r->tried, r->speed, quantiser);
+    relume_status status = trial_create(try.trial, r);
+    if (!status)
+        status =
+            team_gather(r->by ? r->by->team : NULL, what, make_trial, take_trial, &try, r->p->log);
+    if (!status)
+        sum_up(try.trial, r);
+    return status;
 }
 
 static void forget(struct rate *r)
 {
-    for (int q = 0; q <= AV1_COARSEST; q++) {
-        for (int i = 0; r->trial[q].words && i < views_of(r->groups); i++)
-            mem_free(r->trial[q].words[i].word);
-        mem_free(r->trial[q].words);
-    }
-    memset(r->trial, 0, sizeof r->trial);
+    for (int q = 0; q <= AV1_COARSEST; q++)
+        trial_destroy(&r->trial[q], views_of(r->groups));
 }
 
 // How much better than wanted, in dB: half the bytes are about so many. Of bytes not the last ones
@@ -271,20 +417,22 @@ static relume_status search(struct rate *r, int tried, int speed, int *quantiser
 
 // The slow coder where it takes no more than some minutes and much is to be gained: the pictures
 // themselves for a quality.
-static int speed_for(relume_coefficients *const *coefficients, int views,
+static int speed_for(const relume_coder *coder, const relume_capture *capture,
                      const struct rate_target *target)
 {
-    const struct relume_coefficients_info *info = relume_coefficients_info(coefficients[0]);
-    const double samples = (double)info->width * info->height * info->planes * views;
-    const bool pictures = !relume_coder_info(info->coder)->basis->learned;
-    return target->psnr_db > 0.0 && pictures && samples <= MOST_SLOW ? AV1_SLOW : AV1_USUAL;
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const double samples = (double)relume_capture_width(capture) * relume_capture_height(capture) *
+                           info->planes * relume_capture_manifest(capture)->views;
+    return target->psnr_db > 0.0 && !info->basis->learned && samples <= MOST_SLOW ? AV1_SLOW
+                                                                                  : AV1_USUAL;
 }
 
 // The fast coder finds about where, a slower one the step itself, then that of all groups.
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
-                          relume_coefficients *const *coefficients,
+                          relume_coefficients *const *coefficients, const relume_coder *coder,
                           const struct view_groups *groups, const relume_capture *capture,
-                          const struct rate_target *target, const struct relume_encode_params *p)
+                          const struct rate_target *target, const struct relume_encode_params *p,
+                          const struct rate_team *by)
 {
     const int some = views_of(groups) > groups->count ? MOST_GROUPS : MOST_ALONE;
     const int tried = groups->count < some ? groups->count : some;
@@ -293,9 +441,10 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                      .rough = true,
                      .capture = capture,
                      .p = p,
+                     .by = by,
                      .step_db = 0.1,
                      .target = *target};
-    const int speed = speed_for(coefficients, views_of(groups), target);
+    const int speed = speed_for(coder, capture, target);
     int *quantiser = &result->effort.quantiser;
     result->effort.speed = speed;
     *quantiser = FIRST_GUESS;

@@ -6,6 +6,7 @@
 #include "lossy/lossy.h"
 
 #include <relume/capture.h>
+#include <relume/team.h>
 
 struct rate_target {
     double psnr_db;  // of the captured images, pooled; or 0
@@ -16,14 +17,24 @@ struct rate_result {
     struct av1_effort effort;
 };
 
-// words[views] of the coefficients of all views, of the coarsest quantiser that reaches the PSNR
-// best or the finest that keeps the bytes. It is found on some of the groups, and corrected on all.
-// Where the target is out of reach it is the finest or coarsest. Caller frees the words, also on
-// failure. RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
+// The groups are shared by members, who tell each other what they try (groups_first).
+struct rate_team {
+    const struct relume_team *team;
+    // The coefficients of a view are needed that may be missing so far.
+    relume_status (*load)(void *user, int view);
+    void *user;
+};
+
+// words[views] of the coefficients of all views by `coder`, of the coarsest quantiser that reaches
+// the PSNR best or the finest that keeps the bytes. It is found on some of the groups, and
+// corrected on all. Where the target is out of reach it is the finest or coarsest. Caller frees the
+// words, also on failure. `by` is NULL where nobody shares the work. RELUME_ENOMEM, RELUME_EIO,
+// RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
-                          relume_coefficients *const *coefficients,
+                          relume_coefficients *const *coefficients, const relume_coder *coder,
                           const struct view_groups *groups, const relume_capture *capture,
-                          const struct rate_target *target, const struct relume_encode_params *p);
+                          const struct rate_target *target, const struct relume_encode_params *p,
+                          const struct rate_team *by);
 
 // How good a coder of one `view` of the capture is about, to compare it with others: in dB, the
 // PSNR at the target's bytes, `header` of which are not planes'; or, at the target's PSNR, as if

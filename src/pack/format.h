@@ -74,9 +74,10 @@ enum { FORMAT_TILE = 128 };
 
 // Attributes of the part of a group of coded views: each as "VIEW WORDS DEPTH-WORDS", the anchor
 // first, and the step of its coded depth
-#define ATTR_GROUP    "relume.group"
-#define ATTR_STEP     "relume.step"
-#define FORMAT_MEMBER "%s%d %zu %zu "
+#define ATTR_GROUP         "relume.group"
+#define ATTR_STEP          "relume.step"
+#define FORMAT_MEMBER      "%s%d %zu %zu "
+#define FORMAT_MEMBER_SCAN "%9d %zu %zu %n"
 
 // Attributes of a codebook's part, beside scale and offset
 #define ATTR_BOOK  "relume.book"

@@ -298,14 +298,82 @@ static relume_status find_packed(const struct joining *j, bool *packed)
                           j->part->path);
 }
 
+// ---------------------------------------------------------------- planes with loss
+
+static relume_status add_groups(struct joining *j, char *seen)
+{
+    relume_status status = RELUME_OK;
+    int groups = 0;
+    for (int i = 0; !status && i < j->count; i++) {
+        const struct part_file *p = j->order[i];
+        if (p->groups && p->first_group != groups)
+            return damaged(j, p);
+        for (int k = 1; !status && k <= p->groups; k++, groups++) {
+            const char *list = exr_get_text(p->file, k, ATTR_GROUP);
+            while (*list) {
+                const int view = part_next_member(&list, p->info.all_views);
+                if (view < 0 || seen[view]++)
+                    return damaged(j, p);
+            }
+            status = add_again(j, p, k);
+        }
+    }
+    for (int v = 0; !status && v < j->part->info.all_views; v++)
+        if (!seen[v])
+            return damaged(j, j->part);
+    return status;
+}
+
+// Depth and mask of all views, or all their levels: groups are not in the order of their views.
+static relume_status add_beside(struct joining *j, bool levels)
+{
+    relume_status status = RELUME_OK;
+    char name[32];
+    for (int v = 0; !status && v < j->part->info.all_views; v++) {
+        const size_t length = (size_t)snprintf(name, sizeof name, "view%04d.", v);
+        for (int i = 0; !status && i < j->count; i++)
+            for (int k = 1 + j->order[i]->groups; !status && k < exr_part_count(j->order[i]->file);
+                 k++) {
+                const char *own = exr_part_info(j->order[i]->file, k).name;
+                if (!strncmp(own, name, length) && !strncmp(own + length, "level", 5) == levels)
+                    status = add_again(j, j->order[i], k);
+            }
+    }
+    return status;
+}
+
+static relume_status add_coded(struct joining *j)
+{
+    char *seen = arena_array(&j->arena, (size_t)j->part->info.all_views, sizeof *seen);
+    relume_status status = seen ? add_groups(j, seen) : RELUME_ENOMEM;
+    if (!status)
+        status = add_beside(j, false);
+    return status ? status : add_beside(j, true);
+}
+
 // ---------------------------------------------------------------- all of it
+
+static bool holds_view(const struct part_file *p, int view)
+{
+    for (int k = 1; k <= p->groups; k++) {
+        const char *list = exr_get_text(p->file, k, ATTR_GROUP);
+        while (*list) {
+            const int own = part_next_member(&list, p->info.all_views);
+            if (own < 0 || own == view)
+                return own == view;
+        }
+    }
+    return false;
+}
 
 // The part that holds the middle view made the preview.
 static const struct part_file *with_preview(const struct joining *j)
 {
     const int middle = j->part->info.all_views / 2;
     int i = 0;
-    while (j->order[i]->info.first + j->order[i]->info.views <= middle)
+    while (i + 1 < j->count &&
+           (j->part->info.coded ? !holds_view(j->order[i], middle)
+                                : j->order[i]->info.first + j->order[i]->info.views <= middle))
         i++;
     return j->order[i];
 }
@@ -348,6 +416,11 @@ static relume_status gather(struct joining *j, struct relume_encode_report *repo
     j->exr = arena_array(&j->arena, exrs, sizeof *j->exr);
     j->measured = arena_array(&j->arena, (size_t)j->part->info.all_views, sizeof *j->measured);
     relume_status status = j->exr && j->measured ? add_header(j) : RELUME_ENOMEM;
+    if (!status && j->part->info.coded) {
+        if (report)
+            (void)!part_measured(report, j->part, 0);  // it has been when the part was opened
+        return add_coded(j);
+    }
     for (int k = 1; !status && k <= j->part->books; k++)
         status = add_again(j, j->part, k);
     if (!status && j->part->info.rows)

@@ -12,6 +12,9 @@
 #include <stdio.h>
 #include <string.h>
 
+// More than any command line names.
+enum { MOST_PARTS = 1 << 20 };
+
 static relume_status check_format(const struct part_file *p, const struct relume_log *log)
 {
     const char *format = exr_get_text(p->file, 0, ATTR_FORMAT);
@@ -64,10 +67,14 @@ static relume_status read_place(struct part_file *p, const struct relume_limits 
     i->part = (int)v[0];
     i->parts = (int)v[1];
     p->free_storage = v[2] != 0.0f;
+    p->info.coded = exr_get_text(p->file, 0, ATTR_CODING) != NULL;
     if (!exr_get_int(p->file, 0, ATTR_VIEWS, &i->all_views) || i->all_views < 1 ||
         i->all_views > limits->max_views || i->part < 1 || i->part > i->parts ||
-        !encode_share_of(&share, i->part, i->parts, i->all_views, height_of(p)))
+        i->parts > MOST_PARTS ||
+        (!p->info.coded && !encode_share_of(&share, i->part, i->parts, i->all_views, height_of(p))))
         return bad(p, "number of views", log);
+    if (p->info.coded)
+        return RELUME_OK;
     i->first = share.first;
     i->views = share.views;
     i->row = share.row;
@@ -96,6 +103,53 @@ static void count_books(struct part_file *p)
         snprintf(name, sizeof name, "book%d", p->books);
     while (1 + p->books < exr_part_count(p->file) &&
            !strcmp(exr_part_info(p->file, 1 + p->books).name, name) && ++p->books);
+}
+
+int part_next_member(const char **list, int views)
+{
+    int view, read = 0;
+    size_t words, depth;
+    if (sscanf(*list, FORMAT_MEMBER_SCAN, &view, &words, &depth, &read) != 3 || view < 0 ||
+        view >= views)
+        return -1;
+    *list += read;
+    return view;
+}
+
+// "group0003" and the next ones, whose views are counted, and then what belongs to views.
+static relume_status check_groups(struct part_file *p, const struct relume_log *log)
+{
+    struct relume_encode_report measured;
+    char name[32];
+    int k = 1, view, first = 0;
+    if (!part_measured(&measured, p, 0))
+        return bad(p, "report", log);
+    for (; k < exr_part_count(p->file); k++, p->groups++) {
+        const char *list = exr_get_text(p->file, k, ATTR_GROUP);
+        if (!list)
+            break;
+        if (!p->groups && sscanf(exr_part_info(p->file, k).name, "group%d", &p->first_group) != 1)
+            return bad(p, "list of groups", log);
+        snprintf(name, sizeof name, "group%04d", p->first_group + p->groups);
+        if (strcmp(exr_part_info(p->file, k).name, name) || p->first_group < 0 ||
+            p->first_group > p->info.all_views)
+            return bad(p, "list of groups", log);
+        for (; *list; p->info.views++) {
+            view = part_next_member(&list, p->info.all_views);
+            if (view < 0 || p->info.views >= p->info.all_views)
+                return bad(p, "list of groups", log);
+            first = !p->info.views || view < first ? view : first;
+        }
+    }
+    p->info.first = first;
+    for (; k < exr_part_count(p->file); k++) {
+        const char *at = exr_part_info(p->file, k).name;
+        if (sscanf(at, "view%d", &view) != 1 || view < 0 || view >= p->info.all_views ||
+            snprintf(name, sizeof name, "view%04d.", view) < 0 ||
+            strncmp(at, name, strlen(name)) != 0 || strlen(at) >= 48)
+            return bad(p, "list of views", log);
+    }
+    return RELUME_OK;
 }
 
 // "view0007" and what belongs to it, "view0007.depth", in the order of their names.
@@ -139,7 +193,7 @@ relume_status part_open(struct part_file *out, const char *path, const struct re
         status = bad(out, "header", log);
     if (!status) {
         count_books(out);
-        status = check_names(out, log);
+        status = i->coded ? check_groups(out, log) : check_names(out, log);
     }
     if (status)
         part_close(out);

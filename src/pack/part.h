@@ -11,13 +11,17 @@ struct part_file {
     const char *path;
     struct relume_pack_part info;
     bool free_storage;
-    int books;  // that all views share, behind the first part
+    int books;   // that all views share, behind the first part
+    int groups;  // of views whose planes are coded with loss, from this one on
+    int first_group;
 };
 
 // The file `path`, which must outlive it, or what `from` reads. An input status with a sentence
 // when it is no part, RELUME_ENOMEM.
 relume_status part_open(struct part_file *out, const char *path, const struct relume_reader *from,
                         const struct relume_limits *limits, const struct relume_log *log);
+// The next view of the list of a group; -1: there is none, or it is damaged.
+int part_next_member(const char **list, int views);
 // What was measured of the view whose rows are part `exr` of the file.
 bool part_measured(struct relume_encode_report *out, const struct part_file *part, int exr);
 // RELUME_EUNFIT with a sentence where nobody asked for the storage and its steps are too coarse.

@@ -124,7 +124,7 @@ static void add_group(struct writer *w, int group, int anchor)
     words->run = run;
     add_view(w, words, &members, step, anchor);
     for (int v = 0; v < c->views; v++)
-        if (c->view[v].predicted && c->view[v].anchor == anchor)
+        if (c->view[v].predicted && c->view[v].anchor == anchor && c->view[v].coded)
             add_view(w, words, &members, step, v);
     fill(part, words);
     writer_text(part, ATTR_GROUP, members);
@@ -135,8 +135,8 @@ static void add_group(struct writer *w, int group, int anchor)
 
 void writer_add_groups(struct writer *w)
 {
-    int groups = 0;
+    int groups = w->contents->share ? w->contents->share->group : 0;
     for (int v = 0; v < w->contents->views; v++)
-        if (!w->contents->view[v].predicted)
+        if (!w->contents->view[v].predicted && w->contents->view[v].coded)
             add_group(w, groups++, v);
 }

@@ -265,6 +265,8 @@ static void describe_share(struct writer *w, struct exr_part *part)
     writer_int(part, ATTR_PART_STEP, (int)s->step);
     writer_int(part, ATTR_PYRAMID, (int)s->pyramid);
     writer_text(part, ATTR_EXACT, exact_text(w));
+    if (s->coded)
+        writer_text(part, ATTR_MEASURED, writer_measured(w, s->measured));
 }
 
 void writer_add_header(struct writer *w)
@@ -275,6 +277,7 @@ void writer_add_header(struct writer *w)
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
     const double report[] = {c->report.fit_rms, c->report.store_rms};
     const struct relume_coefficients_info *shown = writer_shown(view);
+    const bool coded = writer_is_coded(c);
     struct exr_part *part = writer_part(w, "preview", shown->width, shown->height);
     part->codec = w->codec;
     part->sample = EXR_SAMPLE_HALF;
@@ -285,10 +288,10 @@ void writer_add_header(struct writer *w)
     relume_transfer_text(c->display, w->display, sizeof w->display);
     writer_text(part, ATTR_FORMAT, c->share ? FORMAT_PART : FORMAT_NAME);
     writer_int(part, ATTR_VERSION,
-               view->coded || view->levels ? FORMAT_CODED
-               : c->slabs                  ? FORMAT_SLABS
-               : c->geometry.disc          ? FORMAT_DISCS
-                                           : FORMAT_PLAIN);
+               coded || view->levels ? FORMAT_CODED
+               : c->slabs            ? FORMAT_SLABS
+               : c->geometry.disc    ? FORMAT_DISCS
+                                     : FORMAT_PLAIN);
     writer_text(part, ATTR_CREATOR, "relume " RELUME_VERSION);
     writer_text(part, ATTR_DOMAIN, c->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear");
     writer_text(part, ATTR_DISPLAY, w->display);
@@ -296,15 +299,15 @@ void writer_add_header(struct writer *w)
     writer_int(part, ATTR_VIEWS, c->views);
     if (isfinite(report[0]) && isfinite(report[1]))
         writer_doubles(w, part, ATTR_REPORT, report, 2);
-    if (view->coded || view->levels) {
+    if (coded || view->levels) {
         writer_int(part, ATTR_WIDTH, info->width);
         writer_int(part, ATTR_HEIGHT, info->height);
     }
-    if (view->coded)
+    if (coded)
         describe_coding(w, part, info);
     if (view->books)
         writer_int(part, ATTR_BOOKS, relume_books_info(view->books)->books);
-    describe_coder(w, part, view->coded != NULL);
+    describe_coder(w, part, coded);
     describe_geometry(w, part);
     if (c->share)
         describe_share(w, part);

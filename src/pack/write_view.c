@@ -112,11 +112,8 @@ static void fill_with_planes(struct writer *w, struct exr_part *part,
     add_steps(w, part, info);
 }
 
-// Numbers that join needs as they are.
-static const char *measured_text(struct writer *w, int index)
+const char *writer_measured(struct writer *w, const struct relume_encode_report *r)
 {
-    const struct relume_pack_share *share = w->contents->share;
-    const struct relume_encode_report *r = &share->measured[index - share->first];
     const struct relume_encode_census *c = &r->census;
     const char *text = arena_format(&w->arena, FORMAT_MEASURED, r->fit_rms, r->store_rms,
                                     r->steps_rms, r->psnr_db, r->typical, c->pixels, c->black,
@@ -193,7 +190,9 @@ static void add_codes(struct writer *w, int index, bool shared)
     if (w->contents->slabs)
         writer_int(part, ATTR_MEMBER, view->slab);
     if (w->contents->share)
-        writer_text(part, ATTR_MEASURED, measured_text(w, index));
+        writer_text(
+            part, ATTR_MEASURED,
+            writer_measured(w, &w->contents->share->measured[index - w->contents->share->first]));
     if (view->books)
         writer_fill_indices(part, view);
     else if (some->rows && !some->stored)
@@ -245,6 +244,6 @@ void writer_add_view(struct writer *w, int index, bool shared)
         add_plane(w, "depth", index, view->depth, depth_channel, EXR_SAMPLE_FLOAT, depth_rows);
     if (!view->coded)
         writer_add_levels(w, index);
-    add_plane(w, "mask", index, view->coefficients->some.row ? NULL : view->mask, mask_channel,
-              EXR_SAMPLE_HALF, mask_rows);
+    if (view->coded || !view->coefficients->some.row)
+        add_plane(w, "mask", index, view->mask, mask_channel, EXR_SAMPLE_HALF, mask_rows);
 }

@@ -5,7 +5,7 @@
 #include "base/params.h"
 #include "pack/format.h"
 
-enum { MOST_ATTRIBUTES = 32 };
+enum { MOST_ATTRIBUTES = 48 };
 
 static const char *const compressions[] = {[RELUME_COMPRESS_NONE] = "none",
                                            [RELUME_COMPRESS_RLE] = "rle",
@@ -96,20 +96,41 @@ static bool shares_books(const struct relume_pack_contents *c)
     return true;
 }
 
+bool writer_is_coded(const struct relume_pack_contents *contents)
+{
+    bool coded = contents->share && contents->share->coded;
+    for (int i = 0; i < contents->views; i++)
+        coded |= contents->view[i].coded != NULL;
+    return coded;
+}
+
+// Views whose words are not here belong to other parts.
+static void add_coded(struct writer *w)
+{
+    const struct relume_pack_contents *c = w->contents;
+    writer_add_groups(w);
+    for (int i = 0; i < c->views; i++)
+        if (c->view[i].coded)
+            writer_add_view(w, i, false);
+    for (int i = 0; i < c->views; i++)
+        if (c->view[i].coded)
+            writer_add_levels(w, i);
+}
+
 static void add_parts(struct writer *w)
 {
     const struct relume_pack_contents *c = w->contents;
     const int first = c->share ? c->share->first : 0;
     const bool shared = c->share ? c->share->shared_books : shares_books(c);
     writer_add_header(w);
+    if (writer_is_coded(c)) {
+        add_coded(w);
+        return;
+    }
     if (shared)
         writer_add_books(w, c->view[first].books, -1);
-    if (c->view[first].coded)
-        writer_add_groups(w);
     for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
         writer_add_view(w, i, shared);
-    for (int i = 0; c->view[first].coded && i < c->views; i++)
-        writer_add_levels(w, i);
 }
 
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,

@@ -21,6 +21,8 @@ struct writer {
 
 // The next part of the file, of the writer's codec and without channels. `name` NULL: it failed.
 struct exr_part *writer_part(struct writer *w, const char *name, int width, int height);
+// Whether planes are coded; a part may hold none of them.
+bool writer_is_coded(const struct relume_pack_contents *contents);
 // Attributes. Texts and floats must live as long as the writer; floats that are NULL fail.
 void writer_int(struct exr_part *part, const char *name, int value);
 void writer_text(struct exr_part *part, const char *name, const char *text);
@@ -38,6 +40,8 @@ void writer_add_header(struct writer *w);
 void writer_add_view(struct writer *w, int view, bool shared);
 // The reduced levels of a view, and their masks.
 void writer_add_levels(struct writer *w, int view);
+// A report as join needs it, to the last digit.
+const char *writer_measured(struct writer *w, const struct relume_encode_report *report);
 // What the first part shows of a view: its coefficients, or those of a reduced level.
 const struct relume_coefficients_info *writer_shown(const struct relume_pack_view *view);
 // The parts of all views whose planes are coded, and of their depth (write_coded.c).

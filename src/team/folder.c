@@ -2,18 +2,19 @@
 // stopped leaves nothing that others could take for a piece
 //
 // "samples.3of8" holds three lines, what it is, what it belongs to and how many bytes follow with
-// their sum, and then the bytes. While one is being made there is the folder "samples.3of8.begun".
-// That is a courtesy: others wait a while for it, twice as long as such a piece takes, and then
-// make it themselves, which comes to the same bytes.
+// their sum, and then the bytes. While one is being made there is the file "samples.3of8.begun",
+// which grows. That is a courtesy: others wait for the piece while it does, and then make it
+// themselves, which comes to the same bytes.
 #include <relume/team.h>
 
 #include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
-#include "base/tree.h"
+#include "base/thread.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,8 +25,8 @@
 #define FIRST_LINE "relume-learnt 1"
 #define BEGUN      ".begun"
 
-enum { NAME = 64, LOOK_MS = 50 };
-static const double PATIENCE = 2.0, LEAST_PATIENCE_S = 1.0;
+enum { NAME = 64, LOOK_MS = 50, BEAT_MS = 200 };
+static const double PATIENCE_S = 2.0;  // without a beat
 
 struct relume_team_files {
     struct relume_team team;
@@ -143,7 +144,50 @@ static relume_status read_piece(const relume_team_files *f, const char *path, co
     return status;
 }
 
+// ---------------------------------------------------------------- begun
+
+struct beating {
+    int file;
+    pthread_mutex_t mutex;
+    pthread_cond_t end;
+    bool ended;
+};
+
+static void beat(void *context)
+{
+    struct beating *b = context;
+    pthread_mutex_lock(&b->mutex);
+    while (!b->ended) {
+        struct timespec t;
+        clock_gettime(CLOCK_REALTIME, &t);
+        t.tv_nsec += BEAT_MS * 1000000L;
+        t.tv_sec += t.tv_nsec / 1000000000L;
+        t.tv_nsec %= 1000000000L;
+        pthread_cond_timedwait(&b->end, &b->mutex, &t);
+        if (write(b->file, ".", 1) < 1)
+            break;
+    }
+    pthread_mutex_unlock(&b->mutex);
+}
+
+// How long the file is, asked of who keeps it: what is opened is not an older copy. -1: none.
+static off_t length_of(const char *path)
+{
+    struct stat s;
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const off_t length = file >= 0 && !fstat(file, &s) ? s.st_size : -1;
+    if (file >= 0)
+        close(file);
+    return length;
+}
+
 // ---------------------------------------------------------------- all of them
+
+// What was seen of the piece of a member that another has begun.
+struct watch {
+    off_t length;
+    double since;
+};
 
 struct gathering {
     relume_team_files *folder;
@@ -151,17 +195,40 @@ struct gathering {
     relume_team_make *make;
     void *context;
     struct relume_buffer *pieces;
-    double longest;  // seconds that a piece took here
+    struct watch *watch;  // [members]
 };
 
 static relume_status make_piece(struct gathering *g, int member, const char *path)
 {
-    const double start = now();
     relume_status status = g->make(g->context, member, &g->pieces[member]);
     if (!status)
         status = write_piece(g->folder, path, g->what, member, &g->pieces[member]);
-    g->longest = now() - start > g->longest ? now() - start : g->longest;
     return status;
+}
+
+// With a sign of life in `file`, if it is one.
+static relume_status make_alive(struct gathering *g, int member, const char *path, int file)
+{
+    struct beating b = {file, PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, file < 0};
+    struct thread_task task = {0};
+    if (file >= 0)
+        thread_start(&task, beat, &b);
+    const relume_status status = make_piece(g, member, path);
+    pthread_mutex_lock(&b.mutex);
+    b.ended = true;
+    pthread_cond_signal(&b.end);
+    pthread_mutex_unlock(&b.mutex);
+    if (file >= 0)
+        thread_wait(&task);
+    return status;
+}
+
+static bool is_alive(struct watch *w, const char *begun)
+{
+    const off_t length = length_of(begun);
+    if (length != w->length || w->since == 0.0)
+        *w = (struct watch){length, now()};
+    return now() - w->since < PATIENCE_S;
 }
 
 static bool there(const char *path)
@@ -170,8 +237,8 @@ static bool there(const char *path)
     return !stat(path, &s);
 }
 
-// The piece of `member`, unless somebody else has begun it and `wait` says that there is time.
-// Whether it is there now is whether it has data.
+// The piece of `member`, unless somebody else is making it and one may wait. Whether it is there
+// now is whether it has data.
 static relume_status get_piece(struct gathering *g, int member, bool wait)
 {
     char *path = piece_path(g->folder, g->what, member, "");
@@ -180,11 +247,13 @@ static relume_status get_piece(struct gathering *g, int member, bool wait)
     if (!status && there(path)) {
         status = read_piece(g->folder, path, g->what, member, &g->pieces[member]);
     } else if (!status) {
-        const bool ours = !mkdir(begun, 0777);  // nobody else has begun it
-        if (ours || !wait)
-            status = make_piece(g, member, path);
-        if (g->pieces[member].data || ours)
-            rmdir(begun);
+        const int file = open(begun, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0 || !wait || !is_alive(&g->watch[member], begun))
+            status = make_alive(g, member, path, file);
+        if (file >= 0)
+            close(file);
+        if (g->pieces[member].data || file >= 0)
+            remove(begun);
     }
     mem_free(path);
     mem_free(begun);
@@ -196,7 +265,7 @@ static relume_status leave_own(struct gathering *g)
 {
     const struct relume_team *t = &g->folder->team;
     relume_status status = get_piece(g, t->member, false);
-    g->folder->waits = g->longest > 0.0;
+    g->folder->waits = false;
     for (int i = 0; !status && i < t->members; i++) {
         char *path = piece_path(g->folder, g->what, i, "");
         status = path ? RELUME_OK : RELUME_ENOMEM;
@@ -207,7 +276,7 @@ static relume_status leave_own(struct gathering *g)
 }
 
 // Own piece first, then the others from there on, so that several members meet late.
-static relume_status look_round(struct gathering *g, bool wait, int *missing)
+static relume_status look_round(struct gathering *g, int *missing)
 {
     const struct relume_team *t = &g->folder->team;
     relume_status status = RELUME_OK;
@@ -215,7 +284,7 @@ static relume_status look_round(struct gathering *g, bool wait, int *missing)
     for (int i = 0; !status && i < t->members; i++) {
         const int member = (t->member + i) % t->members;
         if (!g->pieces[member].data)
-            status = get_piece(g, member, wait && i > 0);
+            status = get_piece(g, member, i > 0);
         *missing += !g->pieces[member].data;
     }
     return status;
@@ -234,24 +303,23 @@ static relume_status wait_a_little(const struct gathering *g, int missing)
 static relume_status share(void *user, const char *what, relume_team_make *make, void *context,
                            struct relume_buffer *pieces)
 {
-    struct gathering g = {user, what, make, context, pieces, 0.0};
-    int missing, before = -1;
-    double since = now();
-    relume_status status = mkdir(g.folder->path, 0777) && errno != EEXIST
-                               ? log_fail(g.folder->log, RELUME_EIO, "%s: cannot be made; %s",
-                                          g.folder->path, strerror(errno))
+    struct gathering g = {user, what, make, context, pieces, NULL};
+    int missing = 0;
+    if (mkdir(g.folder->path, 0777) && errno != EEXIST)
+        return log_fail(g.folder->log, RELUME_EIO, "%s: cannot be made; %s", g.folder->path,
+                        strerror(errno));
+    g.watch = mem_zeroed((size_t)g.folder->team.members, sizeof *g.watch);
+    relume_status status = !g.watch             ? RELUME_ENOMEM
                            : g.folder->own_only ? leave_own(&g)
                                                 : RELUME_OK;
     if (!status)
-        status = look_round(&g, true, &missing);
+        status = look_round(&g, &missing);
     while (!status && missing) {
-        since = missing == before ? since : now();
-        before = missing;
-        const bool patient = now() - since < PATIENCE * g.longest + LEAST_PATIENCE_S;
-        status = patient ? wait_a_little(&g, missing) : RELUME_OK;
+        status = wait_a_little(&g, missing);
         if (!status)
-            status = look_round(&g, patient, &missing);
+            status = look_round(&g, &missing);
     }
+    mem_free(g.watch);
     return status;
 }
 

@@ -18,6 +18,11 @@ static const char *const words[] = {"relume.format",
                                     "relume.part.measured",
                                     "relume.part.bands",
                                     "relume.part.errors",
+                                    "relume.coding",
+                                    "relume.group",
+                                    "group0000",
+                                    "group0001",
+                                    "0 9 9 ",
                                     "relume part",
                                     "preview",
                                     "view0000",
@@ -30,8 +35,8 @@ static const char *const words[] = {"relume.format",
                                     "scanlineimage",
                                     NULL};
 
-// The second part of rows, and of views.
-static char second[2][96];
+// The second part of rows, of views, and of groups of views with loss.
+static char second[3][96];
 
 static void join(const char *const *parts, int count)
 {
@@ -55,19 +60,19 @@ static bool one(struct fuzz *f, struct bytes b)
                               relume_pack_params(.limits = &limits, .reader = &reader)))
         return false;
     join((const char *const[]){f->path}, 1);
-    join((const char *const[]){f->path, second[part.rows == 0]}, 2);
+    join((const char *const[]){f->path, second[part.coded ? 2 : part.rows == 0]}, 2);
     return true;
 }
 
 static void add(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
-                int coefficients, int part, int parts, enum relume_storage storage)
+                int coefficients, int part, int parts, enum relume_storage storage, double psnr_db)
 {
     fixture_write(fixture, f->folder);
-    fixture_must(
-        fixture_encode(f->folder, f->path, basis, coefficients,
-                       relume_pack_encode_params(.storage = storage, .part = part, .parts = parts,
-                                                 .compression = RELUME_COMPRESS_NONE)),
-        "encode");
+    fixture_must(fixture_encode(f->folder, f->path, basis, coefficients,
+                                relume_pack_encode_params(.storage = storage, .part = part,
+                                                          .parts = parts, .psnr_db = psnr_db,
+                                                          .compression = RELUME_COMPRESS_NONE)),
+                 "encode");
     fuzz_add(f, fuzz_load(f->path));
 }
 
@@ -82,16 +87,22 @@ int main(int argc, char **argv)
                                  .hemisphere = true,
                                  .depth = true,
                                  .mask = true};
+    struct fixture large = slab;
+    large.views = 9;
     fuzz_begin(&f, "fuzz_parts", argc, argv);
-    add(&f, &plain, &relume_basis_sh, 4, 2, 2, RELUME_STORE_8);
+    add(&f, &plain, &relume_basis_sh, 4, 2, 2, RELUME_STORE_8, 0.0);
     snprintf(second[0], sizeof second[0], "%s/rows.part", f.folder);
     fuzz_store(second[0], f.seed[0]);
-    add(&f, &slab, &relume_basis_sh, 4, 2, 2, RELUME_STORE_8);
+    add(&f, &slab, &relume_basis_sh, 4, 2, 2, RELUME_STORE_8, 0.0);
     snprintf(second[1], sizeof second[1], "%s/views.part", f.folder);
     fuzz_store(second[1], f.seed[1]);
-    add(&f, &plain, &relume_basis_sh, 4, 1, 2, RELUME_STORE_8);
-    add(&f, &slab, &relume_basis_sh, 4, 1, 2, RELUME_STORE_8);
-    add(&f, &slab, &relume_basis_table, 0, 1, 1, RELUME_STORE_HALF);
-    add(&f, &plain, &relume_basis_pca, 3, 1, 2, RELUME_STORE_12);
+    add(&f, &plain, &relume_basis_sh, 4, 1, 2, RELUME_STORE_8, 0.0);
+    add(&f, &slab, &relume_basis_sh, 4, 1, 2, RELUME_STORE_8, 0.0);
+    add(&f, &slab, &relume_basis_table, 0, 1, 1, RELUME_STORE_HALF, 0.0);
+    add(&f, &plain, &relume_basis_pca, 3, 1, 2, RELUME_STORE_12, 0.0);
+    add(&f, &large, &relume_basis_sh, 4, 2, 2, RELUME_STORE_DEFAULT, 25.0);
+    snprintf(second[2], sizeof second[2], "%s/groups.part", f.folder);
+    fuzz_store(second[2], f.seed[f.seeds - 1]);
+    add(&f, &large, &relume_basis_sh, 4, 1, 2, RELUME_STORE_DEFAULT, 25.0);
     return fuzz_run(&f, argc, argv, one);
 }

@@ -4,6 +4,7 @@
 #include "encode_parts.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 struct encode_options {
@@ -126,9 +127,14 @@ static bool is_coded(const struct request *r)
 }
 
 // The capture is looked at before it is encoded.
+static bool learns_first(const struct request *r)
+{
+    return r->basis->learned || r->coder.choose || is_coded(r);
+}
+
 static bool learns(const struct request *r)
 {
-    return r->basis->learned || r->coder.choose || (r->pack.books && r->pack.share);
+    return learns_first(r) || (r->pack.books && r->pack.share);
 }
 
 static const char *storage_words(enum relume_storage storage)
@@ -366,13 +372,13 @@ static relume_status encode_team(const struct args *args, struct request *r,
     relume_coder *coder = NULL;
     struct relume_encode_report report;
     relume_status status = learn(&coder, capture, r);
-    if (!status && !r->learn_only)
+    if (!status && (!r->learn_only || is_coded(r)))
         status = (args->team ? write_together(args, capture, coder, r, &report)
                              : write_file(capture, coder, r, &report));
     if (!status && !r->learn_only && !(args->team && args->team->member)) {
         say_census(args, r, &report.census, relume_capture_hemispherical(capture));
         say_result(args, capture, coder, &report, r);
-        if ((r->bits || r->pack.parts) && relume_encode_is_coarse(&report))
+        if ((r->bits || r->pack.parts) && !is_coded(r) && relume_encode_is_coarse(&report))
             announce(args, RELUME_WARNING,
                      "%s: very bright highlights: %s will ruin the picture; use --bits half",
                      r->output, storage_words(r->pack.storage));
@@ -386,6 +392,13 @@ static relume_status encode(const struct args *args, struct request *r)
     relume_capture *capture;
     relume_team_files *team = NULL;
     struct prefix_log about;
+    if (r->learn_only && !learns_first(r)) {
+        announce(args, RELUME_NOTE,
+                 "%s: nothing is learnt before encoding with these options; run the same line "
+                 "without --learn-only",
+                 r->input);
+        return RELUME_OK;
+    }
     r->open.keep_bytes = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
     relume_status status = relume_capture_open(&capture, r->input, &r->open);
     if (status)
@@ -404,17 +417,22 @@ static relume_status encode(const struct args *args, struct request *r)
         status = form_team(&team, capture, r);
     if (!status)
         status = encode_team(args, r, capture);
-    if (r->learn_only && (!status || (team && relume_team_folder_waits(team)))) {
+    if (r->learn_only && !status)
+        announce(args, RELUME_NOTE,
+                 "%s: all is learnt; encode part %d of %d by the same line without --learn-only",
+                 r->learnt, r->pack.part, r->pack.parts);
+    if (r->learn_only && status == RELUME_ECANCEL && relume_team_folder_waits(team)) {
         status = RELUME_OK;
-        announce(args, RELUME_NOTE, "%s: part %d of %d has learnt its share", r->learnt,
-                 r->pack.part, r->pack.parts);
+        announce(args, RELUME_NOTE, "%s: part %d of %d has learnt its share; %s", r->learnt,
+                 r->pack.part, r->pack.parts,
+                 is_coded(r) ? "run this line again when the other parts have learnt theirs"
+                             : "other parts have not learnt theirs yet");
     }
     relume_team_folder_destroy(&team);
     relume_capture_destroy(&capture);
     return status;
 }
 
-// What needs all views at once cannot be shared.
 static relume_status check_parts(const struct encode_options *o, const struct request *r)
 {
     if (o->args.team && (o->part.parts || o->commands || o->learnt || o->learn_only))
@@ -428,9 +446,10 @@ static relume_status check_parts(const struct encode_options *o, const struct re
         return RELUME_OK;
     if (o->part.parts && o->commands)
         return usage_error("--commands prints the lines with --part; expected one of the two");
-    if (is_coded(r))
-        return usage_error("--psnr and --bytes-per-pixel try steps on all views; expected without "
-                           "--part and --commands: encode in one go");
+    if (o->learnt && strchr(r->options.text, '\n'))
+        return usage_error(
+            "--learnt keeps what was asked for in one line; expected options without "
+            "line breaks");
     if (r->pack.books && r->pack.share && !o->learnt && o->part.parts)
         return usage_error("--share learns one set of codebooks from all views; expected --learnt "
                            "FOLDER, where the parts share what it is learnt from");
@@ -477,6 +496,7 @@ static relume_status run(const struct args *args)
                  .part = o->part.part,
                  .parts = o->part.parts,
                  .free_storage = !o->bits,
+                 .learn_only = o->learn_only,
                  .threads = args->threads},
         .decide = !o->basis && !books && !o->robust && !o->luminance,
         .quality = o->quality,
@@ -496,9 +516,9 @@ static relume_status run(const struct args *args)
     r.pack.books = books ? &r.books : NULL;
     r.pack.options = r.options.text;
     if (!status)
-        status = check_parts(o, &r);
-    if (!status)
         status = options_text(&r.options, args, options, not_kept);
+    if (!status)
+        status = check_parts(o, &r);
     if (!status && o->commands)
         print_commands_of_parts(args, o->output, o->commands, learns(&r) && !o->learnt);
     return status || o->commands ? status : encode(args, &r);

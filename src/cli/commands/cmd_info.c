@@ -141,7 +141,10 @@ static void print_part(const struct relume_pack_part *p, bool json)
     }
     printf("part          %d of %d; 'relume join' makes one file of all parts\n", p->part,
            p->parts);
-    printf("views         %d to %d of %d\n", p->first, p->first + p->views - 1, p->all_views);
+    if (p->coded)
+        printf("views         %d of %d, in groups of neighbours\n", p->views, p->all_views);
+    else
+        printf("views         %d to %d of %d\n", p->first, p->first + p->views - 1, p->all_views);
     if (p->rows)
         printf("rows          %d to %d\n", p->row, p->row + p->rows - 1);
     printf("options       %s\n", p->options[0] ? shown(&text, p->options) : "none");

@@ -37,27 +37,51 @@ static int nearest(const vec3 *p, int n, vec3 d)
     return best;
 }
 
-vec3 mesh_widest_gap(const vec3 *p, int n, double *angle)
+// Directions among which gaps are looked for: a spiral that starts at the south pole.
+enum { CANDIDATES = 2048 };
+static void fill_spiral(vec3 spiral[CANDIDATES + 1])
 {
-    enum { CANDIDATES = 2048 };
-    vec3 best = vec3_of(0.0, 0.0, -1.0);
-    *angle = 0.0;
-    for (int i = 0; i <= CANDIDATES; i++) {  // the spiral starts at the south pole
+    for (int i = 0; i <= CANDIDATES; i++) {
         const double z = 2.0 * i / CANDIDATES - 1.0, r = sqrt(1.0 - z * z);
         const double phi = i * (M_PI * (3.0 - sqrt(5.0)));
-        const vec3 d = vec3_of(r * cos(phi), r * sin(phi), z);
+        spiral[i] = vec3_of(r * cos(phi), r * sin(phi), z);
+    }
+}
+
+static vec3 widest_gap(const vec3 spiral[CANDIDATES + 1], const vec3 *p, int n, double *angle)
+{
+    static const double tie = 0.02, rounding = 1e-9;
+    vec3 best = vec3_of(0.0, 0.0, -1.0);
+    double enough = 2.0;  // no wider gap where the nearest has a larger cosine
+    *angle = 0.0;
+    for (int i = 0; i <= CANDIDATES; i++) {
+        const vec3 d = spiral[i];
+        double most = -2.0;
+        for (int j = 0; j < n; j++)
+            most = fmax(most, vec3_dot(d, p[j]));
+        if (most > enough)
+            continue;
         const double gap = vec3_angle(d, p[nearest(p, n, d)]);
-        if (gap > *angle + 0.02) {  // ties go to the pole
+        if (gap > *angle + tie) {  // ties go to the pole
             *angle = gap;
             best = d;
+            enough = cos(fmin(gap + tie, M_PI)) + rounding;
         }
     }
     return best;
 }
 
+vec3 mesh_widest_gap(const vec3 *p, int n, double *angle)
+{
+    vec3 spiral[CANDIDATES + 1];
+    fill_spiral(spiral);
+    return widest_gap(spiral, p, n, angle);
+}
+
 relume_status mesh_create(mesh **out, const vec3 *lights, int n)
 {
     enum { MAX_HELPERS = 6 };
+    vec3 spiral[CANDIDATES + 1];
     *out = NULL;
     mesh *m = mem_zeroed(1, sizeof *m);
     if (!m)
@@ -70,9 +94,10 @@ relume_status mesh_create(mesh **out, const vec3 *lights, int n)
     }
     for (int i = 0; i < n; i++)
         m->point[i] = lights[i];
+    fill_spiral(spiral);
     while (m->points < n + MAX_HELPERS) {
         double angle;
-        const vec3 gap = mesh_widest_gap(m->point, m->points, &angle);
+        const vec3 gap = widest_gap(spiral, m->point, m->points, &angle);
         if (angle < MESH_WIDE)
             break;
         m->point[m->points++] = gap;

@@ -17,6 +17,8 @@
 #include "coder/basis.h"
 #include "math/vec.h"
 
+#include <stdlib.h>
+
 enum { STEPS = RELUME_CAPTURED_REGION_STEPS, LEAST_LIGHTS = 4 };
 // Lights nearer than this to each other are one; those without a neighbour have one so far away;
 // and each covers that distance around it, or the lights themselves would lie on the border.
@@ -37,14 +39,17 @@ static double reach_of(const struct relume_vec3 *lights, int n, int i, double pa
     return fmax(nearest * part, LEAST);
 }
 
-static double azimuth(int step)
+// Of the azimuth of each step, and of the difference of two.
+static void find_cosines(double cosine[STEPS])
 {
-    return 2.0 * M_PI * step / STEPS;
+    for (int s = 0; s < STEPS; s++)
+        cosine[s] = cos(2.0 * M_PI * s / STEPS);
 }
 
 // How far the discs reach along each azimuth of the plane. False when they leave the middle out.
-static bool find_support(double support[STEPS], const struct relume_captured_region *z,
-                         const struct relume_vec3 *lights, int n, double part)
+static bool find_support(double support[STEPS], const double cosine[STEPS],
+                         const struct relume_captured_region *z, const struct relume_vec3 *lights,
+                         int n, double part)
 {
     bool inside = true;
     for (int s = 0; s < STEPS; s++)
@@ -52,12 +57,15 @@ static bool find_support(double support[STEPS], const struct relume_captured_reg
     for (int i = 0; i < n; i++) {
         const double reach = reach_of(lights, n, i, part);
         const double x = vec3_dot(lights[i], z->right), y = vec3_dot(lights[i], z->up);
-        const double theta = atan2(hypot(x, y), vec3_dot(lights[i], z->axis)), phi = atan2(y, x);
+        const double r = hypot(x, y), theta = atan2(r, vec3_dot(lights[i], z->axis));
+        const double cos_phi = r > 0.0 ? x / r : 1.0, sin_phi = r > 0.0 ? y / r : 0.0;
         const double near = tan(0.5 * (theta - reach));
         const double far = tan(0.5 * fmin(theta + reach, ALL_AROUND));
-        for (int s = 0; s < STEPS; s++)
-            support[s] =
-                fmax(support[s], 0.5 * (far + near) * cos(azimuth(s) - phi) + 0.5 * (far - near));
+        for (int s = 0; s < STEPS; s++) {
+            const double sine = cosine[(s + STEPS - STEPS / 4) % STEPS];
+            const double along = cosine[s] * cos_phi + sine * sin_phi;
+            support[s] = fmax(support[s], 0.5 * (far + near) * along + 0.5 * (far - near));
+        }
     }
     for (int s = 0; s < STEPS; s++)
         inside &= support[s] > 0.0;
@@ -65,15 +73,14 @@ static bool find_support(double support[STEPS], const struct relume_captured_reg
 }
 
 // The border of the hull is at the first of its tangents.
-static void find_border(struct relume_captured_region *z, const double support[STEPS])
+static void find_border(struct relume_captured_region *z, const double support[STEPS],
+                        const double cosine[STEPS])
 {
     double least = M_PI;
     for (int i = 0; i < STEPS; i++) {
         double radius = (double)INFINITY;
-        for (int s = 0; s < STEPS; s++) {
-            const double along = cos(azimuth(i) - azimuth(s));
-            radius = along > 1e-3 ? fmin(radius, support[s] / along) : radius;
-        }
+        for (int k = 1 - STEPS / 4; k < STEPS / 4; k++)  // those beyond a right angle are no nearer
+            radius = fmin(radius, support[(i + k + STEPS) % STEPS] / cosine[abs(k)]);
         z->border[i] = (float)(2.0 * atan(radius));
         least = fmin(least, (double)z->border[i]);
     }
@@ -83,15 +90,16 @@ static void find_border(struct relume_captured_region *z, const double support[S
 static bool try_axis(struct relume_captured_region *z, vec3 axis, const struct relume_vec3 *lights,
                      int n, double part)
 {
-    double support[STEPS];
+    double support[STEPS], cosine[STEPS];
     // Any frame will do; at a pole it is that of x and y, or of x and z.
     const vec3 beside = fabs(axis.x) < 0.9 ? vec3_of(1.0, 0.0, 0.0) : vec3_of(0.0, 1.0, 0.0);
     z->axis = axis;
     z->up = vec3_unit(vec3_cross(axis, beside));
     z->right = vec3_cross(z->up, axis);
-    if (!find_support(support, z, lights, n, part))
+    find_cosines(cosine);
+    if (!find_support(support, cosine, z, lights, n, part))
         return false;
-    find_border(z, support);
+    find_border(z, support, cosine);
     return true;
 }
 

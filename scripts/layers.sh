@@ -18,6 +18,7 @@ capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 acquire:base math image capture multiview:base image directions capture ball photometric acquire photograph align
+appearance:base math image capture:base image capture photometric light relight pack maps
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder team:base coder codebook team
 team:base:base io team

@@ -142,6 +142,12 @@ struct relume_capture_params {
 RELUME_RESULT relume_status relume_capture_open(relume_capture **out, const char *path,
                                                 const struct relume_capture_params *params);
 RELUME_API void relume_capture_destroy(relume_capture **capture);
+// The same capture with some of its lights, in the order of `light[lights]`. What it was opened
+// with is borrowed: `capture` must outlive it. RELUME_EINVAL for a light that is not there,
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_capture_select(relume_capture **out,
+                                                  const relume_capture *capture, const int *light,
+                                                  int lights);
 
 // How the samples of pictures in memory are stored.
 enum relume_sample {

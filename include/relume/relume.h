@@ -21,6 +21,7 @@
 #include <relume/image.h>
 #include <relume/io.h>
 #include <relume/light.h>
+#include <relume/maps.h>
 #include <relume/slab_depth.h>
 #include <relume/directions.h>
 #include <relume/normals.h>

@@ -58,7 +58,8 @@ static struct picture_array array_of(const relume_capture *c, int view, int ligh
     const size_t bytes = a->sample == RELUME_SAMPLE_FLOAT ? 4
                          : a->sample == RELUME_SAMPLE_8   ? 1
                                                           : 2;
-    const size_t index = (size_t)view * (size_t)c->draft.m.lights + (size_t)light;
+    const int at = c->light_of ? c->light_of[light] : light;
+    const size_t index = (size_t)view * (size_t)c->pictured + (size_t)at;
     const size_t size = (size_t)a->width * (size_t)a->height * (size_t)a->channels * bytes;
     return (struct picture_array){(const char *)a->data + index * size, bytes, a->width, a->height,
                                   a->channels};

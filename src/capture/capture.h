@@ -10,6 +10,8 @@ struct relume_capture {
     struct draft draft;
     char *path;
     struct relume_pictures pictures;  // `data` is NULL: files
+    int pictured;                     // lights of `pictures`
+    const int *light_of;              // [lights]: of those; NULL: the same
     int width, height;
     int x, y;     // origin of the images' data windows
     bool floats;  // an image holds floating-point numbers

@@ -122,6 +122,7 @@ relume_status relume_capture_create(relume_capture **out, const struct relume_ma
     if (!c)
         return RELUME_ENOMEM;
     c->pictures = *pictures;
+    c->pictured = manifest->lights;
     c->path = mem_text("memory");
     relume_status status = c->path ? copy_manifest(&c->draft, manifest, pictures) : RELUME_ENOMEM;
     if (!status)

@@ -22,6 +22,9 @@ enum { RELUME_MAPS_MOST_MATERIALS = 16 };
 // Fewer lights say nothing about gloss, and fewer than three nothing about the shape.
 enum { RELUME_MAPS_LEAST_LIGHTS = 6 };
 
+// A display value that differs by more than this from the photograph is off.
+#define RELUME_MAPS_OFF 0.1
+
 // One entry of the codebook.
 struct relume_maps_material {
     bool metal;        // all colour is in the highlight, there is no diffuse light
@@ -40,7 +43,6 @@ struct relume_maps_quality {
     double shadowed;  // share of samples that much darker than the maps: cast shadows
     double brighter;  // ... and that much brighter: interreflection, missed highlights, glass
 };
-#define RELUME_MAPS_OFF 0.1
 
 // All pictures have the size of the view; row 0 is the top. The caller destroys it. Thread-safety:
 // plain data.
@@ -61,7 +63,8 @@ struct relume_maps {
     double gain;                      // photographs were multiplied by it
     bool matte_only;                  // too few lights for gloss: roughness 1, no highlight
     int lights;                       // that were fitted
-    int materials;
+    int materials;                    // of the codebook
+    // The first `materials` of them count.
     struct relume_maps_material material[RELUME_MAPS_MOST_MATERIALS];
     struct relume_maps_quality fitted;    // over the lights that were fitted, at most 16 of them
     struct relume_maps_quality held_out;  // over those that were not

@@ -207,6 +207,7 @@ struct relume_pack_part {
     char options[4096];  // as they were given to relume_pack_encode
     uint64_t file_bytes;
     bool coded;  // with loss: it holds groups of neighbours, of which `first` is the lowest view
+    char capture[RELUME_DIGEST];  // relume_capture_digest of what it was made from
 };
 // An input status with a sentence when `path` is no part. Of `params` log, limits and reader are
 // used.

@@ -10,10 +10,13 @@
 
 #include <mpi.h>
 #include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST_AT_ONCE = 1 << 30 };  // bytes: MPI counts them as int
+static const int64_t MOST_PIECE = (int64_t)1 << 42;
 
 struct processes {
     struct relume_team team;
@@ -27,6 +30,15 @@ static size_t heard_size;
 static FILE *hearing;
 
 // ---------------------------------------------------------------- pieces
+
+// A name as a number that is not negative, FNV-1a.
+static int64_t number_of(const char *what)
+{
+    uint64_t sum = 0xcbf29ce484222325u;
+    for (; *what; what++)
+        sum = (sum ^ (unsigned char)*what) * 0x100000001b3u;
+    return (int64_t)(sum >> 1);
+}
 
 // Everybody's number; negative ones say that their process has failed.
 static bool exchange(struct processes *p, int64_t mine)
@@ -53,19 +65,50 @@ static bool make_room(struct relume_buffer *piece, int64_t size)
     return !size || (writer.write(writer.user, "", 1, (uint64_t)size - 1));
 }
 
+// All processes are at the same place: they share the same, of the same version of the program.
+static relume_status agree(struct processes *p, const char *what)
+{
+    char all[128];
+    snprintf(all, sizeof all, "relume %s: %s", RELUME_VERSION, what);
+    if (!exchange(p, number_of(all)))
+        return RELUME_ECANCEL;
+    for (int i = 0; i < p->team.members; i++)
+        if (p->number[i] != p->number[0]) {
+            p->broken = true;
+            fprintf(
+                stderr,
+                "relume: processes 1 and %d do not share the same (%s); expected one version of "
+                "relume-mpi and one command line on all machines\n",
+                i + 1, what);
+            return RELUME_EUNFIT;
+        }
+    return RELUME_OK;
+}
+
+static relume_status refuse_size(int process, const char *what, int64_t size)
+{
+    fprintf(stderr, "relume: process %d wants to share %lld bytes (%s); expected fewer\n",
+            process + 1, (long long)size, what);
+    return RELUME_EDAMAGED;
+}
+
 static relume_status share(void *user, const char *what, relume_team_make *make, void *context,
                            struct relume_buffer *pieces)
 {
     struct processes *p = user;
     const int own = p->team.member;
-    (void)what;
     if (p->broken)
         return RELUME_ECANCEL;
-    relume_status status = make(context, own, &pieces[own]);
+    relume_status status = agree(p, what);
+    if (status)
+        return status;
+    status = make(context, own, &pieces[own]);
     if (!exchange(p, status ? -1 : (int64_t)pieces[own].size))
         return status ? status : RELUME_ECANCEL;
     for (int i = 0; !status && i < p->team.members; i++)
-        if (i != own && !make_room(&pieces[i], p->number[i]))
+        if (p->number[i] > MOST_PIECE)
+            status = refuse_size(i, what, p->number[i]);
+        else if (i != own && !make_room(&pieces[i], p->number[i]))
             status = RELUME_ENOMEM;
     if (!exchange(p, status ? -1 : 0))
         return status ? status : RELUME_ECANCEL;

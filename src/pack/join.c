@@ -59,7 +59,7 @@ static relume_status refuse_other(const struct part_file *p, const struct part_f
         return log_fail(log, RELUME_EUNFIT,
                         "%s: made by %s; expected %s as in %s; run this part again", p->path,
                         a->creator, b->creator, first->path);
-    if (strcmp(exr_get_text(p->file, 0, ATTR_CAPTURE), exr_get_text(first->file, 0, ATTR_CAPTURE)))
+    if (strcmp(a->capture, b->capture))
         return log_fail(log, RELUME_EUNFIT,
                         "%s: a part of another capture than %s, or its photographs have changed; "
                         "run this part again",

@@ -189,7 +189,7 @@ relume_status part_open(struct part_file *out, const char *path, const struct re
     if (!status &&
         (!copy_text(i->creator, sizeof i->creator, exr_get_text(out->file, 0, ATTR_CREATOR)) ||
          !copy_text(i->options, sizeof i->options, exr_get_text(out->file, 0, ATTR_OPTIONS)) ||
-         !exr_get_text(out->file, 0, ATTR_CAPTURE)))
+         !copy_text(i->capture, sizeof i->capture, exr_get_text(out->file, 0, ATTR_CAPTURE))))
         status = bad(out, "header", log);
     if (!status) {
         count_books(out);

@@ -32,12 +32,41 @@ as_one 'one codebook for all views' 3 slab --basis sh --coefficients 4 --codeboo
 as_one 'of two stages, by splitting' 2 slab --basis pca --coefficients 6 --codebook 32 --share --stages 2 --codebook-start split
 as_one 'rows' 3 flat --basis pca
 as_one 'one process' 1 slab --basis sh
+"$sphere" cut --size 44 --lights 9 --views 2 --mask --format jpg
+as_one 'rows of two views, blocks of one of them' 5 cut --basis sh --coefficients 4
+"$RELUME" synth teapot -o few --size 24 --views 3x3 --lights 5 --samples 1 -q
+as_one 'with loss, a process without views' 3 few --basis pca --coefficients 4 --psnr 26
 # halves where 8 bits turn out too few
 "$sphere" lamp --size 32 --lights 1 --views 3 --hemisphere
 for view in lamp/view0?; do
     "$mkimage" poke "$view/light0000.exr" lit.exr 16 16 1000 && mv lit.exr "$view/light0000.exr"
 done
 as_one 'very bright highlights' 2 lamp --basis table
+# parts that an earlier run has made are taken up; a byte of one that is changed shows it
+unfinished() { # processes, capture, options...: the device of the output is full
+    rm -f later.exr
+    ln -s /dev/full later.exr
+    processes "$@" -o later.exr -q >out.txt 2>err.txt
+    rm -f later.exr
+}
+set -- 3 encode slab --basis sh --coefficients 4 --compression none --no-depth
+unfinished "$@"
+check 'parts stay where joining fails' [ "$(ls | grep -c '^later.*\.relume-mpi$')" = 3 ]
+rm later.2of3.relume-mpi
+processes "$@" -o later.exr -q
+shift
+relume "$@" -o whole.exr
+same 'the run is taken up, one part made again' whole.exr later.exr
+check 'and they go' [ "$(ls | grep -c '\.relume-mpi$')" = 0 ]
+unfinished 3 "$@"
+printf '\377' | dd of=later.1of3.relume-mpi bs=1 seek=$(($(wc -c <later.1of3.relume-mpi) - 9)) conv=notrunc 2>/dev/null
+processes 3 "$@" -o later.exr -q
+check 'parts that are there are used' sh -c '! cmp -s whole.exr later.exr'
+unfinished 3 "$@"
+as_other=$(echo "$*" | sed 's/ 4 / 1 /')
+processes 3 $as_other -o later.exr -q
+relume $as_other -o whole.exr
+same 'but not those of other options' whole.exr later.exr
 check 'no part is left' [ "$(ls | grep -c '\.relume-mpi$')" = 0 ]
 
 # ---- one voice

@@ -322,44 +322,100 @@ static relume_status join_parts(void *context, int member, struct relume_buffer 
     return status ? status : give_byte(out, relume_encode_is_coarse(t->report));
 }
 
-// Everybody's piece is there; `first` (or NULL) receives the byte of the first process.
-static relume_status share_byte(const struct relume_team *team, const char *what,
-                                relume_team_make *make, void *context, bool *first)
+// byte[members]: what each process has to say.
+static relume_status share_bytes(const struct args *args, const char *what, relume_team_make *make,
+                                 void *context, unsigned char *byte)
 {
+    const struct relume_team *team = args->team;
     struct relume_buffer *piece = calloc((size_t)team->members, sizeof *piece);
-    const relume_status status =
+    relume_status status =
         piece ? team->share(team->user, what, make, context, piece) : RELUME_ENOMEM;
-    if (!status && first)
-        *first = piece->data[0];
+    for (int i = 0; !status && i < team->members; i++)
+        if (piece[i].size == 1)
+            byte[i] = piece[i].data[0];
+        else
+            status =
+                say(args->log, RELUME_EDAMAGED, "process %d has shared %zu bytes (%s); expected 1",
+                    i + 1, piece[i].size, what);
     for (int i = 0; piece && i < team->members; i++)
         relume_buffer_destroy(&piece[i]);
     free(piece);
     return status;
 }
 
-// All processes write their parts, and the first joins them.
+// Whether a part is there already, of the same work, since an earlier run was stopped.
+struct kept {
+    const struct request *r;
+    const char *path, *capture;
+};
+
+static relume_status say_kept(void *context, int member, struct relume_buffer *out)
+{
+    const struct kept *k = context;
+    const struct relume_pack_encode_params *p = &k->r->pack;
+    struct relume_pack_part part;
+    return give_byte(
+        out, member == p->part - 1 && is_part(&part, k->path) && part.part == p->part &&
+                 part.parts == p->parts && !strcmp(part.creator, "relume " RELUME_VERSION) &&
+                 !strcmp(part.options, p->options) && !strcmp(part.capture, k->capture));
+}
+
+// Parts that need each other to be made are kept together.
+static bool need_each_other(const struct request *r, const relume_capture *capture)
+{
+    return is_coded(r) || (r->pack.books && r->pack.share) ||
+           r->pack.parts > relume_capture_manifest(capture)->views;
+}
+
+// The own part, unless it is kept.
+static relume_status write_part(const struct args *args, const relume_capture *capture,
+                                const relume_coder *coder, struct request *r, const char *path,
+                                unsigned char *byte)
+{
+    char digest[RELUME_DIGEST];
+    struct kept kept = {r, path, digest};
+    struct relume_encode_report own;
+    const int parts = args->team->members;
+    bool all = true;
+    relume_status status = relume_capture_digest(digest, capture, r->pack.log);
+    if (!status)
+        status = share_bytes(args, "kept", say_kept, &kept, byte);
+    for (int i = 0; !status && i < parts; i++)
+        all &= byte[i] != 0;
+    const bool is_kept =
+        !status && byte[args->team->member] && (all || !need_each_other(r, capture));
+    return status || is_kept ? status : relume_pack_encode(capture, coder, path, &own, &r->pack);
+}
+
+// All processes write their parts, and the first joins them. Where that fails they stay, and the
+// same command line takes them up.
 static relume_status write_together(const struct args *args, const relume_capture *capture,
                                     const relume_coder *coder, struct request *r,
                                     struct relume_encode_report *report)
 {
-    const struct relume_team *team = args->team;
     struct together t = {args, r, report};
-    struct relume_encode_report own;
     struct part_name name;
+    struct options_text again_text;
     bool again = true;
-    relume_status status = RELUME_OK;
+    unsigned char *byte = calloc((size_t)args->team->members, 1);
+    relume_status status = byte ? RELUME_OK : RELUME_ENOMEM;
     name_part(&name, r->output, r->pack.part, r->pack.parts, OWN_PART);
     r->pack.free_storage = false;
     while (!status && again) {
-        status = relume_pack_encode(capture, coder, name.text, &own, &r->pack);
+        status = write_part(args, capture, coder, r, name.text, byte);
         if (!status)
-            status = share_byte(team, "written", say_written, NULL, NULL);
+            status = share_bytes(args, "written", say_written, NULL, byte);
         if (!status)
-            status = share_byte(team, "joined", join_parts, &t, &again);
-        again = again && !r->bits && r->pack.storage != RELUME_STORE_HALF;
+            status = share_bytes(args, "joined", join_parts, &t, byte);
+        again = !status && byte[0] && !r->bits && r->pack.storage != RELUME_STORE_HALF;
         r->pack.storage = again ? RELUME_STORE_HALF : r->pack.storage;
+        snprintf(again_text.text, sizeof again_text.text, "%.*s (halves)",
+                 (int)sizeof again_text.text - 16, r->options.text);
+        r->pack.options = again ? again_text.text : r->pack.options;
     }
-    remove(name.text);
+    if (!status)
+        remove(name.text);
+    free(byte);
     r->pack.part = r->pack.parts = 0;
     return status;
 }

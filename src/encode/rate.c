@@ -13,7 +13,10 @@
 #include <string.h>
 
 // At the same quantiser the slow coder is about a whole step better in quality, and in bytes two.
-enum { FIRST_GUESS = 30 * AV1_STEPS, SLOW_IS_FINER = AV1_STEPS };
+enum { SLOW_IS_FINER = AV1_STEPS };
+
+// What a step of the quantiser is worth, before there are two trials, in quality or in bytes.
+static const double USUAL_DB = 0.1, USUAL_BYTES = 0.15;
 
 // What is tried first: of views that are alone three, else two groups; by the slow coder too where
 // all of them are more than so many times that.
@@ -442,12 +445,12 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                      .capture = capture,
                      .p = p,
                      .by = by,
-                     .step_db = 0.1,
+                     .step_db = target->psnr_db > 0.0 ? USUAL_DB : USUAL_BYTES,
                      .target = *target};
     const int speed = speed_for(coder, capture, target);
     int *quantiser = &result->effort.quantiser;
     result->effort.speed = speed;
-    *quantiser = FIRST_GUESS;
+    *quantiser = RATE_FIRST_GUESS;
     relume_status status = search(&r, tried, AV1_FAST, quantiser);
     r.rough = false;
     r.done = 0.2;
@@ -467,6 +470,14 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
     return status;
 }
 
+double rate_merit_of(double psnr_db, double bytes, const struct rate_target *target, double header)
+{
+    const double over = psnr_db - target->psnr_db;
+    return target->psnr_db > 0.0
+               ? -EACH_HALF * log2(bytes * exp2(-over / EACH_HALF) + header)
+               : psnr_db - EACH_HALF * log2(bytes / fmax(target->bytes - header, 1.0));
+}
+
 relume_status rate_merit(double *merit, relume_coefficients *coefficients, int view,
                          const relume_capture *capture, const struct rate_target *target,
                          double header, const struct relume_encode_params *p)
@@ -475,18 +486,20 @@ relume_status rate_merit(double *merit, relume_coefficients *coefficients, int v
     const struct view_groups group = {1, begin, alone};
     struct rate r = {.coefficients = &coefficients,
                      .groups = &group,
+                     .rough = true,
                      .first = view,
                      .capture = capture,
                      .p = p,
-                     .step_db = 0.3,
+                     .step_db = target->psnr_db > 0.0 ? USUAL_DB : USUAL_BYTES,
                      .target = *target};
-    int quantiser = FIRST_GUESS;
+    int quantiser = RATE_FIRST_GUESS, nearest = RATE_FIRST_GUESS;
     r.target.bytes = fmax(target->bytes - header, 1.0);
     const relume_status status = search(&r, 1, AV1_FAST, &quantiser);
-    const struct trial *t = &r.trial[quantiser];
-    const double over = surplus(&r, quantiser);
-    *merit = target->psnr_db > 0.0 ? -EACH_HALF * log2(t->bytes * exp2(-over / EACH_HALF) + header)
-                                   : t->psnr_db - over;
+    for (int q = AV1_FINEST; !status && q <= AV1_COARSEST; q++)
+        if (r.trial[q].words && fabs(surplus(&r, q)) < fabs(surplus(&r, nearest)))
+            nearest = q;
+    const struct trial *t = &r.trial[nearest];
+    *merit = rate_merit_of(t->psnr_db, t->bytes, target, header);
     forget(&r);
     return status;
 }

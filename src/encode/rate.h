@@ -8,6 +8,9 @@
 #include <relume/capture.h>
 #include <relume/team.h>
 
+// Where the search begins, which is about what a usual quality takes.
+enum { RATE_FIRST_GUESS = 30 * AV1_STEPS };
+
 struct rate_target {
     double psnr_db;  // of the captured images, pooled; or 0
     double bytes;    // of the words of all views
@@ -36,9 +39,11 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           const struct rate_target *target, const struct relume_encode_params *p,
                           const struct rate_team *by);
 
-// How good a coder of one `view` of the capture is about, to compare it with others: in dB, the
+// How good planes of that PSNR and so many bytes are about, to compare them with others: in dB, the
 // PSNR at the target's bytes, `header` of which are not planes'; or, at the target's PSNR, as if
-// half of all bytes were worth 5 dB. Errors as above.
+// half of all bytes were worth 5 dB.
+double rate_merit_of(double psnr_db, double bytes, const struct rate_target *target, double header);
+// The same of a coder of one `view` of the capture. Errors as above.
 relume_status rate_merit(double *merit, relume_coefficients *coefficients, int view,
                          const relume_capture *capture, const struct rate_target *target,
                          double header, const struct relume_encode_params *p);

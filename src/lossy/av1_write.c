@@ -8,7 +8,7 @@
 #include <aom/aomcx.h>
 #include <string.h>
 
-enum { MOST_KEYFRAME_DISTANCE = 1 << 20 };
+enum { MOST_KEYFRAME_DISTANCE = 1 << 20, FINEST_STEP = AV1_FINEST / AV1_STEPS };
 
 // Slots in which the coder keeps pictures: two for the first sequence, one for each other.
 enum { SLOTS = 8, FIRST_SLOTS = 2, REFERENCES = 7 };
@@ -46,7 +46,7 @@ static bool set_step(struct group *g, int picture, int member)
     const int q = g->effort->quantiser;
     int step = (q * (picture + 1) / AV1_STEPS) - (q * picture / AV1_STEPS);
     step -= member ? 0 : finer(g);
-    step = step > 1 ? step : 1;
+    step = step > FINEST_STEP ? step : FINEST_STEP;
     g->config.rc_min_quantizer = g->config.rc_max_quantizer = (unsigned)step;
     return !aom_codec_enc_config_set(&g->codec, &g->config) &&
            !aom_codec_control(&g->codec, AOME_SET_CQ_LEVEL, step);

@@ -40,15 +40,20 @@ static int padded(int side)
     return whole > LEAST_SIDE ? whole : LEAST_SIDE;
 }
 
+static struct tile tile_in(const struct lossy_shape *shape, const struct relume_rect *at)
+{
+    const int components = shape->colour ? 3 : 1;
+    return (struct tile){
+        at->left, at->top, at->width, at->height,
+        .video = {padded(at->width), padded(at->height), components, shape->planes / components}};
+}
+
 static struct tile tile_at(const struct tiles *t, int index)
 {
-    struct tile tile = {.x = index % t->across * t->size, .y = index / t->across * t->size};
-    tile.width = smaller_of(t->size, t->shape.width - tile.x);
-    tile.height = smaller_of(t->size, t->shape.height - tile.y);
-    const int components = t->shape.colour ? 3 : 1;
-    tile.video = (struct av1_shape){padded(tile.width), padded(tile.height), components,
-                                    t->shape.planes / components};
-    return tile;
+    const int x = index % t->across * t->size, y = index / t->across * t->size;
+    const struct relume_rect at = {x, y, smaller_of(t->size, t->shape.width - x),
+                                   smaller_of(t->size, t->shape.height - y)};
+    return tile_in(&t->shape, &at);
 }
 
 static uint16_t *tile_samples(const struct tile *t)
@@ -174,16 +179,15 @@ struct encoding {
 };
 
 // Rows of a coefficient are [row][plane][x].
-static relume_status gather(uint16_t *samples, const struct encoding *e, const struct tile *t,
-                            int view)
+static relume_status gather(uint16_t *samples, const relume_coefficients *from,
+                            const struct lossy_shape *s, const struct tile *t)
 {
-    const struct lossy_shape *s = &e->tiles.shape;
     const size_t width = (size_t)s->width, stride = (size_t)t->video.width;
     const size_t plane = stride * (size_t)t->video.height;
     uint16_t *row = mem_array((size_t)s->planes, width * sizeof *row);
     relume_status status = row ? RELUME_OK : RELUME_ENOMEM;
     for (int y = 0; !status && y < t->height; y++) {
-        status = relume_coefficients_read(e->from[view], t->y + y, 1, row);
+        status = relume_coefficients_read(from, t->y + y, 1, row);
         for (int p = 0; !status && p < t->video.pictures; p++)
             for (int c = 0; c < t->video.components; c++)
                 memcpy(samples + (size_t)(p * t->video.components + c) * plane + (size_t)y * stride,
@@ -204,7 +208,7 @@ static void encode_tile(void *context, size_t item, int worker)
     (void)worker;
     for (int v = 0; !status && v < e->views; v++) {
         samples[v] = tile_samples(&t);
-        status = samples[v] ? gather(samples[v], e, &t, v) : RELUME_ENOMEM;
+        status = samples[v] ? gather(samples[v], e->from[v], &e->tiles.shape, &t) : RELUME_ENOMEM;
         if (!status)
             convert(samples[v], &t.video, to_luma);
     }
@@ -338,9 +342,8 @@ static void choose_tiles(struct decoding *d)
 }
 
 // What of a tile is in the rectangle.
-static struct relume_rect seen_of(const struct decoding *d, const struct tile *t)
+static struct relume_rect seen_of(const struct relume_rect *r, const struct tile *t)
 {
-    const struct relume_rect *r = d->rect;
     const int left = t->x > r->left ? t->x : r->left, top = t->y > r->top ? t->y : r->top;
     return (struct relume_rect){left, top, smaller_of(t->x + t->width, r->left + r->width) - left,
                                 smaller_of(t->y + t->height, r->top + r->height) - top};
@@ -400,16 +403,17 @@ relume_status lossy_needs(const struct lossy_shape *shape, const struct relume_r
     return status;
 }
 
-static void scatter(const struct decoding *d, const struct tile *t, const uint16_t *samples)
+// What of a tile is in a rectangle to codes[planes][rect height][rect width].
+static void scatter(uint16_t *codes, const struct relume_rect *r, const struct lossy_shape *shape,
+                    const struct tile *t, const uint16_t *samples)
 {
-    const struct relume_rect seen = seen_of(d, t), *r = d->rect;
+    const struct relume_rect seen = seen_of(r, t);
     const size_t width = (size_t)r->width, stride = (size_t)t->video.width;
     const size_t from = (size_t)(seen.top - t->y) * stride + (size_t)(seen.left - t->x);
     const size_t to = (size_t)(seen.top - r->top) * width + (size_t)(seen.left - r->left);
     for (int p = 0; p < t->video.pictures; p++)
         for (int c = 0; c < t->video.components; c++) {
-            uint16_t *plane =
-                d->codes + plane_of(&d->tiles.shape, p, c) * width * (size_t)r->height;
+            uint16_t *plane = codes + plane_of(shape, p, c) * width * (size_t)r->height;
             for (size_t y = 0; y < (size_t)seen.height; y++)
                 memcpy(plane + to + y * width, samples + from + y * stride,
                        (size_t)seen.width * sizeof *plane);
@@ -444,7 +448,7 @@ static void decode_tile(void *context, size_t item, int worker)
         status = av1_decode(samples, &t.video, &bytes, d->anchor.word ? &first : NULL);
     if (!status) {
         convert(samples, &t.video, from_luma);
-        scatter(d, &t, samples);
+        scatter(d->codes, d->rect, &d->tiles.shape, &t, samples);
     }
     d->status[item] = status;
     mem_free(samples);
@@ -457,7 +461,7 @@ static relume_status decode_all(struct decoding *d, int threads, const struct lo
     thread_for(threads, (size_t)d->count, decode_tile, d);
     for (int i = 0; i < d->count; i++) {
         const struct tile t = tile_of_item(d, i);
-        const struct relume_rect seen = seen_of(d, &t);
+        const struct relume_rect seen = seen_of(d->rect, &t);
         if (d->status[i] == RELUME_EDAMAGED && lost)
             lost->tile(lost->user, &seen);
         else if (d->status[i])
@@ -488,5 +492,36 @@ relume_status lossy_decode(uint16_t *codes, const struct lossy_shape *shape,
     mem_free(d.view.at);
     mem_free(d.anchor.at);
     mem_free(d.status);
+    return status;
+}
+
+relume_status lossy_try(uint16_t *before, uint16_t *after, size_t *bytes, relume_coefficients *from,
+                        const struct relume_rect *at, const struct av1_effort *effort, int threads,
+                        const struct relume_log *log)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(from);
+    int *order = lossy_order(info->coder);
+    const struct lossy_shape shape = {info->width, info->height, info->planes,
+                                      lossy_in_colour(info->coder), order};
+    const struct tile t = tile_in(&shape, at);
+    struct av1_bytes sequence = {0};
+    uint16_t *samples = tile_samples(&t);
+    relume_status status = samples ? gather(samples, from, &shape, &t) : RELUME_ENOMEM;
+    if (!status) {
+        scatter(before, at, &shape, &t, samples);
+        convert(samples, &t.video, to_luma);
+        const uint16_t *const member = samples;
+        status = av1_encode(&sequence, &member, 1, &t.video, effort, threads, log);
+    }
+    if (!status)
+        status = av1_decode(samples, &t.video, &sequence, NULL);
+    if (!status) {
+        convert(samples, &t.video, from_luma);
+        scatter(after, at, &shape, &t, samples);
+    }
+    *bytes = sequence.size;
+    mem_free(sequence.byte);
+    mem_free(samples);
+    mem_free(order);
     return status;
 }

@@ -42,6 +42,12 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                            const struct av1_effort *effort, int threads,
                            const struct relume_log *log);
 
+// A rectangle of a view coded by itself: its codes before[planes][height][width], those after it was
+// decoded again, and the bytes it took. Errors as above.
+relume_status lossy_try(uint16_t *before, uint16_t *after, size_t *bytes, relume_coefficients *from,
+                        const struct relume_rect *at, const struct av1_effort *effort, int threads,
+                        const struct relume_log *log);
+
 // Called with what a tile that cannot be decoded has of the rectangle; its codes are 0.
 struct lossy_lost {
     void (*tile)(void *user, const struct relume_rect *at);

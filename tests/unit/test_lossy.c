@@ -127,6 +127,42 @@ static void test_planes_come_back(void **state)
     }
 }
 
+// All of a view and a part of it, as the view of one tile would come back.
+static void test_a_trial_is_what_would_be_read(void **state)
+{
+    (void)state;
+    for (int colour = 0; colour < 2; colour++) {
+        enum { WIDTH = 37, HEIGHT = 21 };
+        struct made m;
+        make(&m, WIDTH, HEIGHT, colour);
+        const struct relume_rect all = {0, 0, WIDTH, HEIGHT}, some = {5, 3, 16, 9};
+        const size_t n = (size_t)m.shape.planes * WIDTH * HEIGHT;
+        const struct av1_effort effort = {120, AV1_FAST};
+        uint16_t *back = malloc(n * sizeof *back), *before = malloc(n * sizeof *before),
+                 *after = malloc(n * sizeof *after);
+        const struct lossy_words words = encoded(&m, effort.quantiser, 1);
+        size_t bytes;
+        assert_int_equal(lossy_decode(back, &m.shape, &all, &words, NULL, 1, NULL), RELUME_OK);
+        assert_int_equal(lossy_try(before, after, &bytes, m.coefficients, &all, &effort, 1, NULL),
+                         RELUME_OK);
+        assert_memory_equal(before, m.codes, n * sizeof *before);
+        assert_memory_equal(after, back, n * sizeof *after);
+        assert_int_equal((bytes + 3) / 4 + 5, words.count);  // a head of five words
+        assert_int_equal(lossy_try(before, after, &bytes, m.coefficients, &some, &effort, 1, NULL),
+                         RELUME_OK);
+        for (int p = 0; p < m.shape.planes; p++)
+            for (int y = 0; y < some.height; y++)
+                assert_memory_equal(before + (p * some.height + y) * some.width,
+                                    m.codes + (p * HEIGHT + some.top + y) * WIDTH + some.left,
+                                    (size_t)some.width * sizeof *before);
+        relume_free(words.word);
+        free(back);
+        free(before);
+        free(after);
+        drop(&m);
+    }
+}
+
 // Within a tile, across two, and the last column.
 static void test_a_rectangle_is_that_of_the_view(void **state)
 {
@@ -400,6 +436,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_planes_come_back),
+        cmocka_unit_test(test_a_trial_is_what_would_be_read),
         cmocka_unit_test(test_a_rectangle_is_that_of_the_view),
         cmocka_unit_test(test_threads_change_nothing),
         cmocka_unit_test(test_a_damaged_tile_is_lost_alone),

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Make sure the packages that relume is built from are there; on Debian and Ubuntu install what is
 # missing. Usage: deps.sh [web | stitch | mpi | docs | python]   (web: the browser for the tests of exported
-# pages; stitch: OpenCV, for panoramas out of photographs; mpi: OpenMPI, for relume-mpi; docs: Doxygen, for the reference of the
+# pages and models, and npm, by which make deps-web gets three.js and gltf-validator; stitch: OpenCV, for panoramas out of photographs; mpi: OpenMPI, for relume-mpi; docs: Doxygen, for the reference of the
 # library; python: what the Python module needs)
 set -eu
 
@@ -10,6 +10,7 @@ libeigen3-dev libfftw3-dev libkissfft-dev libjansson-dev libjpeg-dev libpng-dev 
 libassimp-dev libcmocka-dev libcairo2-dev libglfw3-dev libosmesa6-dev
 libegl-dev libegl-mesa0 libimgui-dev fonts-dejavu-core libstb-dev xvfb xdotool"
 [ "${1:-}" = web ] && packages="chromium"
+[ "${1:-}" != web ] || command -v npm >/dev/null 2>&1 || packages="chromium nodejs npm"
 [ "${1:-}" = stitch ] && packages="libopencv-stitching-dev"
 [ "${1:-}" = mpi ] && packages="openmpi-bin libopenmpi-dev"
 [ "${1:-}" = docs ] && packages="doxygen"

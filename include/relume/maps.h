@@ -80,7 +80,7 @@ struct relume_maps_params {
     int held_out;   // lights that only judge; default every 8th, at least 2; -1: none
     int materials;  // most entries of the codebook, 1 to RELUME_MAPS_MOST_MATERIALS; default 8
     double gain;    // photographs are multiplied by it before all else; default 1, or what brings
-                    // the brightest surface to 0.8 when it is above 1 or below 0.1
+                    // the brightest surface to 0.8 when most of it is above 1 or all below 0.03
     bool keep_normals;  // as photometric stereo finds them; default: improved by the highlights
 };
 #define relume_maps_params(...)                                                                    \

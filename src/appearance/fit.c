@@ -6,7 +6,7 @@
 
 #include "math/scalar.h"
 
-static const float DARKER = 0.06f, BRIGHTER = 0.2f;  // residuals, coded, that count a quarter
+static const float DARKER = 0.12f, BRIGHTER = 0.2f;  // residuals, coded, that count a quarter
 static const float GRAZING = 0.02f;                  // cosines below are no evidence
 static const float TOE2 = CODE_TOE * CODE_TOE;
 enum { FIRST_ROUNDS = 4, ROUNDS = 2 };

@@ -18,7 +18,7 @@ static const double BLEND = 0.1;   // of the least loss: so much more counts a t
 // Photographs are not of a light of value 1 when most pixels, seen as matte, reflect more than
 // that, or the brightest hardly anything; then the brightest become this. Highlights and metals
 // are too bright for matte surfaces: they are no evidence unless they are most of the picture.
-static const double BRIGHTEST = 0.8, TOO_BRIGHT = 1.0, TOO_DARK = 0.1;
+static const double BRIGHTEST = 0.8, TOO_BRIGHT = 1.0, TOO_DARK = 0.03;
 
 struct work {
     struct relume_maps_params params;

@@ -10,7 +10,8 @@
 
 // A matte surface comes first, and what is found later has to be better: so that nothing shines
 // that need not.
-static const float TRIED_F0[] = {0.02f, 0.04f, 0.07f, 0.12f, 0.2f, 0.35f};
+static const float TRIED_F0[] = {0.02f, 0.04f, 0.07f, 0.12f, 0.2f};
+static const float MOST_F0 = 0.25f;  // of what is no metal: above that of diamond
 static const float TRIED_ROUGHNESS[] = {0.1f,  0.16f, 0.22f, 0.28f, 0.34f, 0.41f,
                                         0.48f, 0.56f, 0.65f, 0.75f, 0.87f, 1.0f};
 enum {
@@ -21,7 +22,7 @@ enum {
     TRIED = 2,  // turns of a normal
     TURNS = 4,
 };
-static const float WORTH = 0.03f;  // of the loss that an entry must take away
+static const float WORTH = 0.01f;  // of the loss that an entry must take away
 // Losses of metals count so much more: they are rare, and a rough one is much like a matte surface.
 static const float METALLIC = 1.5f, ROUGHEST_METAL = 0.6f;
 static const float NOTHING = 1e-6f;  // a mean loss that is none: a step of 8 bits is 1e-5
@@ -163,7 +164,7 @@ static void move(struct learning *s, int entry)
             if (way < 2)
                 next.roughness = fminf(fmaxf(g->roughness + 0.06f * to, GGX_LEAST_ROUGHNESS), 1.0f);
             else
-                next.f0 = fminf(g->f0 * exp2f(0.6f * to), 0.9f);
+                next.f0 = fminf(g->f0 * exp2f(0.6f * to), MOST_F0);
             const double loss = loss_of_entry(s, next);
             if (loss < least)
                 *g = next, least = loss;

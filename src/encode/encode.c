@@ -153,15 +153,14 @@ static relume_status find_share(struct encode_share *out, const relume_capture *
 
 // ---------------------------------------------------------------- rows whose view others have too
 
-// Whether parts that run at the same time tell each other their ranges, so that each packs its own
-// rows: in whole blocks, and of views that are no pyramid, whose levels need all rows.
+// Whether parts tell each other their ranges, so that each packs its own rows: in whole blocks, and
+// of views that are no pyramid, whose levels need all rows.
 static bool may_settle(const struct material *m)
 {
     const struct relume_pack_encode_params *p = m->p;
     const int width = relume_capture_width(m->capture), height = relume_capture_height(m->capture);
     struct encode_share share = {0};
-    bool whole =
-        m->rows && p->team && p->team->close && !pyramid_is_wanted(p->pyramid, width, height);
+    bool whole = m->rows && p->team && !pyramid_is_wanted(p->pyramid, width, height);
     for (int i = 1; whole && i <= p->parts; i++) {
         encode_share_of(&share, i, p->parts, m->views, height);
         whole = share.row % ENCODE_BLOCK == 0;
@@ -179,15 +178,26 @@ static struct range *bands_of(relume_coefficients *c, const struct encode_share 
     return c->band + (size_t)(share->row / BAND_ROWS) * planes;
 }
 
-static relume_status own_ranges(void *context, int member, struct relume_buffer *out)
+// Of another part, which has not come yet, the rows are encoded for them.
+static relume_status make_ranges(void *context, int member, struct relume_buffer *out)
 {
-    struct material *m = context;
-    const struct encode_share own = {.row = m->row, .rows = m->rows};
+    const struct material *m = context;
     const struct relume_writer writer = relume_buffer_writer(out);
+    const bool own = member == m->p->part - 1;
+    relume_coefficients *made = NULL;
+    struct encode_share share = {0};
     size_t size;
-    const struct range *bands = bands_of(m->coefficients[m->first], &own, &size);
-    (void)member;
-    return writer.write(writer.user, bands, size, 0) ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = RELUME_OK;
+    encode_share_of(&share, member + 1, m->p->parts, m->views, relume_capture_height(m->capture));
+    if (!own)
+        status = encode_some_rows(&made, m->coder, m->capture, share.first, share.row, share.rows,
+                                  m->encode);
+    const struct range *bands =
+        status ? NULL : bands_of(own ? m->coefficients[m->first] : made, &share, &size);
+    if (!status && !writer.write(writer.user, bands, size, 0))
+        status = RELUME_ENOMEM;
+    relume_coefficients_destroy(&made);
+    return status;
 }
 
 static relume_status take_ranges(void *context, int member, const struct relume_buffer *piece)
@@ -207,7 +217,8 @@ static relume_status take_ranges(void *context, int member, const struct relume_
 static relume_status settle_rows(struct material *m)
 {
     struct relume_image *mask = &m->mask[m->first];
-    relume_status status = team_gather(m->p->team, "ranges", own_ranges, take_ranges, m, m->p->log);
+    relume_status status =
+        team_gather(m->p->team, "ranges", make_ranges, take_ranges, m, m->p->log);
     if (!status && m->row)
         status = relume_capture_mask(mask, m->capture, m->first, m->p->log);
     m->view[m->first].mask = mask->data ? mask : NULL;
@@ -304,7 +315,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         if (!status && p.books && report)
             status = judge_books(&m);
         total = encode_report_mean(m.report + m.first, m.end - m.first);
-        if (!status)
+        if (!status && !p.learn_only)
             status = write_file(&m, &total, path);
     }
     if (!status && report)

@@ -67,7 +67,7 @@ shared() { # name capture parts options...: learnt first, then the parts, backwa
     for i in $(seq "$parts"); do
         relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" || return
     done
-    check "$name: a share each, and no part" [ "$(ls learnt | wc -l)" = "$parts" -a ! -e 1.part ]
+    check "$name: a share each, and no part" [ "$(ls learnt | grep -c samples)" = "$parts" -a ! -e 1.part ]
     for i in $(seq "$parts" -1 1); do
         relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt -o "$i.part" || return
     done
@@ -78,6 +78,7 @@ shared 'learnt together, by itself' slab 4
 shared 'learnt together, masks' masked 3 --basis pca
 shared 'learnt together, rows of JPEGs' cut 5 --basis pca --coefficients 8
 shared 'learnt together, rows, by itself' flat 3
+check 'their steps are learnt, so that join copies rows' grep -q relume.part.stored 1.part
 codebook_of_all() { # name options...: nothing was learnt first
     name=$1
     shift
@@ -162,6 +163,9 @@ check 'a part with loss is whole' relume check 2.part
 encode_parts few 2 --basis pca --coefficients 4 --psnr 26
 relume join ./*.part -o joined.exr
 same 'a quality, each part by itself' whole.exr joined.exr
+: >said.txt
+with_loss 'rows of a fixed basis' flat 2 --basis sh --coefficients 4 --bits half
+check 'join copies them' grep -q relume.part.stored 1.part
 : >said.txt
 with_loss 'bytes, masks, a part without views' masked 2 --basis sh --coefficients 4 --bytes-per-pixel 4
 rm -rf learnt ./*.part

@@ -126,15 +126,17 @@ static bool is_coded(const struct request *r)
     return r->pack.psnr_db > 0.0 || r->pack.bytes_per_pixel > 0.0;
 }
 
+// Parts of it need to know of each other what their pixels say.
+static bool has_steps(const struct request *r, const relume_capture *capture)
+{
+    return is_coded(r) ||
+           (!r->pack.books && r->pack.parts > relume_capture_manifest(capture)->views);
+}
+
 // The capture is looked at before it is encoded.
 static bool learns_first(const struct request *r)
 {
-    return r->basis->learned || r->coder.choose || is_coded(r);
-}
-
-static bool learns(const struct request *r)
-{
-    return learns_first(r) || (r->pack.books && r->pack.share);
+    return r->basis->learned || r->coder.choose;
 }
 
 static const char *storage_words(enum relume_storage storage)
@@ -428,7 +430,7 @@ static relume_status encode_team(const struct args *args, struct request *r,
     relume_coder *coder = NULL;
     struct relume_encode_report report;
     relume_status status = learn(&coder, capture, r);
-    if (!status && (!r->learn_only || is_coded(r)))
+    if (!status && (!r->learn_only || has_steps(r, capture)))
         status = (args->team ? write_together(args, capture, coder, r, &report)
                              : write_file(capture, coder, r, &report));
     if (!status && !r->learn_only && !(args->team && args->team->member)) {
@@ -448,17 +450,18 @@ static relume_status encode(const struct args *args, struct request *r)
     relume_capture *capture;
     relume_team_files *team = NULL;
     struct prefix_log about;
-    if (r->learn_only && !learns_first(r)) {
-        announce(args, RELUME_NOTE,
-                 "%s: nothing is learnt before encoding with these options; run the same line "
-                 "without --learn-only",
-                 r->input);
-        return RELUME_OK;
-    }
     r->open.keep_bytes = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
     relume_status status = relume_capture_open(&capture, r->input, &r->open);
     if (status)
         return status;
+    if (r->learn_only && !learns_first(r) && !has_steps(r, capture)) {
+        announce(args, RELUME_NOTE,
+                 "%s: nothing is learnt before encoding with these options; run the same line "
+                 "without --learn-only",
+                 r->input);
+        relume_capture_destroy(&capture);
+        return RELUME_OK;
+    }
     r->coder.log = prefix_log(&about, args->log, r->input);
     r->books.log = r->coder.log;
     if (ignores_positions(relume_capture_manifest(capture)))
@@ -481,8 +484,9 @@ static relume_status encode(const struct args *args, struct request *r)
         status = RELUME_OK;
         announce(args, RELUME_NOTE, "%s: part %d of %d has learnt its share; %s", r->learnt,
                  r->pack.part, r->pack.parts,
-                 is_coded(r) ? "run this line again when the other parts have learnt theirs"
-                             : "other parts have not learnt theirs yet");
+                 has_steps(r, capture)
+                     ? "run this line again when the other parts have learnt theirs"
+                     : "other parts have not learnt theirs yet");
     }
     relume_team_folder_destroy(&team);
     relume_capture_destroy(&capture);
@@ -576,7 +580,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = check_parts(o, &r);
     if (!status && o->commands)
-        print_commands_of_parts(args, o->output, o->commands, learns(&r) && !o->learnt);
+        print_commands_of_parts(args, o->output, o->commands, !o->learnt);
     return status || o->commands ? status : encode(args, &r);
 }
 

@@ -17,7 +17,8 @@ compare:base math image:base image
 capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
-acquire:base math image capture multiview:base image directions capture ball photometric acquire photograph align
+stereo:base math:base
+acquire:base math image capture multiview stereo:base image directions capture ball photometric acquire photograph align
 appearance:base math image capture:base image capture photometric light relight pack maps
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder team:base coder codebook team

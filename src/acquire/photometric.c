@@ -9,10 +9,12 @@
 #include "math/lambert.h"
 #include "math/luminance.h"
 #include "math/sort.h"
+#include "stereo/stereo.h"
 
-static const size_t band_bytes = (size_t)64 << 20;  // of samples
-static const float clipped = 0.995f;                // of the largest value
-enum { LEAST = 4, JUDGED = 4096 };                  // samples of a fit; pixels that judge lights
+static const size_t band_bytes = (size_t)256 << 20;  // of samples
+static const float clipped = 0.995f;                 // of the largest value
+static const float half_sure = 0.05f;                // error of a matte fit, of the albedo
+enum { LEAST = 4, JUDGED = 4096 };                   // samples of a fit; pixels that judge lights
 
 struct fit {
     const relume_capture *capture;
@@ -30,8 +32,21 @@ struct fit {
     struct lambert_sample *scratch;  // [workers][lights]
     vec3 *towards;                   // [workers][lights]
     float *bright;                   // [workers][lights]: gains of near lights
-    size_t step;                     // one pixel in `step` judges the lights
-    float *miss;                     // [JUDGED][lights]: |miss| / albedo; NaN: not lit, not known
+    bool is_matte;                   // no more than Lambert's law can be asked of this capture
+    bool is_shared;                  // all pixels see the same lights from the same side
+    struct stereo_room *rooms;       // [workers]
+    struct reflect_lights *around;   // [workers]; shared: all the same
+    float *around_floats;            // of `around`
+    float *value;                    // [workers][stride of the lights]
+    struct stereo_material material;
+    struct stereo_table table;
+    struct stereo_pixel *learner;  // [STEREO_LEARNERS]
+    struct reflect_lights *learner_lights;
+    float *learner_floats;
+    int learners;
+    size_t known, counted;  // pixels that the mask shows; those seen by the learners
+    size_t step;            // one pixel in `step` judges the lights
+    float *miss;            // [JUDGED][lights]: |miss| / albedo; NaN: not lit, not known
 };
 
 struct pixel {
@@ -126,7 +141,53 @@ static void judge_lights(const struct fit *f, const struct pixel *p, vec3 g)
     }
 }
 
-static void fit_pixel(const struct fit *f, const struct pixel *p)
+// ---------------------------------------------------------------- more than matte
+
+static vec3 towards_eye(const struct fit *f, size_t of_view)
+{
+    const struct relume_geometry *g = &relume_capture_manifest(f->capture)->geometry;
+    const int x = (int)(of_view % (size_t)f->width), y = (int)(of_view / (size_t)f->width);
+    if (!g->perspective)
+        return vec3_of(0, 0, 1);
+    const double u = (x + 0.5) / f->width, v = (y + 0.5) / f->height;
+    const vec3 flat = vec3_of(g->window_min[0] + u * (g->window_max[0] - g->window_min[0]),
+                              g->window_max[1] - v * (g->window_max[1] - g->window_min[1]), 0);
+    const vec3 point = f->is_near ? near_view_pixel(&f->near, x, y) : flat;
+    return vec3_unit(vec3_sub(vec3_of(0, 0, g->camera_z), point));
+}
+
+// What clips is not known, unless too little else is.
+static void set_values(const struct fit *f, const struct pixel *p, float *value)
+{
+    const int stride = reflect_stride(f->lights);
+    int known = 0;
+    for (int keep = 0; keep < 2 && known < STEREO_LEAST_LIGHTS; keep++) {
+        known = 0;
+        for (int i = 0; i < stride; i++) {
+            const bool counts = i < f->lights && (keep || !is_clipped(f, p, i));
+            value[i] = counts ? fmaxf(luminance_709f(sample_of(f, i, p->at)), 0.0f) : -1.0f;
+            known += counts;
+        }
+    }
+}
+
+static float improve(const struct fit *f, const struct pixel *p, int worker, vec3 *normal)
+{
+    struct stereo_pixel pixel = {
+        .lights = f->around + worker,
+        .value = f->value + worker * reflect_stride(f->lights),
+        .normal = *normal,
+    };
+    set_values(f, p, f->value + worker * reflect_stride(f->lights));
+    if (!f->is_shared)
+        reflect_lights_set(f->around + worker, p->direction, towards_eye(f, p->of_view));
+    if (!stereo_solve(&pixel, &f->material, f->is_shared ? &f->table : NULL, f->rooms + worker))
+        return 0.0f;
+    *normal = pixel.normal;
+    return pixel.sure;
+}
+
+static void fit_pixel(const struct fit *f, const struct pixel *p, int worker)
 {
     vec3 g;
     set_directions(f, p);
@@ -134,13 +195,16 @@ static void fit_pixel(const struct fit *f, const struct pixel *p)
     const struct lambert_sample *s = lambert_fit(&g, p->direction, p->sample, &n, f->params.plain);
     if (!s)
         return;
-    const vec3 normal = vec3_unit(g);
+    vec3 normal = vec3_unit(g);
+    find_error(f, p, g, s, n);
+    const float miss = f->out->error.data[p->of_view] / half_sure;
+    f->out->confidence.data[p->of_view] =
+        f->is_matte ? 1.0f / (1.0f + miss * miss) : improve(f, p, worker, &normal);
     float *to = f->out->normal.data + 3 * p->of_view;
     to[0] = (float)normal.x;
     to[1] = (float)normal.y;
     to[2] = (float)normal.z;
     find_albedo(f, p, normal, s, n);
-    find_error(f, p, g, s, n);
     judge_lights(f, p, g);
 }
 
@@ -156,11 +220,57 @@ static void fit_row(void *context, size_t item, int worker)
         p.at = item * width + x;
         p.of_view = (size_t)f->row * width + p.at;
         if (!f->mask.data || f->mask.data[p.of_view] > 0.5f)
-            fit_pixel(f, &p);
+            fit_pixel(f, &p, worker);
     }
 }
 
-static relume_status fit_bands(struct fit *f)
+// One pixel in so many of those known, until there are enough.
+static void add_learner(struct fit *f, struct pixel *p)
+{
+    const int i = f->learners, stride = reflect_stride(f->lights);
+    const size_t every = f->known / STEREO_LEARNERS + 1;
+    vec3 g;
+    if (f->counted++ % every)
+        return;
+    set_directions(f, p);
+    int n = gather(f, p);
+    if (!lambert_fit(&g, p->direction, p->sample, &n, false))
+        return;
+    float *const floats =
+        f->learner_floats + (size_t)i * (2 * (size_t)stride + reflect_floats(f->lights));
+    struct reflect_lights *const lights = f->is_shared ? f->around : f->learner_lights + i;
+    set_values(f, p, floats);
+    if (!f->is_shared) {
+        *lights = (struct reflect_lights){f->lights, stride, .at = floats + 2 * stride};
+        reflect_lights_set(lights, p->direction, towards_eye(f, p->of_view));
+    }
+    f->learner[f->learners++] = (struct stereo_pixel){
+        .lights = lights, .value = floats, .normal = vec3_unit(g), .weight = floats + stride};
+}
+
+static void gather_learners(struct fit *f)
+{
+    struct pixel p = {.sample = f->scratch, .direction = f->towards, .gain = f->bright};
+    const size_t pixels = (size_t)f->rows * (size_t)f->width;
+    for (int i = 0; i < f->lights; i++)
+        p.direction[i] = f->distant[i];
+    for (p.at = 0; p.at < pixels; p.at++) {
+        p.of_view = (size_t)f->row * (size_t)f->width + p.at;
+        if (!f->mask.data || f->mask.data[p.of_view] > 0.5f)
+            add_learner(f, &p);
+    }
+}
+
+static relume_status learn(struct fit *f)
+{
+    relume_status status = RELUME_OK;
+    f->is_matte = !stereo_learn(&f->material, f->learner, f->learners, f->rooms, f->params.threads);
+    if (f->is_shared && !f->is_matte)
+        status = stereo_table_create(&f->table, &f->material, f->around, f->rooms);
+    return status;
+}
+
+static relume_status for_bands(struct fit *f, relume_status (*use)(struct fit *))
 {
     relume_table *table;
     const int rows = f->rows;
@@ -172,13 +282,42 @@ static relume_status fit_bands(struct fit *f)
         f->stride = 3 * (size_t)f->rows * (size_t)f->width;
         status = relume_table_read(table, f->rows, f->samples);
         if (!status)
-            thread_for(f->params.threads, (size_t)f->rows, fit_row, f);
-        if (!status &&
-            !log_progress(f->params.log, "normals", (f->row + f->rows) / (double)f->height))
-            status = RELUME_ECANCEL;
+            status = use(f);
     }
+    f->rows = rows;
     relume_table_destroy(&table);
     return status;
+}
+
+static relume_status gather_band(struct fit *f)
+{
+    gather_learners(f);
+    return RELUME_OK;
+}
+
+static relume_status fit_band(struct fit *f)
+{
+    relume_status status = RELUME_OK;
+    if (!f->is_matte && f->rows == f->height) {  // there is one band alone
+        gather_learners(f);
+        status = learn(f);
+    }
+    if (!status)
+        thread_for(f->params.threads, (size_t)f->rows, fit_row, f);
+    if (!status && !log_progress(f->params.log, "normals", (f->row + f->rows) / (double)f->height))
+        status = RELUME_ECANCEL;
+    return status;
+}
+
+static relume_status fit_bands(struct fit *f)
+{
+    relume_status status = RELUME_OK;
+    if (!f->is_matte && f->rows < f->height) {
+        status = for_bands(f, gather_band);
+        if (!status)
+            status = learn(f);
+    }
+    return status ? status : for_bands(f, fit_band);
 }
 
 // ---------------------------------------------------------------- how well it went
@@ -215,6 +354,35 @@ static relume_status find_residuals(struct fit *f)
     return RELUME_OK;
 }
 
+static relume_status alloc_stereo(struct fit *f)
+{
+    const size_t stride = (size_t)reflect_stride(f->lights), floats = reflect_floats(f->lights);
+    const size_t workers = (size_t)f->params.threads;
+    f->rooms = mem_zeroed(workers, sizeof *f->rooms);
+    f->around = mem_zeroed(workers, sizeof *f->around);
+    f->around_floats = mem_array(workers * floats, sizeof *f->around_floats);
+    f->value = mem_array(workers * stride, sizeof *f->value);
+    f->learner = mem_array(STEREO_LEARNERS, sizeof *f->learner);
+    f->learner_lights = mem_array(STEREO_LEARNERS, sizeof *f->learner_lights);
+    f->learner_floats = mem_array(STEREO_LEARNERS * (2 * stride + floats), sizeof(float));
+    if (!f->rooms || !f->around || !f->around_floats || !f->value || !f->learner ||
+        !f->learner_lights || !f->learner_floats)
+        return RELUME_ENOMEM;
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; i < workers && !status; i++) {
+        f->around[i] = (struct reflect_lights){
+            f->lights, (int)stride, .at = f->around_floats + (f->is_shared ? 0 : i * floats)};
+        status = stereo_room_create(f->rooms + i, f->lights);
+    }
+    if (!status && f->is_shared)
+        for (size_t i = 0; i < workers; i++)
+            reflect_lights_set(f->around + i, f->distant, vec3_of(0, 0, 1));
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    for (size_t i = 0; i < pixels; i++)
+        f->known += !f->mask.data || f->mask.data[i] > 0.5f;
+    return status;
+}
+
 static relume_status alloc(struct fit *f)
 {
     const size_t lights = (size_t)f->lights, workers = (size_t)f->params.threads;
@@ -241,7 +409,9 @@ static relume_status alloc(struct fit *f)
         status = relume_image_create(&f->out->albedo, f->width, f->height, 3);
     if (!status)
         status = relume_image_create(&f->out->error, f->width, f->height, 1);
-    return status;
+    if (!status)
+        status = relume_image_create(&f->out->confidence, f->width, f->height, 1);
+    return status || f->is_matte ? status : alloc_stereo(f);
 }
 
 static void release(struct fit *f)
@@ -252,6 +422,16 @@ static void release(struct fit *f)
     mem_free(f->towards);
     mem_free(f->bright);
     mem_free(f->miss);
+    for (int i = 0; f->rooms && i < f->params.threads; i++)
+        stereo_room_destroy(f->rooms + i);
+    mem_free(f->rooms);
+    mem_free(f->around);
+    mem_free(f->around_floats);
+    mem_free(f->value);
+    mem_free(f->learner);
+    mem_free(f->learner_lights);
+    mem_free(f->learner_floats);
+    stereo_table_destroy(&f->table);
     near_view_close(&f->near);
     relume_image_destroy(&f->mask);
 }
@@ -261,6 +441,7 @@ void relume_photometric_destroy(struct relume_photometric *photometric)
     relume_image_destroy(&photometric->normal);
     relume_image_destroy(&photometric->albedo);
     relume_image_destroy(&photometric->error);
+    relume_image_destroy(&photometric->confidence);
     mem_free(photometric->light_residual);
     *photometric = (struct relume_photometric){0};
 }
@@ -289,6 +470,9 @@ relume_status relume_photometric_fit(struct relume_photometric *out, const relum
     f.view = view;
     f.params.threads = thread_count(f.params.threads);
     f.is_near = near_view_applies(capture, view);
+    f.is_matte = f.params.plain || m->lights < STEREO_LEAST_LIGHTS ||
+                 m->geometry.projection != RELUME_PLANAR;
+    f.is_shared = !f.is_near && !m->geometry.perspective;
     relume_status status = relume_capture_mask(&f.mask, capture, view, f.params.log);
     if (!status && f.is_near)
         status = near_view_open(&f.near, capture, view, f.params.log);

@@ -29,6 +29,15 @@ check 'its buffer is as long as it says' json made/model.gltf \
 "$RELUME" maps photos -o all --held-out 0 --json -q >out.json
 check 'none held out: null, and the fitted lights' json out.json "j['held_out']['psnr_db'] is None and j['fitted_lights'] == 24"
 
+# ---- what is the user's stays; nothing is left of what could not be written
+mkdir mine && echo notes >mine/notes.txt
+expect_fail "a folder of the user's, even with --force" 2 'mine: ' - "$RELUME" maps photos -o mine --force
+check 'it is as it was' grep -q notes mine/notes.txt
+expect_fail 'a disk that is full' 3 'none' none sh -c "ulimit -f 8; '$RELUME' maps photos -o none"
+"$RELUME" maps photos -o stopped -q & sleep 0.1; kill -INT $!; wait $! 2>/dev/null
+check 'stopped: nothing, or all' sh -c 'test ! -e stopped || test -e stopped/maps.json'
+check 'stopped: nothing beside it' test -z "$(leftovers)"
+
 # ---- which way green points: the sphere's upper half faces up
 "$RELUME" maps photos -o dx --directx -q
 up=$("$mkimage" read dx/normal-gl.png 16 9 | cut -d' ' -f2) down=$("$mkimage" read dx/normal.png 16 9 | cut -d' ' -f2)

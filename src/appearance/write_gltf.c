@@ -65,31 +65,31 @@ static void put_vertex(float *v, struct grid *g, const struct writing *w, int i,
     }
 }
 
-static void put_cells(uint32_t *index, const struct grid *g)
+static void put_cells(char *to, const struct grid *g)
 {
     for (int j = 0; j < g->rows; j++)
-        for (int i = 0; i < g->columns; i++, index += 6) {
+        for (int i = 0; i < g->columns; i++) {
             const uint32_t a = (uint32_t)(j * (g->columns + 1) + i), b = a + 1;
             const uint32_t c = a + (uint32_t)g->columns + 1, d = c + 1;
             const uint32_t cell[6] = {a, c, b, b, c, d};
-            memcpy(index, cell, sizeof cell);
+            memcpy(to, cell, sizeof cell);
+            to += sizeof cell;
         }
 }
 
 static relume_status write_mesh(const struct writing *w, struct grid *g)
 {
-    const size_t vertex_bytes = g->vertices * FLOATS * sizeof(float);
-    const size_t size = vertex_bytes + g->indices * sizeof(uint32_t);
-    char *bytes = mem_array(size, 1);
-    if (!bytes)
+    const size_t vertices = g->vertices * FLOATS, size = vertices + g->indices;
+    float *data = mem_array(size, sizeof *data);
+    if (!data)
         return RELUME_ENOMEM;
+    float *vertex = data;
     for (int j = 0; j <= g->rows; j++)
-        for (int i = 0; i <= g->columns; i++)
-            put_vertex((float *)bytes + FLOATS * ((size_t)j * (size_t)(g->columns + 1) + (size_t)i),
-                       g, w, i, j);
-    put_cells((uint32_t *)(bytes + vertex_bytes), g);
-    const relume_status status = write_bytes(w, "model.bin", bytes, size);
-    mem_free(bytes);
+        for (int i = 0; i <= g->columns; i++, vertex += FLOATS)
+            put_vertex(vertex, g, w, i, j);
+    put_cells((char *)vertex, g);
+    const relume_status status = write_bytes(w, "model.bin", data, size * sizeof *data);
+    mem_free(data);
     return status;
 }
 

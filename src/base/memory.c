@@ -2,6 +2,7 @@
 #include "base/memory.h"
 
 #include "base/context.h"
+#include "base/log.h"
 #include "base/params.h"
 
 #include <errno.h>
@@ -219,4 +220,19 @@ bool limits_allow(const struct relume_limits *limits, int64_t width, int64_t hei
     const struct relume_limits l = limits_or_default(limits);
     return width >= 1 && height >= 1 && width <= l.max_side && height <= l.max_side &&
            (uint64_t)width * (uint64_t)height <= l.max_pixels;
+}
+
+uint64_t megabytes(uint64_t bytes)
+{
+    return (bytes >> 20) + (bytes & ((1 << 20) - 1) ? 1 : 0);
+}
+
+relume_status limits_memory(uint64_t bytes, const char *what, const struct relume_log *log)
+{
+    const uint64_t most = limits_or_default(limits_of(NULL, log)).max_memory;
+    return bytes <= most ? RELUME_OK
+                         : log_fail(log, RELUME_ELIMIT,
+                                    "%s takes %llu MB; expected at most %llu MB (--max-memory)",
+                                    what, (unsigned long long)megabytes(bytes),
+                                    (unsigned long long)megabytes(most));
 }

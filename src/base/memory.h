@@ -42,5 +42,10 @@ const struct relume_limits *limits_of(const struct relume_limits *own,
 struct relume_limits limits_or_default(const struct relume_limits *limits);
 // Whether an image of that size is allowed.
 bool limits_allow(const struct relume_limits *limits, int64_t width, int64_t height);
+// RELUME_ELIMIT with a sentence when `what` takes more bytes than one picture, view or model may by
+// the limits of the log's context.
+relume_status limits_memory(uint64_t bytes, const char *what, const struct relume_log *log);
+// MB of 2^20 bytes, rounded up.
+uint64_t megabytes(uint64_t bytes);
 
 #endif

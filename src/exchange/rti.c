@@ -78,7 +78,8 @@ static relume_status read_codes(struct foreign *f, const struct header *h, struc
 {
     if (!limits_allow(h->limits, h->width, h->height))
         return log_fail(h->log, RELUME_ELIMIT,
-                        "%s: claims %ld x %ld pixels; expected sizes from 1 within the limits",
+                        "%s: claims %ld x %ld pixels; expected 1 to 65536 a side and at most "
+                        "--max-pixels in all",
                         h->path, h->width, h->height);
     const size_t terms = (size_t)h->terms;
     const size_t pixels = (size_t)h->width * (size_t)h->height, need = pixels * 3 * terms;

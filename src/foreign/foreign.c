@@ -13,7 +13,8 @@ relume_status foreign_create(struct foreign *f, const char *path, long width, lo
 {
     if (!limits_allow(limits, width, height))
         return log_fail(log, RELUME_ELIMIT,
-                        "%s: claims %ld x %ld pixels; expected sizes from 1 within the limits",
+                        "%s: claims %ld x %ld pixels; expected 1 to 65536 a side and at most "
+                        "--max-pixels in all",
                         path, width, height);
     f->width = (int)width;
     f->height = (int)height;

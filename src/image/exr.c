@@ -540,7 +540,8 @@ static relume_status check_bytes(const exr_file *file, const struct relume_limit
                             "%s: part %d of %d x %d pixels and %d channels takes %llu MB; expected "
                             "at most %llu MB (--max-memory)",
                             file->path, i, part.width, part.height, part.channels,
-                            (unsigned long long)(bytes >> 20), (unsigned long long)(most >> 20));
+                            (unsigned long long)megabytes(bytes),
+                            (unsigned long long)megabytes(most));
     }
     return RELUME_OK;
 }
@@ -586,7 +587,8 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
         const int64_t height = (int64_t)box.max.y - box.min.y + 1;
         if (!limits_allow(limits, width, height))
             return log_fail(log, RELUME_ELIMIT,
-                            "%s: part %d is %lld x %lld pixels; expected sizes within the limits",
+                            "%s: part %d is %lld x %lld pixels; expected at most 65536 a side and "
+                            "--max-pixels in all",
                             file->path, i, (long long)width, (long long)height);
     }
     return check_bytes(file, limits, log);

@@ -187,7 +187,8 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
                      : log_fail(log, RELUME_EDAMAGED, "%s: not a readable image; %s", path,
                                 p->trap.text);
     else if (!limits_allow(limits, info->width, info->height))
-        status = log_fail(log, RELUME_ELIMIT, "%s: size %d x %d; expected sizes within the limits",
+        status = log_fail(log, RELUME_ELIMIT,
+                          "%s: size %d x %d; expected at most 65536 a side and --max-pixels in all",
                           path, info->width, info->height);
     else if (p->info.num_components == 4 && !(p->cmyk = mem_array((size_t)info->width, 4)))
         status = RELUME_ENOMEM;

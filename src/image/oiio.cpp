@@ -229,7 +229,7 @@ relume_status open_input(oiio_reader *r, const std::string &format, const relume
     if (!limits_allow(limits, spec.width, spec.height))
         return broken(r,
                       "size " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                          "; expected sizes within the limits",
+                          "; expected at most 65536 a side and --max-pixels in all",
                       RELUME_ELIMIT);
     r->info.width = spec.width;
     r->info.height = spec.height;

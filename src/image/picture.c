@@ -143,8 +143,8 @@ static relume_status check_size(const picture_reader *reader, const struct openi
                         "%s: %d x %d pixels of %d channels are %llu MB; expected at most %llu MB "
                         "(--max-memory)",
                         s->path, i->width, i->height, i->channels,
-                        (unsigned long long)(bytes >> 20),
-                        (unsigned long long)(most.max_memory >> 20));
+                        (unsigned long long)megabytes(bytes),
+                        (unsigned long long)megabytes(most.max_memory));
     return RELUME_OK;
 }
 

@@ -118,8 +118,8 @@ static relume_status check_bytes(const relume_pack *p, const struct relume_rect 
                     "%s: %d x %d pixels of %d planes take %llu MB; expected at most %llu MB "
                     "(--max-memory): ask for less of it (--size, --crop)",
                     p->path, rect->width, rect->height, (int)planes,
-                    (unsigned long long)(bytes >> 20),
-                    (unsigned long long)(p->limits.max_memory >> 20));
+                    (unsigned long long)megabytes(bytes),
+                    (unsigned long long)megabytes(p->limits.max_memory));
 }
 
 // From the file.

@@ -311,6 +311,11 @@ static relume_status complete(struct goniometer *g, const struct relume_btf_synt
                         g->p.size);
     if (g->p.extent < 1 || g->p.extent > 16)
         return log_fail(g->p.log, RELUME_EINVAL, "extent: expected 1 to 16; found %d", g->p.extent);
+    const uint64_t side = (uint64_t)g->p.size * (uint64_t)fineness(g);
+    const relume_status status = limits_memory(12 * side * side * (uint64_t)g->p.lights,
+                                               "a view of this size under all lights", g->p.log);
+    if (status)
+        return status;
     g->cells = g->p.size * (g->p.size >= CELLS / 2 ? 2 : CELLS / g->p.size);
     return RELUME_OK;
 }

@@ -70,12 +70,12 @@ static relume_status expected(const struct synth *s, const char *what, const cha
 static relume_status check(const struct synth *s)
 {
     const struct relume_synth_params *p = &s->p;
-    const struct relume_limits limits = limits_or_default(NULL);
+    const struct relume_limits limits = limits_or_default(limits_of(NULL, p->log));
     if (!relume_projection_name(s->projection))
         return expected(s, "projection", "planar, slab, cylindrical, spherical or cube",
                         (int)s->projection);
     if (!limits_allow(&limits, s->width, s->height))
-        return expected(s, "size", "1 or more, and an image of at most 2^30 pixels", p->size);
+        return expected(s, "size", "1 or more, and an image of at most --max-pixels", p->size);
     if (p->light_count < 1 || p->light_count > limits.max_lights)
         return expected(s, "lights", "1 to 65536", p->light_count);
     if (p->samples < 1 || p->samples > 65536)
@@ -96,7 +96,9 @@ static relume_status check(const struct synth *s)
                         relume_projection_name(s->projection));
     if (!(p->spread >= 0.0 && p->spread <= 1000.0))
         return log_fail(p->log, RELUME_EINVAL, "spread: expected 0 to 1000; found %g", p->spread);
-    return RELUME_OK;
+    // a picture of three floats and its depth
+    return limits_memory((uint64_t)s->width * (uint64_t)s->height * 16, "a picture of this size",
+                         p->log);
 }
 
 static relume_status one_eye_at_most(const struct synth *s)

@@ -18,6 +18,9 @@ expect_ok 'a folder called as its scene' - "$RELUME" synth box -o box --size 8 -
 expect_ok 'is replaced like any other' - "$RELUME" synth box -o box --size 8 --lights 3 --force
 expect_ok 'a material likewise' - "$RELUME" synth --btf knit -o knit --size 4 --directions coarse
 expect_ok 'and once more' - "$RELUME" synth --btf knit -o knit --size 4 --directions coarse --force
+expect_fail 'a scene beyond --max-memory' 1 'a picture of this size takes 6104 MB; expected at most 50 MB' huge "$RELUME" synth box -o huge --size 20000 --max-memory 50M
+expect_fail 'one beyond --max-pixels' 2 'size: expected .* at most --max-pixels; found 200' huge "$RELUME" synth box -o huge --size 200 --max-pixels 5000
+expect_fail 'a material beyond --max-memory' 1 'a view of this size under all lights takes [0-9]* MB; expected at most 100 MB' huge "$RELUME" btf fit stone -o huge --size 1024 --max-memory 100M
 # A cylinder with discs shows what a sphere shows, upwards and downwards and over both rims; without
 # them there is black.
 "$RELUME" synth attic -o discs --discs --size 48 --lights 1 --hemisphere --samples 4 -q

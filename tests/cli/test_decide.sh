@@ -14,6 +14,11 @@ encode ball
 check 'a smooth thing: 27 coefficients' [ "$(told coefficients)" = 27 ]
 check 'in 8 bits' [ "$(told bits)" = 8 ]
 check 'one sentence reports it' grep -q '^relume: e.exr: reproduces your photographs at [0-9.]* dB PSNR (differences [a-z ]*) with 27 coefficients, 8 bits, [0-9.]* bytes a pixel; unseen light directions: about [0-9]* dB$' said.txt
+"$RELUME" synth box -o matte --size 32 --lights 60 --hemisphere -q
+"$RELUME" encode matte -o e.exr --coefficients 4 --bits 8 2>said.txt
+seen=$(sed -n 's/.*photographs at \([0-9.]*\) dB.*/\1/p' said.txt)
+below 'few coefficients: lights never seen are not said to be shown better than those that were' \
+    "$(sed -n 's/.*directions: about \([0-9]*\) dB.*/\1/p' said.txt)" "$(echo "$seen" | awk '{ print $1 + 0.5 }')"
 
 # Sun through slats: 22 dB in linear light with 27 coefficients.
 scene="attic --projection cylindrical --size 48 --samples 4"

@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "encode_parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -162,6 +163,12 @@ static void bytes_words(char text[48], const relume_capture *capture, const char
         snprintf(text, 48, ", %.1f bytes a pixel", (double)file.st_size / pixels);
 }
 
+// What is predicted between photographs has the error of the file besides: dB of both.
+static double both_errors(double a, double b)
+{
+    return -10.0 * log10(pow(10.0, -0.1 * a) + pow(10.0, -0.1 * b));
+}
+
 static void say_result(const struct args *args, const relume_capture *capture,
                        const relume_coder *coder, const struct relume_encode_report *report,
                        const struct request *r)
@@ -183,12 +190,16 @@ static void say_result(const struct args *args, const relume_capture *capture,
         return;
     }
     char bytes[48], unseen[64] = "", more[96] = "";
-    const bool one = info->lights == 1, short_of = r->decide && r->quality > report->psnr_db + 0.5;
+    const bool one = info->lights == 1;
+    const bool single = one && relume_capture_manifest(capture)->views == 1;
+    const bool short_of = r->decide && r->quality > report->psnr_db + 0.5;
     bytes_words(bytes, capture, r->output);
     if (r->unseen > 0.0 && !one)
-        snprintf(unseen, sizeof unseen, "; unseen light directions: about %.0f dB", r->unseen);
+        snprintf(unseen, sizeof unseen, "; unseen light directions: about %.0f dB",
+                 both_errors(r->unseen, report->psnr_db));
     if (is_coded(r) && r->pack.psnr_db > report->psnr_db + 0.3)
-        snprintf(more, sizeof more, "; %g dB is more than it reaches", r->pack.psnr_db);
+        snprintf(more, sizeof more, "; %g dB is more than it reaches%s", r->pack.psnr_db,
+                 one ? "; without --psnr nothing visible is lost" : "");
     if (short_of && !one && !r->coder.coefficients)
         snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
                  info->coefficients);
@@ -196,7 +207,7 @@ static void say_result(const struct args *args, const relume_capture *capture,
              "%s: reproduces your photograph%s at %.1f dB PSNR (differences %s) with %d "
              "coefficient%s%s, "
              "%s%s%s%s",
-             r->output, one ? "" : "s", report->psnr_db, judgement(report->psnr_db),
+             r->output, single ? "" : "s", report->psnr_db, judgement(report->psnr_db),
              info->coefficients, relume_plural(info->coefficients), info->joint ? "" : " a colour",
              is_coded(r) ? "coded with loss" : storage_words(r->pack.storage), bytes, unseen, more);
 }

@@ -4,7 +4,7 @@
 
 #include "math/vec.h"
 
-enum { SEARCH_SIDES = 6, SEARCH_STARTS = 60 };
+enum { SEARCH_SIDES = 6, SEARCH_STARTS = 48 };
 
 struct search {
     void *context;

@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-enum { REWEIGHED = 2 };
-static const double first_step = 0.17, last_step = 0.0026;  // 10 and 0.15 degrees
+enum { REWEIGHED = 1 };
+static const double first_step = 0.17, last_step = 0.006;  // 10 and 0.35 degrees
 // Where its gloss is not seen a pixel has as much as the material: a fiftieth of the weight.
 static const float held = 0.02f;
 static const double apart = 0.07;         // 4 degrees

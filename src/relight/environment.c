@@ -322,6 +322,35 @@ static int find_above(const double *sum, int at, int last, double want)
     return at;
 }
 
+// Cells that shine more than a light's share of the others, such as a small sun, are a light each:
+// so many are *out, and sum[] is the running sum of the others. What is drawn of them would all
+// come from one direction, and leave few lights for the sky.
+static int take_bright_cells(struct relume_light *out, int n, const struct relume_light *light,
+                             double *sum)
+{
+    const relume_environment *e = light->environment;
+    int taken = 0;
+    for (int i = 0; i < e->count; i++)
+        sum[i] = luminance_709(e->cell[i].rgb);
+    for (int before = -1; taken > before;) {
+        double left = 0.0;
+        for (int i = 0; i < e->count; i++)
+            left += sum[i];
+        const double share = left / (n - taken);
+        before = taken;
+        for (int i = 0; i < e->count; i++)
+            if (sum[i] > share) {
+                sum[i] = 0.0;
+                out[taken] = (struct relume_light){
+                    .direction = relume_environment_turn(e->cell[i].direction, light->rotate_deg)};
+                memcpy(out[taken++].rgb, e->cell[i].rgb, sizeof e->cell[i].rgb);
+            }
+    }
+    for (int i = 1; i < e->count; i++)
+        sum[i] += sum[i - 1];
+    return taken;
+}
+
 // A Fibonacci lattice, shifted: its rows by inversion of the running sum of luminance over the rows
 // of cells, its columns by that within a row, so that what is drawn is spread evenly both ways.
 static void draw(struct relume_light *out, int n, const struct relume_light *light,
@@ -375,9 +404,9 @@ relume_status relume_environment_sample(struct relume_light *out, int n,
     double *sum = mem_array((size_t)e->count, sizeof *sum);
     if (!sum)
         return RELUME_ENOMEM;
-    for (int i = 0; i < e->count; i++)
-        sum[i] = luminance_709(e->cell[i].rgb) + (i ? sum[i - 1] : 0.0);
-    draw(out, n, environment, sum, seed);
+    const int taken = take_bright_cells(out, n, environment, sum);
+    if (sum[e->count - 1] > 0.0)
+        draw(out + taken, n - taken, environment, sum, seed);
     match_totals(out, n, environment);
     mem_free(sum);
     return RELUME_OK;

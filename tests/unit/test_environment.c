@@ -332,12 +332,48 @@ static void test_sampling(void **state)
     relume_image_destroy(&map);
 }
 
+// A sun in one cell is one light, with all that it sends; the others are the sky's, none twice.
+static void test_a_small_sun_is_one_light(void **state)
+{
+    (void)state;
+    enum { N = 64 };
+    struct relume_light out[N];
+    struct relume_image map = map_of(64, 32, 0.1f);
+    for (int c = 0; c < 3; c++)
+        map.data[3 * (10 * 64 + 40) + c] = 500.0f;
+    relume_environment *e = create(&map);
+    const struct relume_light light = {
+        .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
+    int cells, distinct = 0;
+    const struct relume_environment_cell *cell = relume_environment_cells(&cells, e), *sun = cell;
+    for (int i = 0; i < cells; i++)
+        sun = cell[i].rgb[0] > sun->rgb[0] ? &cell[i] : sun;
+    CHECK_OK(relume_environment_sample(out, N, &light, 0));
+    double sent = 0;
+    for (int i = 0; i < N; i++) {
+        bool again = false;
+        for (int k = 0; k < i; k++)
+            again = again || vec3_dot(out[i].direction, out[k].direction) > 1 - 1e-9;
+        distinct += !again;
+        if (vec3_dot(out[i].direction, sun->direction) > 1 - 1e-9)
+            sent += (double)out[i].rgb[0];
+    }
+    assert_int_equal(distinct, N);
+    CHECK_NEAR(sent / (double)sun->rgb[0], 1, 1e-5);  // floats
+    relume_environment_destroy(&e);
+    relume_image_destroy(&map);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_solid_angles), cmocka_unit_test(test_directions),
-        cmocka_unit_test(test_oddities),     cmocka_unit_test(test_weights),
-        cmocka_unit_test(test_uniform_sky),  cmocka_unit_test(test_sampling),
+        cmocka_unit_test(test_solid_angles),
+        cmocka_unit_test(test_directions),
+        cmocka_unit_test(test_oddities),
+        cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_uniform_sky),
+        cmocka_unit_test(test_sampling),
+        cmocka_unit_test(test_a_small_sun_is_one_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,8 @@
 // Several kinds are tried, the simplest first: Lambert's law alone, with gloss, with roughness,
 // with all parts; from the normals that were guessed or from those that a free reflectance leads
 // to. Each is fitted to the surest pixels, then to all of them with the normals that it leads to,
-// in turn. The one that misses least is right: wrong ones cannot fit all pixels at once.
+// in turn. The one that misses least is right: wrong ones cannot fit all pixels at once. Where
+// Lambert's law alone does about as well, the robust normals it began with are better than any.
 #include "stereo/stereo.h"
 
 #include "base/thread.h"
@@ -31,7 +32,7 @@ static const struct kind {
     {0xfu | GLOSS, AROUND},
 };
 static const double surest = 0.3;    // of the pixels teach first
-static const double simpler = 1.05;  // less parts are better unless they miss so much more
+static const double simpler = 1.15;  // matte alone is better unless it misses so much more
 static const float nothing = 1e-4f;  // of a material's largest part
 
 struct lesson {
@@ -180,13 +181,15 @@ bool stereo_learn(struct stereo_material *out, struct stereo_pixel *pixel, int n
                   struct stereo_room *rooms, int threads)
 {
     struct lesson l = {.pixel = pixel, .n = n, .rooms = rooms, .threads = threads};
-    const struct kind *kind;
+    const struct kind *kind = kinds;
     for (int i = 0; i < n; i++)
         pixel[i].guess = pixel[i].normal;
     find_free(&l, false);
     if (!l.n)
         return false;
     choose(out, &kind, &l);
+    if (kind == kinds)
+        return false;
     refine(out, kind->which, &l);
     return true;
 }

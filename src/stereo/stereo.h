@@ -23,8 +23,8 @@ struct stereo_material {
     float part[REFLECT_PARTS];
 };
 
-// From pixels spread over the object, which change; each with room for its weights. False where
-// none of them is bright enough.
+// From pixels spread over the object, which change; each with room for its weights. False where it
+// is matte, or none of them is bright enough.
 bool stereo_learn(struct stereo_material *out, struct stereo_pixel *pixel, int n,
                   struct stereo_room *rooms, int threads);
 

@@ -38,8 +38,8 @@ struct relume_maps_material {
 struct relume_maps_quality {
     int lights;
     double psnr_db, ssim, delta_e;  // means over lights, as relume/evaluate.h
-    double off;       // share of known pixels that are off by more than RELUME_MAPS_OFF, RMS over
-                      // lights and colours: what such maps cannot show
+    double off;       // share of pixels in the mask that are off by more than RELUME_MAPS_OFF, RMS
+                      // over lights and colours: what such maps cannot show
     double shadowed;  // share of samples that much darker than the maps: cast shadows
     double brighter;  // ... and that much brighter: interreflection, missed highlights, glass
 };
@@ -89,8 +89,8 @@ struct relume_maps_params {
 // Maps of one view of a planar capture or of one slab. With 3 to 5 lights there is no gloss
 // (matte_only) and nothing is held out. RELUME_EUNFIT with a sentence for fewer lights, lights in
 // one plane and a mask that shows nothing; RELUME_EUNSUPPORTED for panoramas and several slabs;
-// RELUME_EINVAL for a view, counts or a gain that cannot be; RELUME_ENOMEM, RELUME_ECANCEL, an
-// input status. `*out` is empty on failure.
+// RELUME_EINVAL for a view, counts or a gain that cannot be; RELUME_ELIMIT, RELUME_ENOMEM,
+// RELUME_ECANCEL, an input status. `*out` is empty on failure.
 RELUME_RESULT relume_status relume_maps_fit(struct relume_maps *out, const relume_capture *capture,
                                             const struct relume_maps_params *params);
 // The same from a file, relit under its own lights, at most 64 of them. Errors are against the

@@ -4,6 +4,8 @@
 #include "base/memory.h"
 #include "image/encoder.h"
 
+#include <string.h>
+
 struct judging {
     const struct relume_maps *maps;
     const struct relume_image *mask;  // or empty
@@ -31,6 +33,16 @@ static void add_differences(struct judging *j, const struct relume_image *maps,
         j->brighter += mean < -(float)RELUME_MAPS_OFF;
         j->samples++;
     }
+}
+
+// Windows of SSIM reach across the mask's edge, where maps show nothing.
+static void fill_outside(const struct judging *j, struct relume_image *maps,
+                         const struct relume_image *photo)
+{
+    const size_t pixels = (size_t)maps->width * (size_t)maps->height;
+    for (size_t i = 0; j->mask->data && i < pixels; i++)
+        if (!(j->mask->data[i] > 0.5f))
+            memcpy(maps->data + 3 * i, photo->data + 3 * i, 3 * sizeof *maps->data);
 }
 
 static void finish(struct relume_maps_quality *out, const struct judging *j)
@@ -61,10 +73,12 @@ static relume_status judge_light(struct relume_maps_quality *out, struct judging
     relume_status status = relume_capture_image(&photo, capture, view, light->light, log);
     if (!status)
         status = maps_relight(&relit, j->maps, light, threads);
-    if (!status)
+    if (!status) {
+        fill_outside(j, &relit, &photo);
         status = relume_image_compare(
             &d, &relit, &photo,
             relume_compare_params(.mask = j->mask->data ? j->mask : NULL, .threads = threads));
+    }
     if (!status) {
         add_differences(j, &relit, &photo);
         out->psnr_db += d.psnr_db;

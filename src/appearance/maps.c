@@ -49,6 +49,17 @@ static bool is_known(const struct work *w, size_t at)
 
 // ---------------------------------------------------------------- what is asked
 
+// Shape, losses of all materials and maps are held at once.
+static relume_status check_memory(const struct work *w)
+{
+    enum { SHAPE = 8, MADE = 14, FOUND = 2 };
+    const uint64_t materials =
+        (uint64_t)(w->params.materials ? w->params.materials : DEFAULT_MATERIALS);
+    const uint64_t pixels = (uint64_t)w->out->width * (uint64_t)w->out->height;
+    return limits_memory(pixels * (SHAPE + MADE + FOUND + materials) * sizeof(float),
+                         "what is known of a picture of this size", w->params.log);
+}
+
 static relume_status check(const struct work *w)
 {
     const struct relume_manifest *m = relume_capture_manifest(w->capture);
@@ -84,7 +95,7 @@ static relume_status check(const struct work *w)
             p->held_out, m->lights,
             m->lights > RELUME_MAPS_LEAST_LIGHTS - 2 ? m->lights - RELUME_MAPS_LEAST_LIGHTS + 2 : 0,
             RELUME_MAPS_LEAST_LIGHTS - 2);
-    return RELUME_OK;
+    return check_memory(w);
 }
 
 // Those held out lie evenly in the order of the capture, which mostly follows the dome.

@@ -342,8 +342,11 @@ relume_status outfile_save(const char *path, const void *bytes, size_t size,
 static relume_status check_parent(const char *path, const struct relume_log *log)
 {
     struct stat s;
-    char *parent = tree_parent(path);
+    char *target = tree_resolve(path);  // without slashes at its end
+    char *parent = target ? tree_parent(target) : NULL;
     relume_status status = parent ? RELUME_OK : RELUME_ENOMEM;
+    if (!target && errno == ELOOP)
+        status = log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
     if (parent && stat(parent, &s) && errno == ENOENT)
         status =
             log_fail(log, RELUME_EIO, "%s: cannot be created; there is no folder %s: make it first",
@@ -351,6 +354,7 @@ static relume_status check_parent(const char *path, const struct relume_log *log
     else if (parent && access(parent, W_OK))
         status = log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
     mem_free(parent);
+    mem_free(target);
     return status;
 }
 

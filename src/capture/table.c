@@ -232,7 +232,8 @@ static relume_status refuse_broken(relume_table *t, int first)
         snprintf(more, sizeof more, ", and some of %d more image%s", others, relume_plural(others));
     const size_t n = t->broken[first];
     return log_fail(t->log, RELUME_EDAMAGED,
-                    "%s: %zu pixel%s NaN or infinite%s; expected finite radiance, or --repair",
+                    "%s: %zu pixel%s NaN or infinite%s; expected finite radiance; 'relume "
+                    "encode --repair' replaces such pixels",
                     m->view[t->view].images[first], n, n == 1 ? " is" : "s are", more);
 }
 

@@ -12,6 +12,7 @@ normal.exr normal.png occlusion.exr orm.png roughness.exr specular.exr specular.
 check 'all files are there, and no other' test "$(ls made | tr '\n' ' ')" = "$(echo $same_files) "
 check 'an unknown scale is said' grep -q 'the scale is not known: .* --width' err.txt
 check 'a matte sphere has no gloss' grep -q 'material 1 of 1: matte, 100 %' err.txt
+check 'the structure at the edge of a mask is that of the photograph' grep -q 'SSIM 0.9[5-9]\|SSIM 1.000' err.txt
 check 'what cannot be shown is said' grep -q 'of the pixels cannot be described by such maps' err.txt
 
 # ---- an existing folder, bytes, JSON
@@ -28,6 +29,20 @@ check 'its buffer is as long as it says' json made/model.gltf \
     "__import__('os').path.getsize('made/model.bin') == j['buffers'][0]['byteLength']"
 "$RELUME" maps photos -o all --held-out 0 --json -q >out.json
 check 'none held out: null, and the fitted lights' json out.json "j['held_out']['psnr_db'] is None and j['fitted_lights'] == 24"
+
+"$RELUME" maps photos -o slash/ -q
+check 'a new folder may end in a slash' test -e slash/maps.json
+expect_ok 'a gain that is asked for is not explained' 'material 1' "$RELUME" maps photos -o louder --gain 1.5
+check 'its reason is not ours' sh -c '! grep -q "not known; --gain" err.txt'
+expect_fail 'more memory than allowed' 1 'takes 1 MB; expected at most 1 MB \(--max-memory\)' none \
+    "$RELUME" maps photos -o none --max-memory 20K
+cp -r photos broken && "$mkimage" poke photos/view00/light0005.exr broken/view00/light0005.exr 9 9 nan
+expect_fail 'a pixel that is NaN' 1 "light0005.exr: 1 pixel is NaN.*'relume encode --repair'" none "$RELUME" maps broken -o none
+head -c 700 photos/view00/light0005.exr >broken/view00/light0005.exr
+expect_fail 'a photograph that is cut' 1 'light0005.exr: truncated or damaged' none "$RELUME" maps broken -o none
+"$sphere" dot --size 1 --lights 12 --hemisphere --shade lambert --format exr
+expect_ok 'one pixel' 'PSNR' "$RELUME" maps dot -o dot-maps
+check 'has no structure to compare' sh -c '! grep -qi nan err.txt'
 
 # ---- what is the user's stays; nothing is left of what could not be written
 mkdir mine && echo notes >mine/notes.txt
@@ -49,6 +64,18 @@ check 'glTF takes the upward one' grep -q normal-gl.png dx/model.gltf
 expect_ok 'maps of a relume file' 'lights that were not used' "$RELUME" maps file.exr -o of-file
 "$RELUME" export file.exr -o file.ptm --to ptm -q
 expect_ok 'maps of a .ptm' 'lights that were not used' "$RELUME" maps file.ptm -o of-ptm
+"$RELUME" export file.exr -o file.rti --to rti -q
+expect_ok 'maps of a .rti' 'lights that were not used' "$RELUME" maps file.rti -o of-rti
+"$RELUME" export file.exr -o web --to relight -q
+expect_ok 'maps of a web folder' 'lights that were not used' "$RELUME" maps web -o of-web
+"$RELUME" synth box --projection slab -o slab --size 16 --lights 12 --hemisphere --samples 1 -q
+"$RELUME" encode slab -o slab.exr -q
+for from in slab slab.exr; do
+    "$RELUME" maps $from -o first --force -q && "$RELUME" maps $from -o third --force --view 2 -q
+    check "$from: its views differ" sh -c '! cmp -s first/basecolor.exr third/basecolor.exr'
+    expect_fail "$from: a view that is not there" 2 "$from: view 99 does not exist; expected 0 to 24" none \
+        "$RELUME" maps $from -o none --view 99
+done
 
 # ---- what can be had
 "$sphere" five --size 24 --lights 5 --hemisphere --shade lambert --format exr

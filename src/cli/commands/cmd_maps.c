@@ -56,12 +56,15 @@ static void say_quality(const struct maps_options *o, const struct relume_maps *
     const bool unseen = m->held_out.lights > 0;
     const struct relume_maps_quality *q = unseen ? &m->held_out : &m->fitted;
     const char *out = o->output;
+    char ssim[32] = "";  // none of pictures smaller than its window
+    if (isfinite(q->ssim))
+        snprintf(ssim, sizeof ssim, ", SSIM %.3f", q->ssim);
     announce(&o->args, RELUME_NOTE,
              "%s: under %d light%s that %s used for the fit: %.2f dB PSNR (differences %s), deltaE "
-             "%.2f, SSIM %.3f",
+             "%.2f%s",
              out, q->lights, relume_plural(q->lights),
              unseen ? q->lights == 1 ? "was not" : "were not" : "were", q->psnr_db,
-             judgement(q->psnr_db), q->delta_e, q->ssim);
+             judgement(q->psnr_db), q->delta_e, ssim);
     announce(&o->args, RELUME_NOTE,
              "%s: %.1f %% of the pixels cannot be described by such maps (more than %.0f %% off): "
              "%.1f %% of all values are darker in the photographs (cast shadows), %.1f %% brighter "
@@ -74,15 +77,17 @@ static void say_materials(const struct maps_options *o, const struct relume_maps
 {
     for (int i = 0; i < m->materials; i++) {
         const struct relume_maps_material *k = &m->material[i];
-        char gloss[80];
+        char gloss[80], share[32] = "under 1 %";
         if (k->metal)
             snprintf(gloss, sizeof gloss, "metal, roughness %.2f", k->roughness);
         else if (k->f0 > 0.0)
             snprintf(gloss, sizeof gloss, "reflectance %.3f, roughness %.2f", k->f0, k->roughness);
         else
             snprintf(gloss, sizeof gloss, "matte");
-        announce(&o->args, RELUME_NOTE, "%s: material %d of %d: %s, %.0f %% of the pixels",
-                 o->output, i + 1, m->materials, gloss, percent(k->share));
+        if (k->share >= 0.01)
+            snprintf(share, sizeof share, "%.0f %%", percent(k->share));
+        announce(&o->args, RELUME_NOTE, "%s: material %d of %d: %s, %s of the pixels", o->output,
+                 i + 1, m->materials, gloss, share);
     }
 }
 
@@ -96,7 +101,7 @@ static void say_result(const struct maps_options *o, const struct relume_maps *m
                  out, m->lights, RELUME_MAPS_LEAST_LIGHTS);
     else
         say_materials(o, m);
-    if (m->gain != 1.0)
+    if (m->gain != 1.0 && !given(o, &o->gain))
         announce(&o->args, RELUME_NOTE,
                  "%s: the photographs were multiplied by %.3g, since the brightness of the lights "
                  "is not known; --gain 1 leaves them as they are",

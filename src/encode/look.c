@@ -1,0 +1,170 @@
+// look.c - windows of a view, coded as components and as pictures
+#include "encode/look.h"
+
+#include "base/memory.h"
+#include "coder/basis.h"
+#include "coder/codes.h"
+#include "coder/coefficients.h"
+#include "math/scalar.h"
+
+#include <math.h>
+#include <string.h>
+
+// A window is smaller where there are more planes than that. Of a view that is larger than three
+// windows across or down there are two that way.
+enum { WINDOW = 256, MANY_PLANES = 320, ONE_WINDOW = 3 };
+
+enum { STEPS = 2 };
+static const int step[STEPS] = {20 * AV1_STEPS, 40 * AV1_STEPS};
+
+// What half the bytes cost: measured, within these bounds.
+static const double LEAST_SLOPE = 2.0, MOST_SLOPE = 8.0;
+
+// A window as a coder's codes before and after loss.
+struct look {
+    relume_coefficients *coefficients;
+    struct captured captured;
+    uint16_t *before, *after;  // [planes][height][width]
+};
+
+// What all windows have taken, and missed: squared errors of display values.
+struct points {
+    double bytes[STEPS], square[STEPS];
+};
+
+static void look_away(struct look *l)
+{
+    relume_coefficients_destroy(&l->coefficients);
+    captured_destroy(&l->captured);
+    mem_free(l->before);
+    mem_free(l->after);
+}
+
+// Where the i-th of `n` windows begins along `length` pixels.
+static int begin_of(int i, int n, int length, int window)
+{
+    return (2 * i + 1) * length / (2 * n) - window / 2;
+}
+
+static int windows_along(int length, int window)
+{
+    return length > ONE_WINDOW * window ? 2 : 1;
+}
+
+static relume_status look_at(struct look *l, const relume_coder *coder,
+                             const relume_capture *capture, const struct relume_rect *at,
+                             const struct relume_encode_params *encode)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    const size_t size = (size_t)coder->info.planes * (size_t)at->width * (size_t)at->height;
+    relume_status status = encode_some_rows(&l->coefficients, coder, capture, m->views / 2, at->top,
+                                            at->height, encode);
+    if (!status)
+        status = coefficients_share_steps(&l->coefficients, 1, false, RELUME_STEP_COMMON);
+    if (!status)
+        status = captured_create(&l->captured, coder, m->directions, m->lights);
+    l->before = mem_array(size, sizeof *l->before);
+    l->after = mem_array(size, sizeof *l->after);
+    return status || (l->before && l->after) ? status : RELUME_ENOMEM;
+}
+
+// A row of a window, a channel of it under all lights: shown[light][x], display values.
+static void show(float *shown, float *planes, const struct look *l, const uint16_t *codes,
+                 const struct relume_rect *at, int row, int channel)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(l->coefficients);
+    const size_t width = (size_t)at->width, size = width * (size_t)at->height;
+    for (size_t k = 0; k < (size_t)info->planes; k++)
+        codes_restore(planes + k * width, RELUME_STORE_12, codes, k * size + (size_t)row * width,
+                      width, info->scale[k], info->offset[k]);
+    captured_predict(&l->captured, info->coder, channel, planes, width, width, shown);
+}
+
+// The mean squared difference of what `l` shows after loss from the pictures before.
+static relume_status judge(double *square, const struct look *l, const struct look *pictures,
+                           const struct relume_rect *at)
+{
+    const size_t n = (size_t)l->captured.lights * (size_t)at->width;
+    const int most = relume_coefficients_info(pictures->coefficients)->planes,
+              own = relume_coefficients_info(l->coefficients)->planes;
+    float *work = mem_array((size_t)(own > most ? own : most), (size_t)at->width * sizeof *work);
+    float *want = mem_array(n, sizeof *want), *got = mem_array(n, sizeof *got);
+    const bool good = work && want && got;
+    double sum = 0.0;
+    for (int i = 0; good && i < 3 * at->height; i++) {
+        show(want, work, pictures, pictures->before, at, i / 3, i % 3);
+        show(got, work, l, l->after, at, i / 3, i % 3);
+        for (size_t k = 0; k < n; k++) {
+            const double d = (double)fminf(fmaxf(want[k], 0.0f), 1.0f) -
+                             (double)fminf(fmaxf(got[k], 0.0f), 1.0f);
+            sum += d * d;
+        }
+    }
+    *square = sum / (3.0 * (double)n * at->height);
+    mem_free(work);
+    mem_free(want);
+    mem_free(got);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static relume_status add_window(struct points points[2], const relume_coder *const coder[2],
+                                const relume_capture *capture, const struct relume_rect *at,
+                                const struct relume_encode_params *encode)
+{
+    struct look look[2] = {{0}, {0}};
+    relume_status status = look_at(&look[1], coder[1], capture, at, encode);
+    if (!status)
+        status = look_at(&look[0], coder[0], capture, at, encode);
+    for (int i = 1; i >= 0; i--)  // the pictures first, which the other is compared with
+        for (int s = 0; !status && s < STEPS; s++) {
+            const struct av1_effort effort = {step[s], AV1_FAST};
+            size_t bytes;
+            double square = 0.0;
+            status = lossy_try(look[i].before, look[i].after, &bytes, look[i].coefficients, at,
+                               &effort, encode->threads, encode->log);
+            if (!status)
+                status = judge(&square, &look[i], &look[1], at);
+            points[i].bytes[s] += (double)bytes;
+            points[i].square[s] += square;
+        }
+    look_away(&look[0]);
+    look_away(&look[1]);
+    return status;
+}
+
+// On the line through both points, in dB over the logarithm of the bytes.
+static double merit_of(const struct points *p, double windows, double scale,
+                       const struct rate_target *target, double header)
+{
+    const double fine = decibels(p->square[0] / windows), coarse = decibels(p->square[1] / windows);
+    const double bytes = scale * p->bytes[1], left = fmax(target->bytes - header, 1.0);
+    const double each = (fine - coarse) / fmax(log2(p->bytes[0] / p->bytes[1]), 1e-3);
+    const double slope = fmin(fmax(each, LEAST_SLOPE), MOST_SLOPE);
+    return target->psnr_db > 0.0
+               ? rate_merit_of(target->psnr_db, bytes * exp2((target->psnr_db - coarse) / slope),
+                               target, header)
+               : coarse + slope * log2(left / bytes);
+}
+
+relume_status look_compare(double merit[2], const relume_coder *const coder[2],
+                           const relume_capture *capture, const struct rate_target *target,
+                           const double header[2], const struct relume_encode_params *encode)
+{
+    const int width = relume_capture_width(capture), height = relume_capture_height(capture);
+    const int side = relume_coder_info(coder[1])->planes > MANY_PLANES ? WINDOW / 2 : WINDOW;
+    const int across = windows_along(width, side), down = windows_along(height, side);
+    struct points points[2] = {{{0.0}, {0.0}}, {{0.0}, {0.0}}};
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < across * down; i++) {
+        struct relume_rect at = {.width = smaller_of(side, width),
+                                 .height = smaller_of(side, height)};
+        at.left = begin_of(i % across, across, width, at.width);
+        at.top = begin_of(i / across, down, height, at.height) / BAND_ROWS * BAND_ROWS;
+        status = add_window(points, coder, capture, &at, encode);
+    }
+    const double pixels = (double)smaller_of(side, width) * smaller_of(side, height);
+    const double scale = (double)width * height / (pixels * across * down);
+    for (int i = 0; i < 2; i++)
+        merit[i] = merit_of(&points[i], across * down, scale, target, header[i]);
+    return status;
+}

@@ -288,7 +288,7 @@ class Contexts(Fixture):
             with self.assertRaisesRegex(relume.NotFoundError, "shelf/other.exr: no such file"):
                 relume.open("shelf/other.exr", context=context)
         with relume.Context(max_side=3) as context:
-            with self.assertRaisesRegex(relume.LimitError, "expected sizes within the limits"):
+            with self.assertRaisesRegex(relume.LimitError, "expected 1 to 3 a side and at most 1073741824 in all"):
                 relume.open(self.data, context=context)
 
 

@@ -222,6 +222,19 @@ bool limits_allow(const struct relume_limits *limits, int64_t width, int64_t hei
            (uint64_t)width * (uint64_t)height <= l.max_pixels;
 }
 
+relume_status limits_picture(const struct relume_limits *limits, const char *path, int64_t width,
+                             int64_t height, const struct relume_log *log)
+{
+    const struct relume_limits l = limits_or_default(limits);
+    return limits_allow(limits, width, height)
+               ? RELUME_OK
+               : log_fail(log, RELUME_ELIMIT,
+                          "%s: %lld x %lld pixels; expected 1 to %d a side and at most %llu in all "
+                          "(--max-pixels)",
+                          path, (long long)width, (long long)height, l.max_side,
+                          (unsigned long long)l.max_pixels);
+}
+
 uint64_t megabytes(uint64_t bytes)
 {
     return (bytes >> 20) + (bytes & ((1 << 20) - 1) ? 1 : 0);

@@ -42,6 +42,9 @@ const struct relume_limits *limits_of(const struct relume_limits *own,
 struct relume_limits limits_or_default(const struct relume_limits *limits);
 // Whether an image of that size is allowed.
 bool limits_allow(const struct relume_limits *limits, int64_t width, int64_t height);
+// The same of the picture in `path`: RELUME_ELIMIT with a sentence.
+relume_status limits_picture(const struct relume_limits *limits, const char *path, int64_t width,
+                             int64_t height, const struct relume_log *log);
 // RELUME_ELIMIT with a sentence when `what` takes more bytes than one picture, view or model may by
 // the limits of the log's context.
 relume_status limits_memory(uint64_t bytes, const char *what, const struct relume_log *log);

@@ -125,11 +125,9 @@ static relume_status read_raw(struct foreign *f, const struct ptm_header *h, str
 {
     if (!bytes_line_end(b))
         return ptm_wrong(h, "bias", "six whole numbers and the end of the line");
-    if (!limits_allow(h->limits, h->width, h->height))
-        return log_fail(h->log, RELUME_ELIMIT,
-                        "%s: claims %ld x %ld pixels; expected 1 to 65536 a side and at most "
-                        "--max-pixels in all",
-                        h->path, h->width, h->height);
+    const relume_status allowed = limits_picture(h->limits, h->path, h->width, h->height, h->log);
+    if (allowed)
+        return allowed;
     const size_t need =
         (size_t)h->width * (size_t)h->height * (h->luminance ? PTM_TERMS + 3 : 3 * PTM_TERMS);
     if (b->size - b->at < need)

@@ -76,11 +76,9 @@ static relume_status read_ranges(struct header *h, struct bytes *b, bool old)
 
 static relume_status read_codes(struct foreign *f, const struct header *h, struct bytes *b)
 {
-    if (!limits_allow(h->limits, h->width, h->height))
-        return log_fail(h->log, RELUME_ELIMIT,
-                        "%s: claims %ld x %ld pixels; expected 1 to 65536 a side and at most "
-                        "--max-pixels in all",
-                        h->path, h->width, h->height);
+    const relume_status allowed = limits_picture(h->limits, h->path, h->width, h->height, h->log);
+    if (allowed)
+        return allowed;
     const size_t terms = (size_t)h->terms;
     const size_t pixels = (size_t)h->width * (size_t)h->height, need = pixels * 3 * terms;
     const uint8_t *from = bytes_take(b, need);

@@ -11,11 +11,9 @@ relume_status foreign_create(struct foreign *f, const char *path, long width, lo
                              int planes, const struct relume_limits *limits,
                              const struct relume_log *log)
 {
-    if (!limits_allow(limits, width, height))
-        return log_fail(log, RELUME_ELIMIT,
-                        "%s: claims %ld x %ld pixels; expected 1 to 65536 a side and at most "
-                        "--max-pixels in all",
-                        path, width, height);
+    const relume_status allowed = limits_picture(limits, path, width, height, log);
+    if (allowed)
+        return allowed;
     f->width = (int)width;
     f->height = (int)height;
     f->planes = planes;

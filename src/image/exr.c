@@ -583,13 +583,11 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
             return log_fail(log, RELUME_EDAMAGED, "%s: part %d has no channels", file->path, i);
         if (exr_get_data_window(file->exr, i, &box))
             return log_fail(log, RELUME_EDAMAGED, "%s: part %d has no data window", file->path, i);
-        const int64_t width = (int64_t)box.max.x - box.min.x + 1;
-        const int64_t height = (int64_t)box.max.y - box.min.y + 1;
-        if (!limits_allow(limits, width, height))
-            return log_fail(log, RELUME_ELIMIT,
-                            "%s: part %d is %lld x %lld pixels; expected at most 65536 a side and "
-                            "--max-pixels in all",
-                            file->path, i, (long long)width, (long long)height);
+        const relume_status allowed =
+            limits_picture(limits, file->path, (int64_t)box.max.x - box.min.x + 1,
+                           (int64_t)box.max.y - box.min.y + 1, log);
+        if (allowed)
+            return allowed;
     }
     return check_bytes(file, limits, log);
 }

@@ -186,11 +186,9 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
                      ? RELUME_ENOMEM
                      : log_fail(log, RELUME_EDAMAGED, "%s: not a readable image; %s", path,
                                 p->trap.text);
-    else if (!limits_allow(limits, info->width, info->height))
-        status = log_fail(log, RELUME_ELIMIT,
-                          "%s: size %d x %d; expected at most 65536 a side and --max-pixels in all",
-                          path, info->width, info->height);
-    else if (p->info.num_components == 4 && !(p->cmyk = mem_array((size_t)info->width, 4)))
+    else
+        status = limits_picture(limits, path, info->width, info->height, log);
+    if (!status && p->info.num_components == 4 && !(p->cmyk = mem_array((size_t)info->width, 4)))
         status = RELUME_ENOMEM;
     if (status)
         close(&p->reader);

@@ -226,11 +226,15 @@ relume_status open_input(oiio_reader *r, const std::string &format, const relume
     const ImageSpec &spec = r->input->spec();
     if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
         return broken(r, "expected a flat image with colour channels", RELUME_EUNSUPPORTED);
-    if (!limits_allow(limits, spec.width, spec.height))
+    if (!limits_allow(limits, spec.width, spec.height)) {
+        const relume_limits most = limits_or_default(limits);
         return broken(r,
-                      "size " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                          "; expected at most 65536 a side and --max-pixels in all",
+                      std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                          " pixels; expected 1 to " + std::to_string(most.max_side) +
+                          " a side and at most " + std::to_string(most.max_pixels) +
+                          " in all (--max-pixels)",
                       RELUME_ELIMIT);
+    }
     r->info.width = spec.width;
     r->info.height = spec.height;
     r->info.x = spec.x;

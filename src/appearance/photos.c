@@ -8,12 +8,15 @@
 static const size_t band_bytes = (size_t)64 << 20;  // of samples
 static const float clipped = 0.995f;                // of the largest value
 
-bool photos_eye(vec3 *eye, const struct relume_geometry *g, const double uv[2])
+void photos_look_from(struct look *k, const struct near_view *view, vec3 point)
 {
+    const struct relume_geometry *g = &view->geometry;
     const bool slab = g->projection == RELUME_SLAB;
-    *eye = slab ? relume_pose_world(&g->pose, vec3_of(uv[0], uv[1], g->uv_z))
-                : vec3_of(0.0, 0.0, g->camera_z);
-    return slab || g->perspective;
+    const vec3 eye = slab ? relume_pose_world(&g->pose, vec3_of(view->uv[0], view->uv[1], g->uv_z))
+                          : vec3_of(0.0, 0.0, g->camera_z);
+    const vec3 to =
+        slab || g->perspective ? vec3_unit(vec3_sub(eye, point)) : vec3_of(0.0, 0.0, 1.0);
+    k->view[0] = (float)to.x, k->view[1] = (float)to.y, k->view[2] = (float)to.z;
 }
 
 relume_status photos_open(struct photos *out, const relume_capture *capture, int view,
@@ -104,10 +107,7 @@ static void find_lights(struct look *k, const struct photos *p, int x, int y, fl
 {
     const struct relume_vec3 *distant = relume_capture_manifest(p->capture)->directions;
     const vec3 point = near_view_pixel(&p->near, x, y);
-    vec3 eye, to = vec3_of(0.0, 0.0, 1.0);
-    if (photos_eye(&eye, &p->near.geometry, p->near.uv))
-        to = vec3_unit(vec3_sub(eye, point));
-    k->view[0] = (float)to.x, k->view[1] = (float)to.y, k->view[2] = (float)to.z;
+    photos_look_from(k, &p->near, point);
     for (int i = 0; i < k->known; i++) {
         double gain = 1.0;
         const vec3 l = p->is_near ? near_view_direction(&gain, &p->near, p->light[i], point)

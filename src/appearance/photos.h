@@ -22,8 +22,8 @@ struct photos {
     float *samples;             // [lights of the capture][rows][width][3]
 };
 
-// Where the eye of the view stands; false where all look along -z.
-bool photos_eye(vec3 *eye, const struct relume_geometry *geometry, const double uv[2]);
+// From where a point of the view is seen: its eye, or along -z.
+void photos_look_from(struct look *k, const struct near_view *view, vec3 point);
 
 // `light` must outlive it; what is seen through the mask is known.
 relume_status photos_open(struct photos *out, const relume_capture *capture, int view,

@@ -17,10 +17,7 @@ static void find_light(struct look *k, const struct relighting *r, int x, int y)
     double gain;
     const vec3 l = r->light->near ? near_view_direction(&gain, near, r->light->light, point)
                                   : r->light->direction;
-    vec3 eye, to = vec3_of(0.0, 0.0, 1.0);
-    if (photos_eye(&eye, &r->maps->geometry, r->maps->uv))
-        to = vec3_unit(vec3_sub(eye, point));
-    k->view[0] = (float)to.x, k->view[1] = (float)to.y, k->view[2] = (float)to.z;
+    photos_look_from(k, near, point);
     k->towards[0][0] = (float)l.x, k->towards[1][0] = (float)l.y, k->towards[2][0] = (float)l.z;
     look_halve(k);
 }

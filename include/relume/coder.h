@@ -226,6 +226,15 @@ RELUME_RESULT relume_status relume_coder_apply(const relume_coder *coder, const 
 
 // In which light the coefficients live (architecture: "Domain").
 enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN_DISPLAY };
+// "auto", "linear", "display"; "log" and "log:DELTA" are the display domain with that curve, which
+// `display` (else AUTO) says; its usual delta is RELUME_LOG_DELTA. RELUME_EINVAL when `text` is
+// none of these.
+#define RELUME_LOG_DELTA 1e-3f
+RELUME_RESULT relume_status relume_domain_parse(enum relume_domain *out,
+                                                struct relume_transfer *display, const char *text);
+// "auto", "linear", "display" or "log".
+RELUME_API const char *relume_domain_name(enum relume_domain domain,
+                                          struct relume_transfer display);
 
 // In memory codes of 8 bits are uint8_t, floats float, all others 16-bit words. `log` is a way of
 // encoding: half floats rounded to 8 significant bits, even steps of brightness that compress
@@ -271,6 +280,8 @@ struct relume_encode_params {
     const char *scratch;          // temporary data goes beside this path; default: $TMPDIR
     const struct relume_team *team;  // relume_samples_read and what learns: each member reads its
                                      // part of the samples; default: alone
+    struct relume_transfer display;  // the curve of DOMAIN_DISPLAY, as RELUME_CURVE_LOG for high
+                                     // dynamic range; default: relume_encode_display
 };
 #define relume_encode_params(...)                                                                  \
     (&(const struct relume_encode_params){RELUME_SIZED(relume_encode_params), __VA_ARGS__})
@@ -278,8 +289,11 @@ struct relume_encode_params {
 // The domain that DOMAIN_AUTO means for `capture`.
 RELUME_API enum relume_domain relume_encode_domain(const relume_capture *capture,
                                                    enum relume_domain domain);
-// The curve of the display domain: the capture's own gamma, else sRGB.
+// What `capture` is looked at with: its own gamma, else sRGB.
 RELUME_API struct relume_transfer relume_encode_display(const relume_capture *capture);
+// The curve of the display domain: `asked`, else relume_encode_display.
+RELUME_API struct relume_transfer relume_encode_curve(const relume_capture *capture,
+                                                      struct relume_transfer asked);
 
 // At most `pixels` (default 65536) pixels of all views, spread evenly and by no regular pattern;
 // masked ones are left out. The caller destroys `out`. `params` as for relume_encode (log, domain,

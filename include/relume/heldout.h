@@ -28,6 +28,7 @@ struct relume_heldout_params {
     uint64_t memory;             // bytes for samples, default 2^30; a capture that needs more is
                                  // represented by bands of rows, spread evenly
     int threads;                 // default: all cores
+    struct relume_transfer display;  // as relume_encode_params
 };
 #define relume_heldout_params(...)                                                                 \
     (&(const struct relume_heldout_params){RELUME_SIZED(relume_heldout_params), __VA_ARGS__})

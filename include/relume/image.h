@@ -35,16 +35,17 @@ enum relume_curve {
     RELUME_CURVE_SRGB,      // IEC 61966-2-1, continued above 1 and mirrored below 0
     RELUME_CURVE_GAMMA,     // code = linear^(1/gamma)
     RELUME_CURVE_RESPONSE,  // a camera's, measured (relume/response.h)
+    RELUME_CURVE_LOG,  // code = ln(1 + linear / delta) / ln(1 + 1 / delta): black is 0, white 1
 };
 struct relume_response;
 // What code values mean. All zero: as the file says. Plain data; `response` is borrowed.
 struct relume_transfer {
-    enum relume_curve curve;                 // which curve
-    float gamma;                             // only for RELUME_CURVE_GAMMA, (0.1, 10]
+    enum relume_curve curve;  // which curve
+    float gamma;  // RELUME_CURVE_GAMMA: (0.1, 10]; RELUME_CURVE_LOG: its delta, [1e-6, 1]
     const struct relume_response *response;  // only for RELUME_CURVE_RESPONSE, borrowed
 };
 
-// "linear", "srgb" or "gamma:2.2". RELUME_EINVAL when `text` is none of these.
+// "linear", "srgb", "gamma:2.2" or "log:0.001". RELUME_EINVAL when `text` is none of these.
 RELUME_RESULT relume_status relume_transfer_parse(struct relume_transfer *out, const char *text);
 // The inverse; writes at most `size` bytes, always terminated.
 RELUME_API void relume_transfer_text(struct relume_transfer transfer, char *text, size_t size);

@@ -177,7 +177,8 @@ struct relume_pack_encode_params {
     bool free_storage;    // nobody asked for `storage`: coarse steps are refused when joined
     const struct relume_team *team;  // the other parts (team.h): `part` is its member; default:
                                      // nothing is shared with them
-    bool learn_only;  // share what the team needs for its steps, and write nothing
+    bool learn_only;                 // share what the team needs for its steps, and write nothing
+    struct relume_transfer display;  // as relume_encode_params
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \

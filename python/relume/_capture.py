@@ -14,8 +14,6 @@ from ._library import Handle, Log, Progress, UsageError, lib
 
 _SAMPLES = {np.dtype(np.float32): "RELUME_SAMPLE_FLOAT", np.dtype(np.uint8): "RELUME_SAMPLE_8",
             np.dtype(np.uint16): "RELUME_SAMPLE_16"}
-_DOMAINS = {None: 0, "linear": CONSTANTS["RELUME_DOMAIN_LINEAR"],
-            "display": CONSTANTS["RELUME_DOMAIN_DISPLAY"]}
 
 
 def parse(function, text: str | None, what: str) -> int:
@@ -23,6 +21,14 @@ def parse(function, text: str | None, what: str) -> int:
     if text is not None and function(ctypes.byref(out), str(text).encode()):
         raise UsageError(f"{what} '{text}' is unknown")
     return out.value
+
+
+def domain_of(text: str | None) -> dict:
+    """What parameters say of it: domain and display."""
+    out, display = ctypes.c_int(0), structs["relume_transfer"]()
+    if lib.relume_domain_parse(ctypes.byref(out), ctypes.byref(display), (text or "auto").encode()):
+        raise UsageError(f"domain '{text}' is unknown; expected linear, display, log or log:DELTA")
+    return {"domain": out.value, "display": display}
 
 
 def basis_named(name: str) -> int:
@@ -224,15 +230,14 @@ class Capture(Handle):
         Parameters mean what the options of `relume encode` do; 0 and None are its defaults.
         """
         log, coder = Log(progress), Handle(lib.relume_coder_destroy)
-        if domain not in _DOMAINS:
-            raise UsageError(f"domain '{domain}' is unknown; expected linear or display")
+        lives = domain_of(domain)
         storage = parse(lib.relume_storage_parse, bits, "bits")
         how = self.coder_params(log, coefficients, luminance, robust)
         how.threads = threads
-        encode = structs["relume_encode_params"](log=log.address, domain=_DOMAINS[domain],
-                                                 storage=storage, threads=threads)
+        encode = structs["relume_encode_params"](log=log.address, storage=storage, threads=threads,
+                                                 **lives)
         pack = structs["relume_pack_encode_params"](
-            log=log.address, domain=_DOMAINS[domain], storage=storage, threads=threads,
+            log=log.address, storage=storage, threads=threads, **lives,
             compression=parse(lib.relume_compression_parse, compression, "compression"))
         if basis == "auto":
             decision = structs["relume_decision"]()

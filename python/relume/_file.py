@@ -126,7 +126,7 @@ class File(Handle):
             projection=lib.relume_projection_name(i.geometry.projection).decode(), width=i.width,
             height=i.height, views=i.views, lights=c.lights,
             bits=lib.relume_storage_name(i.storage).decode(),
-            domain="linear" if i.domain == CONSTANTS["RELUME_DOMAIN_LINEAR"] else "display",
+            domain=lib.relume_domain_name(i.domain, i.display).decode(),
             codebooks=i.books, has_depth=i.has_depth, has_mask=i.has_mask,
             file_bytes=i.file_bytes)
 

@@ -11,6 +11,19 @@ relume_status take_bits(void *storage, const struct option *o, const char *text,
                                                : RELUME_OK;
 }
 
+relume_status take_domain(void *choice, const struct option *o, const char *text,
+                          const struct relume_log *log)
+{
+    static const char *const names[] = {"auto", "linear", "display", "log", "log:DELTA", NULL};
+    struct domain_choice *const c = choice;
+    if (!relume_domain_parse(&c->domain, &c->display, text))
+        return RELUME_OK;
+    if (strncmp(text, "log:", 4))
+        return unknown_word(log, o->name, text, names);
+    return say(log, RELUME_EINVAL, "%s: expected log:DELTA with DELTA from 1e-6 to 1; found '%s'",
+               o->name, text);
+}
+
 relume_status take_split(void *split, const struct option *o, const char *text,
                          const struct relume_log *log)
 {

@@ -36,6 +36,13 @@ struct book_options {
         0, 2147483647)
 // clang-format on
 // How numbers are stored: "8", "half", ...
+// What --domain takes.
+struct domain_choice {
+    enum relume_domain domain;
+    struct relume_transfer display;
+};
+relume_status take_domain(void *choice, const struct option *option, const char *text,
+                          const struct relume_log *log);
 relume_status take_bits(void *storage, const struct option *option, const char *text,
                         const struct relume_log *log);
 relume_status take_split(void *split, const struct option *option, const char *text,

@@ -52,9 +52,9 @@ struct encoding {
     double *row_error;  // [height]
     double root_sum;
     struct relume_transfer display;  // of the samples
-    struct encoder *screen;  // the display's coding of linear coefficients, or NULL: they are coded
-    double *shown_error;     // [lights]: squared, of display values, by the basis
-    double stored_error;     // mean square of them by storing
+    struct encoder *screen;          // from that to the screen's coding, or NULL: it is that
+    double *shown_error;             // [lights]: squared, of display values, by the basis
+    double stored_error;             // mean square of them by storing
     size_t error_count, lit_count;
     int threads;
 };
@@ -470,6 +470,31 @@ static relume_status measure_storage(struct encode_stored *row, relume_coefficie
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
+relume_status relume_domain_parse(enum relume_domain *out, struct relume_transfer *display,
+                                  const char *text)
+{
+    static const char *const names[] = {"auto", "linear", "display"};
+    *display = (struct relume_transfer){.curve = RELUME_CURVE_AUTO};
+    for (int i = 0; i < 3; i++)
+        if (!strcmp(names[i], text)) {
+            *out = (enum relume_domain)i;
+            return RELUME_OK;
+        }
+    *out = RELUME_DOMAIN_DISPLAY;
+    *display = (struct relume_transfer){.curve = RELUME_CURVE_LOG, .gamma = RELUME_LOG_DELTA};
+    if (!strcmp(text, "log"))
+        return RELUME_OK;
+    return strncmp(text, "log:", 4) ? RELUME_EINVAL : relume_transfer_parse(display, text);
+}
+
+const char *relume_domain_name(enum relume_domain domain, struct relume_transfer display)
+{
+    return domain == RELUME_DOMAIN_AUTO        ? "auto"
+           : domain == RELUME_DOMAIN_LINEAR    ? "linear"
+           : display.curve == RELUME_CURVE_LOG ? "log"
+                                               : "display";
+}
+
 enum relume_domain relume_encode_domain(const relume_capture *capture, enum relume_domain domain)
 {
     if (domain != RELUME_DOMAIN_AUTO)
@@ -483,6 +508,12 @@ struct relume_transfer relume_encode_display(const relume_capture *capture)
 {
     const struct relume_transfer t = relume_capture_manifest(capture)->transfer;
     return t.curve == RELUME_CURVE_GAMMA ? t : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
+}
+
+struct relume_transfer relume_encode_curve(const relume_capture *capture,
+                                           struct relume_transfer asked)
+{
+    return asked.curve == RELUME_CURVE_AUTO ? relume_encode_display(capture) : asked;
 }
 
 // Mean over lights; those that are reproduced exactly count as 100 dB.
@@ -503,18 +534,18 @@ static double shown_square(const struct encoding *e)
     return e->error_count ? sum / (double)e->error_count : 0.0;
 }
 
-// What measuring needs; linear coefficients are looked at on `screen`.
+// What measuring needs; coefficients that are no display values are looked at on `screen`.
 static relume_status alloc_measuring(struct encoding *e, struct relume_transfer screen)
 {
     e->row_error = mem_zeroed((size_t)e->height, sizeof *e->row_error);
     e->shown_error = mem_zeroed((size_t)e->lights, sizeof *e->shown_error);
     if (!e->row_error || !e->shown_error)
         return RELUME_ENOMEM;
-    if (e->display.curve == RELUME_CURVE_LINEAR) {
+    if (e->display.curve == RELUME_CURVE_LINEAR || e->display.curve == RELUME_CURVE_LOG) {
         e->screen = mem_array(1, sizeof *e->screen);
         if (!e->screen)
             return RELUME_ENOMEM;
-        encoder_init(e->screen, screen);
+        encoder_init_from(e->screen, e->display, screen);
     }
     return captured_create(&e->captured, e->coder, e->coder->world, e->lights);
 }
@@ -577,7 +608,7 @@ static relume_status begin(struct encoding *e, const relume_coder *coder,
         .threads = p->threads,
     };
     if (relume_encode_domain(capture, p->domain) == RELUME_DOMAIN_DISPLAY)
-        e->display = relume_encode_display(capture);
+        e->display = relume_encode_curve(capture, p->display);
     return relume_capture_mask(&e->mask, capture, view, p->log);
 }
 
@@ -703,7 +734,8 @@ static relume_status begin_rows(struct encoding *e, relume_coefficients *c,
         .error_count = c->some.error_count,
         .lit_count = c->some.lit_count,
     };
-    relume_status status = alloc_measuring(e, display);
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    relume_status status = alloc_measuring(e, display.curve == RELUME_CURVE_LOG ? srgb : display);
     e->total = mem_array((size_t)e->planes, sizeof *e->total);
     if (!status && !e->total)
         status = RELUME_ENOMEM;

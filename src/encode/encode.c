@@ -228,7 +228,7 @@ static relume_status settle_rows(struct material *m)
     m->view[m->first].mask = mask->data ? mask : NULL;
     return status ? status
                   : encode_settle_rows(m->coefficients[m->first], mask,
-                                       relume_encode_display(m->capture), m->encode);
+                                       relume_encode_curve(m->capture, m->p->display), m->encode);
 }
 
 // What is said of the work on all views, as that of a part.
@@ -302,6 +302,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         .step = is_coded(&p) ? RELUME_STEP_COMMON : p.step,
         .threads = p.threads,
         .scratch = p.writer ? NULL : path,
+        .display = p.display,
     };
     if (!path && !p.writer)
         return RELUME_EINVAL;

@@ -105,7 +105,7 @@ void material_contents(struct relume_pack_contents *contents, const struct mater
     *contents = (struct relume_pack_contents){
         .coder = m->coder,
         .domain = relume_encode_domain(m->capture, m->p->domain),
-        .display = relume_encode_display(m->capture),
+        .display = relume_encode_curve(m->capture, m->p->display),
         .geometry = manifest->geometry,
         .slabs = manifest->slabs,
         .slab = manifest->slab,

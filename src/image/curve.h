@@ -7,7 +7,7 @@
 enum { CURVE_STEPS = 4096 };
 
 // The curve on [0, 1] as straight pieces, closer than 1e-7 to sRGB and gammas from 2 on (1e-5 for
-// gammas near 1); elsewhere the curve itself.
+// gammas near 1), and of a logarithm to 2.5e-6 of the light and delta; elsewhere the curve itself.
 struct curve {
     struct relume_transfer transfer;
     bool exact;  // steep at 0, where straight pieces fail: gamma below 1

@@ -75,7 +75,8 @@ struct relume_transfer image_transfer(struct relume_transfer transfer,
 
 static bool is_same(struct relume_transfer a, struct relume_transfer b)
 {
-    return a.curve == b.curve && (a.curve != RELUME_CURVE_GAMMA || a.gamma == b.gamma) &&
+    return a.curve == b.curve &&
+           ((a.curve != RELUME_CURVE_GAMMA && a.curve != RELUME_CURVE_LOG) || a.gamma == b.gamma) &&
            (a.curve != RELUME_CURVE_RESPONSE || a.response == b.response);
 }
 

@@ -49,7 +49,7 @@ static relume_status read_kinds(relume_pack *p)
     if (!domain || (strcmp(domain, "linear") && strcmp(domain, "display")))
         return reader_bad(p, ATTR_DOMAIN, "linear or display");
     if (!display || relume_transfer_parse(&p->info.display, display))
-        return reader_bad(p, ATTR_DISPLAY, "srgb or gamma:NUMBER");
+        return reader_bad(p, ATTR_DISPLAY, "srgb, gamma:NUMBER or log:NUMBER");
     p->info.domain = strcmp(domain, "linear") ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
     if (!storage || relume_storage_parse(&p->info.storage, storage) ||
         p->info.storage == RELUME_STORE_LOG)

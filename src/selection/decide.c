@@ -50,7 +50,9 @@ struct job {
     struct relume_samples all;   // in `domain`
     struct relume_samples some;  // of them
     enum relume_domain domain;
-    struct encoder *display;
+    struct encoder *display;       // from linear light
+    struct relume_transfer curve;  // of the display domain
+    struct encoder *recode;        // from that to display values, or NULL: it is the same
     relume_coder *coder;
     double psnr[STEPS];  // by `counts`, those that the coder has
     double own, unseen;
@@ -78,6 +80,8 @@ static void to_display(const struct job *job, const float *v, size_t n, float *o
 {
     if (job->domain == RELUME_DOMAIN_LINEAR)
         encoder_apply(job->display, v, out, (int)n);
+    else if (job->recode)
+        encoder_apply(job->recode, v, out, (int)n);
     else
         memcpy(out, v, n * sizeof *out);
     for (size_t i = 0; i < n; i++)
@@ -261,7 +265,7 @@ static void convert_light(void *context, size_t light, int worker)
     float *v = c->data + light * c->n;
     if (c->back)
         for (size_t i = 0; i < c->n; i++)
-            v[i] = relume_transfer_decode(c->job->display->transfer, v[i]);
+            v[i] = relume_transfer_decode(c->job->curve, v[i]);
     else
         encoder_apply(c->job->display, v, v, (int)c->n);
 }
@@ -439,7 +443,7 @@ static void predict(const struct storing *s, int light, int channel, const float
 // As it looks at another exposure: linear light is multiplied.
 static void expose(const struct job *job, float gain, size_t n, float *v)
 {
-    const struct relume_transfer t = job->display->transfer;
+    const struct relume_transfer t = job->curve;
     const bool coded = job->domain == RELUME_DOMAIN_DISPLAY;
     for (size_t i = 0; gain != 1.0f && i < n; i++)
         v[i] =
@@ -486,7 +490,7 @@ static bool is_hdr(const struct job *job)
     for (size_t i = 0; i < n; i++)
         most = fmaxf(most, job->all.data[i]);
     if (job->domain == RELUME_DOMAIN_DISPLAY)
-        most = relume_transfer_decode(job->display->transfer, most);
+        most = relume_transfer_decode(job->curve, most);
     return job->all.lights == 1 || most > FAR_ABOVE_WHITE;
 }
 
@@ -503,7 +507,7 @@ static void choose_exposures(struct storing *s, bool hdr)
         if (job->some.data[i] > 0.0f) {
             const float v = job->some.data[i];
             roots += sqrt((double)(job->domain == RELUME_DOMAIN_DISPLAY
-                                       ? relume_transfer_decode(job->display->transfer, v)
+                                       ? relume_transfer_decode(job->curve, v)
                                        : v));
             lit++;
         }
@@ -636,9 +640,16 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
     job.params.pole_y = relume_capture_pole_y(capture);
     job.params.threads = job.encode.threads;
     job.domain = relume_encode_domain(capture, job.encode.domain);
+    job.curve = relume_encode_curve(capture, job.encode.display);
     relume_status status = job.display ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         encoder_init(job.display, relume_encode_display(capture));
+    if (!status && job.curve.curve == RELUME_CURVE_LOG) {
+        job.recode = mem_array(1, sizeof *job.recode);
+        status = job.recode ? RELUME_OK : RELUME_ENOMEM;
+        if (!status)
+            encoder_init_from(job.recode, job.curve, job.display->transfer);
+    }
     if (!status)
         status =
             relume_samples_read(&job.all, capture, samples_enough(job.manifest->lights), encode);
@@ -667,5 +678,6 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
     relume_samples_destroy(&job.some);
     relume_coder_destroy(&job.coder);
     mem_free(job.display);
+    mem_free(job.recode);
     return status;
 }

@@ -344,9 +344,7 @@ static void store_and_restore(const struct fold *f, struct chunk c, float *to)
 static void dim_row(const relume_heldout *h, float *row, size_t n, float share)
 {
     for (size_t i = 0; share < 1.0f && i < n; i++)
-        row[i] = h->linear ? share * row[i]
-                           : relume_transfer_encode(
-                                 h->display, share * relume_transfer_decode(h->display, row[i]));
+        row[i] = relume_transfer_encode(h->curve, share * relume_transfer_decode(h->curve, row[i]));
 }
 
 static void compare_row(const struct fold *f, struct chunk c, int place, int channel, float *row,
@@ -360,7 +358,7 @@ static void compare_row(const struct fold *f, struct chunk c, int place, int cha
     float shown[CODER_CHUNK];
     for (size_t i = 0; i < c.n; i++)
         shown[i] = sample[3 * i];
-    if (h->linear) {
+    if (!h->shown) {
         encoder_apply(f->display, row, row, (int)c.n);
         encoder_apply(f->display, shown, shown, (int)c.n);
     }
@@ -563,10 +561,10 @@ static relume_status learn(relume_heldout *h, bool learned)
     struct relume_log quiet = h->params.log ? *h->params.log : (struct relume_log){0};
     quiet.progress = NULL;  // the caller's is that of all coders
     if (!h->learning.data)
-        status = relume_samples_read(&h->learning, h->capture, 0,
-                                     relume_encode_params(.log = h->params.log ? &quiet : NULL,
-                                                          .domain = h->info.domain,
-                                                          .threads = h->params.threads));
+        status = relume_samples_read(
+            &h->learning, h->capture, 0,
+            relume_encode_params(.log = h->params.log ? &quiet : NULL, .domain = h->info.domain,
+                                 .display = h->params.display, .threads = h->params.threads));
     return status ? status : sample_sums_make(&h->sums, &h->learning, learned, h->params.threads);
 }
 
@@ -608,7 +606,7 @@ relume_status relume_heldout_measure(relume_heldout *heldout, const struct relum
     if (!status && (basis->learned || r.coder.choose))
         status = learn(heldout, basis->learned);
     if (!status) {
-        encoder_init(r.display, heldout->display);
+        encoder_init_from(r.display, heldout->curve, heldout->screen);
         status = measure_folds(heldout, &r);
     }
     if (!status)
@@ -671,9 +669,12 @@ static relume_status describe(relume_heldout *h)
     h->views = m->views;
     h->hemispherical = relume_capture_hemispherical(h->capture);
     h->pole_y = relume_capture_pole_y(h->capture);
-    h->display = relume_encode_display(h->capture);
+    h->screen = relume_encode_display(h->capture);
     h->info.domain = relume_encode_domain(h->capture, h->params.domain);
-    h->linear = h->info.domain == RELUME_DOMAIN_LINEAR;
+    h->curve = h->info.domain == RELUME_DOMAIN_LINEAR
+                   ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR}
+                   : relume_encode_curve(h->capture, h->params.display);
+    h->shown = h->curve.curve != RELUME_CURVE_LINEAR && h->curve.curve != RELUME_CURVE_LOG;
     h->info.lights = m->lights;
     h->info.all_pixels = (size_t)h->views * (size_t)h->width * (size_t)h->height;
     if (h->params.test) {

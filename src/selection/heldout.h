@@ -24,8 +24,10 @@ struct relume_heldout {
     const relume_capture *capture;
     int lights, all;  // captured; with those of the test capture
     int width, height, views;
-    bool hemispherical, pole_y, linear;
-    struct relume_transfer display;
+    bool hemispherical, pole_y;
+    struct relume_transfer curve;    // of the samples
+    struct relume_transfer screen;   // of display values
+    bool shown;                      // samples are display values
     struct relume_vec3 *directions;  // [all]
     int *light_at;                   // [all]: which light's samples are in a place
     size_t pixels;

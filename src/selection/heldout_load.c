@@ -130,12 +130,9 @@ static relume_status read_to(struct reading *r, int end, const struct strip *s, 
 static relume_status read_view(struct reading *r)
 {
     const relume_heldout *h = r->h;
-    struct relume_transfer display = h->display;
-    if (h->linear)
-        display = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
     relume_status status =
         relume_table_open(&r->table, r->capture, r->view,
-                          relume_table_params(.log = h->params.log, .display = display,
+                          relume_table_params(.log = h->params.log, .display = h->curve,
                                               .threads = h->params.threads));
     r->next = 0;
     for (int i = 0; !status && i < h->strips; i++) {
@@ -180,7 +177,7 @@ static void round_light(void *context, size_t light, int worker)
         uint8_t *code = h->codes + (light * h->pixels + at) * 3;
         float *luma = h->luma + light * h->pixels + at;
         float v[3 * CODER_CHUNK];
-        if (h->linear)
+        if (!h->shown)
             encoder_apply(&r->display, sample, v, (int)(3 * n));
         else
             memcpy(v, sample, 3 * n * sizeof *v);
@@ -199,7 +196,7 @@ static relume_status round_references(relume_heldout *h)
     if (!r)
         return RELUME_ENOMEM;
     r->h = h;
-    encoder_init(&r->display, h->display);
+    encoder_init_from(&r->display, h->curve, h->screen);
     thread_for(h->params.threads, (size_t)h->all, round_light, r);
     mem_free(r);
     return RELUME_OK;

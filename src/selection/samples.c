@@ -226,7 +226,7 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
                          .chosen = {.count = want < all ? want : all}};
     *out = (struct relume_samples){.lights = m->lights};
     if (relume_encode_domain(capture, g.p.domain) == RELUME_DOMAIN_DISPLAY)
-        g.display = relume_encode_display(capture);
+        g.display = relume_encode_curve(capture, g.p.display);
     g.chosen.pixel = mem_array(g.chosen.count, sizeof *g.chosen.pixel);
     if (!g.chosen.pixel)
         return RELUME_ENOMEM;

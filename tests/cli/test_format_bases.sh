@@ -12,6 +12,8 @@ for basis in "dct --coefficients 21" "dct-resampled --coefficients 21" "pca --co
     both "all --basis $basis --bits 12" "9 8"
     both "photos --basis $basis --bits 16 --domain linear" "9 8"
 done
+both "dome --basis pca --domain log" "9 8"
+both "photos --basis pca --coefficients 9 --domain log:0.02" "9 8"
 for interpolant in $("$RELUME" encode --help | sed -n 's/.*table: \([a-z, ]*\).*/\1/p' | tr -d , | sed s,auto,,); do
     both "dome --basis pca --interpolant $interpolant" "9 8"
     both "dome --basis table --interpolant $interpolant --bits half" "9 8"

@@ -132,17 +132,25 @@ static void component_files(void **state)
     }
 }
 
-static void gamma_files(void **state)
+static void run_curve(struct relume_transfer curve, const char *what, double bound)
 {
-    (void)state;
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
-    f.codes[0].display = (struct relume_transfer){.curve = RELUME_CURVE_GAMMA, .gamma = 1.8f};
+    f.codes[0].display = curve;
     const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct relighter r;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
-    compare_lights(&r, &f, "gamma 1.8", display_bound);
+    compare_lights(&r, &f, what, bound);
     relighter_destroy(&r);
     fixture_free(&f);
+}
+
+static void files_of_other_curves(void **state)
+{
+    (void)state;
+    run_curve((struct relume_transfer){.curve = RELUME_CURVE_GAMMA, .gamma = 1.8f}, "gamma 1.8",
+              display_bound);
+    run_curve((struct relume_transfer){.curve = RELUME_CURVE_LOG, .gamma = 0.5f}, "log 0.5",
+              display_bound);
 }
 
 // A machine with few array layers spreads a view over several arrays.
@@ -235,7 +243,7 @@ int main(void)
         cmocka_unit_test(few_bits),
         cmocka_unit_test(luminance_files),
         cmocka_unit_test(component_files),
-        cmocka_unit_test(gamma_files),
+        cmocka_unit_test(files_of_other_curves),
         cmocka_unit_test(many_arrays),
         cmocka_unit_test(codes_are_fetched_once),
         cmocka_unit_test(old_views_leave_a_full_memory),

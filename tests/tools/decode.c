@@ -645,6 +645,8 @@ static double linearised(double v)
         return v;
     if (!strncmp(display, "gamma:", 6))
         return copysign(pow(a, atof(display + 6)), v);
+    if (!strncmp(display, "log:", 4))
+        return atof(display + 4) * (pow(1.0 + 1.0 / atof(display + 4), v) - 1.0);
     return copysign(a <= 0.04045 ? a / 12.92 : pow((a + 0.055) / 1.055, 2.4), v);
 }
 

@@ -185,7 +185,8 @@ static void test_encoder(void **state)
                                                     {.curve = RELUME_CURVE_GAMMA, .gamma = 1.0f},
                                                     {.curve = RELUME_CURVE_GAMMA, .gamma = 2.2f},
                                                     {.curve = RELUME_CURVE_GAMMA, .gamma = 10.0f},
-                                                    {.curve = RELUME_CURVE_GAMMA, .gamma = 0.5f}};
+                                                    {.curve = RELUME_CURVE_GAMMA, .gamma = 0.5f},
+                                                    {.curve = RELUME_CURVE_LOG, .gamma = 1e-3f}};
     static struct encoder e;
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++) {
         encoder_init(&e, curves[k]);

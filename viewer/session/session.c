@@ -103,7 +103,7 @@ static void describe_lines(struct session *s)
              info->coefficients, relume_plural(info->coefficients), coder->lights,
              relume_plural(coder->lights));
     snprintf(s->line[n++], SESSION_TEXT, "%s domain%s",
-             info->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear",
+             relume_domain_name(info->domain, info->display),
              info->has_depth ? ", with depth" : "");
     if (info->books)
         snprintf(s->line[n++], SESSION_TEXT, "%d codebook%s, the first of %d", info->books,

@@ -16,7 +16,7 @@ struct encode_options {
     int coefficients;
     enum relume_storage bits;
     enum relume_step step;
-    enum relume_domain domain;
+    struct domain_choice domain;
     enum relume_compression compression;
     enum relume_pyramid pyramid;
     struct relume_transfer transfer;
@@ -74,10 +74,11 @@ static const struct option options[] = {
          RELUME_STEP_PLANE, "plane", "common"),
     FLAG("--robust", robust,
          "give shadows, highlights and outliers less weight in the fit; slower"),
-    NAME("--domain", domain, "D",
-         "fit linear light or display values: auto, linear or display; default: auto, by the "
-         "transfer of the capture, and with basis auto by the error",
-         RELUME_DOMAIN_AUTO, "auto", "linear", "display"),
+    OWN("--domain", domain, "D",
+        "fit linear light, display values, or logarithms of high dynamic range: auto, linear, "
+        "display, log or log:DELTA; default: auto, by the transfer of the capture, and with basis "
+        "auto by the error",
+        take_domain),
     NUMBER("--ridge", ridge, "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0, 1),
     FLAG("--no-depth", no_depth,
          "leave depth out: smaller file, but no near lights and no views corrected by depth"),
@@ -240,6 +241,7 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
 {
     const struct relume_encode_params encode = {.log = r->pack.log,
                                                 .domain = r->pack.domain,
+                                                .display = r->pack.display,
                                                 .storage = r->pack.storage,
                                                 .threads = r->pack.threads,
                                                 .team = r->pack.team};
@@ -555,7 +557,8 @@ static relume_status run(const struct args *args)
                   .robust = o->robust,
                   .force = o->force},
         .pack = {.log = args->log,
-                 .domain = o->domain,
+                 .domain = o->domain.domain,
+                 .display = o->domain.display,
                  .storage = o->bits,
                  .step = o->step,
                  .compression = o->compression,
@@ -583,6 +586,9 @@ static relume_status run(const struct args *args)
             "--psnr and --bytes-per-pixel choose bits, step and compression; expected "
             "one of the two, without --bits, --step, --compression, --quality and "
             "--codebook");
+    if (is_coded(&r) && o->domain.display.curve == RELUME_CURVE_LOG)
+        return usage_error("--psnr and --bytes-per-pixel are about what a screen shows; expected "
+                           "them without --domain log");
     relume_status status = parse_books(args, &o->books, books, &r.books);
     r.pack.books = books ? &r.books : NULL;
     r.pack.options = r.options.text;

@@ -51,8 +51,8 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            "\"display\": \"%s\", \"bits\": \"%s\", \"compression\": \"%s\", ",
            c->basis->name, i->coefficients, i->planes, c->interpolant ? "\"" : "",
            c->interpolant ? c->interpolant->name : "null", c->interpolant ? "\"" : "",
-           i->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display", display,
-           relume_storage_name(i->storage), i->compression);
+           relume_domain_name(i->domain, i->display), display, relume_storage_name(i->storage),
+           i->compression);
     printf("\"levels\": %d, \"tile\": %d, ", i->levels, i->tile);
     printf("\"books\": %d, \"codes\": %d, \"shared\": %s, ", i->books, i->codes,
            i->shared ? "true" : "false");
@@ -105,7 +105,7 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     if (i->domain == RELUME_DOMAIN_LINEAR)
         printf("domain        linear\n");
     else
-        printf("domain        display (%s)\n", display);
+        printf("domain        %s (%s)\n", relume_domain_name(i->domain, i->display), display);
     printf("storage       %s%s, %s\n", relume_storage_name(i->storage),
            relume_storage_top(i->storage) ? " bits" : "", i->compression);
     if (i->books)

@@ -13,7 +13,7 @@ struct sweep_options {
     const char *output, *test;
     struct entries basis, interpolant;  // NULL: auto
     struct ints coefficients, luminance, bits, step, codebook;
-    enum relume_domain domain;
+    struct domain_choice domain;
     struct relume_transfer transfer;
     int leave_out, memory;
     bool skip_missing, json, csv, allow_outside;
@@ -45,8 +45,8 @@ static const struct option options[] = {
           OPTION_INT, .max = 65536),
     INT("--leave-out", leave_out, "K", "number of lights left out at a time; default: 1", 1, 65535),
     TEXT("--test", test, "CAPTURE", "measure on the lights of another capture instead"),
-    NAME("--domain", domain, "D", "auto, linear or display; default: as encode", RELUME_DOMAIN_AUTO,
-         "auto", "linear", "display"),
+    OWN("--domain", domain, "D", "auto, linear, display, log or log:DELTA; default: as encode",
+        take_domain),
     GROUP("codebooks"),
     BOOK_FORM_OPTIONS,
     GROUP("machine"),
@@ -275,10 +275,10 @@ static relume_status learn(relume_coder **out, double *seconds, const struct wor
 {
     const struct relume_coder_params params = coder_params(row, log);
     const double start = now_s();
-    const relume_status status =
-        relume_coder_learn(out, row->basis, w->capture, &params,
-                           relume_encode_params(.log = log, .domain = w->sweep->domain,
-                                                .threads = w->sweep->args->threads));
+    const relume_status status = relume_coder_learn(
+        out, row->basis, w->capture, &params,
+        relume_encode_params(.log = log, .domain = w->sweep->domain, .display = w->sweep->display,
+                             .threads = w->sweep->args->threads));
     *seconds = now_s() - start;
     return status;
 }
@@ -294,7 +294,8 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const rel
     relume_status status = relume_pack_encode(
         w->capture, coder, path, NULL,
         relume_pack_encode_params(.log = log, .domain = w->sweep->domain,
-                                  .storage = row->store.storage, .step = row->store.step,
+                                  .display = w->sweep->display, .storage = row->store.storage,
+                                  .step = row->store.step,
                                   .books = row->books.codes ? &row->books : NULL,
                                   .share = row->store.share, .threads = w->sweep->args->threads));
     row->seconds = now_s() - start;
@@ -407,7 +408,8 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
     relume_status status = relume_heldout_open(
         &w->heldout, w->capture,
         relume_heldout_params(.log = s->args->log, .test = test, .leave_out = s->leave_out,
-                              .domain = s->domain, .threads = s->args->threads,
+                              .domain = s->domain, .display = s->display,
+                              .threads = s->args->threads,
                               .memory = (uint64_t)s->options->memory << 20));
     if (!status) {
         const struct relume_heldout_info *info = relume_heldout_info(w->heldout);
@@ -502,7 +504,8 @@ static relume_status run(const struct args *args)
         status = open_capture(o, sweep.test, 0, &test);
     if (!status) {
         const struct relume_manifest *m = relume_capture_manifest(capture);
-        sweep.domain = relume_encode_domain(capture, o->domain);
+        sweep.domain = relume_encode_domain(capture, o->domain.domain);
+        sweep.display = o->domain.display;
         sweep.views = m->views;
         sweep.lights = m->lights;
         sweep.judged = test ? relume_capture_manifest(test)->lights : m->lights;

@@ -35,7 +35,8 @@ struct sweep {
     int leave_out;
     struct relume_books_params books;  // of rows with codebooks
     enum relume_domain domain;
-    double measured;  // part of the pixels that was looked at
+    struct relume_transfer display;  // its curve, where it was asked for
+    double measured;                 // part of the pixels that was looked at
     int views, lights, judged, width, height;
     struct sweep_row *row;
     int rows;

@@ -170,7 +170,7 @@ void sweep_print_json(const struct sweep *sweep, FILE *out)
             ", \"views\": %d, \"lights\": %d, \"judged\": %d, \"width\": %d, \"height\": %d, "
             "\"domain\": \"%s\"",
             sweep->views, sweep->lights, sweep->judged, sweep->width, sweep->height,
-            sweep->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display");
+            relume_domain_name(sweep->domain, sweep->display));
     json_field(out, "measured", sweep->measured);
     fputs(", \"rows\": [", out);
     for (int i = 0; i < sweep->rows; i++) {

@@ -242,6 +242,7 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
         r->key = hash_capture(r->key, *captures);
     r->key = hash_number(r->key, sweep->test ? -1 : sweep->leave_out);
     r->key = hash_number(r->key, sweep->domain);
+    r->key = hash_number(r->key, (double)sweep->display.gamma);
     r->key = hash_number(r->key, (int64_t)memory);
     relume_status status = relume_file_check(r->path, sweep->args->log);
     if (!status) {

@@ -139,7 +139,7 @@ bad 'unknown bits' "unknown --bits '9'" --bits 9
 bad 'unknown step' "unknown --step 'plain'; did you mean 'plane'" --step plain
 bad 'unknown colour' "unknown --colour" --colour cmyk
 bad 'unknown interpolant' "unknown --interpolant 'tpz'; did you mean 'tps'" --interpolant tpz
-bad 'unknown domain' "unknown --domain" --domain log
+bad 'unknown domain' "unknown --domain" --domain lagged
 bad 'a size that is no number' '--coefficients: .*four' --coefficients 4,four
 bad 'a size of 0' '--coefficients: ' --coefficients 0
 bad 'a size that no basis has' '--coefficients: none of the bases' --basis sh --coefficients 5

@@ -25,7 +25,7 @@ codebook:base math kernel image coder team:base coder codebook team
 team:base:base io team
 selection:base math image coder compare:base image capture coder codebook heldout team
 lossy:base math:base image coder
-encode:base math coder codebook lossy team:base image capture codebook coder light relight pack team
+encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team
 pack:base geometry image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange

@@ -26,10 +26,11 @@ struct relume_basis {
     const char *name;
     const char *summary;  // one line for help texts
     bool interpolates;    // its raw functions are the weights of an interpolant, one per light
-    bool learned;         // joint functions of R, G, B, found from samples of the capture
-    bool upper_only;      // its functions exist only on the pole's hemisphere
-    bool halves;          // no function reaches across the horizon
-    bool fits;            // by least squares: robustly too, and to lamps near by
+    bool learned;         // its functions are found from samples of the capture
+    bool joint;       // functions of R, G, B of their own, one set of coefficients for the three
+    bool upper_only;  // its functions exist only on the pole's hemisphere
+    bool halves;      // no function reaches across the horizon
+    bool fits;        // by least squares: robustly too, and to lamps near by
     // The largest number of coefficients <= `want` that the basis has and `lights` can determine;
     // 0 when there is none. `want` 0 asks for the basis's own choice.
     int (*fit_count)(int want, int lights);
@@ -49,7 +50,8 @@ extern RELUME_API const struct relume_basis relume_basis_sh;     // spherical ha
 extern RELUME_API const struct relume_basis relume_basis_dct;  // cosines on the stereographic disc
 // The same as dct, the thesis's way.
 extern RELUME_API const struct relume_basis relume_basis_dct_resampled;
-extern RELUME_API const struct relume_basis relume_basis_pca;  // principal components
+extern RELUME_API const struct relume_basis relume_basis_pca;    // principal components
+extern RELUME_API const struct relume_basis relume_basis_eigen;  // eigenimages
 // All bases; NULL ends the list.
 extern RELUME_API const struct relume_basis *const relume_bases[];
 // NULL when there is none of that name.
@@ -115,8 +117,8 @@ struct relume_coder_params {
     int threads;                           // while learning; default: all cores
     bool decode;             // only weights will be asked for: no encoding map is made
     const float *transform;  // decoding: stored functions = transform x raw functions, [K][raw], or
-                             // [3][K][raw] for learned bases. Default: the identity
-    const float *mean;       // decoding, learned bases: [3][raw]. Default: zero
+                             // [3][K][raw] for joint bases. Default: the identity
+    const float *mean;       // decoding, joint bases: [3][raw]. Default: zero
 };
 #define relume_coder_params(...)                                                                   \
     (&(const struct relume_coder_params){RELUME_SIZED(relume_coder_params), __VA_ARGS__})
@@ -164,7 +166,7 @@ RELUME_API double relume_coder_clamp(struct relume_vec3 *from, const relume_code
 struct relume_coder_info {
     const struct relume_basis *basis;  // constant
     int coefficients;                  // K
-    bool joint;      // one set of K planes for R, G, B together (learned bases, luminance)
+    bool joint;      // one set of K planes for R, G, B together (joint bases, luminance)
     bool luminance;  // planes K, K + 1, K + 2 are the pixel's colour, which multiplies the sum
     int planes;      // 3 K; joint K; luminance K + 3
     int functions;   // raw functions of the basis: K, or the lights where it interpolates
@@ -172,8 +174,8 @@ struct relume_coder_info {
     double ridge;  // as it was applied
     int lights;
     const struct relume_vec3 *directions;  // [lights], world
-    const float *transform;                // [K][functions], learned [3][K][functions], or NULL
-    const float *mean;                     // learned: [3][functions], or NULL
+    const float *transform;                // [K][functions], joint [3][K][functions], or NULL
+    const float *mean;                     // joint: [3][functions], or NULL
     const struct relume_interpolant *interpolant;  // or NULL
     double parameter[4];                           // of the interpolant, as applied
     double predicted_rms;  // after `choose`: how lights left out are predicted, geometric mean over

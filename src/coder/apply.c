@@ -71,7 +71,7 @@ static void multiply(const relume_coder *coder, float *separated, size_t n, floa
 {
     const struct relume_coder_info *info = &coder->info;
     const int k = info->coefficients, lights = info->lights, columns = (int)n;
-    if (info->basis->learned) {
+    if (info->basis->joint) {
         lsq_multiply(k, columns, 3 * lights, coder->map, 3 * lights, separated, columns, planes,
                      (int)plane_stride);
         for (int i = 0; i < k; i++)

@@ -17,11 +17,11 @@ struct relume_coder {
     struct relume_coder_info info;
     vec3 *world;       // [lights]
     vec3 *frame;       // [lights], in the pole's frame
-    float *transform;  // [K][functions], learned [3][K][functions], or NULL
-    float *mean;       // learned: [3][functions], or NULL
-    float *map;        // coefficients = map x samples + base; [K][lights], learned [K][3][lights];
+    float *transform;  // [K][functions], joint [3][K][functions], or NULL
+    float *mean;       // joint: [3][functions], or NULL
+    float *map;        // coefficients = map x samples + base; [K][lights], joint [K][3][lights];
                        // NULL when only decoding
-    float *base;       // learned: [K]
+    float *base;       // joint: [K]
     struct robust *robust;                 // or NULL: plain least squares
     const struct relume_samples *samples;  // while being prepared
     int threads;                           // for that
@@ -84,6 +84,13 @@ void robust_apply(const struct robust *r, const relume_coder *coder, const float
 // Regularised least squares on the captured directions, for bases with smooth functions:
 // fills coder->map and coder->transform. `roughness[K]` is what the ridge multiplies.
 relume_status fit_map(relume_coder *coder, const double *roughness, const struct relume_log *log);
+
+// vectors[count][lights], the leading eigenvectors of the Gram matrix of the samples' images, the
+// largest first (basis_eigen.c): of that matrix, and by Lanczos's method. RELUME_ENOMEM.
+relume_status eigen_by_gram(double *vectors, int count, const struct relume_samples *s,
+                            int threads);
+relume_status eigen_by_steps(double *vectors, int count, const struct relume_samples *s,
+                             int threads);
 
 // Interpolation weights of the captured lights, at most three.
 struct blend {

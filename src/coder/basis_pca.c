@@ -61,6 +61,7 @@ const struct relume_basis relume_basis_pca = {
     .summary = "principal components of the capture, R, G, B together; any number of coefficients",
     .interpolates = true,
     .learned = true,
+    .joint = true,
     .fits = true,
     .fit_count = fit_count,
     .has_count = basis_takes_any,

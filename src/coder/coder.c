@@ -11,8 +11,9 @@
 #include <string.h>
 
 const struct relume_basis *const relume_bases[] = {
-    &relume_basis_table, &relume_basis_ptm,           &relume_basis_hsh, &relume_basis_sh,
-    &relume_basis_dct,   &relume_basis_dct_resampled, &relume_basis_pca, NULL,
+    &relume_basis_table, &relume_basis_ptm,   &relume_basis_hsh,
+    &relume_basis_sh,    &relume_basis_dct,   &relume_basis_dct_resampled,
+    &relume_basis_pca,   &relume_basis_eigen, NULL,
 };
 
 const struct relume_basis *relume_basis_find(const char *name)
@@ -115,13 +116,13 @@ static relume_status copy_lights(relume_coder *c, const struct relume_vec3 *ligh
 static relume_status copy_functions(relume_coder *c, const struct relume_coder_params *p)
 {
     const size_t raw = (size_t)c->info.functions, k = (size_t)c->info.coefficients;
-    const size_t channels = c->info.basis->learned ? 3 : 1;
+    const size_t channels = c->info.basis->joint ? 3 : 1;
     if (p->transform) {
         c->transform = mem_copy(p->transform, channels * k * raw, sizeof *c->transform);
         if (!c->transform)
             return RELUME_ENOMEM;
     }
-    if (p->mean && c->info.basis->learned) {
+    if (p->mean && c->info.basis->joint) {
         c->mean = mem_copy(p->mean, 3 * raw, sizeof *c->mean);
         if (!c->mean)
             return RELUME_ENOMEM;
@@ -248,11 +249,11 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     c->info = (struct relume_coder_info){
         .basis = basis,
         .coefficients = count,
-        .joint = basis->learned || p.luminance,
+        .joint = basis->joint || p.luminance,
         .luminance = p.luminance,
-        .planes = basis->learned ? count
-                  : p.luminance  ? count + 3
-                                 : 3 * count,
+        .planes = basis->joint  ? count
+                  : p.luminance ? count + 3
+                                : 3 * count,
         .functions = basis->interpolates ? n : count,
         .hemispherical = p.hemispherical,
         .pole_y = p.pole_y,
@@ -380,7 +381,7 @@ void relume_coder_weights(const relume_coder *coder, struct relume_vec3 light, f
         clamp_to_captured(coder->info.hemispherical, pole_from_world(light, coder->info.pole_y));
     double values[RELUME_MOST_COEFFICIENTS];
     coder->info.basis->evaluate(coder, d, values);
-    const int channels = coder->info.basis->learned ? 3 : 1;
+    const int channels = coder->info.basis->joint ? 3 : 1;
     for (int c = 0; c < channels; c++)
         for (int i = 0; i < k; i++)
             weights[c * k + i] =

@@ -50,7 +50,7 @@ relume_status design_create(struct design *out, const relume_coder *coder)
 {
     const size_t k = (size_t)coder->info.coefficients, n = (size_t)coder->info.lights;
     const bool learned = coder->info.basis->learned;
-    const size_t rows = learned ? 3 * n : n;
+    const size_t rows = coder->info.basis->joint ? 3 * n : n;
     float *weights = mem_array(3 * k, sizeof *weights);
     *out = (struct design){
         .lights = (int)n,

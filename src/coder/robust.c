@@ -112,9 +112,9 @@ void robust_apply(const struct robust *robust, const relume_coder *coder, const 
     for (size_t x = 0; x < n; x++) {
         for (size_t c = 0; c < (info->luminance ? 1u : 3u); c++)
             for (size_t i = 0; i < lights; i++) {
-                const size_t row = info->basis->learned ? i * 3 + c : c * lights + i;
+                const size_t row = info->basis->joint ? i * 3 + c : c * lights + i;
                 p.sample[row] = (double)separated[(c * lights + i) * n + x] -
-                                (info->basis->learned ? r->constant[row] : 0.0);
+                                (info->basis->joint ? r->constant[row] : 0.0);
             }
         for (int s = 0; s < p.sets; s++)
             for (int k = 0; k < r->k; k++)

@@ -44,8 +44,8 @@ static struct rate_target target_of_view(const relume_capture *capture,
 static double header_bytes(const relume_coder *coder, int views)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);
-    return info->basis->learned ? 3.0 * info->coefficients * info->functions * BYTES_EACH / views
-                                : 0.0;
+    return info->basis->joint ? 3.0 * info->coefficients * info->functions * BYTES_EACH / views
+                              : 0.0;
 }
 
 static relume_status merit_of(double *merit, const relume_coder *coder,
@@ -183,7 +183,7 @@ relume_status relume_pack_decide(relume_coder **out, const relume_capture *captu
         status = relume_coder_learn(out, &relume_basis_pca, capture, &more, &encode);
     }
     const struct relume_coder_info *info = status ? NULL : relume_coder_info(*out);
-    if (status || !info->basis->learned || 3 * lights > MOST_PLANES)
+    if (status || !info->basis->joint || 3 * lights > MOST_PLANES)
         return status;
     status = learn_pictures(&pictures, *out, capture, coder, &encode);
     if (!status && p.psnr_db > 0.0 && decision.psnr_db < p.psnr_db + LEAST_SPARE_DB) {

@@ -3,7 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "coder/reduce.h"
+#include "encode/reduce.h"
 
 #include <string.h>
 

@@ -41,7 +41,7 @@ relume_status source_open(struct source *s, const struct relume_codes *codes,
     *s =
         (struct source){.codes = codes, .width = codes->width, .height = codes->height, .log = log};
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
-    s->numbers = info->basis->learned ? info->coefficients : 3 * info->coefficients;
+    s->numbers = info->basis->joint ? info->coefficients : 3 * info->coefficients;
     const relume_status status = choose_lights(s);
     if (status || (is_srgb(codes) && s->numbers <= MOST_NUMBERS))
         return status;
@@ -132,7 +132,7 @@ void source_weights(const struct source *s, struct relume_vec3 light, double *we
     relume_coder_weights(coder, light, w, constant);
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < k; i++)
-            weights[c * (p + 1) + (info->basis->learned ? i : 3 * i + c)] = (double)w[c * k + i];
+            weights[c * (p + 1) + (info->basis->joint ? i : 3 * i + c)] = (double)w[c * k + i];
         weights[c * (p + 1) + p] = (double)constant[c];
     }
 }

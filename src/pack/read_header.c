@@ -203,8 +203,7 @@ static relume_status read_coder(relume_pack *p)
         return reader_bad(p, ATTR_LIGHTS, "x y z of every light, within the limits");
     const int raw = basis->interpolates ? n / 3 : k;
     const float *transform = NULL, *mean;
-    const relume_status functions =
-        read_functions(&transform, p, (basis->learned ? 3 : 1) * k, raw);
+    const relume_status functions = read_functions(&transform, p, (basis->joint ? 3 : 1) * k, raw);
     if (functions)
         return functions;
     if (!optional_floats(p, ATTR_MEAN, 3LL * raw, &mean))

@@ -184,9 +184,9 @@ static void describe_geometry(struct writer *w, struct exr_part *part)
 static void describe_functions(struct writer *w, struct exr_part *part, bool coded)
 {
     const struct relume_coder_info *info = w->coder;
-    const int rows = (info->basis->learned ? 3 : 1) * info->coefficients, each = info->functions;
+    const int rows = (info->basis->joint ? 3 : 1) * info->coefficients, each = info->functions;
     const float *numbers = info->transform;
-    if (!coded || !info->basis->learned) {
+    if (!coded || !info->basis->joint) {
         writer_floats(w, part, ATTR_TRANSFORM, numbers, rows * each);
         return;
     }

@@ -205,7 +205,7 @@ static struct relume_weight_grid *new_grid(const relume_coder *coder)
     struct relume_weight_grid *g = mem_zeroed(1, sizeof *g);
     if (!g)
         return NULL;
-    const int sets = info->basis->learned ? 3 : 1;
+    const int sets = info->basis->joint ? 3 : 1;
     g->hemispherical = info->hemispherical;
     g->pole_y = info->pole_y;
     g->info = (struct relume_weight_grid_info){

@@ -604,7 +604,7 @@ relume_status relume_heldout_measure(relume_heldout *heldout, const struct relum
     r.display = mem_array(1, sizeof *r.display);
     relume_status status = stores && r.total && r.display ? RELUME_OK : RELUME_ENOMEM;
     if (!status && (basis->learned || r.coder.choose))
-        status = learn(heldout, basis->learned);
+        status = learn(heldout, basis->joint);
     if (!status) {
         encoder_init_from(r.display, heldout->curve, heldout->screen);
         status = measure_folds(heldout, &r);

@@ -4,15 +4,16 @@
 . "$TOP/tests/cli/format.sh"
 lights="-0.3,-0.2,0.1 1,0,-0.3"  # low, and below the horizon
 for basis in ptm "ptm --coefficients 3" hsh "hsh --coefficients 25 --ridge 1e-4" dct dct-resampled \
-    pca table; do
+    pca eigen table; do
     both "dome --basis $basis" "9 8"
     both "photos --basis $basis --bits 10 --step common" "9 8"
 done
-for basis in "dct --coefficients 21" "dct-resampled --coefficients 21" "pca --coefficients 9"; do
+for basis in "dct --coefficients 21" "dct-resampled --coefficients 21" "pca --coefficients 9" "eigen --coefficients 5"; do
     both "all --basis $basis --bits 12" "9 8"
     both "photos --basis $basis --bits 16 --domain linear" "9 8"
 done
 both "dome --basis pca --domain log" "9 8"
+both "dome --basis eigen --domain log" "9 8"
 both "photos --basis pca --coefficients 9 --domain log:0.02" "9 8"
 for interpolant in $("$RELUME" encode --help | sed -n 's/.*table: \([a-z, ]*\).*/\1/p' | tr -d , | sed s,auto,,); do
     both "dome --basis pca --interpolant $interpolant" "9 8"

@@ -53,10 +53,10 @@ static double largest(const struct relume_codes *codes, const struct relume_ligh
 
 static bool one(struct fuzz *f, struct bytes b)
 {
-    enum { MOST = 64, BASES = 7, INTERPOLANTS = 8 };
+    enum { MOST = 64, BASES = 8, INTERPOLANTS = 8 };
     static const struct relume_basis *const bases[BASES] = {
         &relume_basis_table, &relume_basis_sh,  &relume_basis_ptm,           &relume_basis_hsh,
-        &relume_basis_pca,   &relume_basis_dct, &relume_basis_dct_resampled,
+        &relume_basis_pca,   &relume_basis_dct, &relume_basis_dct_resampled, &relume_basis_eigen,
     };
     static const enum relume_storage storages[] = {
         RELUME_STORE_8, RELUME_STORE_16, RELUME_STORE_HALF, RELUME_STORE_10, RELUME_STORE_12};

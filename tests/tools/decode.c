@@ -491,7 +491,7 @@ static void interpolate(struct vector d, double *value)
     for (int i = 0; i < 4 && four == 4; i++)
         p[i] = (double)parameter[i];
     const char *name = text_or("relume.interpolant",
-                               strcmp(text_of("relume.basis"), "pca") ? "delaunay" : "chord");
+                               strcmp(text_of("relume.basis"), "table") ? "chord" : "delaunay");
     if (n > 3 * MOST_POINTS)
         fail("%d lights", n / 3);
     s.n = n / 3;
@@ -607,7 +607,8 @@ static double functions(int k, struct vector light, double *stored, double *cons
     const float *transform = floats_of(0, "relume.transform", &size);
     const float *mean = floats_of(0, "relume.mean", &means);
     const char *name = text_of("relume.basis");
-    const int pca = !strcmp(name, "pca"), raw = pca || !strcmp(name, "table") ? n / 3 : k;
+    const int pca = !strcmp(name, "pca"), eigen = !strcmp(name, "eigen");
+    const int raw = pca || eigen || !strcmp(name, "table") ? n / 3 : k;
     double *value = calloc((size_t)raw, sizeof *value);
     if (!strcmp(name, "sh"))
         sh(k, d, value);
@@ -617,7 +618,7 @@ static double functions(int k, struct vector light, double *stored, double *cons
         hsh(k, d, value);
     else if (!strcmp(name, "dct") || !strcmp(name, "dct-resampled"))
         dct(k, hemispherical, d, value);
-    else if (!strcmp(name, "table") || pca)
+    else if (!strcmp(name, "table") || pca || eigen)
         interpolate(d, value);
     else
         fail("basis %s", name);

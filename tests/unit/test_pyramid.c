@@ -3,7 +3,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "coder/reduce.h"
+#include "encode/reduce.h"
 #include "image/image.h"
 
 static char folder[64], path[96];

@@ -42,7 +42,7 @@ static const struct option options[] = {
          "sooner; default: auto, above 16 megapixels",
          RELUME_PYRAMID_DEFAULT, "auto", "yes", "no"),
     GROUP("model"),
-    ENTRY("--basis", basis, "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled",
+    ENTRY("--basis", basis, "NAME", "auto, pca, eigen, table, sh, hsh, ptm, dct, dct-resampled",
           relume_bases, NAMES("auto")),
     INT("--coefficients", coefficients, "K",
         "coefficients per colour channel (pca: for all three together); default: basis auto: as "

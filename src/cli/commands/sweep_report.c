@@ -8,7 +8,7 @@
 
 void sweep_coder_name(const struct sweep_row *row, char *text, size_t size)
 {
-    if (row->choose && row->basis->learned)
+    if (row->choose && row->basis->joint)
         snprintf(text, size, "auto");
     else
         snprintf(text, size, "%s%s%s%s", row->basis->name,

@@ -1,6 +1,6 @@
 // reduce.h - the coefficients of a view at half its size
-#ifndef CODER_REDUCE_H
-#define CODER_REDUCE_H
+#ifndef ENCODE_REDUCE_H
+#define ENCODE_REDUCE_H
 
 #include <relume/coder.h>
 

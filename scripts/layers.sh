@@ -35,7 +35,8 @@ view:base math image:base image light relight view slab_set capture
 post:base math kernel image:base image tone eye psf glare
 frame:base math image:base image capture coder pack light relight view slab_set frame viewport evaluate normals enhance renderer relighter rig
 btf:base math image:base image directions capture btf
-btf_model:base math image btf:base image light directions btf btf_environment
+gbrdf:base math image btf:base image directions btf
+btf_model:base math image btf gbrdf:base image light directions btf btf_environment
 surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base object
 scene:base math image geometry mesh:base image directions capture btf scene

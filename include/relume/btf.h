@@ -167,7 +167,9 @@ RELUME_API const char *relume_btf_model_summary(const struct relume_btf_model *m
 struct relume_btf_fit_params {  // zero in a field means its default
     size_t struct_size;         // filled by the macro (base.h)
     const struct relume_log *log;
-    int clusters;    // lpca 32, cmf 512, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256)
+    // lpca 32, cmf 512, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256, gbrdf: 64). gbrdf,
+    // the number of materials: as many as are distinct, at most 8.
+    int clusters;
     int components;  // vpca 4, lpca 8, fmf 100; [1, 256]; qmf: at most, 512; [1, 1024]
     int lobes;       // rfnl, rfnlc, laf, slaf: 2; [1, 4]
     uint64_t seed;   // equal seeds give equal bytes, whatever the thread count
@@ -190,12 +192,14 @@ typedef struct relume_btf_fitted relume_btf_fitted;
 RELUME_RESULT relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
                                            const struct relume_btf_model *model,
                                            const struct relume_btf_fit_params *params);
-// A folder with model.json and one .npy file for each array (docs/btf.md). RELUME_EINVAL,
-// RELUME_EIO; an input status.
+// A folder with model.json and one .npy file for each array (docs/btf.md), or, where `path` ends in
+// .exr, one file, which only g-BRDFs of one level have (docs/gbrdf.md). RELUME_EINVAL, RELUME_EIO;
+// an input status.
 RELUME_RESULT relume_status relume_btf_fitted_save(const relume_btf_fitted *fitted,
                                                    const char *path,
                                                    const struct relume_btf_params *params);
-// The folder again; the caller destroys `*out`. An input status with a sentence, RELUME_ENOMEM.
+// The folder or file again; the caller destroys `*out`. An input status with a sentence,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
                                                    const struct relume_btf_params *params);
 RELUME_API void relume_btf_fitted_destroy(relume_btf_fitted **fitted);
@@ -231,6 +235,27 @@ RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
                                                 const struct relume_log *log);
+
+// What a model shows in its own directions, as a BTF whose values have n.l; those of a g-BRDF know
+// its relief and normals. RELUME_ENOMEM, RELUME_ESYSTEM.
+RELUME_RESULT relume_status relume_btf_expand(relume_btf **out, const relume_btf_fitted *fitted,
+                                              const struct relume_btf_params *params);
+
+// A g-BRDF of which everything is known, to hold fits against: plateaus of a brushed metal that is
+// turned differently in each quarter, over ground that is half glossy and half dusty.
+struct relume_gbrdf_plant_params {  // zero in a field means its default
+    size_t struct_size;             // filled by the macro (base.h)
+    const struct relume_log *log;
+    int size;                                 // texels on a side; default 64; [1, 1024]
+    const struct relume_btf_set *directions;  // of views and lights; default: bonn
+    uint64_t seed;                            // of the spots of its colour
+};
+#define relume_gbrdf_plant_params(...)                                                             \
+    (&(const struct relume_gbrdf_plant_params){RELUME_SIZED(relume_gbrdf_plant_params),            \
+                                               __VA_ARGS__})
+// The caller destroys `*out`. RELUME_EINVAL, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_gbrdf_plant(relume_btf_fitted **out,
+                                               const struct relume_gbrdf_plant_params *params);
 
 // A level of detail, 0 being the model itself, beyond the last one the last; belongs to the model.
 RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *fitted,

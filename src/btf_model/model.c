@@ -9,8 +9,8 @@
 #include <string.h>
 
 const struct relume_btf_model *const relume_btf_models[] = {
-    &model_lit, &model_bump, &model_laf,  &model_slaf, &model_rfp, &model_rfnl, &model_rfnlc,
-    &model_cmf, &model_vpca, &model_lpca, &model_fmf,  &model_qmf, NULL,
+    &model_lit, &model_bump, &model_laf,  &model_slaf, &model_rfp, &model_rfnl,  &model_rfnlc,
+    &model_cmf, &model_vpca, &model_lpca, &model_fmf,  &model_qmf, &model_gbrdf, NULL,
 };
 
 const struct relume_btf_model *relume_btf_model_find(const char *name)
@@ -164,7 +164,7 @@ static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
     m->width = btf->info.width, m->height = btf->info.height;
     m->texels = btf_texels(btf);
     m->without_cosine = btf->info.without_cosine;
-    struct fitting f = {btf, m, p->log, p->seed, p->threads, p->ratio};
+    struct fitting f = {btf, m, p->log, p->seed, p->threads, p->ratio, p->clusters != 0};
     relume_status status = copy_directions(m, btf, p->log);
     if (!status && before) {
         // Those of the level before, where texels are left for them: a cluster keeps its share of

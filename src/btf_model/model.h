@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-enum { MODEL_ARRAYS = 6, MODEL_LOBES = 4 };
+enum { MODEL_ARRAYS = 7, MODEL_LOBES = 4 };
 
 struct model_array {
     const char *name;
@@ -53,7 +53,8 @@ struct fitting {
     const struct relume_log *log;
     uint64_t seed;
     int threads;
-    double ratio;  // asked for; 0: the model's choice
+    double ratio;       // asked for; 0: the model's choice
+    bool counts_given;  // clusters were asked for
 };
 
 struct relume_btf_oriented_light;
@@ -72,8 +73,14 @@ struct relume_btf_model {
     // Whatever makes reading faster, into m->prepared, which mem_free() frees; NULL: nothing does.
     relume_status (*prepare)(relume_btf_fitted *m);
     struct relume_btf_cost (*cost)(const relume_btf_fitted *m);
-    // Whether arrays that are fine by themselves fit together; NULL: they do.
-    bool (*is_sound)(const relume_btf_fitted *m);
+    // NULL, or what arrays that are fine by themselves should hold and do not; NULL: nothing can
+    // be.
+    const char *(*fault)(const relume_btf_fitted *m);
+    bool bit_rows;  // has rows of bits: texel_bytes and pair_bytes
+    // Height in widths of the sample and unit normals of each texel, which the caller destroys;
+    // NULL: it knows none.
+    relume_status (*truth)(const relume_btf_fitted *m, struct relume_image *relief,
+                           struct relume_image *normals);
     bool lobes_times_cosine;  // where values include n.l
     // Under an environment (btf_model/ambient.h); NULL: the sum over the measured lights.
     void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
@@ -81,7 +88,8 @@ struct relume_btf_model {
 };
 
 extern const struct relume_btf_model model_lit, model_bump, model_laf, model_slaf, model_rfp,
-    model_rfnl, model_rfnlc, model_cmf, model_vpca, model_lpca, model_fmf, model_qmf, model_table;
+    model_rfnl, model_rfnlc, model_cmf, model_vpca, model_lpca, model_fmf, model_qmf, model_gbrdf,
+    model_table;
 
 // An array of up to five sizes; unused ones are 0.
 void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/outdir.h"
 #include "base/outfile.h"
-#include "btf_model/model.h"
+#include "btf_model/gbrdf_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -76,6 +76,8 @@ relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *pat
 {
     const struct relume_log *log = params ? params->log : NULL;
     outdir *dir;
+    if (gbrdf_file_named(path))
+        return gbrdf_file_save(m, path, log);
     if (m->table)
         return log_fail(log, RELUME_EINVAL,
                         "%s: measured values cannot be saved as a model; fit one first", path);
@@ -124,7 +126,7 @@ static relume_status read_counts(relume_btf_fitted *m, const jvalue *root, const
         !jvalue_whole(jvalue_member(root, "lobes"), 0, MODEL_LOBES, &m->lobes) ||
         !m->clusters != !k->clusters || !m->components != !k->components || !m->lobes != !k->lobes)
         return wrong(r, "clusters, components, lobes", "counts that fit the model");
-    if (k->is_sound &&
+    if (k->bit_rows &&
         (!jvalue_whole(jvalue_member(root, "texel_bytes"), 0, 1 << 16, &m->texel_bytes) ||
          !jvalue_whole(jvalue_member(root, "pair_bytes"), 0, 1 << 16, &m->pair_bytes) ||
          !m->texel_bytes || !m->pair_bytes))
@@ -219,8 +221,9 @@ static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const st
         m->model->layout(m);
     for (int i = 0; i < m->arrays && !status; i++)
         status = read_array(&m->array[i], r);
-    if (!status && m->model->is_sound && !m->model->is_sound(m))
-        status = wrong(r, "arrays do not fit together", "rows of bits as long as their widths");
+    const char *fault = status || !m->model->fault ? NULL : m->model->fault(m);
+    if (fault)
+        status = wrong(r, "arrays do not fit together", fault);
     return status || !m->model->prepare ? status : m->model->prepare(m);
 }
 
@@ -275,7 +278,8 @@ relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
                                      const struct relume_btf_params *params)
 {
     int levels = 1;
-    relume_status status = open_level(out, path, &levels, params);
+    relume_status status = gbrdf_file_named(path) ? gbrdf_file_open(out, path, params)
+                                                  : open_level(out, path, &levels, params);
     relume_btf_fitted *m = *out;
     for (int level = 1; level < levels && !status; level++, m = m->half)
         status = open_half(m, path, level, params);

@@ -270,15 +270,17 @@ static relume_status fit(struct fitting *f)
 
 // ---------------------------------------------------------------- reading
 
-static bool is_sound(const relume_btf_fitted *m)
+static const char *fault(const relume_btf_fitted *m)
 {
     const uint8_t *width = m->array[WIDTH].data;
     size_t score_bits = 0, pattern_bits = 0;
     for (int i = 0; i < m->components * PLANES; i++)
         *(i % PLANES ? &pattern_bits : &score_bits) += width[i];
     // components without a bit are not written: so many cannot be
-    return score_bits <= 8 * (size_t)m->texel_bytes && pattern_bits <= 8 * (size_t)m->pair_bytes &&
-           m->components <= 8 * m->texel_bytes && m->texel_bytes >= WINDOW;
+    const bool good = score_bits <= 8 * (size_t)m->texel_bytes &&
+                      pattern_bits <= 8 * (size_t)m->pair_bytes &&
+                      m->components <= 8 * m->texel_bytes && m->texel_bytes >= WINDOW;
+    return good ? NULL : "rows of bits as long as their widths";
 }
 
 // Where a component's number lies in the row of a texel, and how to read it.
@@ -387,6 +389,7 @@ const struct relume_btf_model model_qmf = {
     .fit = fit,
     .eval = eval,
     .cost = cost,
-    .is_sound = is_sound,
+    .fault = fault,
+    .bit_rows = true,
     .prepare = prepare,
 };

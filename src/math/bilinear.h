@@ -54,6 +54,22 @@ static inline struct bilinear bilinear_at(double x, double y, int width, int hei
     return bilinear_within(x, y, 0, 0, width, height, columns);
 }
 
+// The same of a grid that is repeated to all sides, from anywhere on the plane.
+static inline struct bilinear bilinear_tiled(double x, double y, int width, int height)
+{
+    const double u = x - width * floor(x / width), v = y - height * floor(y / height);
+    // a place a hair below 0 becomes the whole side
+    const int i = index_clamped(relume_whole(u), width), j = index_clamped(relume_whole(v), height);
+    const size_t row = (size_t)j * (size_t)width,
+                 below = (size_t)(j + 1 < height ? j + 1 : 0) * (size_t)width;
+    const size_t column = (size_t)i, right = (size_t)(i + 1 < width ? i + 1 : 0);
+    return (struct bilinear){
+        .at = {row + column, row + right, below + column, below + right},
+        .across = fmin(u - i, 1.0),
+        .down = fmin(v - j, 1.0),
+    };
+}
+
 // `weight` times the share of texel k.
 static inline double bilinear_share(const struct bilinear *b, int k, double weight)
 {

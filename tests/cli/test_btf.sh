@@ -163,7 +163,8 @@ head -c 9000 bump.btf >short.btf
 expect_fail 'cut off' 1 'short.btf: ends within its values; expected [0-9]* bytes more; found' - "$RELUME" btf info short.btf
 sed 's/^!DFMF08FCR/!PVF06FCR /' bump.btf >view.btf
 expect_fail 'another kind of Bonn' 1 'view.btf: views factored each by itself \(PVF\) are not read' - "$RELUME" btf info view.btf
-expect_fail 'no file of Bonn' 1 'bump.exr: not a BTF of Bonn; expected a folder, or a file that begins with' - "$RELUME" btf info bump.exr
+cp bump.exr bump.pic
+expect_fail 'no file of Bonn' 1 'bump.pic: not a BTF of Bonn; expected a folder, or a file that begins with' - "$RELUME" btf info bump.pic
 
 # ---- from outside: NumPy reads the values in place
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
@@ -207,4 +208,21 @@ expect_fail 'a truncated BTF' 1 'other/values.npy: expected 138624 bytes' - "$RE
 sed -i 's/"width": 8/"width": 9/' other/btf.json
 cp paper/values.npy other/
 expect_fail 'another size' 1 'expected halfs \[19\]\[19\]\[8\]\[9\]\[3\]|8 x 8 pixels; expected 9 x 8' - "$RELUME" btf info other
+# g-BRDFs: one EXR file, made, shown, expanded, fitted
+expect_ok 'plant' - "$RELUME" btf plant -o planted.exr --size 12 --directions coarse
+"$RELUME" btf info planted.exr >out.txt
+check 'info knows the file' grep -q 'gbrdf' out.txt
+expect_ok 'expand' - "$RELUME" btf expand planted.exr -o expanded
+expect_ok 'render' - "$RELUME" btf render planted.exr -o planted.png --light 'dir 0.4 0.2 0.8'
+expect_ok 'eval' - "$RELUME" btf eval planted.exr expanded --json
+below 'the file is what it shows' "$(field relative_rms out.txt)" 0.001
+expect_ok 'fit' - "$RELUME" btf fit expanded --model gbrdf -o found.exr
+"$RELUME" btf fit expanded --model gbrdf -o again.exr --threads 1
+check 'the same bytes for any number of threads' cmp found.exr again.exr
+expect_fail 'another model as one file' 2 'model lit has no .exr form, only gbrdf has; give a folder' x.exr "$RELUME" btf fit expanded --model lit -o x.exr
+expect_fail 'levels in one file' 2 'holds one level of detail; found 2: give a folder' x.exr "$RELUME" btf fit expanded --model gbrdf --levels 2 -o x.exr
+"$RELUME" btf render paper -o plain.exr
+expect_fail 'a picture is no g-BRDF' 1 "plain.exr: no g-BRDF; expected a part named 'depth'" - "$RELUME" btf info plain.exr
+head -c 3000 planted.exr >cut.exr
+expect_fail 'a cut g-BRDF' 1 'cut.exr' - "$RELUME" btf info cut.exr
 finish

@@ -170,10 +170,12 @@ static bool has_lobes(const char *name)
 }
 
 // Models that know more between two lights than to interpolate: the table of bump is turned, the
-// maps of cmf are looked up at the light itself, the polynomials of rfp as well.
+// maps of cmf are looked up at the light itself, the polynomials of rfp as well, and gbrdf knows a
+// reflectance.
 static bool between_lights(const char *name)
 {
-    return !strcmp(name, "bump") || !strcmp(name, "cmf") || !strcmp(name, "rfp");
+    return !strcmp(name, "bump") || !strcmp(name, "cmf") || !strcmp(name, "rfp") ||
+           !strcmp(name, "gbrdf");
 }
 
 static void test_brute_force(void **state)

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 static bool exists(const char *path)
@@ -13,10 +14,17 @@ static bool exists(const char *path)
     return stat(path, &info) == 0;
 }
 
+bool btf_is_model_file(const char *path)
+{
+    const size_t n = strlen(path);
+    return n > 4 && !strcasecmp(path + n - 4, ".exr");
+}
+
 bool btf_is_model(const char *path)
 {
     char file[4096];
-    return snprintf(file, sizeof file, "%s/model.json", path) < (int)sizeof file && exists(file);
+    return btf_is_model_file(path) ||
+           (snprintf(file, sizeof file, "%s/model.json", path) < (int)sizeof file && exists(file));
 }
 
 bool btf_is_surface(const char *path)

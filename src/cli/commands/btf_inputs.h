@@ -22,7 +22,9 @@ struct btf_options {
 relume_status btf_find_material(const struct relume_btf_material **out, const char *name,
                                 const struct relume_log *log);
 
-// Whether the folder holds a fitted model.
+// Whether a name is that of an EXR file, which a g-BRDF may be.
+bool btf_is_model_file(const char *path);
+// Whether the folder holds a fitted model, or the name is that of a file with one.
 bool btf_is_model(const char *path);
 
 // A folder or file, or a built-in material when there is none of that name.
@@ -54,6 +56,11 @@ void btf_say_surface(const struct relume_btf_surface_info *info,
 // The tasks that have files of their own.
 relume_status btf_render(const struct args *args);
 relume_status btf_tile(const struct args *args);
+relume_status btf_plant(const struct args *args);
+relume_status btf_expand(const struct args *args);
+
+// What may be written as a model: a folder as relume_folder_check has it, or an .exr file.
+relume_status btf_check_model_output(const struct btf_options *o);
 
 // Whether `btf render` is asked for objects: --mesh, or a description in JSON.
 bool btf_is_objects(const struct btf_options *o);

@@ -38,13 +38,19 @@ static relume_status take_set(void *set, const struct option *o, const char *tex
 
 static const struct option options[] = {
     GROUP("output"),
-    OUTPUT(OPTION_OUTPUT, output, "DIR", "fit, tile: the folder to make; render: the picture"),
+    OUTPUT(
+        OPTION_OUTPUT, output, "OUT",
+        "fit, plant, tile, expand: the folder to make, or for a g-BRDF an .exr file; render: the "
+        "picture"),
     FLAG("--force", force, "fit, tile: replace a folder that relume made"),
     GROUP("model"),
     OWN("--model", model, "NAME", "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default: rfnlc",
         take_model),
-    INT("--clusters", clusters, "N", "clusters of texels; default: lpca 32, cmf 512, rfnlc 1024", 1,
-        65536),
+    INT("--clusters", clusters, "N",
+        "clusters of texels; default: lpca 32, cmf 512, rfnlc 1024; gbrdf: as many as are "
+        "distinct, "
+        "up to 8",
+        1, 65536),
     INT("--components", components, "N",
         "components; default: vpca 4, lpca 8, fmf 100, qmf at most 512", 1, 1024),
     INT("--ratio", ratio, "R", "qmf: compress the measured values R times; default: 200", 1,
@@ -245,7 +251,7 @@ static relume_status fit(const struct args *args)
     const struct btf_options *o = (const void *)args;
     relume_btf *btf = NULL, *part = NULL;
     relume_btf_fitted *fitted = NULL;
-    relume_status status = relume_folder_check(o->output, o->force, o->args.log);
+    relume_status status = btf_check_model_output(o);
     if (!status)
         status = btf_open(&btf, o->args.input[0], o);
     if (!status)
@@ -402,12 +408,19 @@ TASK(tile, btf_tile, "BTF|MODEL|MATERIAL -o DIR [OPTION ...]", "make a large sur
      "relume btf tile corduroy_model -o corduroy_surface", 1,
      "output; model; levels of detail; tiles; material; report;");
 
-static const struct command *const tasks[] = {&task_fit,    &task_eval, &task_compare, &task_info,
-                                              &task_render, &task_tile, NULL};
+TASK(plant, btf_plant, "-o OUT [OPTION ...]",
+     "make a synthetic g-BRDF of which everything is known, to test fits",
+     "relume btf plant -o planted.exr --size 32", 0, "output; material;");
+TASK(expand, btf_expand, "MODEL -o DIR", "write what a model shows in its directions as a BTF",
+     "relume btf expand planted.exr -o planted_btf", 1, "output;");
+
+static const struct command *const tasks[] = {&task_fit,   &task_eval,   &task_compare,
+                                              &task_info,  &task_render, &task_tile,
+                                              &task_plant, &task_expand, NULL};
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render|tile ...",
+    .usage = "fit|eval|compare|info|render|tile|plant|expand ...",
     .summary = "measured materials: fit models to a BTF, compare and render them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 1,

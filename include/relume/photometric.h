@@ -22,9 +22,9 @@ struct relume_photometric {
     struct relume_image normal;  // three channels: unit vectors, world; zero where nothing is known
     struct relume_image albedo;  // three: linear value under a light of 1 from the normal
     struct relume_image error;   // one: RMS of what a matte fit misses over the samples that it
-                                // kept, as share of the albedo
-    double residual;         // the median of `error` over the pixels that are known
-    double *light_residual;  // [lights]: median over pixels of |miss| / albedo, lit ones
+                                 // kept, as share of the albedo
+    double residual;             // the median of `error` over the pixels that are known
+    double *light_residual;      // [lights]: median over pixels of |miss| / albedo, lit ones
     int lights;
     struct relume_image confidence;  // one: 0 (a guess) to 1 (to a fraction of a degree); by how
                                      // narrowly the samples determine the normal
@@ -53,17 +53,23 @@ struct relume_height_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     double pixel;   // width of a pixel, world units; default 1
-    double screen;  // how strongly the height is held at 0, per pixel^2; default 1e-6: what slopes
-                    // say decides up to some thousand pixels
+    double screen;  // how strongly the height is held at 0, per pixel^2; default: so little that
+                    // the widest shape of the picture loses a thousandth
+    int threads;    // default: all cores
+    bool smooth;    // steps are smoothed: least squares of all slopes
+    const struct relume_image *confidence;  // one channel, of the normals' size: how far each is
+                                            // believed, 0 to 1; default: all alike
 };
 #define relume_height_params(...)                                                                  \
     (&(const struct relume_height_params){RELUME_SIZED(relume_height_params), __VA_ARGS__})
 
-// Height over the image plane, world units, mean 0 over the known pixels, towards the viewer:
-// least squares of the slopes that follow from the normals (screened Poisson, Bhat et al. 2008;
-// Frankot and Chellappa 1988) solved by cosine transforms, seen orthographically. Unknown pixels
-// (zero normals) bridge smoothly; slopes end at 80 degrees. One channel; the caller destroys it.
-// RELUME_EINVAL, RELUME_ENOMEM.
+// Height over the image plane, world units, mean 0 over the known pixels, towards the viewer, seen
+// orthographically. At a step slopes hold on one side only (after bilateral normal integration, Cao
+// et al. 2022), so that what stands before something else is not bent to meet it. How high a step
+// is follows where the surface goes around it; a box of which only the top is seen has no height.
+// `smooth`: screened Poisson (Bhat et al. 2008; Frankot and Chellappa 1988), solved by cosine
+// transforms. Unknown pixels (zero normals) bridge smoothly; slopes end at 80 degrees. One channel;
+// the caller destroys it. RELUME_EINVAL, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_height_integrate(struct relume_image *out,
                                                     const struct relume_image *normal,
                                                     const struct relume_height_params *params);

@@ -27,6 +27,7 @@ struct work {
     int *light;  // [all]: first those that are fitted, then those held out
     int fitted, held;
     struct relume_photometric shape;
+    struct relume_image sure;  // how sure its normals are, of which the heights are made
     struct photos photos;
     struct learner *learner;  // [LEARNERS]
     float *memory;            // of their looks
@@ -385,9 +386,10 @@ static relume_status find_relief(struct work *w)
     const bool slab = g->projection == RELUME_SLAB;
     out->pixel =
         (slab ? g->st_max[0] - g->st_min[0] : g->window_max[0] - g->window_min[0]) / out->width;
-    relume_status status =
-        relume_height_integrate(&out->height_map, &out->normal,
-                                relume_height_params(.log = w->params.log, .pixel = out->pixel));
+    relume_status status = relume_height_integrate(
+        &out->height_map, &out->normal,
+        relume_height_params(.log = w->params.log, .pixel = out->pixel,
+                             .threads = w->photos.threads, .confidence = &w->sure));
     if (!status)
         status = relume_height_occlusion(&out->occlusion, &out->height_map, out->pixel,
                                          w->photos.threads);
@@ -482,6 +484,8 @@ static relume_status fit(struct work *w)
         status = photos_each(&w->photos, "colour", colour_row, w);
     if (!status) {
         report_materials(w);
+        w->sure = w->shape.confidence;
+        w->shape.confidence = (struct relume_image){0};
         relume_photometric_destroy(&w->shape);  // heights take as much room again
         relume_image_destroy(&w->f0);
         status = find_relief(w);
@@ -507,6 +511,7 @@ relume_status relume_maps_fit(struct relume_maps *out, const relume_capture *cap
         status = fit(&w);
     photos_close(&w.photos);
     relume_photometric_destroy(&w.shape);
+    relume_image_destroy(&w.sure);
     relume_image_destroy(&w.f0);
     mem_free(w.light);
     mem_free(w.memory);

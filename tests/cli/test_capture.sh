@@ -31,6 +31,9 @@ normal=$("$mkimage" read n.exr 48 48 | cut -d' ' -f3)
 above 'the normal points at the viewer' "$normal" 0.98
 high() { "$mkimage" read h.exr "$1" "$2" | cut -d' ' -f1; }
 above 'the sphere rises over the floor' "$(high 48 48)" 0.2
+before=$(high 48 48)
+expect_ok 'the same in millimetres' - "$RELUME" capture photos --lights lights.txt -o known --force --height h.exr --width 50
+below 'a picture 50 mm wide has 25 in a unit' "$(echo "$(high 48 48) $before" | awk '{ print ($1 - 25 * $2) ^ 2 }')" 1e-6
 
 # ---- lights of a dome, far away from a picture of 100 mm; and what evens out the light
 vectors() { awk -v k="$1" '{ printf "%s{\"x\":%g,\"y\":%g,\"z\":%g}", (NR > 1 ? "," : ""), k * $1, k * $2, k * $3 }' lights.txt; }

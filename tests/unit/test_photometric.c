@@ -115,6 +115,130 @@ static void height_of_the_bump(void **state)
     relume_image_destroy(&height);
 }
 
+enum { TENT_SIDE = 96 };
+
+// A tent on a plane: what rises from it along two sides stands over it at the two others.
+static double tent_height(size_t at)
+{
+    const struct relume_vec3 p = {2.0 * ((double)(at % TENT_SIDE) + 0.5) / TENT_SIDE - 1.0,
+                                  2.0 * ((double)(at / TENT_SIDE) + 0.5) / TENT_SIDE - 1.0, 0.0};
+    return fabs(p.y) < 0.6 ? fmax(0.5 - fabs(p.x), 0.0) : 0.0;
+}
+
+// Slopes of the sides alone; a disc beside the tent may be unknown.
+static void tent_normals(struct relume_image *normal, bool hole)
+{
+    CHECK_OK(relume_image_create(normal, TENT_SIDE, TENT_SIDE, 3));
+    for (size_t at = 0; at < TENT_SIDE * TENT_SIDE; at++) {
+        const double x = 2.0 * ((double)(at % TENT_SIDE) + 0.5) / TENT_SIDE - 1.0;
+        const double y = (double)(at / TENT_SIDE) - 10.0;
+        const bool rises = tent_height(at) > 0.0;
+        if (hole && hypot((x + 1.0) * TENT_SIDE / 2.0 - 15.0, y) < 6.0)
+            continue;
+        normal->data[3 * at] = rises ? (float)copysign(sqrt(0.5), x) : 0.0f;
+        normal->data[3 * at + 2] = rises ? (float)sqrt(0.5) : 1.0f;
+    }
+}
+
+// RMS difference from the tent, world units, where normals are known.
+static double tent_error(const struct relume_image *normal, bool smooth, int threads,
+                         const struct relume_image *confidence)
+{
+    struct relume_image height;
+    CHECK_OK(relume_height_integrate(&height, normal,
+                                     relume_height_params(.pixel = 2.0 / TENT_SIDE,
+                                                          .smooth = smooth, .threads = threads,
+                                                          .confidence = confidence)));
+    double sum = 0.0, squares = 0.0, n = 0.0;
+    for (size_t at = 0; at < TENT_SIDE * TENT_SIDE; at++)
+        if (normal->data[3 * at + 2] > 0.0f) {
+            const double d = (double)height.data[at] - tent_height(at);
+            sum += d;
+            squares += d * d;
+            n += 1.0;
+        }
+    relume_image_destroy(&height);
+    return sqrt(squares / n - sum * sum / (n * n));
+}
+
+// Least squares of all slopes bend tent and plane to meet; a tenth of the tent's height.
+static void steps_are_kept(void **state)
+{
+    (void)state;
+    struct relume_image normal;
+    for (int hole = 0; hole < 2; hole++) {
+        tent_normals(&normal, hole);
+        // a fifth of a pixel: the creases lie between pixels
+        CHECK_NEAR(tent_error(&normal, false, 1, NULL), 0.0, 0.2 * 2.0 / TENT_SIDE);
+        assert_true(tent_error(&normal, true, 1, NULL) > 0.07);
+        relume_image_destroy(&normal);
+    }
+}
+
+// Every other pixel of a wave is wrong, and said to be so.
+static void confidence_counts(void **state)
+{
+    (void)state;
+    enum { SIDE = 48 };
+    struct relume_image normal, sure, height;
+    double error[2] = {0.0, 0.0};
+    CHECK_OK(relume_image_create(&normal, SIDE, SIDE, 3));
+    CHECK_OK(relume_image_create(&sure, SIDE, SIDE, 1));
+    for (int at = 0; at < SIDE * SIDE; at++) {
+        const bool wrong = (at / SIDE + at % SIDE) % 2;
+        const double slope = 0.5 * cos(0.2 * (at % SIDE)) + (wrong ? 0.2 : 0.0);
+        const struct relume_vec3 n = vec3_unit((struct relume_vec3){-slope, 0.0, 1.0});
+        normal.data[3 * at] = (float)n.x;
+        normal.data[3 * at + 2] = (float)n.z;
+        sure.data[at] = wrong ? 0.0f : 1.0f;
+    }
+    for (int i = 0; i < 2; i++) {
+        CHECK_OK(relume_height_integrate(&height, &normal,
+                                         relume_height_params(.confidence = i ? &sure : NULL)));
+        for (int x = 0; x < SIDE; x++)
+            error[i] += fabs((double)height.data[SIDE * 20 + x] - (double)height.data[SIDE * 20] -
+                             2.5 * sin(0.2 * x));
+        relume_image_destroy(&height);
+    }
+    assert_true(error[1] < 0.2 * error[0]);  // a twentieth of the weight
+    sure.width--;
+    assert_int_equal(
+        relume_height_integrate(&height, &normal, relume_height_params(.confidence = &sure)),
+        RELUME_EINVAL);
+    sure.width++;
+    relume_image_destroy(&normal);
+    relume_image_destroy(&sure);
+}
+
+// Larger than what is solved without a coarser one, and so wide that a screen of 1e-6 would take a
+// tenth of the height; odd sizes, and the same bits for any number of threads.
+static void wide_shapes_keep_their_height(void **state)
+{
+    (void)state;
+    enum { W = 1201, H = 77 };
+    struct relume_image normal, height[2];
+    CHECK_OK(relume_image_create(&normal, W, H, 3));
+    const double most = 0.05 * W, turn = M_PI / W;
+    for (size_t at = 0; at < (size_t)W * H; at++) {
+        const double slope = -most * turn * sin(turn * ((double)(at % W) + 0.5));
+        const struct relume_vec3 n = vec3_unit((struct relume_vec3){-slope, 0.0, 1.0});
+        normal.data[3 * at] = (float)n.x;
+        normal.data[3 * at + 2] = (float)n.z;
+    }
+    for (int smooth = 0; smooth < 2; smooth++) {
+        for (int i = 0; i < 2; i++)
+            CHECK_OK(relume_height_integrate(
+                &height[i], &normal, relume_height_params(.threads = i ? 3 : 1, .smooth = smooth)));
+        assert_memory_equal(height[0].data, height[1].data, sizeof(float) * W * H);
+        for (size_t x = 0; x < W; x += 100)  // a thousandth by the screen
+            CHECK_NEAR((double)height[0].data[(H / 2) * (size_t)W + x],
+                       most * cos(turn * ((double)x + 0.5)), 0.003 * most);
+        relume_image_destroy(&height[0]);
+        relume_image_destroy(&height[1]);
+    }
+    relume_image_destroy(&normal);
+}
+
 static void cosine_transform(void **state)
 {
     (void)state;
@@ -300,6 +424,9 @@ int main(void)
         cmocka_unit_test(near_lights),
         cmocka_unit_test(too_few_lights),
         cmocka_unit_test(height_of_the_bump),
+        cmocka_unit_test(steps_are_kept),
+        cmocka_unit_test(confidence_counts),
+        cmocka_unit_test(wide_shapes_keep_their_height),
         cmocka_unit_test(cosine_transform),
         cmocka_unit_test(refined_lights),
         cmocka_unit_test(refined_brightness),

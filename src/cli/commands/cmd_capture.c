@@ -16,7 +16,7 @@ struct capture_options {
     struct points ball;
     struct texts ball_photos, flat;
     int balls;
-    double ball_z, fov, focal;
+    double ball_z, fov, focal, width;
     struct light_options lighting;
     int cpu_mask;
 };
@@ -72,7 +72,9 @@ static const struct option options[] = {
     TEXT_AS(OPTION_FLOATS, "--normals", normals, "FILE.exr", "write surface normals"),
     TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "FILE.exr", "write the surface's colour (albedo)"),
     TEXT_AS(OPTION_FLOATS, "--height", height, "FILE.exr",
-            "write the surface's height, world units"),
+            "write the surface's height, in --width's millimetres; default: world units"),
+    NUMBER("--width", width, "MM", "width of the picture in millimetres: --height in millimetres",
+           1e-6, 1e9),
     TEXT_AS(OPTION_RELUME, "--encode", encode, "FILE.exr",
             "also encode the capture to this relume file"),
     TEXT_AS(OPTION_PICTURE, "--relight", relight, "PICTURE",
@@ -267,8 +269,12 @@ static relume_status save_height(const struct capture_options *o,
     struct relume_image height = {0};
     relume_status status = RELUME_OK;
     if (o->height && acquisition->photometric.normal.data)
-        status = relume_height_integrate(&height, &acquisition->photometric.normal,
-                                         relume_height_params(.pixel = 2.0 / acquisition->width));
+        status = relume_height_integrate(
+            &height, &acquisition->photometric.normal,
+            relume_height_params(.log = o->args.log,
+                                 .pixel = (o->width > 0.0 ? o->width : 2.0) / acquisition->width,
+                                 .threads = o->args.threads,
+                                 .confidence = &acquisition->photometric.confidence));
     if (!status)
         status = save(o, o->height, &height);
     relume_image_destroy(&height);

@@ -23,7 +23,7 @@ appearance:base math image capture:base image capture photometric light relight 
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder team:base coder codebook team
 team:base:base io team
-selection:base math image coder compare:base image capture coder codebook heldout team
+selection:base math image coder compare:base image capture coder codebook heldout team tone
 lossy:base math:base image coder
 encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team
 pack:base geometry image coder lossy:base image capture codebook coder pack

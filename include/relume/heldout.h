@@ -29,6 +29,8 @@ struct relume_heldout_params {
                                  // represented by bands of rows, spread evenly
     int threads;                 // default: all cores
     struct relume_transfer display;  // as relume_encode_params
+    bool tone_mapped;                // what is compared: each picture at an exposure of its own
+                                     // (relume_tone_meter of the photograph), with a gamma of 2.2
 };
 #define relume_heldout_params(...)                                                                 \
     (&(const struct relume_heldout_params){RELUME_SIZED(relume_heldout_params), __VA_ARGS__})

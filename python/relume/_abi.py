@@ -100,7 +100,7 @@ struct relume_evaluation { int views, lights; int width, height; size_t images; 
     double psnr_db; double psnr_pooled_db; double ssim, delta_e;
     double file_bytes, raw_bytes, ratio; double bits_per_pixel; void *light; };
 struct relume_heldout_params { size_t struct_size; void *log; void *test; int leave_out; int domain; uint64_t memory;
-    int threads; struct relume_transfer display; };
+    int threads; struct relume_transfer display; bool tone_mapped; };
 struct relume_heldout_store { int storage; int step; void *books; bool share; };
 struct relume_heldout_quality { double psnr_db; double psnr_pooled_db; double ssim; };
 struct relume_frame_params { size_t struct_size; void *log; unsigned cpu_off; int threads; double assume_depth;

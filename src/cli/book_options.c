@@ -24,6 +24,23 @@ relume_status take_domain(void *choice, const struct option *o, const char *text
                o->name, text);
 }
 
+relume_status take_domains(void *choices, const struct option *o, const char *text,
+                           const struct relume_log *log)
+{
+    struct domain_choices *const c = choices;
+    relume_status status = RELUME_OK;
+    c->count = 0;
+    for (const char *at = text; !status && at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+        char word[32];
+        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
+        if (c->count == MOST_DOMAINS)
+            return say(log, RELUME_EINVAL, "%s: expected at most %d; found '%s'", o->name,
+                       MOST_DOMAINS, text);
+        status = take_domain(&c->item[c->count++], o, word, log);
+    }
+    return status;
+}
+
 relume_status take_split(void *split, const struct option *o, const char *text,
                          const struct relume_log *log)
 {

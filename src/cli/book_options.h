@@ -41,6 +41,14 @@ struct domain_choice {
     enum relume_domain domain;
     struct relume_transfer display;
 };
+enum { MOST_DOMAINS = 8 };
+// What a list of them takes: "linear,log".
+struct domain_choices {
+    int count;
+    struct domain_choice item[MOST_DOMAINS];
+};
+relume_status take_domains(void *choices, const struct option *option, const char *text,
+                           const struct relume_log *log);
 relume_status take_domain(void *choice, const struct option *option, const char *text,
                           const struct relume_log *log);
 relume_status take_bits(void *storage, const struct option *option, const char *text,

@@ -358,10 +358,8 @@ static void compare_row(const struct fold *f, struct chunk c, int place, int cha
     float shown[CODER_CHUNK];
     for (size_t i = 0; i < c.n; i++)
         shown[i] = sample[3 * i];
-    if (!h->shown) {
-        encoder_apply(f->display, row, row, (int)c.n);
-        encoder_apply(f->display, shown, shown, (int)c.n);
-    }
+    heldout_show(h, f->display, light, row, row, c.n);
+    heldout_show(h, f->display, light, shown, shown, c.n);
     double coded = 0.0, unrounded = 0.0;
     for (size_t i = 0; i < c.n; i++) {
         const bool inside = !mask || mask[i] > 0.5f;
@@ -606,7 +604,7 @@ relume_status relume_heldout_measure(relume_heldout *heldout, const struct relum
     if (!status && (basis->learned || r.coder.choose))
         status = learn(heldout, basis->joint);
     if (!status) {
-        encoder_init_from(r.display, heldout->curve, heldout->screen);
+        heldout_encoder(r.display, heldout);
         status = measure_folds(heldout, &r);
     }
     if (!status)
@@ -633,6 +631,7 @@ void relume_heldout_destroy(relume_heldout **heldout)
     mem_free(h->light_at);
     mem_free(h->samples);
     mem_free(h->codes);
+    mem_free(h->gain);
     mem_free(h->luma);
     mem_free(h->mask);
     mem_free(h->masked);
@@ -674,7 +673,10 @@ static relume_status describe(relume_heldout *h)
     h->curve = h->info.domain == RELUME_DOMAIN_LINEAR
                    ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR}
                    : relume_encode_curve(h->capture, h->params.display);
-    h->shown = h->curve.curve != RELUME_CURVE_LINEAR && h->curve.curve != RELUME_CURVE_LOG;
+    if (h->params.tone_mapped)
+        h->screen = (struct relume_transfer){.curve = RELUME_CURVE_GAMMA, .gamma = 2.2f};
+    h->shown = !h->params.tone_mapped && h->curve.curve != RELUME_CURVE_LINEAR &&
+               h->curve.curve != RELUME_CURVE_LOG;
     h->info.lights = m->lights;
     h->info.all_pixels = (size_t)h->views * (size_t)h->width * (size_t)h->height;
     if (h->params.test) {

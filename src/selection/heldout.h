@@ -3,6 +3,7 @@
 #define SELECTION_HELDOUT_H
 
 #include "coder/sums.h"
+#include "image/encoder.h"
 
 #include <relume/heldout.h>
 
@@ -28,6 +29,7 @@ struct relume_heldout {
     struct relume_transfer curve;    // of the samples
     struct relume_transfer screen;   // of display values
     bool shown;                      // samples are display values
+    float *gain;                     // [all lights]: the exposure of each, or NULL
     struct relume_vec3 *directions;  // [all]
     int *light_at;                   // [all]: which light's samples are in a place
     size_t pixels;
@@ -43,6 +45,11 @@ struct relume_heldout {
     struct relume_samples learning;  // of all captured lights; read when first needed
     struct relume_sample_sums sums;  // of them
 };
+
+// Display values, unclipped, of samples under a light (not its place). `e` is heldout_encoder's.
+void heldout_encoder(struct encoder *e, const relume_heldout *h);
+void heldout_show(const relume_heldout *h, const struct encoder *e, size_t light,
+                  const float *value, float *out, size_t n);
 
 // Codebooks of one fold, and which vectors each pixel uses.
 struct fold_books {

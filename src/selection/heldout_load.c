@@ -7,6 +7,7 @@
 #include "math/luminance.h"
 #include "selection/heldout.h"
 
+#include <relume/tone.h>
 #include <string.h>
 
 enum { BAND = 64, READ_ROWS = 16 };
@@ -161,6 +162,42 @@ static relume_status read_capture(relume_heldout *h, const relume_capture *captu
 
 // ---------------------------------------------------------------- what is compared with
 
+void heldout_encoder(struct encoder *e, const relume_heldout *h)
+{
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    encoder_init_from(e, h->gain ? linear : h->curve, h->screen);
+}
+
+void heldout_show(const relume_heldout *h, const struct encoder *e, size_t light,
+                  const float *value, float *out, size_t n)
+{
+    if (h->shown) {
+        memmove(out, value, n * sizeof *out);
+        return;
+    }
+    for (size_t i = 0; h->gain && i < n; i++)
+        out[i] = h->gain[light] * relume_transfer_decode(h->curve, value[i]);
+    encoder_apply(e, h->gain ? out : value, out, (int)n);
+}
+
+// What a photographer, or an eye, would expose each picture for.
+static relume_status meter_lights(relume_heldout *h)
+{
+    const size_t n = 3 * h->pixels;
+    struct relume_image light = {(int)h->pixels, 1, 3, .data = mem_array(n, sizeof *light.data)};
+    h->gain = mem_array((size_t)h->all, sizeof *h->gain);
+    const bool good = light.data && h->gain;
+    for (size_t i = 0; good && i < (size_t)h->all; i++) {
+        for (size_t x = 0; x < n; x++)
+            light.data[x] = h->mask && !(h->mask[x / 3] > 0.5f)
+                                ? 0.0f
+                                : relume_transfer_decode(h->curve, h->samples[i * n + x]);
+        h->gain[i] = (float)exp2(relume_tone_meter(&light));
+    }
+    mem_free(light.data);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
 struct rounding {
     relume_heldout *h;
     struct encoder display;
@@ -177,10 +214,7 @@ static void round_light(void *context, size_t light, int worker)
         uint8_t *code = h->codes + (light * h->pixels + at) * 3;
         float *luma = h->luma + light * h->pixels + at;
         float v[3 * CODER_CHUNK];
-        if (!h->shown)
-            encoder_apply(&r->display, sample, v, (int)(3 * n));
-        else
-            memcpy(v, sample, 3 * n * sizeof *v);
+        heldout_show(h, &r->display, light, sample, v, 3 * n);
         for (size_t i = 0; i < 3 * n; i++) {
             v[i] = encoder_clip(v[i]);
             code[i] = (uint8_t)encoder_code(v[i]);
@@ -196,7 +230,7 @@ static relume_status round_references(relume_heldout *h)
     if (!r)
         return RELUME_ENOMEM;
     r->h = h;
-    encoder_init_from(&r->display, h->curve, h->screen);
+    heldout_encoder(&r->display, h);
     thread_for(h->params.threads, (size_t)h->all, round_light, r);
     mem_free(r);
     return RELUME_OK;
@@ -222,5 +256,7 @@ relume_status heldout_load(relume_heldout *h)
         status = read_capture(h, h->capture, 0);
     if (!status && h->params.test)
         status = read_capture(h, h->params.test, h->lights);
+    if (!status && h->params.tone_mapped)
+        status = meter_lights(h);
     return status ? status : round_references(h);
 }

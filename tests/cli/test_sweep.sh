@@ -9,12 +9,20 @@ export TMPDIR="$work/tmp"
 sweep="$RELUME sweep cap --leave-out 5"
 grid="--basis pca,sh,table --coefficients 4,9 --bits 8,half"
 
+# ---- domains beside each other, each picture at its own exposure
+expect_ok 'domains' - $sweep --basis eigen --coefficients 4 --domain linear,log:0.01 --tone-map --json
+check 'a row of each' sh -c 'grep -c "\"basis\": \"eigen\"" out.txt >/dev/null && grep -o "\"domain\": \"[a-z]*\"" out.txt | tr "\n" " " | grep -q "linear.*linear.*log"'
+check 'and it is said' grep -q '"tone_mapped": true' out.txt
+$sweep --basis eigen --coefficients 4 --domain linear,log:0.01 --tone-map --csv -q | awk -F, 'NR > 1 { print $1, $16 }' >names.txt
+printf 'eigen linear linear\neigen log log\n' >want.txt
+same 'rows are told apart' names.txt want.txt
+
 # ---- outputs
 expect_ok 'sweep' - $sweep $grid -o out --json
 cp out.txt out1.json
 same 'OUT.json is what --json prints' out1.json out.json
 if [ "$(grep -o '"basis"' out.json | wc -l)" -eq 10 ]; then ok 'rows: 2 x 2 x 2 and table x 2'; else not_ok 'rows' "$(cat out.json)"; fi
-if [ "$(awk -F, 'NF != 15' out.csv | wc -l)" -eq 0 ] && [ "$(wc -l <out.csv)" -eq 11 ]; then ok 'CSV has 15 columns and 11 lines'; else not_ok 'CSV' "$(cat out.csv)"; fi
+if [ "$(awk -F, 'NF != 16' out.csv | wc -l)" -eq 0 ] && [ "$(wc -l <out.csv)" -eq 11 ]; then ok 'CSV has 16 columns and 11 lines'; else not_ok 'CSV' "$(cat out.csv)"; fi
 if grep -q '"hull": true' out.json; then ok 'the hull is marked'; else not_ok 'hull' "$(cat out.json)"; fi
 for f in bytes bytes_per_pixel psnr_before_db psnr_db psnr_pooled_db ssim; do
     above "sweep: $f" "$(field $f out.json)" 1e-6

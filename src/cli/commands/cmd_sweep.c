@@ -13,10 +13,10 @@ struct sweep_options {
     const char *output, *test;
     struct entries basis, interpolant;  // NULL: auto
     struct ints coefficients, luminance, bits, step, codebook;
-    struct domain_choice domain;
+    struct domain_choices domains;
     struct relume_transfer transfer;
     int leave_out, memory;
-    bool skip_missing, json, csv, allow_outside;
+    bool skip_missing, json, csv, allow_outside, tone_map;
     struct book_options books;
 };
 #define OPTIONS struct sweep_options
@@ -45,8 +45,11 @@ static const struct option options[] = {
           OPTION_INT, .max = 65536),
     INT("--leave-out", leave_out, "K", "number of lights left out at a time; default: 1", 1, 65535),
     TEXT("--test", test, "CAPTURE", "measure on the lights of another capture instead"),
-    OWN("--domain", domain, "D", "auto, linear, display, log or log:DELTA; default: as encode",
-        take_domain),
+    OWN("--domain", domains, "LIST", "auto, linear, display, log or log:DELTA; default: as encode",
+        take_domains),
+    FLAG("--tone-map", tone_map,
+         "compare each picture at an exposure of its own, with a gamma of 2.2, for high dynamic "
+         "range"),
     GROUP("codebooks"),
     BOOK_FORM_OPTIONS,
     GROUP("machine"),
@@ -100,6 +103,8 @@ static void add_forms(struct sweep *sweep, const struct relume_basis *asked, int
                                     .interpolant = listed ? o->interpolant.item[i] : NULL,
                                     .choose = !asked || (listed && !o->interpolant.item[i]),
                                     .luminance = o->luminance.item[j],
+                                    .domain = sweep->domain,
+                                    .several_domains = o->domains.count > 1,
                                     .wanted = size,
                                     .coefficients = size ? size : sweep->lights,
                                 });
@@ -145,7 +150,7 @@ static bool add_sizes(struct sweep *sweep, const struct relume_basis *asked)
     return possible;
 }
 
-static relume_status make_rows(struct sweep *sweep)
+static relume_status make_rows(struct sweep *sweep, const relume_capture *capture)
 {
     struct entries bases = sweep->options->basis;
     bool possible = false;
@@ -154,14 +159,24 @@ static relume_status make_rows(struct sweep *sweep)
         return RELUME_ENOMEM;
     for (int i = 0; !sweep->options->basis.count && (!i || relume_bases[i - 1]); i++)
         bases.item[bases.count++] = i ? relume_bases[i - 1] : NULL;
-    for (int b = 0; b < bases.count; b++)
-        possible |= add_sizes(sweep, bases.item[b]);
+    for (int d = 0; d < sweep->options->domains.count; d++) {
+        sweep->domain = sweep->options->domains.item[d];
+        sweep->domain.domain = relume_encode_domain(capture, sweep->domain.domain);
+        for (int b = 0; b < bases.count; b++)
+            possible |= add_sizes(sweep, bases.item[b]);
+    }
     if (sweep->rows == MOST_ROWS)
         return usage_error("sweep: expected a grid of fewer than %d rows", MOST_ROWS);
     return possible ? RELUME_OK : no_such_size(&bases);
 }
 
 // ---------------------------------------------------------------- one group of rows
+
+static bool same_domain(const struct domain_choice *a, const struct domain_choice *b)
+{
+    return a->domain == b->domain && a->display.curve == b->display.curve &&
+           a->display.gamma == b->display.gamma;
+}
 
 // Rows that differ only in how they are stored share their coefficients.
 static int group_end(const struct sweep *sweep, int first)
@@ -171,7 +186,8 @@ static int group_end(const struct sweep *sweep, int first)
     for (; end < sweep->rows; end++) {
         const struct sweep_row *b = &sweep->row[end];
         if (a->basis != b->basis || a->interpolant != b->interpolant || a->choose != b->choose ||
-            a->luminance != b->luminance || a->wanted != b->wanted)
+            a->luminance != b->luminance || a->wanted != b->wanted ||
+            !same_domain(&a->domain, &b->domain))
             break;
     }
     return end;
@@ -277,8 +293,8 @@ static relume_status learn(relume_coder **out, double *seconds, const struct wor
     const double start = now_s();
     const relume_status status = relume_coder_learn(
         out, row->basis, w->capture, &params,
-        relume_encode_params(.log = log, .domain = w->sweep->domain, .display = w->sweep->display,
-                             .threads = w->sweep->args->threads));
+        relume_encode_params(.log = log, .domain = row->domain.domain,
+                             .display = row->domain.display, .threads = w->sweep->args->threads));
     *seconds = now_s() - start;
     return status;
 }
@@ -293,8 +309,8 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const rel
     const double start = now_s();
     relume_status status = relume_pack_encode(
         w->capture, coder, path, NULL,
-        relume_pack_encode_params(.log = log, .domain = w->sweep->domain,
-                                  .display = w->sweep->display, .storage = row->store.storage,
+        relume_pack_encode_params(.log = log, .domain = row->domain.domain,
+                                  .display = row->domain.display, .storage = row->store.storage,
                                   .step = row->store.step,
                                   .books = row->books.codes ? &row->books : NULL,
                                   .share = row->store.share, .threads = w->sweep->args->threads));
@@ -402,30 +418,43 @@ static relume_status measure_group(struct work *w, int first, int end)
 
 // ---------------------------------------------------------------- the whole
 
-static relume_status measure_all(struct work *w, const relume_capture *test)
+// The rows from `first` on that are of one domain; `*end` is the next.
+static relume_status measure_domain(struct work *w, const relume_capture *test, int first, int *end)
 {
     struct sweep *s = w->sweep;
+    const struct domain_choice domain = s->row[first].domain;
     relume_status status = relume_heldout_open(
         &w->heldout, w->capture,
         relume_heldout_params(.log = s->args->log, .test = test, .leave_out = s->leave_out,
-                              .domain = s->domain, .display = s->display,
-                              .threads = s->args->threads,
+                              .domain = domain.domain, .display = domain.display,
+                              .tone_mapped = s->tone_mapped, .threads = s->args->threads,
                               .memory = (uint64_t)s->options->memory << 20));
     if (!status) {
         const struct relume_heldout_info *info = relume_heldout_info(w->heldout);
         s->measured = (double)info->pixels / (double)info->all_pixels;
-        status = relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, s->args->log);
     }
-    if (!status && s->measured < 1.0)
+    if (!status && s->measured < 1.0 && !first)
         announce(s->args, RELUME_NOTE,
                  "measured on %.0f %% of the picture's rows; give more --memory to use more",
                  100.0 * s->measured);
-    for (int first = 0, end; !status && first < s->rows; first = end) {
-        end = group_end(s, first);
-        status = measure_group(w, first, end);
+    for (*end = first; !status && *end < s->rows; first = *end) {
+        if (!same_domain(&s->row[first].domain, &domain))
+            break;
+        *end = group_end(s, first);
+        status = measure_group(w, first, *end);
     }
-    relume_making_abort(&w->folder);
     relume_heldout_destroy(&w->heldout);
+    return status;
+}
+
+static relume_status measure_all(struct work *w, const relume_capture *test)
+{
+    const struct sweep *s = w->sweep;
+    relume_status status =
+        relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, s->args->log);
+    for (int first = 0, end; !status && first < s->rows; first = end)
+        status = measure_domain(w, test, first, &end);
+    relume_making_abort(&w->folder);
     return status;
 }
 
@@ -492,6 +521,7 @@ static relume_status run(const struct args *args)
                           .test = o->test,
                           .out = o->output,
                           .leave_out = o->leave_out,
+                          .tone_mapped = o->tone_map,
                           .measured = 1.0};
     if (o->test && given(o, &o->leave_out))
         return usage_error("sweep: expected --leave-out or --test; found both");
@@ -504,14 +534,12 @@ static relume_status run(const struct args *args)
         status = open_capture(o, sweep.test, 0, &test);
     if (!status) {
         const struct relume_manifest *m = relume_capture_manifest(capture);
-        sweep.domain = relume_encode_domain(capture, o->domain.domain);
-        sweep.display = o->domain.display;
         sweep.views = m->views;
         sweep.lights = m->lights;
         sweep.judged = test ? relume_capture_manifest(test)->lights : m->lights;
         sweep.width = relume_capture_width(capture);
         sweep.height = relume_capture_height(capture);
-        status = make_rows(&sweep);
+        status = make_rows(&sweep, capture);
     }
     if (!status)
         status = sweep_captures(&sweep, capture, test);
@@ -527,6 +555,7 @@ const struct command command_sweep = {
             "compare file size and quality of coders on lights left out",
             "relume sweep photos/dirs.lp --basis pca,hsh,ptm --leave-out 5 -o statue", 1, 1),
     .defaults = &(const OPTIONS){.luminance = {1, {0}},
+                                 .domains = {.count = 1},
                                  .bits = {1, {RELUME_STORE_8}},
                                  .step = {1, {RELUME_STEP_PLANE}},
                                  .codebook = {1, {0}},

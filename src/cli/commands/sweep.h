@@ -2,6 +2,7 @@
 #ifndef CLI_SWEEP_H
 #define CLI_SWEEP_H
 
+#include "book_options.h"
 #include "cli.h"
 
 // One coder and one way of storing.
@@ -10,8 +11,10 @@ struct sweep_row {
     const struct relume_interpolant *interpolant;  // NULL: the basis's own
     bool choose;                                   // the interpolant is chosen by the capture
     bool luminance;
-    int wanted;        // coefficients asked for; 0: the basis's own number
-    int coefficients;  // of the file
+    struct domain_choice domain;  // not auto
+    bool several_domains;         // rows are told apart by theirs
+    int wanted;                   // coefficients asked for; 0: the basis's own number
+    int coefficients;             // of the file
     struct relume_heldout_store store;
     struct relume_books_params books;  // where codes is not 0
 
@@ -34,9 +37,9 @@ struct sweep {
     const char *out;             // stem of the outputs, or NULL
     int leave_out;
     struct relume_books_params books;  // of rows with codebooks
-    enum relume_domain domain;
-    struct relume_transfer display;  // its curve, where it was asked for
-    double measured;                 // part of the pixels that was looked at
+    struct domain_choice domain;       // of the rows that are made next
+    bool tone_mapped;                  // display values are those of relume_heldout_params
+    double measured;                   // part of the pixels that was looked at
     int views, lights, judged, width, height;
     struct sweep_row *row;
     int rows;

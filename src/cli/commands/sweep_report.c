@@ -6,17 +6,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *domain_words(const struct domain_choice *d)
+{
+    return relume_domain_name(d->domain, d->display);
+}
+
 void sweep_coder_name(const struct sweep_row *row, char *text, size_t size)
 {
+    int n;
     if (row->choose && row->basis->joint)
-        snprintf(text, size, "auto");
+        n = snprintf(text, size, "auto");
     else
-        snprintf(text, size, "%s%s%s%s", row->basis->name,
-                 row->choose || row->interpolant ? " " : "",
-                 row->choose        ? "auto"
-                 : row->interpolant ? row->interpolant->name
-                                    : "",
-                 row->luminance ? " luminance" : "");
+        n = snprintf(text, size, "%s%s%s%s", row->basis->name,
+                     row->choose || row->interpolant ? " " : "",
+                     row->choose        ? "auto"
+                     : row->interpolant ? row->interpolant->name
+                                        : "",
+                     row->luminance ? " luminance" : "");
+    if (row->several_domains)
+        snprintf(text + n, size - (size_t)n, " %s", domain_words(&row->domain));
 }
 
 const char *sweep_step_name(const struct sweep_row *row)
@@ -90,7 +98,7 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out)
 {
     fputs(
         "coder,coefficients,bits,step,codebook,planes,bytes,bytes_per_pixel,psnr_before_db,psnr_db,"
-        "psnr_pooled_db,ssim,seconds,hull,skipped\n",
+        "psnr_pooled_db,ssim,seconds,hull,skipped,domain\n",
         out);
     for (int i = 0; i < sweep->rows; i++) {
         const struct sweep_row *r = &sweep->row[i];
@@ -101,7 +109,7 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out)
         if (!r->known) {
             fputs(",,,,,,,,,", out);
             csv_text(out, r->skipped);
-            fputc('\n', out);
+            fprintf(out, ",%s\n", domain_words(&r->domain));
             continue;
         }
         fprintf(out, ",%d,%.0f", r->planes, r->bytes);
@@ -111,7 +119,7 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out)
         csv_number(out, r->quality.psnr_pooled_db);
         csv_number(out, r->quality.ssim);
         csv_number(out, r->seconds);
-        fprintf(out, ",%d,\n", r->on_hull);
+        fprintf(out, ",%d,,%s\n", r->on_hull, domain_words(&r->domain));
     }
 }
 
@@ -135,9 +143,10 @@ static void print_json_row(const struct sweep_row *r, FILE *out)
         fputs("null", out);
     fprintf(out,
             ", \"colour\": \"%s\", \"coefficients\": %d, \"bits\": \"%s\", \"step\": \"%s\", "
-            "\"codebook\": %d",
+            "\"codebook\": %d, \"domain\": \"%s\"",
             r->luminance ? "luminance" : "rgb", r->coefficients,
-            relume_storage_name(r->store.storage), sweep_step_name(r), r->books.codes);
+            relume_storage_name(r->store.storage), sweep_step_name(r), r->books.codes,
+            domain_words(&r->domain));
     if (!r->known) {
         fputs(", \"skipped\": ", out);
         json_text(out, r->skipped);
@@ -168,9 +177,9 @@ void sweep_print_json(const struct sweep *sweep, FILE *out)
     fprintf(out, sweep->test ? "null" : "%d", sweep->leave_out);
     fprintf(out,
             ", \"views\": %d, \"lights\": %d, \"judged\": %d, \"width\": %d, \"height\": %d, "
-            "\"domain\": \"%s\"",
+            "\"domain\": \"%s\", \"tone_mapped\": %s",
             sweep->views, sweep->lights, sweep->judged, sweep->width, sweep->height,
-            relume_domain_name(sweep->domain, sweep->display));
+            domain_words(&sweep->row[0].domain), sweep->tone_mapped ? "true" : "false");
     json_field(out, "measured", sweep->measured);
     fputs(", \"rows\": [", out);
     for (int i = 0; i < sweep->rows; i++) {
@@ -295,6 +304,8 @@ static void describe(const struct sweep *sweep, char *text, size_t size)
     if (one)
         n += snprintf(text + n, size - (size_t)n, "; %s%s coefficients", bits,
                       strcmp(bits, "half") ? "-bit" : "");
+    if (sweep->tone_mapped)
+        n += snprintf(text + n, size - (size_t)n, "; each at its own exposure");
     if (sweep->measured < 1.0)
         snprintf(text + n, size - (size_t)n, "; on %.0f %% of the picture's rows",
                  100.0 * sweep->measured);

@@ -76,6 +76,9 @@ static uint64_t row_key(const sweep_resume *r, const struct sweep_row *row)
     h = hash_number(h, row->choose);
     h = hash_number(h, row->luminance);
     h = hash_number(h, row->wanted);
+    h = hash_number(h, row->domain.domain);
+    h = hash_number(h, row->domain.display.curve);
+    h = hash(h, &row->domain.display.gamma, sizeof row->domain.display.gamma);
     h = hash_text(h, relume_storage_name(row->store.storage));
     h = hash_number(h, row->store.step);
     if (!row->books.codes)
@@ -241,8 +244,7 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
     for (; *captures; captures++)
         r->key = hash_capture(r->key, *captures);
     r->key = hash_number(r->key, sweep->test ? -1 : sweep->leave_out);
-    r->key = hash_number(r->key, sweep->domain);
-    r->key = hash_number(r->key, (double)sweep->display.gamma);
+    r->key = hash_number(r->key, sweep->tone_mapped);
     r->key = hash_number(r->key, (int64_t)memory);
     relume_status status = relume_file_check(r->path, sweep->args->log);
     if (!status) {

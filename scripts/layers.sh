@@ -28,7 +28,8 @@ lossy:base math:base image coder
 encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team
 pack:base geometry image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
-exchange:base math image foreign:base io image photograph directions codebook coder capture pack relight exchange
+block:base:base
+exchange:base math image foreign block:base io image photograph directions codebook coder capture pack relight exchange
 relight:base math kernel image:base image coder light relight rig relighter
 analysis:base math:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture

@@ -13,7 +13,7 @@
 
 relume_status relume_exchange_parse(enum relume_exchange *out, const char *name)
 {
-    static const char *const names[] = {"relight", "ptm", "lptm", "rti", "deepzoom"};
+    static const char *const names[] = {"relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7"};
     const int i = name_find(name, names, sizeof names / sizeof *names);
     *out = (enum relume_exchange)(i < 0 ? 0 : i);
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
@@ -45,6 +45,17 @@ double export_light_spacing(const struct source *s)
     return sum / s->lights;
 }
 
+static bool is_blocks(enum relume_exchange format)
+{
+    return format == RELUME_EXCHANGE_BC1 || format == RELUME_EXCHANGE_BC7;
+}
+
+static bool is_folder(enum relume_exchange format)
+{
+    return format == RELUME_EXCHANGE_RELIGHT || format == RELUME_EXCHANGE_DEEPZOOM ||
+           is_blocks(format);
+}
+
 static relume_status check(const relume_pack *pack, const char *path, enum relume_exchange format,
                            const struct relume_export_params *p)
 {
@@ -62,7 +73,7 @@ static relume_status check(const relume_pack *pack, const char *path, enum relum
     if (p->view < 0 || p->view >= info->views)
         return log_fail(p->log, RELUME_EINVAL, "view %d; expected 0 to %d", p->view,
                         info->views - 1);
-    if (p->writer && (format == RELUME_EXCHANGE_RELIGHT || format == RELUME_EXCHANGE_DEEPZOOM))
+    if (p->writer && is_folder(format))
         return log_fail(p->log, RELUME_EINVAL, "this format is a folder; expected no writer");
     if ((p->bytes_per_pixel > 0.0) + (p->psnr_db > 0.0) + (p->quality > 0) > 1)
         return log_fail(p->log, RELUME_EINVAL,
@@ -86,9 +97,9 @@ relume_status relume_export(relume_pack *pack, const char *path, enum relume_exc
         status = source_open(&source, codes, p.log);
     const struct export e = {&source, &p, p.log, format == RELUME_EXCHANGE_DEEPZOOM};
     if (!status)
-        status = format == RELUME_EXCHANGE_RELIGHT || format == RELUME_EXCHANGE_DEEPZOOM
-                     ? export_web(&e, path, &found)
-                     : export_legacy(&e, path, format, &found);
+        status = is_blocks(format)   ? export_blocks(&e, path, format, &found)
+                 : is_folder(format) ? export_web(&e, path, &found)
+                                     : export_legacy(&e, path, format, &found);
     source_close(&source);
     if (report)
         *report = found;

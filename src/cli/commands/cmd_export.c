@@ -15,7 +15,7 @@ struct export_options {
     bool force, allow_outside, keep_going;
 };
 #define OPTIONS struct export_options
-#define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom"
+#define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7"
 
 static const struct option options[] = {
     GROUP("output"),
@@ -23,8 +23,9 @@ static const struct option options[] = {
     FLAG("--force", force, "replace a folder that relume made"),
     GROUP("model"),
     NAME("--to", to, "FORMAT",
-         "relight, ptm, lptm, rti or deepzoom; default: by OUT's ending (.ptm, .lptm, .rti), else "
-         "relight",
+         "relight, ptm, lptm, rti, deepzoom, or bc1, bc7: eigenimages as DDS textures with a "
+         "shader; "
+         "default: by OUT's ending (.ptm, .lptm, .rti), else relight",
          RELUME_EXCHANGE_RELIGHT, FORMATS),
     NAME("--type", type, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh",
          RELUME_WEB_BILINEAR, "bilinear", "rbf", "ptm", "lptm", "hsh", "sh"),
@@ -116,6 +117,7 @@ static relume_status choose_format(enum relume_exchange *to, const struct export
 
 static relume_status check(const struct export_options *o, enum relume_exchange to)
 {
+    const bool blocks = to == RELUME_EXCHANGE_BC1 || to == RELUME_EXCHANGE_BC7;
     const bool folder = to == RELUME_EXCHANGE_RELIGHT || to == RELUME_EXCHANGE_DEEPZOOM;
     const bool bytes = given(o, &o->bytes_per_pixel), psnr = given(o, &o->psnr);
     const char *only_folders = given(o, &o->type)         ? "--type"
@@ -127,6 +129,9 @@ static relume_status check(const struct export_options *o, enum relume_exchange 
         return usage_error("--colorspace mycc: works only with --type bilinear and rbf");
     if (!folder && only_folders)
         return usage_error("%s: works only with --to relight and deepzoom", only_folders);
+    if (blocks && (o->coefficients || o->quality || bytes || psnr))
+        return usage_error("%s: textures have the size and the terms that they have; leave it out",
+                           o->coefficients ? "--coefficients" : jpeg);
     if ((to == RELUME_EXCHANGE_PTM || to == RELUME_EXCHANGE_LPTM) && o->coefficients)
         return usage_error(
             "--coefficients: .ptm always has 6; leave it out, or choose another --to");

@@ -1,0 +1,17 @@
+// line.h - the line in colour space along which the pixels of a block are placed
+#ifndef BLOCK_LINE_H
+#define BLOCK_LINE_H
+
+#include "block/block.h"
+
+struct line {
+    float end[2][3];  // [0, 255]
+};
+
+// Along the principal axis of the pixels, as far as they reach.
+struct line line_fit(const uint8_t (*rgb)[3]);
+// The least squares' line for pixels at the parts `at` of it, 0 to 1. False where they all stand in
+// one place.
+int line_refit(struct line *out, const uint8_t (*rgb)[3], const float at[BLOCK_PIXELS]);
+
+#endif

@@ -1,0 +1,86 @@
+// BC1 and BC7 as the graphics card decodes them, beside our own decoders
+#include "fixture.h"
+
+#include "block/block.h"
+
+enum { ACROSS = 16, SIDE = ACROSS * BLOCK_SIDE };
+enum { DXT1 = 0x83f0, BPTC = 0x8e8c };
+
+typedef void compressed(GLenum, GLint, GLenum, GLsizei, GLsizei, GLint, GLsizei, const void *);
+typedef void get_image(GLenum, GLint, GLenum, GLenum, void *);
+
+static uint8_t picture[SIDE * SIDE][3];
+
+// Smooth, rough and even parts.
+static void paint(void)
+{
+    uint64_t random = 8;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 3; c++) {
+            const int x = i % SIDE, y = i / SIDE;
+            const double smooth = 127.5 + 127.5 * sin(0.07 * x * (c + 1) + 0.05 * y);
+            picture[i][c] = (uint8_t)(x < SIDE / 2   ? smooth
+                                      : y < SIDE / 2 ? 255.0 * uniform(&random)
+                                                     : 40.0 * c + x / 16);
+        }
+}
+
+// The card may round colours between the ends in another way: by 1.
+static void compare(const struct block_format *f, GLenum internal)
+{
+    static uint8_t coded[ACROSS * ACROSS * BLOCK_MOST_BYTES], ours[SIDE * SIDE][3];
+    static uint8_t theirs[SIDE * SIDE][3];
+    int most = 0;
+    for (int b = 0; b < ACROSS * ACROSS; b++) {
+        uint8_t rgb[BLOCK_PIXELS][3];
+        for (int pass = 0; pass < 2; pass++) {
+            for (int i = 0; i < BLOCK_PIXELS; i++) {
+                const int x = b % ACROSS * BLOCK_SIDE + i % BLOCK_SIDE;
+                const int y = b / ACROSS * BLOCK_SIDE + i / BLOCK_SIDE;
+                memcpy(pass ? ours[y * SIDE + x] : rgb[i], pass ? rgb[i] : picture[y * SIDE + x],
+                       3);
+            }
+            if (!pass) {
+                f->encode(coded + (size_t)b * f->bytes, (const uint8_t(*)[3])rgb);
+                f->decode(rgb, coded + (size_t)b * f->bytes);
+            }
+        }
+    }
+    compressed *upload = (compressed *)context_osmesa.get_proc("glCompressedTexImage2D");
+    get_image *download = (get_image *)context_osmesa.get_proc("glGetTexImage");
+    const struct gl *gl = &fixture_gl;
+    GLuint texture;
+    gl->GenTextures(1, &texture);
+    gl->BindTexture(GL_TEXTURE_2D, texture);
+    upload(GL_TEXTURE_2D, 0, internal, SIDE, SIDE, 0, (GLsizei)(ACROSS * ACROSS * f->bytes), coded);
+    if (gl_check(gl, "uploading blocks", &fixture_log)) {
+        print_message("skipped: %s: this driver has no such textures\n", f->name);
+        gl->DeleteTextures(1, &texture);
+        return;
+    }
+    gl->PixelStorei(GL_PACK_ALIGNMENT, 1);
+    download(GL_TEXTURE_2D, 0, GL_RGB, GL_UNSIGNED_BYTE, theirs);
+    assert_int_equal(gl_check(gl, "reading blocks", &fixture_log), RELUME_OK);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 3; c++) {
+            const int d = abs(ours[i][c] - theirs[i][c]);
+            most = d > most ? d : most;
+        }
+    print_message("  %s: %d codes apart at most\n", f->name, most);
+    assert_true(most <= 1);
+    gl->DeleteTextures(1, &texture);
+}
+
+static void blocks_are_read_as_we_read_them(void **state)
+{
+    (void)state;
+    paint();
+    compare(&block_bc1, DXT1);
+    compare(&block_bc7, BPTC);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(blocks_are_read_as_we_read_them)};
+    return cmocka_run_group_tests(tests, fixture_open, fixture_close);
+}

@@ -231,7 +231,7 @@ enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN
 // "auto", "linear", "display"; "log" and "log:DELTA" are the display domain with that curve, which
 // `display` (else AUTO) says; its usual delta is RELUME_LOG_DELTA. RELUME_EINVAL when `text` is
 // none of these.
-#define RELUME_LOG_DELTA 1e-3f
+#define RELUME_LOG_DELTA 1e-2f
 RELUME_RESULT relume_status relume_domain_parse(enum relume_domain *out,
                                                 struct relume_transfer *display, const char *text);
 // "auto", "linear", "display" or "log".

@@ -87,6 +87,18 @@ class Relighting(Fixture):
             made = np.einsum("ck,kyx->yxc", weights, coefficients) + constant
             np.testing.assert_allclose(made, file.relight((0, 0, 1)), atol=1e-5)
 
+    def test_logarithms(self):
+        data = relume.encode(self.pictures, self.lights, basis="eigen", domain="log:0.05")
+        with relume.open(data) as file:
+            self.assertEqual((file.info.basis, file.info.domain), ("eigen", "log"))
+            light = file.directions[0]
+            weights, constant = file.weights(light)
+            codes = np.einsum("ck,ckyx->yxc", weights, file.coefficients()) + constant
+            made = 0.05 * (np.exp(codes * np.log(21)) - 1)
+            np.testing.assert_allclose(made, file.relight(light), atol=1e-4)
+        with self.assertRaises(relume.UsageError):
+            relume.encode(self.pictures, self.lights, domain="lag")
+
     def test_size_and_views(self):
         with relume.open(self.data) as file:
             self.assertEqual(file.relight(size=(20, 15)).shape, (15, 20, 3))

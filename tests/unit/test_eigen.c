@@ -116,6 +116,28 @@ static void test_logarithms_of_low_rank_come_back(void **state)
     relume_coder_destroy(&few);
 }
 
+// One term of 300 lights is found by steps; the coder is that of either way.
+static void test_many_lights(void **state)
+{
+    (void)state;
+    enum { MANY = 300, FEW = 50 };
+    static struct relume_vec3 direction[MANY];
+    static float value[MANY * FEW * 3];
+    const struct relume_samples s = {.lights = MANY, .pixels = FEW, .data = value};
+    double gram[MANY];
+    uint32_t seed = 4;
+    relume_coder *c;
+    CHECK_OK(relume_directions_make(direction, MANY, relume_pattern_find("hammersley"), NULL));
+    for (int i = 0; i < MANY * FEW * 3; i++)
+        value[i] = (float)(test_uniform(&seed) + (i / (FEW * 3)) % 3);
+    CHECK_OK(eigen_by_gram(gram, 1, &s, 1));
+    CHECK_OK(relume_coder_create(&c, &relume_basis_eigen, direction, MANY,
+                                 relume_coder_params(.coefficients = 1, .samples = &s)));
+    for (int i = 0; i < MANY; i++)  // four steps: the next eigenvalue is a hundredth of the first
+        CHECK_NEAR(relume_coder_info(c)->transform[i], gram[i], 1e-5);
+    relume_coder_destroy(&c);
+}
+
 static void test_as_many_as_lights_are_exact(void **state)
 {
     (void)state;
@@ -132,6 +154,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_both_ways_agree),
         cmocka_unit_test(test_logarithms_of_low_rank_come_back),
+        cmocka_unit_test(test_many_lights),
         cmocka_unit_test(test_as_many_as_lights_are_exact),
     };
     return cmocka_run_group_tests(tests, setup, NULL);

@@ -6,13 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *domain_words(const struct domain_choice *d)
+enum { DOMAIN_WORDS = 24 };
+
+// With its delta, where that is not the usual one.
+static const char *domain_words(char text[DOMAIN_WORDS], const struct domain_choice *d)
 {
-    return relume_domain_name(d->domain, d->display);
+    const char *name = relume_domain_name(d->domain, d->display);
+    if (d->display.curve == RELUME_CURVE_LOG && d->display.gamma != RELUME_LOG_DELTA)
+        relume_transfer_text(d->display, text, DOMAIN_WORDS);
+    else
+        snprintf(text, DOMAIN_WORDS, "%s", name);
+    return text;
 }
 
 void sweep_coder_name(const struct sweep_row *row, char *text, size_t size)
 {
+    char words[DOMAIN_WORDS];
     int n;
     if (row->choose && row->basis->joint)
         n = snprintf(text, size, "auto");
@@ -24,7 +33,7 @@ void sweep_coder_name(const struct sweep_row *row, char *text, size_t size)
                                         : "",
                      row->luminance ? " luminance" : "");
     if (row->several_domains)
-        snprintf(text + n, size - (size_t)n, " %s", domain_words(&row->domain));
+        snprintf(text + n, size - (size_t)n, " %s", domain_words(words, &row->domain));
 }
 
 const char *sweep_step_name(const struct sweep_row *row)
@@ -102,14 +111,14 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out)
         out);
     for (int i = 0; i < sweep->rows; i++) {
         const struct sweep_row *r = &sweep->row[i];
-        char name[64];
+        char name[64], words[DOMAIN_WORDS];
         sweep_coder_name(r, name, sizeof name);
         fprintf(out, "%s,%d,%s,%s,%d", name, r->coefficients, relume_storage_name(r->store.storage),
                 sweep_step_name(r), r->books.codes);
         if (!r->known) {
             fputs(",,,,,,,,,", out);
             csv_text(out, r->skipped);
-            fprintf(out, ",%s\n", domain_words(&r->domain));
+            fprintf(out, ",%s\n", domain_words(words, &r->domain));
             continue;
         }
         fprintf(out, ",%d,%.0f", r->planes, r->bytes);
@@ -119,7 +128,7 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out)
         csv_number(out, r->quality.psnr_pooled_db);
         csv_number(out, r->quality.ssim);
         csv_number(out, r->seconds);
-        fprintf(out, ",%d,,%s\n", r->on_hull, domain_words(&r->domain));
+        fprintf(out, ",%d,,%s\n", r->on_hull, domain_words(words, &r->domain));
     }
 }
 
@@ -136,6 +145,7 @@ static void json_field(FILE *out, const char *name, double value)
 
 static void print_json_row(const struct sweep_row *r, FILE *out)
 {
+    char words[DOMAIN_WORDS];
     fprintf(out, "{\"basis\": \"%s\", \"interpolant\": ", r->basis->name);
     if (r->interpolant)
         json_text(out, r->interpolant->name);
@@ -146,7 +156,7 @@ static void print_json_row(const struct sweep_row *r, FILE *out)
             "\"codebook\": %d, \"domain\": \"%s\"",
             r->luminance ? "luminance" : "rgb", r->coefficients,
             relume_storage_name(r->store.storage), sweep_step_name(r), r->books.codes,
-            domain_words(&r->domain));
+            domain_words(words, &r->domain));
     if (!r->known) {
         fputs(", \"skipped\": ", out);
         json_text(out, r->skipped);
@@ -166,6 +176,7 @@ static void print_json_row(const struct sweep_row *r, FILE *out)
 
 void sweep_print_json(const struct sweep *sweep, FILE *out)
 {
+    char words[DOMAIN_WORDS];
     fputs("{\"capture\": ", out);
     json_text(out, sweep->capture);
     fputs(", \"test\": ", out);
@@ -179,7 +190,7 @@ void sweep_print_json(const struct sweep *sweep, FILE *out)
             ", \"views\": %d, \"lights\": %d, \"judged\": %d, \"width\": %d, \"height\": %d, "
             "\"domain\": \"%s\", \"tone_mapped\": %s",
             sweep->views, sweep->lights, sweep->judged, sweep->width, sweep->height,
-            domain_words(&sweep->row[0].domain), sweep->tone_mapped ? "true" : "false");
+            domain_words(words, &sweep->row[0].domain), sweep->tone_mapped ? "true" : "false");
     json_field(out, "measured", sweep->measured);
     fputs(", \"rows\": [", out);
     for (int i = 0; i < sweep->rows; i++) {

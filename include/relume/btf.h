@@ -180,6 +180,9 @@ struct relume_btf_fit_params {  // zero in a field means its default
     // qmf: bytes measured over bytes of the model, at least where one component allows; 200;
     // [1, 1e6]
     double ratio;
+    // gbrdf: where no light stands where a view is, find the relief with lights between the
+    // measured ones; without it such a BTF is refused.
+    bool resample;
 };
 #define relume_btf_fit_params(...)                                                                 \
     (&(const struct relume_btf_fit_params){RELUME_SIZED(relume_btf_fit_params), __VA_ARGS__})
@@ -187,8 +190,11 @@ struct relume_btf_fit_params {  // zero in a field means its default
 // A fitted model. Never changes. Thread-safety: safe.
 typedef struct relume_btf_fitted relume_btf_fitted;
 
+// Whether a model can be fitted to a BTF of such directions without `resample`; only gbrdf asks for
+// some.
+RELUME_API bool relume_btf_model_fits(const struct relume_btf_model *model, const relume_btf *btf);
 // Returns RELUME_EINVAL for parameters out of range, RELUME_EDAMAGED for values that are not
-// finite, RELUME_ENOMEM, RELUME_ECANCEL.
+// finite, RELUME_EUNFIT for directions that the model cannot use, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
                                            const struct relume_btf_model *model,
                                            const struct relume_btf_fit_params *params);

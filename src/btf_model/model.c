@@ -31,6 +31,11 @@ const char *relume_btf_model_summary(const struct relume_btf_model *model)
     return model->summary;
 }
 
+bool relume_btf_model_fits(const struct relume_btf_model *model, const relume_btf *btf)
+{
+    return !model->fits || model->fits(btf);
+}
+
 void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,
                const size_t shape[NPY_DIMS])
 {
@@ -164,7 +169,14 @@ static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
     m->width = btf->info.width, m->height = btf->info.height;
     m->texels = btf_texels(btf);
     m->without_cosine = btf->info.without_cosine;
-    struct fitting f = {btf, m, p->log, p->seed, p->threads, p->ratio, p->clusters != 0};
+    struct fitting f = {.btf = btf,
+                        .out = m,
+                        .log = p->log,
+                        .seed = p->seed,
+                        .threads = p->threads,
+                        .ratio = p->ratio,
+                        .counts_given = p->clusters != 0,
+                        .resample = p->resample};
     relume_status status = copy_directions(m, btf, p->log);
     if (!status && before) {
         // Those of the level before, where texels are left for them: a cluster keeps its share of

@@ -55,6 +55,7 @@ struct fitting {
     int threads;
     double ratio;       // asked for; 0: the model's choice
     bool counts_given;  // clusters were asked for
+    bool resample;      // lights may be interpolated
 };
 
 struct relume_btf_oriented_light;
@@ -70,6 +71,8 @@ struct relume_btf_model {
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
+    // Whether directions are of use; NULL: all are.
+    bool (*fits)(const relume_btf *btf);
     // Whatever makes reading faster, into m->prepared, which mem_free() frees; NULL: nothing does.
     relume_status (*prepare)(relume_btf_fitted *m);
     struct relume_btf_cost (*cost)(const relume_btf_fitted *m);

@@ -46,6 +46,7 @@ static relume_status fit(struct fitting *f)
                                      &(struct gbrdf_fit_params){.log = f->log,
                                                                 .materials = m->clusters,
                                                                 .exact = f->counts_given,
+                                                                .resample = f->resample,
                                                                 .seed = f->seed,
                                                                 .threads = f->threads});
     if (!status) {
@@ -119,6 +120,7 @@ const struct relume_btf_model model_gbrdf = {
     .most_clusters = 64,
     .layout = layout,
     .fit = fit,
+    .fits = gbrdf_fits,
     .eval = eval,
     .prepare = prepare,
     .cost = cost,

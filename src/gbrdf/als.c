@@ -18,6 +18,8 @@
 static const float LEAST_COSINE = 0.06f;
 // Of the mean: what is darker counts as if it had this value, since logarithms have no end below.
 static const double DARK = 0.2;
+// Cells of less than this share of the usual support are filled from those around.
+static const double WELL_KNOWN = 0.1;
 enum { SWEEPS = 60 };
 
 int als_gather(struct als_sample *out, const struct flat *flat, size_t texel, double turn,
@@ -201,14 +203,14 @@ void als_solve(float *q, const struct als_sums *sums, const struct als_form *for
     float value[NDF_SIDE * NDF_SIDE], weight[NDF_SIDE * NDF_SIDE];
     for (int c = 0; c < channels; c++) {
         double integral = 0.0;
+        double usual = 1e-12;
+        for (int i = 0; i < cells; i++)
+            usual += sums->below[i][c] / cells;
         for (int i = 0; i < cells; i++) {
-            weight[i] = sums->below[i][c] > 1e-12 ? 1.0f : 0.0f;
-            value[i] = weight[i] > 0.0f
-                           ? (float)fmin(fmax((double)q[channels * i + c] +
-                                                  sums->above[i][c] / sums->below[i][c],
-                                              0.0),
-                                         6e4)
-                           : 0.0f;
+            const double support = sums->below[i][c],
+                         change = support > 1e-9 * usual ? sums->above[i][c] / support : 0.0;
+            weight[i] = (float)fmin(support / (WELL_KNOWN * usual), 1.0);
+            value[i] = (float)fmin(fmax((double)q[channels * i + c] + change, 0.0), 6e4);
         }
         ndf_fill(value, weight, side);
         for (int i = 0; i < cells; i++) {

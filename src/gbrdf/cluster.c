@@ -16,7 +16,7 @@
 #include <string.h>
 
 // Centres are learned from no more texels than this.
-enum { LEARN = 2048, ROUNDS = 12, STARTS = 3, RELAXATIONS = 8, MOST_CLUSTERS = 64 };
+enum { LEARN = 2048, ROUNDS = 12, STARTS = 3, RELAXATIONS = 4, MOST_CLUSTERS = 64 };
 // Of the pole; further out, half vectors are rare.
 static const double WIDEST = 60.0 * M_PI / 180.0;
 // What a turn must gain of the unit correlation: those of round distributions mean nothing.
@@ -25,6 +25,24 @@ static const double TURN_GAIN = 0.02;
 static const double DISTINCT = 1.0;
 
 // ---------------------------------------------------------------- distributions
+
+// A share of each value to its neighbours: cells are told by few samples.
+static void soften(float polar[POLAR_VALUES])
+{
+    float from[POLAR_VALUES];
+    memcpy(from, polar, sizeof from);
+    for (int r = 0; r < POLAR_RINGS; r++)
+        for (int i = 0; i < POLAR_AROUND; i++) {
+            float sum = 0.0f;
+            for (int k = 0; k < 9; k++) {
+                const int ring = index_clamped(r + k / 3 - 1, POLAR_RINGS),
+                          at = index_wrapped(i + k % 3 - 1, POLAR_AROUND);
+                sum += (k / 3 == 1 ? 0.5f : 0.25f) * (k % 3 == 1 ? 0.5f : 0.25f) *
+                       from[ring * POLAR_AROUND + at];
+            }
+            polar[r * POLAR_AROUND + i] = sum;
+        }
+}
 
 void polar_from(float polar[POLAR_VALUES], const float *q, int side)
 {
@@ -38,30 +56,38 @@ void polar_from(float polar[POLAR_VALUES], const float *q, int side)
             const struct bilinear b =
                 bilinear_at(at[0] - 0.5, at[1] - 0.5, side, side, EDGE_CLAMPED);
             const double share = sin(theta) * fmax(bilinear_value(&b, q, 1, 0), 0.0);
-            polar[r * POLAR_AROUND + i] = (float)sqrt(share);
-            sum += share;
+            polar[r * POLAR_AROUND + i] = (float)share;
         }
+    soften(polar);
+    for (int i = 0; i < POLAR_VALUES; i++) {
+        sum += (double)polar[i];
+        polar[i] = sqrtf(polar[i]);
+    }
     for (int i = 0; i < POLAR_VALUES; i++)
         polar[i] = sum > 1e-20 ? polar[i] / (float)sqrt(sum) : 1.0f / sqrtf(POLAR_VALUES);
 }
 
-static float correlation(const float *a, const float *b, int shift)
+// c[shift] for all shifts, of products with `a` shifted forwards; none waits for another.
+static void correlate(float c[POLAR_AROUND], const float *a, const float *b)
 {
-    float sum = 0.0f;
-    for (int r = 0; r < POLAR_RINGS; r++, a += POLAR_AROUND, b += POLAR_AROUND)
+    memset(c, 0, POLAR_AROUND * sizeof *c);
+    for (int r = 0; r < POLAR_RINGS; r++, a += POLAR_AROUND, b += POLAR_AROUND) {
+        float twice[2 * POLAR_AROUND];
+        memcpy(twice, a, POLAR_AROUND * sizeof *a);
+        memcpy(twice + POLAR_AROUND, a, POLAR_AROUND * sizeof *a);
         for (int i = 0; i < POLAR_AROUND; i++)
-            sum += a[(i + shift) % POLAR_AROUND] * b[i];
-    return sum;
+            for (int s = 0; s < POLAR_AROUND; s++)
+                c[s] += twice[i + s] * b[i];
+    }
 }
 
 double polar_align(const float *polar, const float *centre, double *shift)
 {
     float c[POLAR_AROUND];
     int best = 0;
-    for (int s = 0; s < POLAR_AROUND; s++) {
-        c[s] = correlation(polar, centre, s);
+    correlate(c, polar, centre);
+    for (int s = 1; s < POLAR_AROUND; s++)
         best = c[s] > c[best] ? s : best;
-    }
     if ((double)c[best] < (double)c[0] + TURN_GAIN)
         best = 0;
     const double left = (double)c[(best + POLAR_AROUND - 1) % POLAR_AROUND],
@@ -217,7 +243,7 @@ static bool relax(const struct learning *w, float *p, int width, int height)
     for (size_t i = 0; i < w->texels; i++) {
         float sum = 0.0f;
         for (size_t k = 0; k < n; k++)
-            sum += p[i * n + k] = (float)(1.0 / (w->distance[i * n + k] + 1e-6));
+            sum += p[i * n + k] = (float)(1.0 / (pow(w->distance[i * n + k], 2) + 1e-6));
         for (size_t k = 0; k < n; k++)
             p[i * n + k] /= sum;
     }

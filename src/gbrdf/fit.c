@@ -9,16 +9,18 @@
 #include "base/thread.h"
 #include "gbrdf/als.h"
 #include "gbrdf/cluster.h"
+#include "gbrdf/depth.h"
 
 #include <stdatomic.h>
 #include <string.h>
 
 enum {
     COARSE_SIDE = 16,     // of the distribution of a single texel
-    COARSE_PAIRS = 2500,  // that tell it: some 10 a cell
+    COARSE_PAIRS = 3500,  // that tell it: some 10 a cell
     COARSE_ROUNDS = 12,
     MATERIAL_TEXELS = 192,  // that a material's distribution is learned from
     MATERIAL_ROUNDS = 12,
+    RELIEF_ROUNDS = 2,
 };
 
 relume_status gbrdf_maps_create(struct gbrdf_maps *out, int width, int height, int materials)
@@ -274,6 +276,76 @@ static relume_status find_materials(struct work *w, const struct gbrdf_maps *out
     return for_texels(w, "fitting materials", fit_beside);
 }
 
+// ---------------------------------------------------------------- the relief
+
+static relume_status relief_by(struct meso *relief, float *z, const relume_btf *btf,
+                               const struct picture_pair *pairs, int count,
+                               const struct gbrdf_fit_params *p)
+{
+    struct flat flat = {.btf = NULL};
+    vec3 *normal = mem_array(btf_texels(btf), sizeof *normal);
+    relume_status status =
+        normal ? depth_find(z, btf, pairs, count, p->threads, p->log) : RELUME_ENOMEM;
+    meso_settle(relief);
+    // normals need a relief to draw values onto, and improve it
+    for (int round = 0; round < RELIEF_ROUNDS && !status; round++) {
+        status = flat_make(&flat, btf, relief, p->threads, p->log);
+        if (!status)
+            status = depth_normals(normal, &flat, pairs, count, p->threads, p->log);
+        if (!status)
+            status = depth_fuse(z, normal, relief->width, relief->height);
+        meso_settle(relief);
+        flat_free(&flat);
+    }
+    mem_free(normal);
+    return status;
+}
+
+static bool is_small(const relume_btf *btf)
+{
+    const struct relume_btf_info *info = relume_btf_info(btf);
+    return info->width < DEPTH_LEAST_SIDE || info->height < DEPTH_LEAST_SIDE;
+}
+
+bool gbrdf_fits(const relume_btf *btf)
+{
+    struct picture_pair *pairs;
+    int count = 0;
+    const relume_status status = pairs_reciprocal(&pairs, &count, btf);
+    mem_free(pairs);
+    // without memory the fit itself says so
+    return is_small(btf) || count || status;
+}
+
+static relume_status find_relief(struct meso *relief, float *z, const relume_btf *btf,
+                                 const struct gbrdf_fit_params *p)
+{
+    struct picture_pair *pairs = NULL;
+    relume_btf *resampled = NULL;
+    int count = 0;
+    if (is_small(btf))
+        return RELUME_OK;
+    relume_status status = pairs_reciprocal(&pairs, &count, btf);
+    if (!status && !count && p->resample) {
+        mem_free(pairs);
+        pairs = NULL;
+        status = pairs_resample(&resampled, btf, p->threads, p->log);
+        if (!status)
+            status = pairs_reciprocal(&pairs, &count, resampled);
+    }
+    if (!status && !count)
+        status = log_fail(p->log, RELUME_EUNFIT,
+                          "%s: gbrdf finds the relief by pairs of pictures in which light and eye "
+                          "change places, and no light stands where a view is; --resample "
+                          "interpolates such lights",
+                          btf_name(btf));
+    if (!status)
+        status = relief_by(relief, z, resampled ? resampled : btf, pairs, count, p);
+    relume_btf_destroy(&resampled);
+    mem_free(pairs);
+    return status;
+}
+
 relume_status gbrdf_fit(struct gbrdf_maps *out, const relume_btf *btf,
                         const struct gbrdf_fit_params *p)
 {
@@ -287,6 +359,8 @@ relume_status gbrdf_fit(struct gbrdf_maps *out, const relume_btf *btf,
     w.polar = mem_array(w.texels * POLAR_VALUES, sizeof *w.polar);
     *out = (struct gbrdf_maps){.width = info->width, .height = info->height};
     relume_status status = z && w.texel && w.polar ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = find_relief(&relief, z, btf, p);
     if (!status)
         status = flat_make(&w.flat, btf, &relief, p->threads, p->log);
     if (!status)

@@ -11,7 +11,7 @@
 enum { BRUSHED, GLOSSY, DUSTY };
 
 static const double PLATEAU = 0.05;  // widths of the sample, from the ground to the top
-static const double SPOT = 2.0;      // texels from spot to spot
+static const double SPOT = 3.0;      // texels from spot to spot
 
 // Smooth noise in [0, 1].
 static double noise(double x, double y, int width, int height, uint64_t seed)
@@ -70,7 +70,7 @@ static void plant_texel(struct gbrdf_maps *maps, int x, int y, uint64_t seed)
     static const double r0[PLANTED_MATERIALS] = {0.8, 0.15, 0.3};
     const size_t at = (size_t)y * (size_t)maps->width + (size_t)x;
     const double u = (x + 0.5) / maps->width, v = (y + 0.5) / maps->height;
-    const double swell = sin(4.0 * M_PI * u) * sin(4.0 * M_PI * v);
+    const double swell = sin(2.0 * M_PI * u) * sin(2.0 * M_PI * v);
     const double rise = smoothstep(-0.5, 0.6, fabs(swell) * 2.0 - 1.0);
     const int label = rise > 0.5 ? BRUSHED : v < 0.5 ? GLOSSY : DUSTY;
     const double spot = noise(x, y, maps->width, maps->height, seed);

@@ -6,6 +6,8 @@
 #include "btf_model/model_gbrdf.h"
 #include "gbrdf/als.h"
 #include "gbrdf/cluster.h"
+#include "gbrdf/cut.h"
+#include "gbrdf/depth.h"
 #include "gbrdf/fit.h"
 #include "gbrdf/planted.h"
 
@@ -188,7 +190,7 @@ static void test_slow(void **state)
 {
     (void)state;
     enum { SIDE = 24, TRIES = 120 };
-    struct made m = make_planted(SIDE, 1.0);
+    struct made m = make_planted(SIDE, 3.0);
     uint32_t seed = 11;
     int far = 0, shadowed = 0;
     for (int i = 0; i < TRIES; i++) {
@@ -332,8 +334,6 @@ static void test_clusters(void **state)
     free(polar);
 }
 
-// ---------------------------------------------------------------- files
-
 static relume_btf_fitted *planted_model(int size)
 {
     relume_btf_fitted *m;
@@ -341,6 +341,159 @@ static relume_btf_fitted *planted_model(int size)
         &m, relume_gbrdf_plant_params(.size = size, .directions = relume_btf_set_find("coarse"))));
     return m;
 }
+
+// ---------------------------------------------------------------- the relief
+
+// What a cut of these labels costs, as cut.h says it.
+static double cut_cost(const int *label, const float *cost, int width, int height, double smooth)
+{
+    const int texels = width * height;
+    double sum = 0.0;
+    for (int i = 0; i < texels; i++) {
+        sum += (double)cost[label[i] * texels + i];
+        for (int k = 0; k < 9; k++) {
+            const int x = (i % width + k % 3 - 1 + width) % width,
+                      y = (i / width + k / 3 - 1 + height) % height, j = y * width + x;
+            for (int n = label[j]; n < label[i] && j != i; n++)
+                sum += 0.25 * smooth *
+                       (double)(cost[n * texels + i] + cost[(n + 1) * texels + i] +
+                                cost[n * texels + j] + cost[(n + 1) * texels + j]);
+        }
+    }
+    return sum;
+}
+
+// Against all 4^6 labels of a small grid.
+static void test_cut(void **state)
+{
+    (void)state;
+    enum { W = 3, H = 2, LAYERS = 4, ALL = 4096 };
+    uint32_t seed = 8;
+    for (int round = 0; round < 30; round++) {
+        float cost[LAYERS * W * H];
+        int found[W * H];
+        for (int i = 0; i < LAYERS * W * H; i++)
+            cost[i] = (float)test_uniform(&seed);
+        const double smooth = round % 3 * 0.3;
+        CHECK_OK(cut_volume(found, cost, W, H, LAYERS, smooth));
+        double least = INFINITY;
+        for (int all = 0; all < ALL; all++) {
+            int label[W * H];
+            for (int i = 0; i < W * H; i++)
+                label[i] = all >> 2 * i & 3;
+            least = fmin(least, cut_cost(label, cost, W, H, smooth));
+        }
+        // capacities are whole 4096ths
+        CHECK_NEAR(cut_cost(found, cost, W, H, smooth), least, 0.02);
+    }
+}
+
+// RMS of heights beside the truth's, in texels, their means apart.
+static double height_error(const float *z, const struct relume_image *truth)
+{
+    const int n = truth->width * truth->height;
+    double mean = 0.0, sum = 0.0;
+    for (int i = 0; i < n; i++)
+        mean += ((double)z[i] - (double)truth->data[i] * truth->width) / n;
+    for (int i = 0; i < n; i++)
+        sum += pow((double)z[i] - (double)truth->data[i] * truth->width - mean, 2) / n;
+    return sqrt(sum);
+}
+
+// The same light, two views: what plain stereo compares.
+static int plain_pairs(struct picture_pair *out, const struct relume_btf_info *info)
+{
+    int count = 0;
+    for (int a = 0; a < info->views; a++)
+        for (int b = a + 1; b < info->views; b++)
+            out[count++] =
+                (struct picture_pair){{a, b}, {(a + b) % info->lights, (a + b) % info->lights}};
+    return count;
+}
+
+// What was planted comes back: relief, normals, labels; and the relief better than by plain stereo.
+static void test_planted(void **state)
+{
+    (void)state;
+    enum { SIDE = 32 };
+    relume_btf_fitted *planted = planted_model(SIDE), *found;
+    relume_btf *btf;
+    CHECK_OK(relume_btf_expand(&btf, planted, NULL));
+    const struct relume_btf_info *info = relume_btf_info(btf);
+    float *z = malloc(SIDE * SIDE * sizeof *z);
+    struct picture_pair *pairs = malloc(400 * sizeof *pairs);
+    CHECK_OK(depth_find(z, btf, pairs, plain_pairs(pairs, info), 2, NULL));
+    const double plain = height_error(z, &info->relief);
+    free(pairs);
+    int count;
+    CHECK_OK(pairs_reciprocal(&pairs, &count, btf));
+    assert_int_equal(count, 19 * 18 / 2);
+    CHECK_OK(depth_find(z, btf, pairs, count, 2, NULL));
+    const double cut = height_error(z, &info->relief);
+    free(pairs);
+    CHECK_OK(relume_btf_fit(&found, btf, relume_btf_model_find("gbrdf"),
+                            relume_btf_fit_params(.clusters = 3)));
+    const struct gbrdf_maps maps = gbrdf_maps_of(found), truth = gbrdf_maps_of(planted);
+    double angle = 0.0;
+    int votes[8][PLANTED_MATERIALS] = {{0}}, right = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        z[i] = maps.depth[i] * SIDE;
+        votes[maps.label[i]][truth.label[i]]++;
+    }
+    const struct meso relief = {SIDE, SIDE, z, 0.0f, 0.0f};
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float *n = info->normals.data + 3 * i;
+        angle += vec3_angle(meso_normal(&relief, i % SIDE, i / SIDE),
+                            vec3_of((double)n[0], (double)n[1], (double)n[2])) /
+                 (SIDE * SIDE);
+    }
+    for (int k = 0; k < 8; k++)
+        right += votes[k][0] > votes[k][1]
+                     ? (votes[k][0] > votes[k][2] ? votes[k][0] : votes[k][2])
+                     : (votes[k][1] > votes[k][2] ? votes[k][1] : votes[k][2]);
+    // measured: plain stereo 0.69, cut 0.37, fused with normals 0.09 texels of a relief whose
+    // heights vary by 0.65; normals 2.9 degrees where the plane has 11; labels 98.5 %
+    assert_true(plain > 1.5 * cut && cut < 0.45);
+    assert_true(height_error(z, &info->relief) < 0.13);
+    assert_true(angle < 4.0 * M_PI / 180.0);
+    assert_int_equal(maps.materials, 3);
+    assert_true(right > SIDE * SIDE * 95 / 100);
+    free(z);
+    relume_btf_fitted_destroy(&found);
+    relume_btf_fitted_destroy(&planted);
+    relume_btf_destroy(&btf);
+}
+
+// Lights that stand nowhere near a view.
+static void test_not_reciprocal(void **state)
+{
+    (void)state;
+    relume_btf_fitted *planted = planted_model(8), *found;
+    relume_btf *whole, *part;
+    struct test_log log;
+    test_log_init(&log);
+    CHECK_OK(relume_btf_expand(&whole, planted, NULL));
+    int views[19], lights[19], v = 0, l = 0;
+    for (int i = 0; i < 19; i++)
+        if (i % 2)
+            views[v++] = i;
+        else
+            lights[l++] = i;
+    CHECK_OK(relume_btf_part(&part, whole, views, v, lights, l, NULL));
+    const struct relume_btf_model *model = relume_btf_model_find("gbrdf");
+    assert_false(relume_btf_model_fits(model, part));
+    assert_true(relume_btf_model_fits(model, whole));
+    assert_int_equal(relume_btf_fit(&found, part, model, relume_btf_fit_params(.log = &log.log)),
+                     RELUME_EUNFIT);
+    assert_non_null(strstr(log.text, "no light stands where a view is"));
+    CHECK_OK(relume_btf_fit(&found, part, model, relume_btf_fit_params(.resample = true)));
+    relume_btf_fitted_destroy(&found);
+    relume_btf_fitted_destroy(&planted);
+    relume_btf_destroy(&part);
+    relume_btf_destroy(&whole);
+}
+
+// ---------------------------------------------------------------- files
 
 static void test_file(void **state)
 {
@@ -405,7 +558,8 @@ int main(void)
         cmocka_unit_test(test_als),        cmocka_unit_test(test_slow),
         cmocka_unit_test(test_reciprocal), cmocka_unit_test(test_energy),
         cmocka_unit_test(test_clusters),   cmocka_unit_test(test_file),
-        cmocka_unit_test(test_expand),
+        cmocka_unit_test(test_expand),     cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_planted),    cmocka_unit_test(test_not_reciprocal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,6 +55,8 @@ static const struct option options[] = {
         "components; default: vpca 4, lpca 8, fmf 100, qmf at most 512", 1, 1024),
     INT("--ratio", ratio, "R", "qmf: compress the measured values R times; default: 200", 1,
         1000000),
+    FLAG("--resample", resample,
+         "gbrdf: where no light stands where a view is, interpolate such lights"),
     INT("--lobes", lobes, "N", "lobes of rfnl, rfnlc, laf and slaf; default: 2", 1, 4),
     INT("--leave-out", leave_out, "K",
         "compare: also fit without every K-th view and light, and measure the error on these; fit: "
@@ -134,6 +136,7 @@ static struct relume_btf_fit_params fit_params(const struct btf_options *o)
         .seed = (uint64_t)o->seed,
         .threads = o->args.threads,
         .ratio = o->ratio,
+        .resample = o->resample,
     };
 }
 
@@ -222,11 +225,19 @@ static relume_status compare(const struct args *args)
         status = make_part(&part, btf, o);
     if (!status && !o->json)
         btf_heading(part != NULL);
-    const struct ints *named = &o->models;  // none: all
+    const struct ints *named = &o->models;  // none: all that can be fitted
+    int printed = 0;
     for (int i = 0; !status && (named->count ? i < named->count : relume_btf_models[i] != NULL);
-         i++)
-        status = compare_one(btf, part, relume_btf_models[named->count ? named->item[i] : i],
-                             i ? ",\n" : "{\"models\":[", o);
+         i++) {
+        const struct relume_btf_model *model = relume_btf_models[named->count ? named->item[i] : i];
+        if (!named->count && !o->resample && !relume_btf_model_fits(model, btf))
+            announce(&o->args, RELUME_NOTE,
+                     "%s is left out: no light stands where a view is; --resample interpolates "
+                     "such lights",
+                     relume_btf_model_name(model));
+        else
+            status = compare_one(btf, part, model, printed++ ? ",\n" : "{\"models\":[", o);
+    }
     if (!status && o->json)
         puts("]}");
     relume_btf_destroy(&part);

@@ -153,6 +153,18 @@ static void check_storage(enum relume_storage storage, enum relume_domain domain
     fixture_free(&f);
 }
 
+// With a delta at which the values here, sums of codes that no photograph has, stay near white.
+static void logarithms(void **state)
+{
+    (void)state;
+    struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_12, RELUME_DOMAIN_DISPLAY, false);
+    const struct relume_codes *codes;
+    f.codes[0].display = (struct relume_transfer){.curve = RELUME_CURVE_LOG, .gamma = 0.5f};
+    assert_int_equal(fixture_fetch(&codes, &f, 0), RELUME_OK);
+    check_codes(codes, "sh 9, 12 bits, log");
+    fixture_free(&f);
+}
+
 static void separate_channels(void **state)
 {
     (void)state;
@@ -389,6 +401,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(separate_channels),
+        cmocka_unit_test(logarithms),
         cmocka_unit_test(other_bases),
         cmocka_unit_test(high_domes),
         cmocka_unit_test(components),

@@ -670,9 +670,9 @@ static relume_status describe(relume_heldout *h)
     h->pole_y = relume_capture_pole_y(h->capture);
     h->screen = relume_encode_display(h->capture);
     h->info.domain = relume_encode_domain(h->capture, h->params.domain);
-    h->curve = h->info.domain == RELUME_DOMAIN_LINEAR
-                   ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR}
-                   : relume_encode_curve(h->capture, h->params.display);
+    h->curve = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
+    if (h->info.domain != RELUME_DOMAIN_LINEAR)
+        h->curve = relume_encode_curve(h->capture, h->params.display);
     if (h->params.tone_mapped)
         h->screen = (struct relume_transfer){.curve = RELUME_CURVE_GAMMA, .gamma = 2.2f};
     h->shown = !h->params.tone_mapped && h->curve.curve != RELUME_CURVE_LINEAR &&

@@ -228,10 +228,10 @@ RELUME_RESULT relume_status relume_coder_apply(const relume_coder *coder, const 
 
 // In which light the coefficients live (architecture: "Domain").
 enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN_DISPLAY };
-// "auto", "linear", "display"; "log" and "log:DELTA" are the display domain with that curve, which
-// `display` (else AUTO) says; its usual delta is RELUME_LOG_DELTA. RELUME_EINVAL when `text` is
-// none of these.
+// The usual delta of RELUME_CURVE_LOG.
 #define RELUME_LOG_DELTA 1e-2f
+// "auto", "linear", "display"; "log" and "log:DELTA" are the display domain with that curve, which
+// `display` (else AUTO) says. RELUME_EINVAL when `text` is none of these.
 RELUME_RESULT relume_status relume_domain_parse(enum relume_domain *out,
                                                 struct relume_transfer *display, const char *text);
 // "auto", "linear", "display" or "log".

@@ -31,7 +31,7 @@ foreign:base math image:base image directions coder relight
 block:base:base
 exchange:base math image foreign block:base io image photograph directions codebook coder capture pack relight exchange
 relight:base math kernel image:base image coder light relight rig relighter
-analysis:base math:base image coder light relight normals enhance
+analysis:base math stereo:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture
 post:base math kernel image:base image tone eye psf glare
 frame:base math image:base image capture coder pack light relight view slab_set frame viewport evaluate normals enhance renderer relighter rig

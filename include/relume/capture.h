@@ -73,6 +73,10 @@ struct relume_geometry {
 RELUME_API struct relume_geometry relume_geometry_default(enum relume_projection projection,
                                                           int width, int height);
 
+// Towards the eye, where all pixels see it in the same direction: planar views, orthographically;
+// else 0.
+RELUME_API struct relume_vec3 relume_geometry_eye(const struct relume_geometry *geometry);
+
 // Whether such a cylinder with discs can be: v_min < 0 < v_max, squares that fit, rows above them.
 // True of everything without discs.
 RELUME_API bool relume_geometry_fits(const struct relume_geometry *geometry, int width, int height);

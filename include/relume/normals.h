@@ -2,7 +2,8 @@
 //
 // Photometric stereo (Woodham 1980) on what the file shows under the captured directions. Shadows
 // and highlights are no Lambertian shading: the darkest and brightest samples of a pixel are left
-// out, the others are weighed by how well they fit (Cauchy weights, Holland and Welsch 1977).
+// out, the others are weighed by how well they fit (Cauchy weights, Holland and Welsch 1977). Where
+// it is known from where the surface is seen its material is found too, as in photometric.h.
 #ifndef RELUME_NORMALS_H
 #define RELUME_NORMALS_H
 
@@ -27,6 +28,9 @@ struct relume_normals_params {
     unsigned cpu_off;              // as relume_relight_params
     int threads;                   // default: all cores
     bool plain;                    // least squares of all samples: no trimming, no weights
+    struct relume_vec3 eye;        // towards the eye, any length, where that is the same
+                                   // everywhere (planar views seen orthographically): gloss and
+                                   // metal are then not taken for matte; default: all is matte
 };
 #define relume_normals_params(...)                                                                 \
     (&(const struct relume_normals_params){RELUME_SIZED(relume_normals_params), __VA_ARGS__})

@@ -9,7 +9,7 @@
 #include "math/lambert.h"
 #include "math/luminance.h"
 #include "math/sort.h"
-#include "stereo/stereo.h"
+#include "stereo/field.h"
 
 static const size_t band_bytes = (size_t)256 << 20;  // of samples
 static const float clipped = 0.995f;                 // of the largest value
@@ -34,19 +34,9 @@ struct fit {
     float *bright;                   // [workers][lights]: gains of near lights
     bool is_matte;                   // no more than Lambert's law can be asked of this capture
     bool is_shared;                  // all pixels see the same lights from the same side
-    struct stereo_room *rooms;       // [workers]
-    struct reflect_lights *around;   // [workers]; shared: all the same
-    float *around_floats;            // of `around`
-    float *value;                    // [workers][stride of the lights]
-    struct stereo_material material;
-    struct stereo_table table;
-    struct stereo_pixel *learner;  // [STEREO_LEARNERS]
-    struct reflect_lights *learner_lights;
-    float *learner_floats;
-    int learners;
-    size_t known, counted;  // pixels that the mask shows; those seen by the learners
-    size_t step;            // one pixel in `step` judges the lights
-    float *miss;            // [JUDGED][lights]: |miss| / albedo; NaN: not lit, not known
+    struct stereo_field field;
+    size_t step;  // one pixel in `step` judges the lights
+    float *miss;  // [JUDGED][lights]: |miss| / albedo; NaN: not lit, not known
 };
 
 struct pixel {
@@ -159,35 +149,24 @@ static vec3 towards_eye(const struct fit *f, size_t of_view)
 // What clips is not known, unless too little else is.
 static void set_values(const struct fit *f, const struct pixel *p, float *value)
 {
-    const int stride = reflect_stride(f->lights);
     int known = 0;
     for (int keep = 0; keep < 2 && known < STEREO_LEAST_LIGHTS; keep++) {
         known = 0;
-        for (int i = 0; i < stride; i++) {
-            const bool counts = i < f->lights && (keep || !is_clipped(f, p, i));
+        for (int i = 0; i < f->lights; i++) {
+            const bool counts = keep || !is_clipped(f, p, i);
             value[i] = counts ? fmaxf(luminance_709f(sample_of(f, i, p->at)), 0.0f) : -1.0f;
             known += counts;
         }
     }
 }
 
-static float improve(const struct fit *f, const struct pixel *p, int worker, vec3 *normal)
+static float improve(struct fit *f, const struct pixel *p, int worker, vec3 *normal)
 {
-    struct stereo_pixel pixel = {
-        .lights = f->around + worker,
-        .value = f->value + worker * reflect_stride(f->lights),
-        .normal = *normal,
-    };
-    set_values(f, p, f->value + worker * reflect_stride(f->lights));
-    if (!f->is_shared)
-        reflect_lights_set(f->around + worker, p->direction, towards_eye(f, p->of_view));
-    if (!stereo_solve(&pixel, &f->material, f->is_shared ? &f->table : NULL, f->rooms + worker))
-        return 0.0f;
-    *normal = pixel.normal;
-    return pixel.sure;
+    set_values(f, p, stereo_field_values(&f->field, worker));
+    return stereo_field_solve(&f->field, worker, p->direction, towards_eye(f, p->of_view), normal);
 }
 
-static void fit_pixel(const struct fit *f, const struct pixel *p, int worker)
+static void fit_pixel(struct fit *f, const struct pixel *p, int worker)
 {
     vec3 g;
     set_directions(f, p);
@@ -210,7 +189,7 @@ static void fit_pixel(const struct fit *f, const struct pixel *p, int worker)
 
 static void fit_row(void *context, size_t item, int worker)
 {
-    const struct fit *f = context;
+    struct fit *f = context;
     const size_t width = (size_t)f->width, room = (size_t)worker * (size_t)f->lights;
     struct pixel p = {
         .sample = f->scratch + room, .direction = f->towards + room, .gain = f->bright + room};
@@ -224,28 +203,17 @@ static void fit_row(void *context, size_t item, int worker)
     }
 }
 
-// One pixel in so many of those known, until there are enough.
 static void add_learner(struct fit *f, struct pixel *p)
 {
-    const int i = f->learners, stride = reflect_stride(f->lights);
-    const size_t every = f->known / STEREO_LEARNERS + 1;
     vec3 g;
-    if (f->counted++ % every)
+    if (!stereo_field_next(&f->field))
         return;
     set_directions(f, p);
     int n = gather(f, p);
-    if (!lambert_fit(&g, p->direction, p->sample, &n, false))
-        return;
-    float *const floats =
-        f->learner_floats + (size_t)i * (2 * (size_t)stride + reflect_floats(f->lights));
-    struct reflect_lights *const lights = f->is_shared ? f->around : f->learner_lights + i;
-    set_values(f, p, floats);
-    if (!f->is_shared) {
-        *lights = (struct reflect_lights){f->lights, stride, .at = floats + 2 * stride};
-        reflect_lights_set(lights, p->direction, towards_eye(f, p->of_view));
-    }
-    f->learner[f->learners++] = (struct stereo_pixel){
-        .lights = lights, .value = floats, .normal = vec3_unit(g), .weight = floats + stride};
+    if (lambert_fit(&g, p->direction, p->sample, &n, false))
+        set_values(
+            f, p,
+            stereo_field_add(&f->field, vec3_unit(g), p->direction, towards_eye(f, p->of_view)));
 }
 
 static void gather_learners(struct fit *f)
@@ -263,10 +231,8 @@ static void gather_learners(struct fit *f)
 
 static relume_status learn(struct fit *f)
 {
-    relume_status status = RELUME_OK;
-    f->is_matte = !stereo_learn(&f->material, f->learner, f->learners, f->rooms, f->params.threads);
-    if (f->is_shared && !f->is_matte)
-        status = stereo_table_create(&f->table, &f->material, f->around, f->rooms);
+    const relume_status status = stereo_field_learn(&f->field);
+    f->is_matte = f->field.is_matte;
     return status;
 }
 
@@ -356,31 +322,13 @@ static relume_status find_residuals(struct fit *f)
 
 static relume_status alloc_stereo(struct fit *f)
 {
-    const size_t stride = (size_t)reflect_stride(f->lights), floats = reflect_floats(f->lights);
-    const size_t workers = (size_t)f->params.threads;
-    f->rooms = mem_zeroed(workers, sizeof *f->rooms);
-    f->around = mem_zeroed(workers, sizeof *f->around);
-    f->around_floats = mem_array(workers * floats, sizeof *f->around_floats);
-    f->value = mem_array(workers * stride, sizeof *f->value);
-    f->learner = mem_array(STEREO_LEARNERS, sizeof *f->learner);
-    f->learner_lights = mem_array(STEREO_LEARNERS, sizeof *f->learner_lights);
-    f->learner_floats = mem_array(STEREO_LEARNERS * (2 * stride + floats), sizeof(float));
-    if (!f->rooms || !f->around || !f->around_floats || !f->value || !f->learner ||
-        !f->learner_lights || !f->learner_floats)
-        return RELUME_ENOMEM;
-    relume_status status = RELUME_OK;
-    for (size_t i = 0; i < workers && !status; i++) {
-        f->around[i] = (struct reflect_lights){
-            f->lights, (int)stride, .at = f->around_floats + (f->is_shared ? 0 : i * floats)};
-        status = stereo_room_create(f->rooms + i, f->lights);
-    }
-    if (!status && f->is_shared)
-        for (size_t i = 0; i < workers; i++)
-            reflect_lights_set(f->around + i, f->distant, vec3_of(0, 0, 1));
     const size_t pixels = (size_t)f->width * (size_t)f->height;
+    size_t known = 0;
     for (size_t i = 0; i < pixels; i++)
-        f->known += !f->mask.data || f->mask.data[i] > 0.5f;
-    return status;
+        known += !f->mask.data || f->mask.data[i] > 0.5f;
+    return stereo_field_create(&f->field, f->lights, f->params.threads,
+                               f->is_shared ? f->distant : NULL, vec3_of(0, 0, 1),
+                               known / STEREO_LEARNERS + 1);
 }
 
 static relume_status alloc(struct fit *f)
@@ -422,16 +370,7 @@ static void release(struct fit *f)
     mem_free(f->towards);
     mem_free(f->bright);
     mem_free(f->miss);
-    for (int i = 0; f->rooms && i < f->params.threads; i++)
-        stereo_room_destroy(f->rooms + i);
-    mem_free(f->rooms);
-    mem_free(f->around);
-    mem_free(f->around_floats);
-    mem_free(f->value);
-    mem_free(f->learner);
-    mem_free(f->learner_lights);
-    mem_free(f->learner_floats);
-    stereo_table_destroy(&f->table);
+    stereo_field_destroy(&f->field);
     near_view_close(&f->near);
     relume_image_destroy(&f->mask);
 }

@@ -1,7 +1,10 @@
 // normals.c - robust photometric stereo
 //
-// One band of rows at a time is relit under every captured direction, and each pixel is fitted
-// (math/lambert.h).
+// One band of rows at a time is relit under every captured direction, and each pixel is fitted as a
+// matte surface (math/lambert.h). Where it is known from where the surface is seen its material is
+// learned (stereo/field.h), and the normals of a lattice of pixels are found with it, under some of
+// the lights: 32 of 96 do as well as all. What that changes between two pixels of the lattice
+// changes evenly: it depends on the material and on where the surface faces.
 #include <relume/normals.h>
 #include <relume/relight.h>
 
@@ -11,10 +14,13 @@
 #include "base/thread.h"
 #include "math/lambert.h"
 #include "math/luminance.h"
+#include "stereo/field.h"
 
 #include <string.h>
 
 static const size_t band_bytes = (size_t)64 << 20;  // of relit samples
+enum { MOST_LIGHTS = 32 };                          // that a material is found by
+static const double most_solved = 16384.0;          // pixels of the lattice: some 2 s of one core
 
 struct fit {
     const struct relume_codes *codes;
@@ -26,6 +32,12 @@ struct fit {
     size_t stride;   // of a light in `samples`
     struct relume_normals *out;
     struct lambert_sample *scratch;  // [workers][lights]
+    bool is_matte;
+    struct stereo_field field;
+    int used;  // of its lights
+    int light[MOST_LIGHTS];
+    size_t step, columns, lines;  // the lattice
+    struct relume_image change;   // of its normals; the fourth channel: 1 where there is one
 };
 
 static const float *sample_of(const struct fit *f, int light, size_t pixel)
@@ -69,6 +81,124 @@ static void fit_pixel(const struct fit *f, struct lambert_sample *s, size_t pixe
     normal[1] = (float)g.y;
     normal[2] = (float)g.z;
     find_albedo(albedo, f, g, pixel, s, n);
+}
+
+// ---------------------------------------------------------------- more than matte
+
+static void set_values(const struct fit *f, size_t pixel, float *value)
+{
+    for (int i = 0; i < f->used; i++)
+        value[i] = fmaxf(luminance_709f(sample_of(f, f->light[i], pixel)), 0.0f);
+}
+
+static bool normal_at(vec3 *out, const struct fit *f, size_t at)
+{
+    const float *const n = f->out->normal.data + 3 * at;
+    *out = vec3_of((double)n[0], (double)n[1], (double)n[2]);
+    return vec3_length(*out) > 0.0;
+}
+
+static relume_status show_band(struct fit *f)
+{
+    const size_t pixels = (size_t)f->rows * (size_t)f->codes->width;
+    const size_t before = (size_t)f->row * (size_t)f->codes->width;
+    vec3 normal;
+    for (size_t i = 0; i < pixels; i++)
+        if (stereo_field_next(&f->field) && normal_at(&normal, f, before + i))
+            set_values(f, i, stereo_field_add(&f->field, normal, NULL, f->params.eye));
+    return RELUME_OK;
+}
+
+// The lines of the lattice that lie in the band.
+static size_t first_line(const struct fit *f)
+{
+    return ((size_t)f->row + f->step - 1) / f->step;
+}
+
+static void solve_line(void *context, size_t item, int worker)
+{
+    struct fit *const f = context;
+    const size_t line = first_line(f) + item, y = line * f->step, w = (size_t)f->codes->width;
+    for (size_t i = 0; i < f->columns; i++) {
+        const size_t x = i * f->step;
+        float *const to = f->change.data + 4 * (line * f->columns + i);
+        vec3 matte, normal;
+        if (!normal_at(&matte, f, y * w + x))
+            continue;
+        normal = matte;
+        set_values(f, (y - (size_t)f->row) * w + x, stereo_field_values(&f->field, worker));
+        stereo_field_solve(&f->field, worker, NULL, f->params.eye, &normal);
+        to[0] = (float)(normal.x - matte.x);
+        to[1] = (float)(normal.y - matte.y);
+        to[2] = (float)(normal.z - matte.z);
+        to[3] = 1.0f;
+    }
+}
+
+static relume_status solve_band(struct fit *f)
+{
+    const size_t end = ((size_t)(f->row + f->rows) + f->step - 1) / f->step;
+    thread_for(f->params.threads, end - first_line(f), solve_line, f);
+    return log_progress(f->params.log, "material", (f->row + f->rows) / (double)f->codes->height)
+               ? RELUME_OK
+               : RELUME_ECANCEL;
+}
+
+// Bilinear between those of the lattice's pixels that have one.
+static vec3 change_at(const struct fit *f, size_t x, size_t y)
+{
+    const size_t i = x / f->step, j = y / f->step;
+    const float u = (float)(x % f->step) / (float)f->step;
+    const float v = (float)(y % f->step) / (float)f->step;
+    float sum[4] = {0.0f};
+    for (size_t k = 0; k < 4; k++) {
+        const size_t column = i + (k & 1), line = j + (k >> 1);
+        if (column >= f->columns || line >= f->lines)
+            continue;
+        const float *const from = f->change.data + 4 * (line * f->columns + column);
+        const float weight = (k & 1 ? u : 1.0f - u) * (k >> 1 ? v : 1.0f - v) * from[3];
+        for (int c = 0; c < 3; c++)
+            sum[c] += weight * from[c];
+        sum[3] += weight;
+    }
+    const double share = sum[3] > 0.0f ? 1.0 / (double)sum[3] : 0.0;
+    return vec3_scale(vec3_of((double)sum[0], (double)sum[1], (double)sum[2]), share);
+}
+
+static void change_row(void *context, size_t y, int worker)
+{
+    (void)worker;
+    const struct fit *const f = context;
+    const size_t w = (size_t)f->codes->width;
+    for (size_t x = 0; x < w; x++) {
+        vec3 normal;
+        if (!normal_at(&normal, f, y * w + x))
+            continue;
+        normal = vec3_unit(vec3_add(normal, change_at(f, x, y)));
+        float *const to = f->out->normal.data + 3 * (y * w + x);
+        to[0] = (float)normal.x;
+        to[1] = (float)normal.y;
+        to[2] = (float)normal.z;
+    }
+}
+
+// Lights are spread over their order in the capture, which mostly follows the dome.
+static relume_status create_field(struct fit *f)
+{
+    vec3 direction[MOST_LIGHTS];
+    const size_t w = (size_t)f->codes->width, h = (size_t)f->codes->height;
+    f->used = f->lights < MOST_LIGHTS ? f->lights : MOST_LIGHTS;
+    for (int i = 0; i < f->used; i++) {
+        f->light[i] = (int)((i + 0.5) * f->lights / f->used);
+        direction[i] = f->direction[f->light[i]];
+    }
+    f->step = (size_t)ceil(sqrt((double)w * (double)h / most_solved));
+    f->columns = (w + f->step - 1) / f->step;
+    f->lines = (h + f->step - 1) / f->step;
+    const relume_status status = relume_image_create(&f->change, (int)f->columns, (int)f->lines, 4);
+    return status ? status
+                  : stereo_field_create(&f->field, f->used, f->params.threads, direction,
+                                        f->params.eye, 1);
 }
 
 // ---------------------------------------------------------------- bands
@@ -115,7 +245,7 @@ static relume_status relight_band(const struct fit *f, const struct relume_codes
     return status;
 }
 
-static relume_status fit_bands(struct fit *f)
+static relume_status for_bands(struct fit *f, relume_status (*use)(struct fit *))
 {
     const int height = f->codes->height, rows = f->rows;
     const void **planes = mem_array((size_t)f->codes->planes, sizeof *planes);
@@ -126,12 +256,37 @@ static relume_status fit_bands(struct fit *f)
         const struct relume_codes band = cut_band(f, planes, indices);
         status = relight_band(f, &band);
         if (!status)
-            thread_for(f->params.threads, (size_t)f->rows, fit_row, f);
-        if (!status && !log_progress(f->params.log, "normals", (f->row + f->rows) / (double)height))
-            status = RELUME_ECANCEL;
+            status = use(f);
     }
+    f->row = 0;
+    f->rows = rows;
     mem_free(planes);
     mem_free(indices);
+    return status;
+}
+
+static relume_status fit_band(struct fit *f)
+{
+    thread_for(f->params.threads, (size_t)f->rows, fit_row, f);
+    if (!log_progress(f->params.log, "normals", (f->row + f->rows) / (double)f->codes->height))
+        return RELUME_ECANCEL;
+    return f->is_matte ? RELUME_OK : show_band(f);
+}
+
+static relume_status fit_bands(struct fit *f)
+{
+    relume_status status = f->is_matte ? RELUME_OK : create_field(f);
+    if (!status)
+        status = for_bands(f, fit_band);
+    if (status || f->is_matte)
+        return status;
+    status = stereo_field_learn(&f->field);
+    if (status || f->field.is_matte)
+        return status;
+    // of one band alone the samples are still there
+    status = f->rows == f->codes->height ? solve_band(f) : for_bands(f, solve_band);
+    if (!status)
+        thread_for(f->params.threads, (size_t)f->codes->height, change_row, f);
     return status;
 }
 
@@ -159,6 +314,10 @@ relume_status relume_normals_fit(struct relume_normals *out, const struct relume
                         "in one plane; found %d",
                         f.lights);
     f.params.threads = thread_count(f.params.threads);
+    f.is_matte =
+        f.params.plain || f.lights < STEREO_LEAST_LIGHTS || vec3_length(f.params.eye) == 0.0;
+    if (!f.is_matte)
+        f.params.eye = vec3_unit(f.params.eye);
     const size_t row_bytes = (size_t)codes->width * (size_t)f.lights * 3 * sizeof(float);
     const size_t fitting = band_bytes / row_bytes;
     f.rows = fitting < 1 ? 1 : fitting < (size_t)codes->height ? (int)fitting : codes->height;
@@ -172,6 +331,8 @@ relume_status relume_normals_fit(struct relume_normals *out, const struct relume
         status = relume_image_create(&out->albedo, codes->width, codes->height, 3);
     if (!status)
         status = fit_bands(&f);
+    stereo_field_destroy(&f.field);
+    relume_image_destroy(&f.change);
     mem_free(f.samples);
     mem_free(f.scratch);
     if (status)

@@ -99,10 +99,11 @@ relume_status passes_apply(struct relume_image *image, relume_pack *pack, int vi
     if (params->pass == RELUME_PASS_COLOUR)
         return RELUME_OK;
     if (relume_pass_needs_normals(params->pass))
-        status =
-            relume_normals_fit(&normals, codes,
-                               relume_normals_params(.log = params->log, .cpu_off = params->cpu_off,
-                                                     .threads = params->threads));
+        status = relume_normals_fit(
+            &normals, codes,
+            relume_normals_params(.log = params->log, .cpu_off = params->cpu_off,
+                                  .threads = params->threads,
+                                  .eye = relume_geometry_eye(relume_pack_geometry(pack, view))));
     if (!status && params->pass == RELUME_PASS_SPECULAR)
         status = find_towards(&towards, pack, view);
     if (!status && params->pass == RELUME_PASS_DIFFERENCE)

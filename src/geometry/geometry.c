@@ -23,6 +23,12 @@ relume_status relume_projection_parse(enum relume_projection *out, const char *n
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
+struct relume_vec3 relume_geometry_eye(const struct relume_geometry *geometry)
+{
+    const bool same = geometry->projection == RELUME_PLANAR && !geometry->perspective;
+    return (struct relume_vec3){0.0, 0.0, same ? 1.0 : 0.0};
+}
+
 struct relume_geometry relume_geometry_default(enum relume_projection projection, int width,
                                                int height)
 {

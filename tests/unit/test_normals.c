@@ -165,6 +165,62 @@ static void shadows_and_highlights_are_outvoted(void **state)
     relume_normals_destroy(&plain);
 }
 
+// Glazed all over: a wide highlight that the matte fit takes for shape. Tiles one below the other
+// make it large enough that not every pixel is solved.
+static double glazed_error(struct relume_vec3 eye, int tiles, int threads)
+{
+    const size_t pixels = SIDE * SIDE;
+    struct table_file f;
+    make_lights(f.light);
+    float *samples = make_samples(f.light, false);
+    for (int k = 0; k < LIGHTS; k++)
+        for (size_t i = 0; i < pixels; i++) {
+            const struct relume_vec3 n = sphere_normal((int)i);
+            const struct relume_vec3 h =
+                vec3_unit((struct relume_vec3){f.light[k].x, f.light[k].y, f.light[k].z + 1});
+            const double lobe =
+                vec3_dot(n, f.light[k]) > 0 ? 0.6 * pow(fmax(vec3_dot(n, h), 0), 12) : 0;
+            for (size_t c = 0; c < 3; c++)
+                samples[3 * ((size_t)k * pixels + i) + c] += (float)lobe;
+        }
+    make_file(&f, samples);
+    uint16_t *tiled = calloc(3 * LIGHTS * pixels * (size_t)tiles, sizeof *tiled);
+    for (size_t p = 0; p < 3 * LIGHTS; p++) {
+        for (size_t t = 0; t < (size_t)tiles; t++)
+            memcpy(tiled + (p * (size_t)tiles + t) * pixels, f.plane[p], pixels * sizeof *tiled);
+        f.plane[p] = tiled + p * (size_t)tiles * pixels;
+    }
+    f.codes.height = SIDE * tiles;
+    struct relume_normals n;
+    CHECK_OK(
+        relume_normals_fit(&n, &f.codes, relume_normals_params(.eye = eye, .threads = threads)));
+    double sum = 0.0;
+    for (size_t i = 0; i < pixels * (size_t)tiles; i++) {
+        const float *g = n.normal.data + 3 * i;
+        const struct relume_vec3 got = {(double)g[0], (double)g[1], (double)g[2]};
+        sum += acos(fmin(vec3_dot(got, sphere_normal((int)(i % pixels))), 1.0)) * 180 / M_PI;
+    }
+    relume_normals_destroy(&n);
+    free_file(&f);
+    free(samples);
+    free(tiled);
+    return sum / (double)(pixels * (size_t)tiles);
+}
+
+static void a_known_eye_tells_gloss_from_shape(void **state)
+{
+    (void)state;
+    const struct relume_vec3 above = {0, 0, 2}, unknown = {0, 0, 0};
+    const double matte = glazed_error(unknown, 1, 0), known = glazed_error(above, 1, 1);
+    const double large = glazed_error(above, 40, 2);
+    print_message("  matte %.3f, with the eye known %.3f; large %.3f degrees\n", matte, known,
+                  large);
+    assert_true(matte > 2.0);
+    assert_true(known < 0.5 * matte);
+    assert_true(large < 0.5 * matte);
+    assert_true(known == glazed_error(above, 1, 3));
+}
+
 static void threads_make_no_difference(void **state)
 {
     (void)state;
@@ -466,6 +522,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_matt_sphere_is_exact),
         cmocka_unit_test(shadows_and_highlights_are_outvoted),
+        cmocka_unit_test(a_known_eye_tells_gloss_from_shape),
         cmocka_unit_test(threads_make_no_difference),
         cmocka_unit_test(black_pixels_have_no_normal),
         cmocka_unit_test(lights_in_a_plane_are_refused),

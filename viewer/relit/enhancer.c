@@ -147,7 +147,8 @@ static relume_status fit(struct enhancer *e, int view)
     if (status)
         return status;
     status = relume_normals_fit(&normals, codes,
-                                relume_normals_params(.log = e->log, .threads = e->threads));
+                                relume_normals_params(.log = e->log, .threads = e->threads,
+                                                      .eye = relume_geometry_eye(&e->geometry)));
     if (!status)
         status = thin(&v->albedo_grid, &normals.albedo);
     if (!status) {

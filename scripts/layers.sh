@@ -25,16 +25,17 @@ codebook:base math kernel image coder team:base coder codebook team
 team:base:base io team
 selection:base math image coder compare:base image capture coder codebook heldout team tone
 lossy:base math:base image coder
-encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team
-pack:base geometry image coder lossy:base image capture codebook coder pack
+shadow:base math image:base image capture coder light shadow
+encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team shadow
+pack:base geometry image coder lossy:base image capture codebook coder pack shadow
 foreign:base math image:base image directions coder relight
 block:base:base
 exchange:base math image foreign block:base io image photograph directions codebook coder capture pack relight exchange
-relight:base math kernel image:base image coder light relight rig relighter
+relight:base math kernel image:base image capture coder light relight rig relighter shadow
 analysis:base math stereo:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture
 post:base math kernel image:base image tone eye psf glare
-frame:base math image:base image capture coder pack light relight view slab_set frame viewport evaluate normals enhance renderer relighter rig
+frame:base math image:base image capture coder pack light relight shadow view slab_set frame viewport evaluate normals enhance renderer relighter rig
 btf:base math image:base image directions capture btf
 gbrdf:base math image btf:base image directions btf
 btf_model:base math image btf gbrdf:base image light directions btf btf_environment

@@ -8,6 +8,7 @@
 #include <relume/coder.h>
 #include <relume/image.h>
 #include <relume/io.h>
+#include <relume/shadow.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -66,6 +67,7 @@ struct relume_pack_view {
     bool predicted;      // coded planes: from those of another view, which is not predicted itself
     int anchor;          // that view
     float depth_step;    // depth is written in steps of its inverse, of that size; 0: as it is
+    const struct relume_image *shadow;  // as relume_shadows_learn gives it, or NULL
 };
 // Which part of a file is written, where several machines share the work; relume_pack_join makes
 // one file of all parts. Borrowed.
@@ -179,6 +181,8 @@ struct relume_pack_encode_params {
                                      // nothing is shared with them
     bool learn_only;                 // share what the team needs for its steps, and write nothing
     struct relume_transfer display;  // as relume_encode_params
+    bool shadows;  // learn what shadows are traced with (shadow.h). Of captures with depth and
+                   // distant lights; not with loss, in parts or with reduced levels
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \
@@ -257,6 +261,7 @@ struct relume_pack_info {
     bool shared;               // all views have the same codebooks
     struct relume_encode_report report;  // NaN where the file does not say
     uint64_t file_bytes;
+    bool has_shadow;  // shadows can be traced: relume_pack_shadow
 };
 // It belongs to the pack.
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
@@ -288,6 +293,12 @@ RELUME_RESULT relume_status relume_pack_depth_level(struct relume_image *out, re
                                                     int view, int level);
 // Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
+
+// What shadows of a view are traced with (shadow.h); empty when the file has none.
+RELUME_RESULT relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack,
+                                               int view);
+// The same, ready to be traced; NULL when the file has none. The caller destroys it.
+RELUME_RESULT relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view);
 
 // Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing
 // or cannot be decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; an

@@ -11,6 +11,7 @@
 #include <relume/coder.h>
 #include <relume/image.h>
 #include <relume/light.h>
+#include <relume/shadow.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -49,6 +50,8 @@ struct relume_relit {
     const struct relume_light *lights;
     int count;
     const struct relume_log *log;  // may be NULL
+    relume_shadows *shadows;       // of the whole view, for its directional lights; NULL: none
+    int left, top;                 // with these: where in the view the codes are
 };
 
 // The picture of relume_relight in `*out`; it belongs to the relighter and holds until the next

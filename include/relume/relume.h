@@ -38,6 +38,7 @@
 #include <relume/scene.h>
 #include <relume/acquire.h>
 #include <relume/viewport.h>
+#include <relume/shadow.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
 #include <relume/team.h>

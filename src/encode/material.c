@@ -3,6 +3,8 @@
 
 #include "base/memory.h"
 
+#include <relume/shadow.h>
+
 void material_destroy(struct material *m)
 {
     for (int i = 0; i < m->views; i++) {
@@ -14,6 +16,8 @@ void material_destroy(struct material *m)
             relume_image_destroy(&m->depth[i]);
         if (m->mask)
             relume_image_destroy(&m->mask[i]);
+        if (m->shadow)
+            relume_image_destroy(&m->shadow[i]);
         if (m->books)
             relume_books_destroy(&m->books[i]);
         if (m->words)
@@ -30,6 +34,7 @@ void material_destroy(struct material *m)
     mem_free(m->coefficients);
     mem_free(m->depth);
     mem_free(m->mask);
+    mem_free(m->shadow);
 }
 
 // Where the views are is known of all of them.
@@ -56,12 +61,13 @@ relume_status material_create(struct material *m, const struct encode_share *sha
     m->coefficients = mem_zeroed(n, sizeof *m->coefficients);
     m->depth = mem_zeroed(n, sizeof *m->depth);
     m->mask = mem_zeroed(n, sizeof *m->mask);
+    m->shadow = mem_zeroed(n, sizeof *m->shadow);
     m->books = mem_zeroed(n, sizeof *m->books);
     m->index = mem_zeroed(n * RELUME_MOST_BOOKS, sizeof *m->index);
     m->words = mem_zeroed(n, sizeof *m->words);
     m->report = mem_zeroed(n, sizeof *m->report);
     if (!m->report || !m->words || !m->view || !m->levels || !m->coefficients || !m->depth ||
-        !m->mask || !m->books || !m->index)
+        !m->mask || !m->shadow || !m->books || !m->index)
         return RELUME_ENOMEM;
     place_views(m, manifest);
     return RELUME_OK;
@@ -84,6 +90,11 @@ relume_status material_extras(struct material *m, int i)
         status = relume_capture_depth(&m->depth[i], m->capture, i, m->p->log);
     if (!status && m->row == 0)
         status = relume_capture_mask(&m->mask[i], m->capture, i, m->p->log);
+    if (!status && m->p->shadows)
+        status =
+            relume_shadows_learn(&m->shadow[i], m->capture, i,
+                                 relume_shadows_params(.log = m->p->log, .threads = m->p->threads));
+    m->view[i].shadow = m->shadow[i].data ? &m->shadow[i] : NULL;
     m->view[i].depth = m->depth[i].data ? &m->depth[i] : NULL;
     m->view[i].mask = m->mask[i].data ? &m->mask[i] : NULL;
     return status;

@@ -17,11 +17,11 @@ struct material {
     struct relume_pack_view *view;
     struct relume_pack_levels *levels;  // [views]
     relume_coefficients **coefficients;
-    struct relume_image *depth, *mask;    // [views]
-    relume_books **books;                 // [views], or the first for all
-    uint16_t **index;                     // [views][RELUME_MOST_BOOKS]
-    struct lossy_words *words;            // [views]
-    struct relume_encode_report *report;  // [views]
+    struct relume_image *depth, *mask, *shadow;  // [views]
+    relume_books **books;                        // [views], or the first for all
+    uint16_t **index;                            // [views][RELUME_MOST_BOOKS]
+    struct lossy_words *words;                   // [views]
+    struct relume_encode_report *report;         // [views]
     int views;
     int first, end;  // those that are encoded
     int row, rows;   // of one view alone; 0 rows: all

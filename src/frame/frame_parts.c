@@ -99,12 +99,16 @@ static relume_status need_light(relume_renderer *r, int view)
                         : relume_pack_codes_part(&p->codes, r->pack, view, &r->parts->at[view]);
     if (!status)
         status = need_surface(r, view);
-    const struct relume_relit relit = {.view = view,
-                                       .codes = &p->codes.codes,
-                                       .surface = &p->surface,
-                                       .lights = r->lights,
-                                       .count = r->light_count,
-                                       .log = r->said ? NULL : r->params.log};
+    struct relume_relit relit = {.view = view,
+                                 .codes = &p->codes.codes,
+                                 .surface = &p->surface,
+                                 .lights = r->lights,
+                                 .count = r->light_count,
+                                 .log = r->said ? NULL : r->params.log,
+                                 .left = r->parts->at[view].left,
+                                 .top = r->parts->at[view].top};
+    if (!status)
+        status = renderer_shadows(&relit.shadows, r, view);
     if (!status)
         status = relume_relighter_relight(&r->parts->image[view], r->relighter, &relit);
     r->said |= !status;
@@ -185,12 +189,16 @@ relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view,
                          const struct relume_rect *rect)
 {
     struct relume_codes_part part;
-    const struct relume_relit relit = {.view = view,
-                                       .codes = &part.codes,
-                                       .lights = r->lights,
-                                       .count = r->light_count,
-                                       .log = r->said ? NULL : r->params.log};
+    struct relume_relit relit = {.view = view,
+                                 .codes = &part.codes,
+                                 .lights = r->lights,
+                                 .count = r->light_count,
+                                 .log = r->said ? NULL : r->params.log,
+                                 .left = rect->left,
+                                 .top = rect->top};
     relume_status status = relume_pack_codes_level(&part, r->pack, view, level, rect);
+    if (!status)
+        status = renderer_shadows(&relit.shadows, r, view);  // files with levels have none
     if (!status)
         status = relume_relighter_relight(out, r->relighter, &relit);
     relume_codes_part_destroy(&part);

@@ -24,6 +24,8 @@ static uint64_t view_bytes(const relume_renderer *r, int view)
                      image_bytes(&r->disparity[view]);
     for (int i = 0; i < SHOWN; i++)
         bytes += image_bytes(&r->image[i][view]);
+    if (k->shadows)
+        bytes += relume_shadows_bytes(k->shadows);
     if (k->texel)
         bytes += sizeof *k->texel * (uint64_t)r->info->width * (uint64_t)r->info->height;
     return bytes + k->code_bytes + parts_bytes(r->parts, view);
@@ -86,6 +88,7 @@ static void forget(relume_renderer *r, int view)
     relume_image_destroy(&r->image[SHOWN_LIGHT][view]);
     relume_image_destroy(&r->disparity[view]);
     relume_relighter_drop(r->relighter, view);
+    relume_shadows_destroy(&k->shadows);
     mem_free(k->texel);
     drop_codes(r, view);
     *k = (struct kept){.bytes = k->bytes, .changed = true};
@@ -419,6 +422,21 @@ relume_status renderer_need_disparity(relume_renderer *r, int view)
 
 // ---------------------------------------------------------------- light
 
+relume_status renderer_shadows(relume_shadows **out, relume_renderer *r, int view)
+{
+    struct kept *k = &r->kept[view];
+    bool directional = false;
+    for (int i = 0; i < r->light_count; i++)
+        directional |= r->lights[i].kind == RELUME_LIGHT_DIRECTIONAL;
+    *out = NULL;
+    if (!directional || !r->info->has_shadow)
+        return RELUME_OK;
+    const relume_status status =
+        k->shadows ? RELUME_OK : relume_pack_shadows(&k->shadows, r->pack, view);
+    *out = k->shadows;
+    return status;
+}
+
 relume_status renderer_relit(struct relume_relit *relit, relume_renderer *r, int view)
 {
     struct kept *k = &r->kept[view];
@@ -429,7 +447,9 @@ relume_status renderer_relit(struct relume_relit *relit, relume_renderer *r, int
                                    .log = r->said ? NULL : r->params.log};
     renderer_save_memory(r, view);
     renderer_use(r, view);
-    const relume_status status = relume_pack_codes(&relit->codes, r->pack, view);
+    relume_status status = relume_pack_codes(&relit->codes, r->pack, view);
+    if (!status)
+        status = renderer_shadows(&relit->shadows, r, view);
     if (status)
         return status;
     k->code_bytes = parts_codes_bytes(relit->codes);
@@ -509,6 +529,8 @@ static relume_status relight_run(relume_renderer *r, int view, size_t first, siz
         relit.surface = &surface;
     }
     relit.codes = &part.codes;
+    relit.left = (int)(first % (size_t)r->info->width);
+    relit.top = (int)(first / (size_t)r->info->width);
     if (!status)
         status = relume_relighter_relight(&run, r->relighter, &relit);
     relume_codes_part_destroy(&part);

@@ -21,6 +21,7 @@ struct kept {
     uint64_t partly;              // the lighting that it shows at some texels; 0: none
     uint32_t *texel;              // [texels]: the lighting that each shows
     struct relume_image surface;  // for near lights; empty: not asked for
+    relume_shadows *shadows;      // for directional lights; NULL: not asked for
     uint64_t code_bytes;          // that the pack holds for it
     uint64_t bytes;               // of all, as the renderer's sum has it
     bool changed;                 // the sum must be put right
@@ -68,6 +69,9 @@ void renderer_use(relume_renderer *r, int view);
 void renderer_save_memory(relume_renderer *r, int view);
 // Where the pixels of a view lie, if near lights ask for it and `out` is empty.
 relume_status renderer_surface(struct relume_image *out, relume_renderer *r, int view);
+// What the shadows of directional lights in a view are traced with, if there are such lights and
+// the file has it; else NULL.
+relume_status renderer_shadows(relume_shadows **out, relume_renderer *r, int view);
 // Whether the lights can be shown of some texels without the others.
 bool renderer_goes_by_texels(const relume_renderer *r);
 // Begin a frame that shows light or places: trims what is kept.

@@ -61,7 +61,8 @@ relume_status reader_find_groups(relume_pack *p, int *part)
     relume_status status = RELUME_OK;
     const int planes = relume_coder_info(p->coder)->planes;
     for (int v = 0; v < p->info.views; v++)
-        p->parts[v] = (struct view_parts){.codes = -1, .depth = -1, .mask = -1, .anchor = -1};
+        p->parts[v] =
+            (struct view_parts){.codes = -1, .depth = -1, .mask = -1, .shadow = -1, .anchor = -1};
     for (int g = 0; !status && *part < exr_part_count(p->file); g++, ++*part) {
         const struct exr_part_info i = exr_part_info(p->file, *part);
         char name[32];

@@ -3,6 +3,8 @@
 #include "pack/format.h"
 #include "pack/reader.h"
 
+#include <relume/shadow.h>
+
 #include <stdio.h>
 #include <string.h>
 
@@ -53,7 +55,8 @@ static bool is_next(const relume_pack *p, int part, char name[48], int view, con
 static relume_status find_codes(relume_pack *p, int view, int *part)
 {
     char name[48];
-    p->parts[view] = (struct view_parts){.codes = *part, .depth = -1, .mask = -1, .anchor = -1};
+    p->parts[view] =
+        (struct view_parts){.codes = *part, .depth = -1, .mask = -1, .shadow = -1, .anchor = -1};
     if (!is_next(p, *part, name, view, ""))
         return reader_bad(p, name, "a part of that name");
     const relume_status status = check_view_part(p, (*part)++, view, 0);
@@ -124,6 +127,26 @@ static relume_status find_view(relume_pack *p, int view, int *part)
     return status || p->coded ? status : check_shares(p, view);
 }
 
+// Behind all else: programs that do not know them do not see them.
+static relume_status find_shadow(relume_pack *p, int view, int *part)
+{
+    static const char *const channel[] = FORMAT_SHADOW_CHANNELS;
+    char name[48];
+    if (!is_next(p, *part, name, view, ".shadow"))
+        return RELUME_OK;
+    const struct exr_part_info i = exr_part_info(p->file, *part);
+    bool good = i.width == p->info.width && i.height == p->info.height && i.uniform &&
+                i.sample == EXR_SAMPLE_HALF && i.channels == RELUME_SHADOW_CHANNELS &&
+                p->parts[view].depth >= 0;
+    for (int c = 0; good && c < i.channels; c++)
+        good = !strcmp(exr_channel_name(p->file, *part, c), channel[c]);
+    if (!good)
+        return reader_bad(p, name, "eight half channels of the views' size, and depth");
+    p->parts[view].shadow = (*part)++;
+    p->info.has_shadow = true;
+    return RELUME_OK;
+}
+
 relume_status reader_find_parts(relume_pack *p)
 {
     const size_t views = (size_t)p->info.views;
@@ -140,6 +163,8 @@ relume_status reader_find_parts(relume_pack *p)
     for (int v = 0; !status && p->coded && v < p->info.views; v++)
         if (!(status = find_levels(p, v, &part)))
             status = check_shares(p, v);
+    for (int v = 0; !status && v < p->info.views; v++)
+        status = find_shadow(p, v, &part);
     if (status)
         return status;
     p->info.tile = p->coded ? reader_coded_tile(p) : exr_part_info(p->file, p->parts[0].codes).tile;

@@ -1,8 +1,11 @@
 // read_view.c - the samples of one view: its codes, depth and mask
+#include "base/half.h"
 #include "base/memory.h"
 #include "coder/codes.h"
 #include "pack/format.h"
 #include "pack/reader.h"
+
+#include <relume/shadow.h>
 
 #include <math.h>
 #include <stdatomic.h>
@@ -148,6 +151,72 @@ relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int
     if (pack->parts[view].depth_words.count)
         return reader_load_coded_depth(out, pack, view);
     return reader_load_plane(out, pack, pack->parts[view].depth, &all);
+}
+
+// In the order in which EXR sorts the names of the channels.
+static void shadow_block(void *context, const struct relume_rect *at, const void *samples)
+{
+    static const int order[RELUME_SHADOW_CHANNELS] = {3, 2, 1, 4, 5, 6, 7, 0};
+    struct relume_image *to = context;
+    for (int y = at->top; y < at->top + at->height; y++)
+        for (int c = 0; c < RELUME_SHADOW_CHANNELS; c++) {
+            const uint16_t *from = exr_samples(samples, at, at, y, RELUME_SHADOW_CHANNELS, c, 2);
+            float *out = to->data + ((size_t)y * (size_t)to->width + (size_t)at->left) *
+                                        RELUME_SHADOW_CHANNELS;
+            for (int x = 0; x < at->width; x++)
+                out[x * RELUME_SHADOW_CHANNELS + order[c]] = float_from_half(from[x]);
+        }
+}
+
+// Colours and thicknesses of 0 or more, the rest finite.
+static bool is_sound_shadow(const struct relume_image *image)
+{
+    const size_t n = (size_t)image->width * (size_t)image->height;
+    bool sound = true;
+    for (size_t i = 0; i < n * RELUME_SHADOW_CHANNELS; i++) {
+        const size_t channel = i % RELUME_SHADOW_CHANNELS;
+        const float value = image->data[i];
+        sound &= channel >= RELUME_SHADOW_MATTE   ? isfinite(value) != 0
+                 : channel == RELUME_SHADOW_THICK ? value >= 0.0f
+                                                  : value >= 0.0f && isfinite(value);
+    }
+    return sound;
+}
+
+relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, int view)
+{
+    *out = (struct relume_image){0};
+    if (view < 0 || view >= pack->info.views)
+        return RELUME_EINVAL;
+    if (pack->parts[view].shadow < 0)
+        return RELUME_OK;
+    relume_status status =
+        relume_image_create(out, pack->info.width, pack->info.height, RELUME_SHADOW_CHANNELS);
+    if (!status)
+        status = exr_read(pack->file, pack->parts[view].shadow, NULL, pack->threads, shadow_block,
+                          out, pack->log);
+    if (!status && !is_sound_shadow(out))
+        status = reader_bad(pack, "shadow", "finite colours of 0 or more");
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}
+
+relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view)
+{
+    struct relume_image depth = {0}, model;
+    *out = NULL;
+    relume_status status = relume_pack_shadow(&model, pack, view);
+    if (!status && model.data)
+        status = relume_pack_depth(&depth, pack, view);
+    if (!status && model.data)
+        status = relume_shadows_create(out, relume_pack_geometry(pack, view), pack->info.uv[view],
+                                       &depth, &model);
+    if (status == RELUME_EINVAL)
+        status = reader_bad(pack, "shadow", "none in views of this projection");
+    relume_image_destroy(&depth);
+    relume_image_destroy(&model);
+    return status;
 }
 
 struct picking {

@@ -14,8 +14,8 @@ struct word_range {
 };
 
 struct view_parts {
-    int codes, depth, mask;  // part numbers, -1 when absent
-    int anchor;              // coded: the view from which it is predicted, -1: from none
+    int codes, depth, mask, shadow;  // part numbers, -1 when absent
+    int anchor;                      // coded: the view from which it is predicted, -1: from none
     struct word_range words, depth_words;  // coded: of `codes`, and where there are any of `depth`
     float depth_step;
     int level[RELUME_MOST_LEVELS], share[RELUME_MOST_LEVELS];  // reduced; as `codes` and `mask`

@@ -8,6 +8,8 @@
 #include "pack/format.h"
 #include "pack/writer.h"
 
+#include <relume/shadow.h>
+
 #include <stdio.h>
 #include <string.h>
 
@@ -232,6 +234,32 @@ void writer_add_levels(struct writer *w, int index)
         add_plane(w, name, index, levels->share[i].data ? &levels->share[i] : NULL, channel,
                   EXR_SAMPLE_HALF, share_rows);
     }
+}
+
+// The channels of relume_shadows_learn in the order in which EXR sorts their names.
+static const int shadow_order[RELUME_SHADOW_CHANNELS] = {3, 2, 1, 4, 5, 6, 7, 0};
+
+static relume_status shadow_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_image *image = context;
+    const size_t width = (size_t)image->width;
+    const float *from = image->data + (size_t)row * width * RELUME_SHADOW_CHANNELS;
+    uint16_t *halves = samples;
+    for (int y = 0; y < rows; y++, from += width * RELUME_SHADOW_CHANNELS)
+        for (int c = 0; c < RELUME_SHADOW_CHANNELS; c++)
+            for (size_t x = 0; x < width; x++)
+                *halves++ =
+                    half_from_float(from[x * RELUME_SHADOW_CHANNELS + (size_t)shadow_order[c]]);
+    return RELUME_OK;
+}
+
+void writer_add_shadow(struct writer *w, int index)
+{
+    static const char *const channel[] = FORMAT_SHADOW_CHANNELS;
+    const struct relume_pack_view *view = &w->contents->view[index];
+    add_plane(w, "shadow", index, view->shadow, channel, EXR_SAMPLE_HALF, shadow_rows);
+    if (view->shadow)
+        w->parts[w->count - 1].channels = RELUME_SHADOW_CHANNELS;
 }
 
 void writer_add_view(struct writer *w, int index, bool shared)

@@ -131,6 +131,8 @@ static void add_parts(struct writer *w)
         writer_add_books(w, c->view[first].books, -1);
     for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
         writer_add_view(w, i, shared);
+    for (int i = 0; !c->share && i < c->views; i++)
+        writer_add_shadow(w, i);
 }
 
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,
@@ -143,7 +145,7 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
         .codec = codecs[p.compression],
     };
     const size_t most_parts =
-        1 + (3 + RELUME_MOST_BOOKS + 2 * RELUME_MOST_LEVELS) * (size_t)contents->views;
+        1 + (4 + RELUME_MOST_BOOKS + 2 * RELUME_MOST_LEVELS) * (size_t)contents->views;
     if (!path && !p.writer)
         return RELUME_EINVAL;
     w.parts = arena_array(&w.arena, most_parts, sizeof *w.parts);

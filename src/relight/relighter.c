@@ -4,7 +4,9 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "image/image.h"
+#include "image/rgba8.h"
 
+#include <math.h>
 #include <relume/relight.h>
 #include <string.h>
 
@@ -168,14 +170,35 @@ relume_status relume_relighter_relight(struct relume_image *out, relume_relighte
                                        const struct relume_relit *relit)
 {
     struct relume_relight_params p;
-    const relume_status status = prepare(&p, r, relit);
-    return status ? status : relume_relight(out, relit->codes, relit->lights, relit->count, &p);
+    relume_status status = prepare(&p, r, relit);
+    if (!status)
+        status = relume_relight(out, relit->codes, relit->lights, relit->count, &p);
+    return status || !relit->shadows
+               ? status
+               : relume_shadows_add(out, relit->left, relit->top, relit->shadows, relit->codes,
+                                    relit->lights, relit->count, r->params.threads);
+}
+
+static relume_status code_shadows(uint8_t *out, relume_relighter *r,
+                                  const struct relume_relit *relit, double exposure_ev)
+{
+    struct relume_image image = {0};
+    struct byte_coder coder;
+    relume_status status = relume_relighter_relight(&image, r, relit);
+    byte_coder_init(&coder, (float)exp2(exposure_ev));
+    if (!status)
+        byte_code((uint32_t *)(void *)out, image.data, (size_t)image.width * (size_t)image.height,
+                  &coder);
+    relume_image_destroy(&image);
+    return status;
 }
 
 relume_status relume_relighter_rgba8(uint8_t *out, relume_relighter *r,
                                      const struct relume_relit *relit, double exposure_ev)
 {
     struct relume_relight_params p;
+    if (relit->shadows)
+        return code_shadows(out, r, relit, exposure_ev);
     const relume_status status = prepare(&p, r, relit);
     p.exposure_ev = (float)exposure_ev;
     return status ? status

@@ -20,7 +20,7 @@ for interpolant in $("$RELUME" encode --help | sed -n 's/.*table: \([a-z, ]*\).*
     both "dome --basis table --interpolant $interpolant --bits half" "9 8"
     [ "$interpolant" = hsh ] || both "all --basis pca --interpolant $interpolant" "9 8"
 done
-both "dome --basis auto" "9 8"
+both "dome --basis auto --shadows no" "9 8"
 both "all --basis table --interpolant auto --bits half" "9 8"
 # the lights of web files: nodes of an octahedral grid
 awk 'BEGIN { for (i = 0; i < 25; i++) { u = i % 5 / 2 - 1; v = int(i / 5) / 2 - 1; x = (u - v) / 2; y = (u + v) / 2

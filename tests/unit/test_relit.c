@@ -69,7 +69,8 @@ static void only_what_moves_is_relit(void **state)
     };
     for (int groups = 1; groups <= GROUPS; groups += GROUPS - 1) {
         relume_relighter *r;
-        const struct relume_relit relit = {0, &s.codes, &surface, lights, 3, NULL};
+        const struct relume_relit relit = {
+            .codes = &s.codes, .surface = &surface, .lights = lights, .count = 3};
         CHECK_OK(relume_relighter_create(&r, 1, relume_relighter_params(.groups = groups)));
         fill_slide(1.0f);
         struct relume_image old = wanted(&s, lights, 3);
@@ -113,18 +114,21 @@ static void a_view_that_leaves_has_taught(void **state)
     const struct relume_image *first;
     CHECK_OK(relume_relighter_create(&r, 1, NULL));
     CHECK_OK(relume_relighter_picture(
-        &first, r, &(struct relume_relit){0, &s.codes, NULL, &light, 1, NULL}));
+        &first, r, &(struct relume_relit){.codes = &s.codes, .lights = &light, .count = 1}));
     struct relume_image want;
     CHECK_OK(relume_image_create(&want, SIDE, SIDE, 3));
     memcpy(want.data, first->data, 3 * SIDE * SIDE * sizeof *want.data);
     relume_relighter_destroy(&r);
     CHECK_OK(relume_relighter_create(&r, 2, NULL));
     for (int view = 0; view < 2; view++) {
-        expect(r, &(struct relume_relit){view, &s.codes, NULL, &light, 1, NULL}, &want, 0.0);
+        expect(
+            r,
+            &(struct relume_relit){.view = view, .codes = &s.codes, .lights = &light, .count = 1},
+            &want, 0.0);
         relume_relighter_drop(r, view);
         assert_int_equal(relume_relighter_bytes(r, view), 0);
     }
-    expect(r, &(struct relume_relit){0, &s.codes, NULL, &light, 1, NULL}, &want, 0.0);
+    expect(r, &(struct relume_relit){.codes = &s.codes, .lights = &light, .count = 1}, &want, 0.0);
     relume_relighter_destroy(&r);
     relume_image_destroy(&want);
     relume_environment_destroy(&sky);

@@ -38,7 +38,8 @@ static relume_status need_linear(struct relighter *r)
     if (!r->linear)
         return RELUME_ENOMEM;
     r->linear_source = (struct linear_source){.source = r->source, .log = r->log};
-    const struct code_source source = {linear_codes, linear_drop, &r->linear_source, NULL};
+    const struct code_source source = {
+        .codes = linear_codes, .drop = linear_drop, .user = &r->linear_source};
     const relume_status status = relighter_create(r->linear, r->gl, &source, r->views, r->log);
     if (status) {
         free(r->linear);

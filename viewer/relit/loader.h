@@ -2,6 +2,7 @@
 #ifndef VIEWER_LOADER_H
 #define VIEWER_LOADER_H
 
+#include <relume/shadow.h>
 #include <relume/coder.h>
 
 // Where codes come from: a pack, or a test. `drop` (may be NULL) hears that one who asked for a
@@ -12,6 +13,8 @@ struct code_source {
     void (*drop)(void *user, int view);
     void *user;
     relume_status (*surface)(struct relume_image *out, void *user, int view);
+    // For the caller to destroy; NULL where the file has none. May be NULL.
+    relume_status (*shadows)(relume_shadows **out, void *user, int view);
 };
 
 // Codes of a rectangle of a view alone, for the caller to destroy; `part` NULL: there are none.

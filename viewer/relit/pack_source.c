@@ -148,6 +148,15 @@ static relume_status find_surface(struct relume_image *out, void *user, int view
     return status;
 }
 
+static relume_status find_shadows(relume_shadows **out, void *user, int view)
+{
+    struct pack_source *s = user;
+    pthread_mutex_lock(&s->lock);
+    const relume_status status = relume_pack_shadows(out, s->pack, view);
+    pthread_mutex_unlock(&s->lock);
+    return status;
+}
+
 static relume_status find_places(struct relume_image *out, void *user, int view)
 {
     struct pack_source *s = user;
@@ -169,12 +178,12 @@ struct depth_source pack_source_places(struct pack_source *source)
 
 struct code_source pack_source_codes(struct pack_source *source)
 {
-    return (struct code_source){read_codes, drop_codes, source, find_surface};
+    return (struct code_source){read_codes, drop_codes, source, find_surface, find_shadows};
 }
 
 struct code_source pack_source_tiles(struct pack_source *source)
 {
-    return (struct code_source){read_tile, drop_tile, source, NULL};
+    return (struct code_source){.codes = read_tile, .drop = drop_tile, .user = source};
 }
 
 struct part_source pack_source_parts(struct pack_source *source)

@@ -19,6 +19,7 @@ static void stop_lending(struct relighter *r, struct relit_view *v)
     if (v->lent && r->library)
         relume_relighter_drop(r->library, view);
     relume_image_destroy(&v->surface);
+    relume_shadows_destroy(&v->shadows);
     relume_codes_part_destroy(&v->part);
 }
 
@@ -129,7 +130,8 @@ static relume_status find_surface(struct relume_image *surface, const struct rel
 static size_t bytes_of_library(const struct relighter *r, const struct relit_view *v)
 {
     const size_t pixels = (size_t)v->surface.width * (size_t)v->surface.height;
-    return relume_relighter_bytes(r->library, (int)(v - r->view)) + 3 * pixels * sizeof(float);
+    return relume_relighter_bytes(r->library, (int)(v - r->view)) + 3 * pixels * sizeof(float) +
+           (v->shadows ? relume_shadows_bytes(v->shadows) : 0);
 }
 
 static bool holds(struct relume_rect a, const struct relume_rect *b)
@@ -181,10 +183,19 @@ static relume_status relight_by_library(struct relighter *r, struct relit_view *
                                                               .threads = r->threads));
     if (!status && has_near(lights, n) && !v->surface.data)
         status = find_surface(&v->surface, r, view);
+    if (!status && !v->shadows && r->source.shadows)
+        status = r->source.shadows(&v->shadows, r->source.user, view);
     if (!status)
-        status = relume_relighter_picture(
-            &image, r->library,
-            &(struct relume_relit){view, v->lent, &v->surface, lights, n, r->log});
+        status = relume_relighter_picture(&image, r->library,
+                                          &(struct relume_relit){.view = view,
+                                                                 .codes = v->lent,
+                                                                 .surface = &v->surface,
+                                                                 .lights = lights,
+                                                                 .count = n,
+                                                                 .log = r->log,
+                                                                 .shadows = v->shadows,
+                                                                 .left = v->at.left,
+                                                                 .top = v->at.top});
     if (status)
         return status;
     target_write(into, r->gl, image);

@@ -27,6 +27,7 @@ struct relit_view {
     struct nearby_view near;
     const struct relume_codes *lent;  // by the source, where the library relights it; else NULL
     struct relume_image surface;      // then; empty: not known yet
+    relume_shadows *shadows;          // then; NULL: not asked for yet, or none
 };
 
 // The codes of the linear copy come from those of the file.

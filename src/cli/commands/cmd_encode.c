@@ -19,6 +19,7 @@ struct encode_options {
     struct domain_choice domain;
     enum relume_compression compression;
     enum relume_pyramid pyramid;
+    enum shadows { SHADOWS_DEFAULT, SHADOWS_AUTO, SHADOWS_YES, SHADOWS_NO } shadows;
     struct relume_transfer transfer;
     double quality, psnr, bytes_per_pixel, ridge, assume_depth;
     unsigned luminance;
@@ -82,6 +83,10 @@ static const struct option options[] = {
     NUMBER("--ridge", ridge, "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0, 1),
     FLAG("--no-depth", no_depth,
          "leave depth out: smaller file, but no near lights and no views corrected by depth"),
+    NAME("--shadows", shadows, "S",
+         "auto, yes or no: trace shadows through the depth, so that they move with the light; "
+         "default: auto with basis auto, where they foresee photographs left out better; else no",
+         SHADOWS_AUTO, "auto", "yes", "no"),
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
     FLAG("--skip-missing", skip_missing, "leave out lights whose image does not exist"),
@@ -115,9 +120,10 @@ struct request {
     struct relume_coder_params coder;
     struct relume_pack_encode_params pack;
     struct relume_books_params books;
+    enum shadows shadows;
     bool decide;     // the capture decides what the options leave open
     double quality;  // 0: the usual
-    double unseen;   // dB; 0: not known
+    double unseen;   // lights left out, dB; 0: not known
     struct options_text options;
     const char *learnt;  // a folder, or NULL
     bool learn_only;
@@ -256,9 +262,65 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
         relume_coder_decide(coder, &decision, capture, r->quality, &r->coder, &encode);
     r->pack.domain = decision.domain;
     r->pack.storage = decision.storage;
-    r->unseen = decision.unseen_db;
+    if (!r->unseen)
+        r->unseen = decision.unseen_db;
     r->quality = r->quality > 0.0 ? r->quality : RELUME_USUAL_DB;
     return status;
+}
+
+// ---------------------------------------------------------------- shadows
+
+// Why shadows cannot be traced in this file; NULL: they can.
+static const char *forbids_shadows(const struct request *r, const relume_capture *capture)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    for (int i = 0; i < m->views; i++)
+        if (!m->view[i].depth || r->pack.no_depth)
+            return "expected depth in every view";
+    if (m->positions)
+        return "expected distant lights";
+    if (!relume_shadows_suit(&m->geometry))
+        return "expected views that are no cube and no cylinder with discs";
+    if (!r->decide && !r->basis->learned && r->basis != relume_basis_find("table"))
+        return "expected basis pca, eigen or table";
+    if (is_coded(r) || r->pack.parts)
+        return "expected no --psnr, no --bytes-per-pixel and no parts";
+    return r->pack.pyramid == RELUME_PYRAMID_YES ||
+                   (double)relume_capture_width(capture) * relume_capture_height(capture) > 16e6
+               ? "expected views without reduced levels"
+               : NULL;
+}
+
+// What decides is the middle view. A gain of half a decibel is seen; a view that takes minutes to
+// find it out is left as it is.
+static relume_status decide_shadows(const struct args *args, const relume_capture *capture,
+                                    struct request *r)
+{
+    static const double MOST_SAMPLES = 32e6, LEAST_GAIN_DB = 0.5;
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    const char *why = forbids_shadows(r, capture);
+    const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
+    struct relume_shadows_gain gain;
+    if (r->shadows == SHADOWS_YES && why)
+        return say(args->log, RELUME_EUNFIT, "%s: shadows cannot be traced; %s", r->input, why);
+    r->pack.shadows = r->shadows == SHADOWS_YES;
+    if (r->shadows != SHADOWS_AUTO || why || m->lights < 8 ||
+        (double)relume_capture_width(capture) * relume_capture_height(capture) * m->lights >
+            MOST_SAMPLES)
+        return RELUME_OK;
+    struct relume_log quiet = *args->log;
+    quiet.message = NULL;  // of what is wrong with a photograph encoding says more
+    const relume_status status =
+        relume_shadows_judge(&gain, capture, m->views / 2, display,
+                             relume_shadows_params(.log = &quiet, .threads = args->threads));
+    r->pack.shadows = !status && gain.traced_db - gain.faded_db >= LEAST_GAIN_DB;
+    r->unseen = r->pack.shadows ? gain.traced_db : 0.0;
+    if (r->pack.shadows)
+        announce(args, RELUME_NOTE,
+                 "%s: shadows are traced through the depth: %d lights left out are shown at "
+                 "%.1f dB PSNR, faded ones at %.1f; --shadows no leaves that out",
+                 r->input, gain.lights, gain.traced_db, gain.faded_db);
+    return status == RELUME_ECANCEL || status == RELUME_ENOMEM ? status : RELUME_OK;
 }
 
 // Where nobody asked for even steps and they turn out too coarse, as halves.
@@ -442,7 +504,13 @@ static relume_status encode_team(const struct args *args, struct request *r,
 {
     relume_coder *coder = NULL;
     struct relume_encode_report report;
-    relume_status status = learn(&coder, capture, r);
+    relume_status status = decide_shadows(args, capture, r);
+    if (r->pack.shadows && !r->coder.interpolant) {  // what traced shadows are added to
+        r->coder.interpolant = relume_interpolant_find("delaunay");
+        r->coder.choose = false;
+    }
+    if (!status)
+        status = learn(&coder, capture, r);
     if (!status && (!r->learn_only || has_steps(r, capture)))
         status = (args->team ? write_together(args, capture, coder, r, &report)
                              : write_file(capture, coder, r, &report));
@@ -577,6 +645,7 @@ static relume_status run(const struct args *args)
         .learnt = o->learnt,
         .learn_only = o->learn_only,
     };
+    r.shadows = o->shadows ? o->shadows : r.decide ? SHADOWS_AUTO : SHADOWS_NO;
     if (r.quality > 0.0 && (!r.decide || o->coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
                            "--basis, --coefficients, --codebook and --robust");
@@ -610,6 +679,7 @@ relume_status encode_as_usual(const struct args *args, const char *capture, cons
         .basis = &relume_basis_pca,
         .coder = {.choose = true},
         .pack = {.log = args->log, .compression = RELUME_COMPRESS_PIZ, .threads = args->threads},
+        .shadows = SHADOWS_AUTO,
         .decide = true,
     };
     return encode(args, &r);

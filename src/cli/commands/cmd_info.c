@@ -60,8 +60,9 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
     json_number(stdout, i->report.fit_rms);
     printf(", \"store_rms\": ");
     json_number(stdout, i->report.store_rms);
-    printf(", \"depth\": %s, \"mask\": %s, \"file_bytes\": ", i->has_depth ? "true" : "false",
-           i->has_mask ? "true" : "false");
+    printf(", \"depth\": %s, \"mask\": %s, \"shadows\": %s, \"file_bytes\": ",
+           i->has_depth ? "true" : "false", i->has_mask ? "true" : "false",
+           i->has_shadow ? "true" : "false");
     if (isfinite(bytes))
         printf("%.0f", bytes);
     else
@@ -118,8 +119,8 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     if (i->levels)
         printf("pyramid       %d smaller level%s, tiles of %d pixels\n", i->levels,
                relume_plural(i->levels), i->tile);
-    printf("extras        %s%s%s\n", i->has_depth ? "depth" : "",
-           i->has_depth && i->has_mask ? ", " : "",
+    printf("extras        %s%s%s%s\n", i->has_depth ? "depth" : "",
+           i->has_shadow ? ", shadows" : "", i->has_depth && i->has_mask ? ", " : "",
            i->has_mask    ? "mask"
            : i->has_depth ? ""
                           : "none");

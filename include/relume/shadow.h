@@ -1,0 +1,105 @@
+// shadow.h - shadows that wander with the light, traced through the depth of a view
+//
+// Between two captured lights interpolation fades one shadow out and another in. Where depth is
+// known the edge can move instead. With rho_i captured under light i, w_i the weights of the lights
+// around a direction L, V the share of a pixel that light from L reaches, by depth, and f what the
+// pixel would show if nothing stood in the light,
+//     rho(L) = sum_i w_i rho_i + V(L) f(L) - sum_i w_i V(L_i) f(L_i),
+// sums as the codes are interpolated, in their domain. Under a captured light that is the
+// photograph; between them the residual rho_i - V(L_i) f(L_i), which is small, is interpolated in
+// place of the shadow.
+//
+// A view sees fronts alone. How deep the things are that light is stopped by is learnt from the
+// photographs: where light arrives, nothing stood in its way (Savarese et al. 2007 carve volumes by
+// that). f is matte: colour times max(0, a + b.L), by least squares over the lights that arrive.
+#ifndef RELUME_SHADOW_H
+#define RELUME_SHADOW_H
+
+#include <relume/base.h>
+#include <relume/capture.h>
+#include <relume/coder.h>
+#include <relume/image.h>
+#include <relume/light.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Channels of what is learnt of a pixel.
+enum {
+    RELUME_SHADOW_THICK = 0,     // world units behind the surface, along the axis of the view or
+                                 // away from its eye, in which light is stopped; above 0
+    RELUME_SHADOW_COLOUR = 1,    // r, g, b of luminance 1, or black
+    RELUME_SHADOW_MATTE = 4,     // a, then b in the world
+    RELUME_SHADOW_CHANNELS = 8,  // in all
+};
+
+// Whether rays can be traced through views of that geometry: not cubes and cylinders with discs.
+RELUME_API bool relume_shadows_suit(const struct relume_geometry *geometry);
+
+// One view whose shadows can be traced. Thread-safety: one thread at a time.
+typedef struct relume_shadows relume_shadows;
+
+// `depth` is one channel of distances along rays, infinite for background; `model` what
+// relume_shadows_learn found. Both are copied. RELUME_EINVAL for geometries that do not suit and
+// images of other sizes, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_create(relume_shadows **out,
+                                                  const struct relume_geometry *geometry,
+                                                  const double uv[2],
+                                                  const struct relume_image *depth,
+                                                  const struct relume_image *model);
+RELUME_API void relume_shadows_destroy(relume_shadows **shadows);
+// What is kept, bytes: it grows with the captured lights that were asked for.
+RELUME_API uint64_t relume_shadows_bytes(const relume_shadows *shadows);
+
+enum { RELUME_SHADOW_REACHED = 36 };
+// What share of each pixel, and a little of those beside it, light from a unit direction (world)
+// reaches: `out[height][width]`, 0 to RELUME_SHADOW_REACHED. Background is reached. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_trace(uint8_t *out, const relume_shadows *shadows,
+                                                 struct relume_vec3 direction, int threads);
+
+// How a view is learnt. Borrowed during the call.
+struct relume_shadows_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    int threads;       // default: all cores
+    const bool *skip;  // [lights]: those that are left out; default: none
+};
+#define relume_shadows_params(...)                                                                 \
+    (&(const struct relume_shadows_params){RELUME_SIZED(relume_shadows_params), __VA_ARGS__})
+
+// Learn a view of a capture with distant lights: `*model` is created with RELUME_SHADOW_CHANNELS
+// channels, each number of 8 significant bits. All photographs of the view are held at two bytes a
+// pixel. RELUME_EINVAL where there is no depth or the geometry does not suit, an input status,
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_learn(struct relume_image *model,
+                                                 const relume_capture *capture, int view,
+                                                 const struct relume_shadows_params *params);
+
+// What relume_shadows_judge finds: PSNR in dB of display values over all pixels of some captured
+// lights that are left out and met again. Plain data.
+struct relume_shadows_gain {
+    double faded_db;   // by interpolation, `chord` or `delaunay`, whichever is better
+    double traced_db;  // with shadows traced
+    int lights;        // that were left out
+};
+// Whether tracing helps a view; `display`: codes will be of the display domain. At least 8 lights,
+// else RELUME_EINVAL. Errors of relume_shadows_learn.
+RELUME_RESULT relume_status relume_shadows_judge(struct relume_shadows_gain *out,
+                                                 const relume_capture *capture, int view,
+                                                 bool display,
+                                                 const struct relume_shadows_params *params);
+
+// Add the last two terms for every directional light to a picture of linear light, which becomes
+// black where it would be less. The picture is the rectangle of the view at `left`, `top` of its
+// size, relit from codes of `coder` and `domain` (`display`: its curve). RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
+                                               relume_shadows *shadows,
+                                               const struct relume_codes *codes,
+                                               const struct relume_light *lights, int n,
+                                               int threads);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

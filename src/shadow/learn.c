@@ -1,0 +1,250 @@
+// learn.c - how thick things are and what they would show in full light, from the photographs
+#include "shadow/shadows.h"
+
+#include "base/half.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/params.h"
+#include "base/thread.h"
+#include "math/luminance.h"
+
+#include <relume/shadow.h>
+
+#include <math.h>
+#include <string.h>
+
+// The photographs of a view.
+struct looked {
+    struct stage stage;
+    size_t pixels;
+    int lights;                   // that count
+    vec3 *light, *turned;         // [lights], in the world, in the view
+    uint16_t *grey;               // [lights][pixels]: luminance, half floats
+    float *colour;                // [pixels][3]: sums over the lights
+    float *bright;                // [pixels]: at least as bright is what light reaches
+    float (*least)[STAGE_LEAST];  // [workers][pixels]
+    int workers;
+    float *model;  // [pixels][RELUME_SHADOW_CHANNELS]
+};
+
+static void looked_destroy(struct looked *l)
+{
+    stage_destroy(&l->stage);
+    mem_free(l->light);
+    mem_free(l->turned);
+    mem_free(l->grey);
+    mem_free(l->colour);
+    mem_free(l->bright);
+    mem_free(l->least);
+}
+
+static relume_status looked_create(struct looked *l, const struct relume_manifest *m, int view,
+                                   const struct relume_image *depth, int threads)
+{
+    const struct relume_geometry *g = m->slabs ? &m->slab[m->view[view].slab] : &m->geometry;
+    enum { MOST_WORKERS = 4 };  // each has a copy of what is carved
+    relume_status status = stage_create(&l->stage, g, m->view[view].uv, depth);
+    l->pixels = (size_t)depth->width * (size_t)depth->height;
+    l->workers = thread_count(threads) < MOST_WORKERS ? thread_count(threads) : MOST_WORKERS;
+    l->light = mem_array((size_t)m->lights, sizeof *l->light);
+    l->turned = mem_array((size_t)m->lights, sizeof *l->turned);
+    l->grey = mem_array((size_t)m->lights * sizeof *l->grey, l->pixels);
+    l->colour = mem_zeroed(l->pixels, 3 * sizeof *l->colour);
+    l->bright = mem_zeroed(l->pixels, sizeof *l->bright);
+    l->least = mem_array((size_t)l->workers * sizeof *l->least, l->pixels);
+    if (!status && (!l->light || !l->turned || !l->grey || !l->colour || !l->bright || !l->least))
+        status = RELUME_ENOMEM;
+    return status;
+}
+
+// ---------------------------------------------------------------- photographs
+
+static void take_picture(struct looked *l, const struct relume_image *image, vec3 light)
+{
+    uint16_t *grey = l->grey + (size_t)l->lights * l->pixels;
+    for (size_t i = 0; i < l->pixels; i++) {
+        const float *rgb = image->data + 3 * i, value = fmaxf(luminance_709f(rgb), 0.0f);
+        grey[i] = half_from_float(value);
+        l->bright[i] = fmaxf(l->bright[i], value);
+        for (int c = 0; c < 3; c++)
+            l->colour[3 * i + (size_t)c] += fmaxf(rgb[c], 0.0f);
+    }
+    l->light[l->lights] = light;
+    l->turned[l->lights++] = stage_turn(&l->stage, light);
+}
+
+// What light reaches is half as bright as the pixel is on average, and no deep shadow beside its
+// brightest.
+static void find_bright(struct looked *l)
+{
+    for (size_t i = 0; i < l->pixels; i++) {
+        const float mean = luminance_709f(l->colour + 3 * i) / (float)l->lights;
+        l->bright[i] = fmaxf(0.5f * mean, 0.15f * l->bright[i]);
+    }
+}
+
+static relume_status look(struct looked *l, const relume_capture *capture, int view,
+                          const struct relume_shadows_params *p)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < m->lights; i++) {
+        struct relume_image image = {0};
+        if (p->skip && p->skip[i])
+            continue;
+        if (!log_progress(p->log, "shadows", 0.5 * i / m->lights))
+            return RELUME_ECANCEL;
+        status = relume_capture_masked(&image, capture, view, i, p->log);
+        if (!status)
+            take_picture(l, &image, m->directions[i]);
+        relume_image_destroy(&image);
+    }
+    find_bright(l);
+    return status;
+}
+
+// ---------------------------------------------------------------- thickness
+
+static bool is_lit(const struct looked *l, int light, size_t pixel)
+{
+    const float value = float_from_half(l->grey[(size_t)light * l->pixels + pixel]);
+    return value > 0.0f && value >= l->bright[pixel];
+}
+
+static void carve_row(void *context, size_t y, int worker)
+{
+    struct looked *l = context;
+    float(*least)[STAGE_LEAST] = l->least + (size_t)worker * l->pixels;
+    const size_t width = (size_t)l->stage.width;
+    vec3 p;
+    for (size_t x = 0; x < width; x++)
+        for (int i = 0;
+             stage_point(&p, &l->stage, (double)x + 0.5, (double)y + 0.5) && i < l->lights; i++)
+            if (is_lit(l, i, y * width + x))
+                stage_carve(least, &l->stage, p, l->turned[i]);
+}
+
+// Some rays err, by a pixel at an edge: the smallest distances but a few are believed.
+static void carve(struct looked *l)
+{
+    for (size_t i = 0; i < (size_t)l->workers * l->pixels; i++)
+        for (int k = 0; k < STAGE_LEAST; k++)
+            l->least[i][k] = INFINITY;
+    thread_for(l->workers, (size_t)l->stage.height, carve_row, l);
+    for (size_t i = 0; i < l->pixels; i++) {
+        for (int w = 1; w < l->workers; w++)
+            for (int k = 0; k < STAGE_LEAST; k++)
+                stage_keep_least(l->least[i], l->least[(size_t)w * l->pixels + i][k]);
+        l->stage.thick[i] = fminf(l->stage.thick[i], l->least[i][STAGE_LEAST - 1]);
+    }
+}
+
+// ---------------------------------------------------------------- matte
+
+// 8 significant bits, and a half float.
+static float coarse(float value)
+{
+    const uint32_t bits = (bits_of_float(value) + 0x8000u) & 0xffff0000u;
+    return float_from_half(half_from_float(float_of_bits(bits)));
+}
+
+// Symmetric, positive definite: Cholesky's factors in place.
+static void solve_four(double x[4], double a[4][4])
+{
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j <= i; j++) {
+            double sum = a[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= a[i][k] * a[j][k];
+            a[i][j] = i == j ? sqrt(sum) : sum / a[j][j];
+        }
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < i; k++)
+            x[i] -= a[i][k] * x[k];
+        x[i] /= a[i][i];
+    }
+    for (int i = 3; i >= 0; i--) {
+        for (int k = i + 1; k < 4; k++)
+            x[i] -= a[k][i] * x[k];
+        x[i] /= a[i][i];
+    }
+}
+
+// a + b.L by least squares over the lights that arrive; where these leave it open it stays small.
+static void fit_pixel(const struct looked *l, size_t pixel, vec3 p, float matte[4])
+{
+    double a[4][4] = {{0.01}, {0.0, 0.1}, {0.0, 0.0, 0.1}, {0.0, 0.0, 0.0, 0.1}}, x[4] = {0.0};
+    for (int i = 0; i < l->lights; i++) {
+        if (!stage_reaches(&l->stage, p, l->turned[i]))
+            continue;
+        const double value = (double)float_from_half(l->grey[(size_t)i * l->pixels + pixel]);
+        const double f[4] = {1.0, l->light[i].x, l->light[i].y, l->light[i].z};
+        for (int r = 0; r < 4; r++) {
+            x[r] += f[r] * value;
+            for (int c = 0; c <= r; c++)
+                a[r][c] += f[r] * f[c];
+        }
+    }
+    solve_four(x, a);
+    for (int i = 0; i < 4; i++)
+        matte[i] = coarse((float)x[i]);
+}
+
+static void fit_row(void *context, size_t y, int worker)
+{
+    (void)worker;
+    struct looked *l = context;
+    const size_t width = (size_t)l->stage.width;
+    for (size_t x = 0; x < width; x++) {
+        const size_t pixel = y * width + x;
+        float *model = l->model + RELUME_SHADOW_CHANNELS * pixel;
+        const float *colour = l->colour + 3 * pixel, grey = luminance_709f(colour);
+        vec3 p;
+        memset(model, 0, RELUME_SHADOW_CHANNELS * sizeof *model);
+        model[RELUME_SHADOW_THICK] = coarse(l->stage.thick[pixel]);
+        if (!stage_point(&p, &l->stage, (double)x + 0.5, (double)y + 0.5) || !(grey > 0.0f))
+            continue;
+        for (int c = 0; c < 3; c++)
+            model[RELUME_SHADOW_COLOUR + c] = coarse(colour[c] / grey);
+        fit_pixel(l, pixel, p, model + RELUME_SHADOW_MATTE);
+    }
+}
+
+// ---------------------------------------------------------------- interface
+
+static relume_status learn(struct relume_image *model, struct looked *l,
+                           const relume_capture *capture, int view,
+                           const struct relume_shadows_params *p)
+{
+    relume_status status = look(l, capture, view, p);
+    if (status)
+        return status;
+    carve(l);
+    for (size_t i = 0; i < l->pixels; i++)
+        l->stage.thick[i] = coarse(l->stage.thick[i]);  // as it will be read
+    status = relume_image_create(model, l->stage.width, l->stage.height, RELUME_SHADOW_CHANNELS);
+    l->model = model->data;
+    if (!status)
+        thread_for(p->threads, (size_t)l->stage.height, fit_row, l);
+    return status;
+}
+
+relume_status relume_shadows_learn(struct relume_image *model, const relume_capture *capture,
+                                   int view, const struct relume_shadows_params *params)
+{
+    const struct relume_shadows_params p = PARAMS_WORK(relume_shadows_params, params);
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    struct looked l = {.lights = 0};
+    struct relume_image depth;
+    *model = (struct relume_image){0};
+    relume_status status = relume_capture_depth(&depth, capture, view, p.log);
+    if (!status && (!depth.data || m->positions || !stage_suits(&m->geometry)))
+        status = RELUME_EINVAL;
+    if (!status)
+        status = looked_create(&l, m, view, &depth, p.threads);
+    if (!status)
+        status = learn(model, &l, capture, view, &p);
+    looked_destroy(&l);
+    relume_image_destroy(&depth);
+    return status;
+}

@@ -1,0 +1,289 @@
+// shadows.c - a view whose shadows are traced, and what that adds to a relit picture
+#include "shadow/shadows.h"
+
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MATTE = RELUME_SHADOW_CHANNELS - RELUME_SHADOW_COLOUR };
+
+bool relume_shadows_suit(const struct relume_geometry *geometry)
+{
+    return stage_suits(geometry);
+}
+
+// ---------------------------------------------------------------- life
+
+static void take_model(relume_shadows *s, const struct relume_image *model)
+{
+    const size_t n = (size_t)model->width * (size_t)model->height;
+    for (size_t i = 0; i < n; i++) {
+        const float *from = model->data + RELUME_SHADOW_CHANNELS * i;
+        s->stage.thick[i] = from[RELUME_SHADOW_THICK];
+        memcpy(s->matte + MATTE * i, from + RELUME_SHADOW_COLOUR, MATTE * sizeof *from);
+    }
+}
+
+relume_status relume_shadows_create(relume_shadows **out, const struct relume_geometry *geometry,
+                                    const double uv[2], const struct relume_image *depth,
+                                    const struct relume_image *model)
+{
+    *out = NULL;
+    if (!stage_suits(geometry) || depth->channels != 1 ||
+        model->channels != RELUME_SHADOW_CHANNELS || model->width != depth->width ||
+        model->height != depth->height)
+        return RELUME_EINVAL;
+    relume_shadows *s = *out = mem_zeroed(1, sizeof *s);
+    if (!s)
+        return RELUME_ENOMEM;
+    s->matte = mem_array((size_t)model->width * (size_t)model->height, MATTE * sizeof *s->matte);
+    relume_status status = stage_create(&s->stage, geometry, uv, depth);
+    if (!status && !s->matte)
+        status = RELUME_ENOMEM;
+    if (status)
+        relume_shadows_destroy(out);
+    else
+        take_model(s, model);
+    return status;
+}
+
+void relume_shadows_destroy(relume_shadows **shadows)
+{
+    relume_shadows *s = *shadows;
+    *shadows = NULL;
+    if (!s)
+        return;
+    for (int i = 0; s->reached && i < s->lights; i++)
+        mem_free(s->reached[i]);
+    mem_free(s->reached);
+    relume_coder_destroy(&s->between);
+    stage_destroy(&s->stage);
+    mem_free(s->matte);
+    mem_free(s);
+}
+
+static size_t pixels_of(const relume_shadows *s)
+{
+    return (size_t)s->stage.width * (size_t)s->stage.height;
+}
+
+uint64_t relume_shadows_bytes(const relume_shadows *s)
+{
+    uint64_t each = (2 + MATTE) * sizeof(float);
+    for (int i = 0; s->reached && i < s->lights; i++)
+        each += s->reached[i] != NULL;
+    return each * pixels_of(s);
+}
+
+// ---------------------------------------------------------------- where light arrives
+
+// A rectangle of the view, traced with a border of one pixel around it.
+struct tracing {
+    const struct stage *stage;
+    vec3 direction;  // of the view
+    struct relume_rect rect;
+    uint8_t *quarters;  // [height + 2][width + 2]
+    uint8_t *out;       // [height][width]
+};
+
+static int quarters_reached(const struct stage *s, int x, int y, vec3 direction)
+{
+    int arrives = 0;
+    for (int i = 0; i < 4; i++) {
+        vec3 p;
+        arrives += !stage_point(&p, s, x + (i & 1 ? 0.75 : 0.25), y + (i & 2 ? 0.75 : 0.25)) ||
+                   stage_reaches(s, p, direction);
+    }
+    return arrives;
+}
+
+// Beyond the border of a picture that does not close is what lies on it.
+static int inside(int i, int side, bool closes)
+{
+    return closes ? (i + side) % side : i < 0 ? 0 : i < side ? i : side - 1;
+}
+
+static void trace_row(void *context, size_t row, int worker)
+{
+    (void)worker;
+    const struct tracing *t = context;
+    const struct stage *s = t->stage;
+    const int width = t->rect.width + 2, y = inside(t->rect.top + (int)row - 1, s->height, false);
+    for (int i = 0; i < width; i++)
+        t->quarters[row * (size_t)width + (size_t)i] = (uint8_t)quarters_reached(
+            s, inside(t->rect.left + i - 1, s->width, s->kind >= STAGE_CYLINDER), y, t->direction);
+}
+
+// Edges are known to a pixel, and as soft as that: five parts of a pixel, one of each beside it.
+static void soften(const struct tracing *t)
+{
+    const size_t width = (size_t)t->rect.width, step = width + 2;
+    for (size_t y = 0; y < (size_t)t->rect.height; y++)
+        for (size_t x = 0; x < width; x++) {
+            const uint8_t *q = t->quarters + y * step + x;
+            int sum = 0;
+            for (size_t i = 0; i < 9; i++)
+                sum += (i == 4 ? 5 : i % 2) * q[i / 3 * step + i % 3];
+            t->out[y * width + x] = (uint8_t)sum;
+        }
+}
+
+static relume_status trace(uint8_t *out, const struct stage *s, vec3 direction,
+                           const struct relume_rect *rect, int threads)
+{
+    struct tracing t = {s, stage_turn(s, direction), *rect, NULL, out};
+    t.quarters = mem_array((size_t)rect->width + 2, (size_t)rect->height + 2);
+    if (!t.quarters)
+        return RELUME_ENOMEM;
+    thread_for(threads, (size_t)rect->height + 2, trace_row, &t);
+    soften(&t);
+    mem_free(t.quarters);
+    return RELUME_OK;
+}
+
+static struct relume_rect whole(const relume_shadows *s)
+{
+    return (struct relume_rect){0, 0, s->stage.width, s->stage.height};
+}
+
+relume_status relume_shadows_trace(uint8_t *out, const relume_shadows *s, vec3 direction,
+                                   int threads)
+{
+    const struct relume_rect rect = whole(s);
+    return trace(out, &s->stage, direction, &rect, threads);
+}
+
+// ---------------------------------------------------------------- what it adds
+
+enum { AROUND = 4 };  // captured lights around a direction, at most
+static const float SHARE = 1.0f / RELUME_SHADOW_REACHED;
+
+struct adding {
+    const relume_shadows *s;
+    struct relume_image *picture;
+    struct relume_rect rect;
+    vec3 light;
+    uint8_t *arrives;  // of the light, in the rectangle
+    float rgb[3];
+    int around;
+    vec3 captured[AROUND];
+    float weight[AROUND];
+    const uint8_t *reached[AROUND];
+    const struct relume_transfer *display;  // NULL: linear codes
+};
+
+static void add_pixel(const struct adding *a, size_t pixel, int arrives, float *out)
+{
+    const float *matte = a->s->matte + MATTE * pixel;
+    const float lit = SHARE * (float)arrives * shadows_matte(matte, a->light);
+    float known[AROUND];
+    for (int i = 0; i < a->around; i++)
+        known[i] = SHARE * (float)a->reached[i][pixel] * shadows_matte(matte, a->captured[i]);
+    for (int c = 0; c < 3; c++) {
+        float between = 0.0f;
+        for (int i = 0; i < a->around; i++)
+            between += a->weight[i] *
+                       (a->display ? relume_transfer_encode(*a->display, matte[c] * known[i])
+                                   : matte[c] * known[i]);
+        if (a->display)
+            between = relume_transfer_decode(*a->display, between);
+        const float sum = out[c] + a->rgb[c] * (matte[c] * lit - between);
+        out[c] = fmaxf(sum, fminf(out[c], 0.0f));
+    }
+}
+
+static void add_row(void *context, size_t row, int worker)
+{
+    (void)worker;
+    const struct adding *a = context;
+    const struct stage *s = &a->s->stage;
+    float *out = a->picture->data + 3 * row * (size_t)a->picture->width;
+    for (int i = 0; i < a->picture->width; i++, out += 3) {
+        const size_t pixel =
+            ((size_t)a->rect.top + row) * (size_t)s->width + (size_t)(a->rect.left + i);
+        const float *colour = a->s->matte + MATTE * pixel;
+        if (colour[0] + colour[1] + colour[2] > 0.0f && isfinite(s->far[pixel]))
+            add_pixel(a, pixel, a->arrives[row * (size_t)a->rect.width + (size_t)i], out);
+    }
+}
+
+// A table of the same lights, asked for their weights.
+static relume_status need_between(relume_shadows *s, const struct relume_coder_info *info)
+{
+    if (s->between)
+        return RELUME_OK;
+    s->lights = info->lights;
+    s->reached = mem_zeroed((size_t)info->lights, sizeof *s->reached);
+    return !s->reached
+               ? RELUME_ENOMEM
+               : relume_coder_create(&s->between, relume_basis_find("table"), info->directions,
+                                     info->lights,
+                                     relume_coder_params(.hemispherical = info->hemispherical,
+                                                         .pole_y = info->pole_y, .decode = true));
+}
+
+static relume_status need_reached(struct adding *a, relume_shadows *s, int light, float weight,
+                                  vec3 direction, int threads)
+{
+    if (!s->reached[light]) {
+        if (!(s->reached[light] = mem_array(pixels_of(s), 1)))
+            return RELUME_ENOMEM;
+        const relume_status status = relume_shadows_trace(s->reached[light], s, direction, threads);
+        if (status)
+            return status;
+    }
+    a->captured[a->around] = direction;
+    a->weight[a->around] = weight;
+    a->reached[a->around++] = s->reached[light];
+    return RELUME_OK;
+}
+
+// The captured lights around a->light.
+static relume_status look_around(struct adding *a, relume_shadows *s, int threads)
+{
+    const struct relume_coder_info *info = relume_coder_info(s->between);
+    float *weights = mem_array(3 * (size_t)info->lights, sizeof *weights), constant[3];
+    relume_status status = weights ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        relume_coder_weights(s->between, a->light, weights, constant);
+    for (int i = 0; !status && i < info->lights && a->around < AROUND; i++)
+        if (weights[i] != 0.0f)
+            status = need_reached(a, s, i, weights[i], info->directions[i], threads);
+    mem_free(weights);
+    return status;
+}
+
+static relume_status add_light(struct adding *a, relume_shadows *s, int threads)
+{
+    relume_status status = look_around(a, s, threads);
+    if (status || a->weight[0] > 0.9999f)  // it is a photograph
+        return status;
+    a->arrives = mem_array((size_t)a->rect.width, (size_t)a->rect.height);
+    status = a->arrives ? trace(a->arrives, &s->stage, a->light, &a->rect, threads) : RELUME_ENOMEM;
+    if (!status)
+        thread_for(threads, (size_t)a->rect.height, add_row, a);
+    mem_free(a->arrives);
+    return status;
+}
+
+relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
+                                 relume_shadows *shadows, const struct relume_codes *codes,
+                                 const struct relume_light *lights, int n, int threads)
+{
+    relume_status status = need_between(shadows, relume_coder_info(codes->coder));
+    for (int i = 0; !status && i < n; i++) {
+        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
+            continue;
+        struct adding a = {
+            .s = shadows, .picture = picture, .rect = {left, top, picture->width, picture->height}};
+        const float share =
+            (float)relume_coder_clamp(&a.light, codes->coder, vec3_unit(lights[i].direction));
+        a.display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL;
+        for (int c = 0; c < 3; c++)
+            a.rgb[c] = share * lights[i].rgb[c];
+        status = add_light(&a, shadows, threads);
+    }
+    return status;
+}

@@ -1,0 +1,296 @@
+// stage.c - rays through the depth of a view
+//
+// A ray goes in steps of less than a pixel. Where it is behind the surface that the view sees
+// there, but not by more than what stands there is thick, light is stopped. Distances are measured
+// so that their inverse is linear over the pixels of a plane (of STAGE_FLAT the distance itself).
+#include "shadow/stage.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+// In pixels: how far rays go at once, how far from the surface they start and are behind it before
+// it counts, how much nearer a neighbour is at most on the same surface, how far rays are followed
+// beyond all that is seen.
+static const double STEP = 0.7, START = 1.0, NEAR = 0.25, SAME = 12.0, MARGIN = 2.0;
+
+// Rays that are in front of all that is seen nearby go by tiles.
+enum { TILE = 8 };
+
+bool stage_suits(const struct relume_geometry *g)
+{
+    return g->projection != RELUME_CUBE && !(g->projection == RELUME_CYLINDRICAL && g->disc);
+}
+
+// ---------------------------------------------------------------- places
+
+static void set_window(struct stage *s, const double min[2], const double max[2], double u,
+                       double v, double distance)
+{
+    s->scale[0] = distance * s->width / (max[0] - min[0]);
+    s->scale[1] = -distance * s->height / (max[1] - min[1]);
+    s->shift[0] = (u - min[0]) * s->width / (max[0] - min[0]);
+    s->shift[1] = (max[1] - v) * s->height / (max[1] - min[1]);
+    s->pixel = 1.0 / fmax(s->scale[0], -s->scale[1]);
+}
+
+static void set_up(struct stage *s, const struct relume_geometry *g, const double uv[2])
+{
+    switch (g->projection) {
+    case RELUME_SLAB:
+        s->kind = STAGE_EYE;
+        s->pose = g->pose;
+        set_window(s, g->st_min, g->st_max, uv[0], uv[1], g->uv_z - g->st_z);
+        return;
+    case RELUME_CYLINDRICAL:
+        s->kind = STAGE_CYLINDER;
+        s->scale[1] = s->height / (g->v_min - g->v_max);
+        s->shift[1] = -g->v_max * s->scale[1];
+        break;
+    case RELUME_SPHERICAL:
+        s->kind = STAGE_SPHERE;
+        s->scale[1] = -s->height / M_PI;
+        s->shift[1] = 0.5 * s->height;
+        break;
+    case RELUME_CUBE:
+    case RELUME_PLANAR:
+        s->kind = g->perspective ? STAGE_EYE : STAGE_FLAT;
+        set_window(s, g->window_min, g->window_max, 0.0, 0.0, g->perspective ? g->camera_z : 1.0);
+        return;
+    }
+    s->scale[0] = s->width / (2.0 * M_PI);
+    s->shift[0] = 0.5 * s->width;
+    s->pixel = 1.0 / s->scale[0];
+}
+
+// Where the axis of the ray through a pixel is at distance 1; STAGE_FLAT: where it starts.
+static vec3 ray_of(const struct stage *s, double x, double y)
+{
+    const double a = (x - s->shift[0]) / s->scale[0], b = (y - s->shift[1]) / s->scale[1];
+    switch (s->kind) {
+    case STAGE_CYLINDER: return vec3_of(sin(a), b, -cos(a));
+    case STAGE_SPHERE: return vec3_of(sin(a) * cos(b), sin(b), -cos(a) * cos(b));
+    case STAGE_EYE: return vec3_of(a, b, -1.0);
+    case STAGE_FLAT: break;
+    }
+    return vec3_of(a, b, 0.0);
+}
+
+static vec3 at_distance(const struct stage *s, double x, double y, double far)
+{
+    const vec3 ray = ray_of(s, x, y);
+    return s->kind == STAGE_FLAT ? vec3_of(ray.x, ray.y, -far) : vec3_scale(ray, far);
+}
+
+// The pixel that sees a point and how far it is; false outside the picture.
+static bool place_of(double *x, double *y, double *far, const struct stage *s, vec3 p)
+{
+    double a = p.x, b = p.y;
+    *far = -p.z;
+    if (s->kind == STAGE_EYE) {
+        a /= *far;
+        b /= *far;
+    } else if (s->kind != STAGE_FLAT) {
+        const double level = hypot(p.x, p.z);
+        *far = s->kind == STAGE_CYLINDER ? level : vec3_length(p);
+        a = atan2(p.x, -p.z);
+        b = s->kind == STAGE_CYLINDER ? p.y / level : atan2(p.y, level);
+    }
+    *x = s->scale[0] * a + s->shift[0];
+    *y = s->scale[1] * b + s->shift[1];
+    if (s->kind >= STAGE_CYLINDER && *x >= s->width)
+        *x = 0.0;
+    return (s->kind == STAGE_FLAT || *far > 0.0) && *x >= 0.0 && *x < s->width && *y >= 0.0 &&
+           *y < s->height;
+}
+
+static double side_at(const struct stage *s, double far)
+{
+    return s->kind == STAGE_FLAT ? s->pixel : s->pixel * far;
+}
+
+// ---------------------------------------------------------------- the surface
+
+static double far_of(const struct stage *s, int x, int y)
+{
+    if (s->kind >= STAGE_CYLINDER)
+        x = (x % s->width + s->width) % s->width;
+    x = x < 0 ? 0 : x < s->width ? x : s->width - 1;
+    y = y < 0 ? 0 : y < s->height ? y : s->height - 1;
+    return (double)s->far[(size_t)y * (size_t)s->width + (size_t)x];
+}
+
+// Between four pixels of one surface what lies on their plane, else the nearest of them.
+static double surface_at(const struct stage *s, double x, double y)
+{
+    const int i = (int)(x + 0.5) - 1, j = (int)(y + 0.5) - 1;
+    const double a = x - 0.5 - i, b = y - 0.5 - j;
+    const double z[4] = {far_of(s, i, j), far_of(s, i + 1, j), far_of(s, i, j + 1),
+                         far_of(s, i + 1, j + 1)};
+    const double least = fmin(fmin(z[0], z[1]), fmin(z[2], z[3]));
+    const double most = fmax(fmax(z[0], z[1]), fmax(z[2], z[3]));
+    if (!(most - least < SAME * side_at(s, least)))
+        return z[(a > 0.5) + 2 * (b > 0.5)];
+    const double w[4] = {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b};
+    if (s->kind == STAGE_FLAT)
+        return w[0] * z[0] + w[1] * z[1] + w[2] * z[2] + w[3] * z[3];
+    return 1.0 / (w[0] / z[0] + w[1] / z[1] + w[2] / z[2] + w[3] / z[3]);
+}
+
+bool stage_point(vec3 *point, const struct stage *s, double x, double y)
+{
+    const double far = surface_at(s, x, y);
+    *point = at_distance(s, x, y, far);
+    return isfinite(far);
+}
+
+// ---------------------------------------------------------------- rays
+
+// How far a ray from inside goes until it leaves the box.
+static double leaves_box(const struct stage *s, vec3 p, vec3 d)
+{
+    const double from[3] = {p.x, p.y, p.z}, along[3] = {d.x, d.y, d.z};
+    const double low[3] = {s->low.x, s->low.y, s->low.z};
+    const double high[3] = {s->high.x, s->high.y, s->high.z};
+    double end = INFINITY;
+    for (int i = 0; i < 3; i++)
+        if (along[i] != 0.0)
+            end = fmin(end, ((along[i] > 0.0 ? high[i] : low[i]) - from[i]) / along[i]);
+    return end;
+}
+
+void stage_keep_least(float least[STAGE_LEAST], float value)
+{
+    for (int i = 0; i < STAGE_LEAST && value < least[STAGE_LEAST - 1]; i++)
+        if (value < least[i]) {
+            const float larger = least[i];
+            least[i] = value;
+            value = larger;
+        }
+}
+
+// Whether a ray is in front of all that it can meet within a tile's side.
+static bool is_free(const struct stage *s, double x, double y, double far, double side)
+{
+    const int tile = (int)y / TILE * ((s->width + TILE - 1) / TILE) + (int)x / TILE;
+    return far + TILE * side < (double)s->front[tile];
+}
+
+// Goes on to the end where `least` is given, for light that does arrive.
+static inline bool walk(float (*least)[STAGE_LEAST], const struct stage *s, vec3 p, vec3 d)
+{
+    const double end = leaves_box(s, p, d);
+    double x, y, far, side;
+    if (!place_of(&x, &y, &far, s, p))
+        return true;
+    side = side_at(s, far);
+    double seen = surface_at(s, x, y);
+    bool was_behind = false;
+    for (double t = START * side, step; t < end; t += step) {
+        if (!place_of(&x, &y, &far, s, vec3_along(p, d, t)))
+            return true;
+        side = side_at(s, far);
+        step = STEP * side;
+        if (!was_behind && is_free(s, x, y, far, side)) {
+            step = (TILE - 1) * side;
+            continue;
+        }
+        const double surface = surface_at(s, x, y), behind = far - surface;
+        const bool is_behind = behind > NEAR * side;
+        if (is_behind != was_behind && fabs(surface - seen) < SAME * side)
+            return false;
+        seen = surface;
+        was_behind = is_behind;
+        if (!is_behind)
+            continue;
+        const size_t pixel = (size_t)(int)y * (size_t)s->width + (size_t)(int)x;
+        if (least)
+            stage_keep_least(least[pixel], (float)behind);
+        else if (behind < (double)s->thick[pixel])
+            return false;
+    }
+    return true;
+}
+
+bool stage_reaches(const struct stage *s, vec3 point, vec3 direction)
+{
+    return walk(NULL, s, point, direction);
+}
+
+void stage_carve(float (*least)[STAGE_LEAST], const struct stage *s, vec3 point, vec3 direction)
+{
+    (void)walk(least, s, point, direction);
+}
+
+// ---------------------------------------------------------------- life
+
+static void grow(struct stage *s, vec3 p, double by)
+{
+    s->low = vec3_of(fmin(s->low.x, p.x - by), fmin(s->low.y, p.y - by), fmin(s->low.z, p.z - by));
+    s->high =
+        vec3_of(fmax(s->high.x, p.x + by), fmax(s->high.y, p.y + by), fmax(s->high.z, p.z + by));
+}
+
+// From distances along rays.
+static void fill(struct stage *s, const struct relume_image *depth, double camera_z)
+{
+    s->low = vec3_of(INFINITY, INFINITY, INFINITY);
+    s->high = vec3_scale(s->low, -1.0);
+    for (int y = 0, i = 0; y < s->height; y++)
+        for (int x = 0; x < s->width; x++, i++) {
+            const vec3 ray = ray_of(s, x + 0.5, y + 0.5);
+            const double d = (double)depth->data[i];
+            const double far = s->kind == STAGE_FLAT ? d - camera_z : d / vec3_length(ray);
+            s->far[i] = isfinite(far) ? (float)far : INFINITY;
+            if (isfinite(far))
+                grow(s, at_distance(s, x + 0.5, y + 0.5, far), MARGIN * side_at(s, far));
+        }
+}
+
+// Of a tile and those around it; panoramas close.
+static float front_of(const struct stage *s, int column, int row)
+{
+    float least = INFINITY;
+    for (int y = (row - 1) * TILE; y < (row + 2) * TILE; y++)
+        for (int x = (column - 1) * TILE; x < (column + 2) * TILE; x++)
+            least = fminf(least, (float)far_of(s, x, y));
+    return least;
+}
+
+static void find_fronts(struct stage *s)
+{
+    const int columns = (s->width + TILE - 1) / TILE, rows = (s->height + TILE - 1) / TILE;
+    for (int y = 0, i = 0; y < rows; y++)
+        for (int x = 0; x < columns; x++, i++)
+            s->front[i] = front_of(s, x, y);
+}
+
+relume_status stage_create(struct stage *s, const struct relume_geometry *g, const double uv[2],
+                           const struct relume_image *depth)
+{
+    const size_t n = (size_t)depth->width * (size_t)depth->height;
+    *s = (struct stage){.width = depth->width, .height = depth->height};
+    s->far = mem_array(n, sizeof *s->far);
+    s->thick = mem_array(n, sizeof *s->thick);
+    s->front =
+        mem_array((size_t)((s->width + TILE - 1) / TILE) * (size_t)((s->height + TILE - 1) / TILE),
+                  sizeof *s->front);
+    if (!s->far || !s->thick || !s->front)
+        return RELUME_ENOMEM;
+    set_up(s, g, uv);
+    fill(s, depth, g->camera_z);
+    find_fronts(s);
+    const float large = (float)vec3_length(vec3_sub(s->high, s->low));
+    for (size_t i = 0; i < n; i++)
+        s->thick[i] = large;
+    return RELUME_OK;
+}
+
+void stage_destroy(struct stage *s)
+{
+    mem_free(s->far);
+    mem_free(s->thick);
+    mem_free(s->front);
+    *s = (struct stage){0};
+}

@@ -50,7 +50,7 @@ struct relume_relit {
     const struct relume_light *lights;
     int count;
     const struct relume_log *log;  // may be NULL
-    relume_shadows *shadows;       // of the whole view, for its directional lights; NULL: none
+    relume_shadows *shadows;       // of the whole view; NULL: none
     int left, top;                 // with these: where in the view the codes are
 };
 

@@ -90,8 +90,10 @@ RELUME_RESULT relume_status relume_shadows_judge(struct relume_shadows_gain *out
                                                  bool display,
                                                  const struct relume_shadows_params *params);
 
-// Add the last two terms for every directional light to a picture of linear light, which becomes
-// black where it would be less. The picture is the rectangle of the view at `left`, `top` of its
+// Lights whose shadows are traced: directional ones, and near ones but areas.
+RELUME_API bool relume_shadows_count(enum relume_light_kind kind);
+// Add the last two terms for each of these to a picture of linear light, which becomes black where
+// it would be less. The picture is the rectangle of the view at `left`, `top` of its
 // size, relit from codes of `coder` and `domain` (`display`: its curve). RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
                                                relume_shadows *shadows,

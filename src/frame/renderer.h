@@ -21,7 +21,7 @@ struct kept {
     uint64_t partly;              // the lighting that it shows at some texels; 0: none
     uint32_t *texel;              // [texels]: the lighting that each shows
     struct relume_image surface;  // for near lights; empty: not asked for
-    relume_shadows *shadows;      // for directional lights; NULL: not asked for
+    relume_shadows *shadows;      // NULL: not asked for
     uint64_t code_bytes;          // that the pack holds for it
     uint64_t bytes;               // of all, as the renderer's sum has it
     bool changed;                 // the sum must be put right

@@ -175,7 +175,7 @@ static void fit_pixel(const struct looked *l, size_t pixel, vec3 p, float matte[
 {
     double a[4][4] = {{0.01}, {0.0, 0.1}, {0.0, 0.0, 0.1}, {0.0, 0.0, 0.0, 0.1}}, x[4] = {0.0};
     for (int i = 0; i < l->lights; i++) {
-        if (!stage_reaches(&l->stage, p, l->turned[i]))
+        if (!stage_reaches(&l->stage, p, l->turned[i], INFINITY))
             continue;
         const double value = (double)float_from_half(l->grey[(size_t)i * l->pixels + pixel]);
         const double f[4] = {1.0, l->light[i].x, l->light[i].y, l->light[i].z};

@@ -88,13 +88,13 @@ struct tracing {
     uint8_t *out;       // [height][width]
 };
 
-static int quarters_reached(const struct stage *s, int x, int y, vec3 direction)
+static int quarters_reached(const struct stage *s, int x, int y, vec3 direction, double distance)
 {
     int arrives = 0;
     for (int i = 0; i < 4; i++) {
         vec3 p;
         arrives += !stage_point(&p, s, x + (i & 1 ? 0.75 : 0.25), y + (i & 2 ? 0.75 : 0.25)) ||
-                   stage_reaches(s, p, direction);
+                   stage_reaches(s, p, direction, distance);
     }
     return arrives;
 }
@@ -113,7 +113,8 @@ static void trace_row(void *context, size_t row, int worker)
     const int width = t->rect.width + 2, y = inside(t->rect.top + (int)row - 1, s->height, false);
     for (int i = 0; i < width; i++)
         t->quarters[row * (size_t)width + (size_t)i] = (uint8_t)quarters_reached(
-            s, inside(t->rect.left + i - 1, s->width, s->kind >= STAGE_CYLINDER), y, t->direction);
+            s, inside(t->rect.left + i - 1, s->width, s->kind >= STAGE_CYLINDER), y, t->direction,
+            INFINITY);
 }
 
 // Edges are known to a pixel, and as soft as that: five parts of a pixel, one of each beside it.
@@ -174,38 +175,51 @@ struct adding {
     const struct relume_transfer *display;  // NULL: linear codes
 };
 
-static void add_pixel(const struct adding *a, size_t pixel, int arrives, float *out)
+// `lit` and `known` are what the matte surface shows under the light and under those around it.
+static void add_pixel(float *out, const struct adding *a, const float *colour, float lit,
+                      const float known[AROUND])
 {
-    const float *matte = a->s->matte + MATTE * pixel;
-    const float lit = SHARE * (float)arrives * shadows_matte(matte, a->light);
-    float known[AROUND];
-    for (int i = 0; i < a->around; i++)
-        known[i] = SHARE * (float)a->reached[i][pixel] * shadows_matte(matte, a->captured[i]);
     for (int c = 0; c < 3; c++) {
         float between = 0.0f;
         for (int i = 0; i < a->around; i++)
             between += a->weight[i] *
-                       (a->display ? relume_transfer_encode(*a->display, matte[c] * known[i])
-                                   : matte[c] * known[i]);
+                       (a->display ? relume_transfer_encode(*a->display, colour[c] * known[i])
+                                   : colour[c] * known[i]);
         if (a->display)
             between = relume_transfer_decode(*a->display, between);
-        const float sum = out[c] + a->rgb[c] * (matte[c] * lit - between);
+        const float sum = out[c] + a->rgb[c] * (colour[c] * lit - between);
         out[c] = fmaxf(sum, fminf(out[c], 0.0f));
     }
+}
+
+static size_t pixel_at(const struct adding *a, size_t row, int column)
+{
+    return ((size_t)a->rect.top + row) * (size_t)a->s->stage.width +
+           (size_t)(a->rect.left + column);
+}
+
+static bool is_seen(const relume_shadows *s, size_t pixel)
+{
+    const float *colour = s->matte + MATTE * pixel;
+    return colour[0] + colour[1] + colour[2] > 0.0f && isfinite(s->stage.far[pixel]);
 }
 
 static void add_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct adding *a = context;
-    const struct stage *s = &a->s->stage;
-    float *out = a->picture->data + 3 * row * (size_t)a->picture->width;
-    for (int i = 0; i < a->picture->width; i++, out += 3) {
-        const size_t pixel =
-            ((size_t)a->rect.top + row) * (size_t)s->width + (size_t)(a->rect.left + i);
-        const float *colour = a->s->matte + MATTE * pixel;
-        if (colour[0] + colour[1] + colour[2] > 0.0f && isfinite(s->far[pixel]))
-            add_pixel(a, pixel, a->arrives[row * (size_t)a->rect.width + (size_t)i], out);
+    float *out = a->picture->data + 3 * row * (size_t)a->picture->width, known[AROUND];
+    for (int i = 0; i < a->rect.width; i++, out += 3) {
+        const size_t pixel = pixel_at(a, row, i);
+        const float *matte = a->s->matte + MATTE * pixel;
+        if (!is_seen(a->s, pixel))
+            continue;
+        for (int k = 0; k < a->around; k++)
+            known[k] = SHARE * (float)a->reached[k][pixel] * shadows_matte(matte, a->captured[k]);
+        add_pixel(out, a, matte,
+                  SHARE * (float)a->arrives[row * (size_t)a->rect.width + (size_t)i] *
+                      shadows_matte(matte, a->light),
+                  known);
     }
 }
 
@@ -231,8 +245,11 @@ static relume_status need_reached(struct adding *a, relume_shadows *s, int light
         if (!(s->reached[light] = mem_array(pixels_of(s), 1)))
             return RELUME_ENOMEM;
         const relume_status status = relume_shadows_trace(s->reached[light], s, direction, threads);
-        if (status)
+        if (status) {
+            mem_free(s->reached[light]);
+            s->reached[light] = NULL;
             return status;
+        }
     }
     a->captured[a->around] = direction;
     a->weight[a->around] = weight;
@@ -255,7 +272,7 @@ static relume_status look_around(struct adding *a, relume_shadows *s, int thread
     return status;
 }
 
-static relume_status add_light(struct adding *a, relume_shadows *s, int threads)
+static relume_status add_distant(struct adding *a, relume_shadows *s, int threads)
 {
     relume_status status = look_around(a, s, threads);
     if (status || a->weight[0] > 0.9999f)  // it is a photograph
@@ -268,22 +285,105 @@ static relume_status add_light(struct adding *a, relume_shadows *s, int threads)
     return status;
 }
 
+// ---------------------------------------------------------------- near lights
+
+// Every pixel has a direction of its own, and captured lights of its own around it.
+struct nearing {
+    struct adding all;
+    const struct relume_light *light;
+    const relume_coder *coder;  // of the codes
+    float *weights;             // [workers][3][lights]
+};
+
+static float quarter_share(const struct stage *s, int x, int y, vec3 direction, double distance)
+{
+    return 0.25f * (float)quarters_reached(s, x, y, stage_turn(s, direction), distance);
+}
+
+// What the captured lights around a->light show; into `a` and known[AROUND].
+static void know_around(struct adding *a, float known[AROUND], float *weights, size_t pixel)
+{
+    const struct stage *s = &a->s->stage;
+    const struct relume_coder_info *info = relume_coder_info(a->s->between);
+    const int x = (int)(pixel % (size_t)s->width), y = (int)(pixel / (size_t)s->width);
+    float constant[3];
+    relume_coder_weights(a->s->between, a->light, weights, constant);
+    a->around = 0;
+    for (int i = 0; i < info->lights && a->around < AROUND; i++)
+        if (weights[i] != 0.0f) {
+            known[a->around] = quarter_share(s, x, y, info->directions[i], INFINITY) *
+                               shadows_matte(a->s->matte + MATTE * pixel, info->directions[i]);
+            a->weight[a->around++] = weights[i];
+        }
+}
+
+static void add_near_row(void *context, size_t row, int worker)
+{
+    const struct nearing *n = context;
+    const struct stage *s = &n->all.s->stage;
+    struct adding a = n->all;
+    float *weights =
+        n->weights + 3 * (size_t)worker * (size_t)relume_coder_info(a.s->between)->lights;
+    float *out = a.picture->data + 3 * row * (size_t)a.picture->width, known[AROUND];
+    for (int i = 0; i < a.rect.width; i++, out += 3) {
+        const size_t pixel = pixel_at(&a, row, i);
+        const float *matte = a.s->matte + MATTE * pixel;
+        const int x = a.rect.left + i, y = a.rect.top + (int)row;
+        vec3 point, towards;
+        if (!is_seen(a.s, pixel) || !stage_point(&point, s, x + 0.5, y + 0.5))
+            continue;
+        point = stage_world(s, point);
+        if (!relume_light_at(&towards, a.rgb, n->light, point))
+            continue;
+        const float share = (float)relume_coder_clamp(&a.light, n->coder, towards);
+        for (int c = 0; c < 3; c++)
+            a.rgb[c] *= share;
+        know_around(&a, known, weights, pixel);
+        const double distance = vec3_length(vec3_sub(n->light->position, point));
+        add_pixel(out, &a, matte,
+                  quarter_share(s, x, y, towards, distance) * shadows_matte(matte, a.light), known);
+    }
+}
+
+static relume_status add_near(const struct adding *a, const struct relume_light *light,
+                              const relume_coder *coder, int threads)
+{
+    struct nearing n = {.all = *a, .light = light, .coder = coder};
+    const size_t lights = (size_t)relume_coder_info(a->s->between)->lights;
+    n.weights = mem_array((size_t)thread_count(threads) * 3, lights * sizeof *n.weights);
+    if (!n.weights)
+        return RELUME_ENOMEM;
+    thread_for(threads, (size_t)a->rect.height, add_near_row, &n);
+    mem_free(n.weights);
+    return RELUME_OK;
+}
+
+bool relume_shadows_count(enum relume_light_kind kind)
+{
+    return kind == RELUME_LIGHT_DIRECTIONAL ||
+           (relume_light_is_near(kind) && kind != RELUME_LIGHT_AREA);
+}
+
 relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
                                  relume_shadows *shadows, const struct relume_codes *codes,
                                  const struct relume_light *lights, int n, int threads)
 {
     relume_status status = need_between(shadows, relume_coder_info(codes->coder));
     for (int i = 0; !status && i < n; i++) {
-        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
-            continue;
         struct adding a = {
             .s = shadows, .picture = picture, .rect = {left, top, picture->width, picture->height}};
+        a.display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL;
+        if (!relume_shadows_count(lights[i].kind))
+            continue;
+        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL) {
+            status = add_near(&a, &lights[i], codes->coder, threads);
+            continue;
+        }
         const float share =
             (float)relume_coder_clamp(&a.light, codes->coder, vec3_unit(lights[i].direction));
-        a.display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL;
         for (int c = 0; c < 3; c++)
             a.rgb[c] = share * lights[i].rgb[c];
-        status = add_light(&a, shadows, threads);
+        status = add_distant(&a, shadows, threads);
     }
     return status;
 }

@@ -41,6 +41,7 @@ static void set_up(struct stage *s, const struct relume_geometry *g, const doubl
     case RELUME_SLAB:
         s->kind = STAGE_EYE;
         s->pose = g->pose;
+        s->eye = relume_pose_world(&g->pose, vec3_of(uv[0], uv[1], g->uv_z));
         set_window(s, g->st_min, g->st_max, uv[0], uv[1], g->uv_z - g->st_z);
         return;
     case RELUME_CYLINDRICAL:
@@ -56,9 +57,11 @@ static void set_up(struct stage *s, const struct relume_geometry *g, const doubl
     case RELUME_CUBE:
     case RELUME_PLANAR:
         s->kind = g->perspective ? STAGE_EYE : STAGE_FLAT;
+        s->eye.z = g->perspective ? g->camera_z : 0.0;
         set_window(s, g->window_min, g->window_max, 0.0, 0.0, g->perspective ? g->camera_z : 1.0);
         return;
     }
+    s->eye = g->center;
     s->scale[0] = s->width / (2.0 * M_PI);
     s->shift[0] = 0.5 * s->width;
     s->pixel = 1.0 / s->scale[0];
@@ -178,9 +181,10 @@ static bool is_free(const struct stage *s, double x, double y, double far, doubl
 }
 
 // Goes on to the end where `least` is given, for light that does arrive.
-static inline bool walk(float (*least)[STAGE_LEAST], const struct stage *s, vec3 p, vec3 d)
+static inline bool walk(float (*least)[STAGE_LEAST], const struct stage *s, vec3 p, vec3 d,
+                        double distance)
 {
-    const double end = leaves_box(s, p, d);
+    const double end = fmin(leaves_box(s, p, d), distance);
     double x, y, far, side;
     if (!place_of(&x, &y, &far, s, p))
         return true;
@@ -213,14 +217,14 @@ static inline bool walk(float (*least)[STAGE_LEAST], const struct stage *s, vec3
     return true;
 }
 
-bool stage_reaches(const struct stage *s, vec3 point, vec3 direction)
+bool stage_reaches(const struct stage *s, vec3 point, vec3 direction, double distance)
 {
-    return walk(NULL, s, point, direction);
+    return walk(NULL, s, point, direction, distance);
 }
 
 void stage_carve(float (*least)[STAGE_LEAST], const struct stage *s, vec3 point, vec3 direction)
 {
-    (void)walk(least, s, point, direction);
+    (void)walk(least, s, point, direction, INFINITY);
 }
 
 // ---------------------------------------------------------------- life

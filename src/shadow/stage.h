@@ -14,6 +14,7 @@ enum stage_kind { STAGE_FLAT, STAGE_EYE, STAGE_CYLINDER, STAGE_SPHERE };
 struct stage {
     enum stage_kind kind;
     struct relume_pose pose;    // directions of the view in the world
+    vec3 eye;                   // the origin of the view, in the world
     double scale[2], shift[2];  // pixel = scale x + shift, x per unit of distance, angle or world
     double pixel;               // side of a pixel at distance 1, or of STAGE_FLAT everywhere
     int width, height;
@@ -36,10 +37,17 @@ static inline vec3 stage_turn(const struct stage *s, vec3 world)
     return relume_pose_turn_back(&s->pose, world);
 }
 
+// A point of the view in the world.
+static inline vec3 stage_world(const struct stage *s, vec3 point)
+{
+    return vec3_add(s->eye, relume_pose_turn(&s->pose, point));
+}
+
 // The surface at (x, y) in pixels; false for background.
 bool stage_point(vec3 *point, const struct stage *s, double x, double y);
-// Whether light from a direction (of the view) reaches a point of the surface.
-bool stage_reaches(const struct stage *s, vec3 point, vec3 direction);
+// Whether light from a unit direction (of the view), and so far away, reaches a point of the
+// surface.
+bool stage_reaches(const struct stage *s, vec3 point, vec3 direction, double distance);
 
 // Light does reach it: the surfaces that its ray passes behind are no thicker than that. The
 // STAGE_LEAST smallest distances behind each pixel are kept, in `least`, rising.

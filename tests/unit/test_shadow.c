@@ -370,6 +370,46 @@ static void a_file_shows_shadows_that_move(void **state)
     scene_close(&s);
 }
 
+// A lamp in the room: every pixel has a direction of its own, and the disc is below the lamp. 3 dB
+// is more than half of the error's energy.
+static void near_lights_throw_shadows(void **state)
+{
+    (void)state;
+    static const float floor_colour[3] = {0.6f, 0.5f, 0.4f}, disc_colour[3] = {0.2f, 0.4f, 0.8f};
+    struct scene s;
+    struct file file[2];
+    struct relume_image got[2];
+    float want[3 * PIXELS];
+    const struct relume_light lamp = {.kind = RELUME_LIGHT_POINT,
+                                      .position = {0.5, -0.3, 1.7},
+                                      .nofall = true,
+                                      .rgb = {1.0f, 1.0f, 1.0f}};
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
+    for (int i = 0; i < PIXELS; i++) {
+        const double x = across(i % SIDE), y = -across(i / SIDE);
+        const bool disc = is_disc(x, y);
+        const vec3 p = vec3_of(x, y, disc ? HEIGHT : 0.0), to = vec3_sub(lamp.position, p);
+        const double at = HEIGHT / to.z;
+        const bool lit = disc || !is_disc(x + at * to.x, y + at * to.y);
+        for (int c = 0; c < 3; c++)
+            want[3 * i + c] =
+                (float)((double)(disc ? disc_colour : floor_colour)[c] * vec3_unit(to).z * lit);
+    }
+    scene_open(&s);
+    for (int k = 0; k < 2; k++) {
+        encode(&s, "lamp.exr", !k);
+        file_open(&file[k], "lamp.exr");
+        CHECK_OK(relume_renderer_set_lights(file[k].renderer, &lamp, 1));
+        CHECK_OK(relume_renderer_frame(&got[k], file[k].renderer, &camera));
+    }
+    assert_true(psnr_of(&got[0], want) > psnr_of(&got[1], want) + 3.0);
+    for (int k = 0; k < 2; k++) {
+        file_close(&file[k]);
+        relume_image_destroy(&got[k]);
+    }
+    scene_close(&s);
+}
+
 // A rectangle is what the whole picture shows there, any number of threads makes the same.
 static void parts_and_threads_agree(void **state)
 {
@@ -470,6 +510,7 @@ int main(void)
         cmocka_unit_test(rays_go_through_panoramas),
         cmocka_unit_test(rays_go_through_slabs),
         cmocka_unit_test(a_file_shows_shadows_that_move),
+        cmocka_unit_test(near_lights_throw_shadows),
         cmocka_unit_test(parts_and_threads_agree),
         cmocka_unit_test(lights_left_out_decide),
         cmocka_unit_test(what_cannot_be_is_refused),

@@ -1,4 +1,5 @@
 // judge.c - whether traced shadows are better than faded ones, by lights left out
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
 
@@ -175,7 +176,8 @@ relume_status relume_shadows_judge(struct relume_shadows_gain *out, const relume
         status = open_rest(&j, coder, skip);
     for (int i = 0; !status && i < lights; i++)
         if (skip[i])
-            status = meet(&j, i);
+            status = log_progress(p.log, "judging shadows", (double)i / lights) ? meet(&j, i)
+                                                                                : RELUME_ECANCEL;
     out->faded_db = -10.0 * log10(fmin(j.faded[0], j.faded[1]) / (double)j.values);
     out->traced_db = -10.0 * log10(j.traced / (double)j.values);
     relume_shadows_destroy(&j.shadows);

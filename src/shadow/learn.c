@@ -24,6 +24,7 @@ struct looked {
     float *bright;                // [pixels]: at least as bright is what light reaches
     float (*least)[STAGE_LEAST];  // [workers][pixels]
     int workers;
+    int row;       // where the band begins
     float *model;  // [pixels][RELUME_SHADOW_CHANNELS]
 };
 
@@ -38,36 +39,58 @@ static void looked_destroy(struct looked *l)
     mem_free(l->least);
 }
 
+// Bytes of all pixels: photographs, what is found, the surface with its depth.
+static uint64_t held(const struct looked *l, int lights)
+{
+    const size_t found = 4 + RELUME_SHADOW_CHANNELS, surface = 3;
+    return (uint64_t)l->pixels *
+           ((uint64_t)lights * sizeof *l->grey + (uint64_t)l->workers * sizeof *l->least +
+            (found + surface) * sizeof(float));
+}
+
 static relume_status looked_create(struct looked *l, const struct relume_manifest *m, int view,
-                                   const struct relume_image *depth, int threads)
+                                   const struct relume_image *depth,
+                                   const struct relume_shadows_params *p)
 {
     const struct relume_geometry *g = m->slabs ? &m->slab[m->view[view].slab] : &m->geometry;
     enum { MOST_WORKERS = 4 };  // each has a copy of what is carved
-    relume_status status = stage_create(&l->stage, g, m->view[view].uv, depth);
+    const int threads = thread_count(p->threads);
     l->pixels = (size_t)depth->width * (size_t)depth->height;
-    l->workers = thread_count(threads) < MOST_WORKERS ? thread_count(threads) : MOST_WORKERS;
+    l->workers = threads < MOST_WORKERS ? threads : MOST_WORKERS;
+    relume_status status =
+        limits_memory(held(l, m->lights), "tracing the shadows of a view", p->log);
+    if (!status)
+        status = stage_create(&l->stage, g, m->view[view].uv, depth);
+    if (status)
+        return status;
     l->light = mem_array((size_t)m->lights, sizeof *l->light);
     l->turned = mem_array((size_t)m->lights, sizeof *l->turned);
     l->grey = mem_array((size_t)m->lights * sizeof *l->grey, l->pixels);
     l->colour = mem_zeroed(l->pixels, 3 * sizeof *l->colour);
     l->bright = mem_zeroed(l->pixels, sizeof *l->bright);
     l->least = mem_array((size_t)l->workers * sizeof *l->least, l->pixels);
-    if (!status && (!l->light || !l->turned || !l->grey || !l->colour || !l->bright || !l->least))
+    if (!l->light || !l->turned || !l->grey || !l->colour || !l->bright || !l->least)
         status = RELUME_ENOMEM;
     return status;
 }
 
 // ---------------------------------------------------------------- photographs
 
+// What half floats hold, 0 or more; not NAN.
+static float most_half(float value)
+{
+    return fminf(fmaxf(value, 0.0f), 65504.0f);
+}
+
 static void take_picture(struct looked *l, const struct relume_image *image, vec3 light)
 {
     uint16_t *grey = l->grey + (size_t)l->lights * l->pixels;
     for (size_t i = 0; i < l->pixels; i++) {
-        const float *rgb = image->data + 3 * i, value = fmaxf(luminance_709f(rgb), 0.0f);
+        const float *rgb = image->data + 3 * i, value = most_half(luminance_709f(rgb));
         grey[i] = half_from_float(value);
         l->bright[i] = fmaxf(l->bright[i], value);
         for (int c = 0; c < 3; c++)
-            l->colour[3 * i + (size_t)c] += fmaxf(rgb[c], 0.0f);
+            l->colour[3 * i + (size_t)c] += most_half(rgb[c]);
     }
     l->light[l->lights] = light;
     l->turned[l->lights++] = stage_turn(&l->stage, light);
@@ -92,7 +115,7 @@ static relume_status look(struct looked *l, const relume_capture *capture, int v
         struct relume_image image = {0};
         if (p->skip && p->skip[i])
             continue;
-        if (!log_progress(p->log, "shadows", 0.5 * i / m->lights))
+        if (!log_progress(p->log, "shadows", 0.2 * i / m->lights))
             return RELUME_ECANCEL;
         status = relume_capture_masked(&image, capture, view, i, p->log);
         if (!status)
@@ -104,6 +127,19 @@ static relume_status look(struct looked *l, const relume_capture *capture, int v
 }
 
 // ---------------------------------------------------------------- thickness
+
+// Rows a few at a time: they take minutes where pixels and lights are many. `done`: of all.
+static bool by_bands(struct looked *l, int threads, void (*row)(void *, size_t, int), double done,
+                     const struct relume_log *log)
+{
+    const int height = l->stage.height, band = 8 * thread_count(threads);
+    for (l->row = 0; l->row < height; l->row += band) {
+        if (!log_progress(log, "shadows", done + 0.4 * l->row / height))
+            return false;
+        thread_for(threads, (size_t)(height - l->row < band ? height - l->row : band), row, l);
+    }
+    return true;
+}
 
 static bool is_lit(const struct looked *l, int light, size_t pixel)
 {
@@ -117,6 +153,7 @@ static void carve_row(void *context, size_t y, int worker)
     float(*least)[STAGE_LEAST] = l->least + (size_t)worker * l->pixels;
     const size_t width = (size_t)l->stage.width;
     vec3 p;
+    y += (size_t)l->row;
     for (size_t x = 0; x < width; x++)
         for (int i = 0;
              stage_point(&p, &l->stage, (double)x + 0.5, (double)y + 0.5) && i < l->lights; i++)
@@ -125,18 +162,20 @@ static void carve_row(void *context, size_t y, int worker)
 }
 
 // Some rays err, by a pixel at an edge: the smallest distances but a few are believed.
-static void carve(struct looked *l)
+static bool carve(struct looked *l, const struct relume_log *log)
 {
     for (size_t i = 0; i < (size_t)l->workers * l->pixels; i++)
         for (int k = 0; k < STAGE_LEAST; k++)
             l->least[i][k] = INFINITY;
-    thread_for(l->workers, (size_t)l->stage.height, carve_row, l);
+    if (!by_bands(l, l->workers, carve_row, 0.2, log))
+        return false;
     for (size_t i = 0; i < l->pixels; i++) {
         for (int w = 1; w < l->workers; w++)
             for (int k = 0; k < STAGE_LEAST; k++)
                 stage_keep_least(l->least[i], l->least[(size_t)w * l->pixels + i][k]);
         l->stage.thick[i] = fminf(l->stage.thick[i], l->least[i][STAGE_LEAST - 1]);
     }
+    return true;
 }
 
 // ---------------------------------------------------------------- matte
@@ -145,7 +184,8 @@ static void carve(struct looked *l)
 static float coarse(float value)
 {
     const uint32_t bits = (bits_of_float(value) + 0x8000u) & 0xffff0000u;
-    return float_from_half(half_from_float(float_of_bits(bits)));
+    return copysignf(float_from_half(half_from_float(most_half(fabsf(float_of_bits(bits))))),
+                     value);
 }
 
 // Symmetric, positive definite: Cholesky's factors in place.
@@ -195,6 +235,7 @@ static void fit_row(void *context, size_t y, int worker)
     (void)worker;
     struct looked *l = context;
     const size_t width = (size_t)l->stage.width;
+    y += (size_t)l->row;
     for (size_t x = 0; x < width; x++) {
         const size_t pixel = y * width + x;
         float *model = l->model + RELUME_SHADOW_CHANNELS * pixel;
@@ -219,13 +260,16 @@ static relume_status learn(struct relume_image *model, struct looked *l,
     relume_status status = look(l, capture, view, p);
     if (status)
         return status;
-    carve(l);
+    if (!carve(l, p->log))
+        return RELUME_ECANCEL;
     for (size_t i = 0; i < l->pixels; i++)
         l->stage.thick[i] = coarse(l->stage.thick[i]);  // as it will be read
     status = relume_image_create(model, l->stage.width, l->stage.height, RELUME_SHADOW_CHANNELS);
     l->model = model->data;
-    if (!status)
-        thread_for(p->threads, (size_t)l->stage.height, fit_row, l);
+    if (!status && !by_bands(l, p->threads, fit_row, 0.6, p->log))
+        status = RELUME_ECANCEL;
+    if (status)
+        relume_image_destroy(model);
     return status;
 }
 
@@ -238,10 +282,11 @@ relume_status relume_shadows_learn(struct relume_image *model, const relume_capt
     struct relume_image depth;
     *model = (struct relume_image){0};
     relume_status status = relume_capture_depth(&depth, capture, view, p.log);
-    if (!status && (!depth.data || m->positions || !stage_suits(&m->geometry)))
+    if (!status && (!depth.data || m->positions ||
+                    !stage_suits(m->slabs ? &m->slab[m->view[view].slab] : &m->geometry)))
         status = RELUME_EINVAL;
     if (!status)
-        status = looked_create(&l, m, view, &depth, p.threads);
+        status = looked_create(&l, m, view, &depth, &p);
     if (!status)
         status = learn(model, &l, capture, view, &p);
     looked_destroy(&l);

@@ -229,7 +229,8 @@ static relume_status need_between(relume_shadows *s, const struct relume_coder_i
     if (s->between)
         return RELUME_OK;
     s->lights = info->lights;
-    s->reached = mem_zeroed((size_t)info->lights, sizeof *s->reached);
+    if (!s->reached)
+        s->reached = mem_zeroed((size_t)info->lights, sizeof *s->reached);
     return !s->reached
                ? RELUME_ENOMEM
                : relume_coder_create(&s->between, relume_basis_find("table"), info->directions,

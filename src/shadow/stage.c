@@ -15,11 +15,19 @@
 // beyond all that is seen.
 static const double STEP = 0.7, START = 1.0, NEAR = 0.25, SAME = 12.0, MARGIN = 2.0;
 
+// Parallel rays: what lies deeper than that many pictures are wide is background, which renderers
+// write as some large number. Rays would go there step by step.
+static const double DEEPEST = 16.0;
+
 // Rays that are in front of all that is seen nearby go by tiles.
 enum { TILE = 8 };
 
 bool stage_suits(const struct relume_geometry *g)
 {
+    if (g->projection == RELUME_SLAB)
+        return g->uv_z != g->st_z;
+    if (g->projection == RELUME_PLANAR)
+        return !g->perspective || g->camera_z != 0.0;
     return g->projection != RELUME_CUBE && !(g->projection == RELUME_CYLINDRICAL && g->disc);
 }
 
@@ -28,8 +36,9 @@ bool stage_suits(const struct relume_geometry *g)
 static void set_window(struct stage *s, const double min[2], const double max[2], double u,
                        double v, double distance)
 {
-    s->scale[0] = distance * s->width / (max[0] - min[0]);
-    s->scale[1] = -distance * s->height / (max[1] - min[1]);
+    s->axis = distance > 0.0 ? -1.0 : 1.0;
+    s->scale[0] = fabs(distance) * s->width / (max[0] - min[0]);
+    s->scale[1] = -fabs(distance) * s->height / (max[1] - min[1]);
     s->shift[0] = (u - min[0]) * s->width / (max[0] - min[0]);
     s->shift[1] = (max[1] - v) * s->height / (max[1] - min[1]);
     s->pixel = 1.0 / fmax(s->scale[0], -s->scale[1]);
@@ -74,7 +83,7 @@ static vec3 ray_of(const struct stage *s, double x, double y)
     switch (s->kind) {
     case STAGE_CYLINDER: return vec3_of(sin(a), b, -cos(a));
     case STAGE_SPHERE: return vec3_of(sin(a) * cos(b), sin(b), -cos(a) * cos(b));
-    case STAGE_EYE: return vec3_of(a, b, -1.0);
+    case STAGE_EYE: return vec3_of(a, b, s->axis);
     case STAGE_FLAT: break;
     }
     return vec3_of(a, b, 0.0);
@@ -90,7 +99,7 @@ static vec3 at_distance(const struct stage *s, double x, double y, double far)
 static bool place_of(double *x, double *y, double *far, const struct stage *s, vec3 p)
 {
     double a = p.x, b = p.y;
-    *far = -p.z;
+    *far = s->axis * p.z;
     if (s->kind == STAGE_EYE) {
         a /= *far;
         b /= *far;
@@ -110,7 +119,7 @@ static bool place_of(double *x, double *y, double *far, const struct stage *s, v
 
 static double side_at(const struct stage *s, double far)
 {
-    return s->kind == STAGE_FLAT ? s->pixel : s->pixel * far;
+    return s->kind == STAGE_FLAT ? s->pixel : fmax(s->pixel * far, s->least_side);
 }
 
 // ---------------------------------------------------------------- the surface
@@ -236,20 +245,36 @@ static void grow(struct stage *s, vec3 p, double by)
         vec3_of(fmax(s->high.x, p.x + by), fmax(s->high.y, p.y + by), fmax(s->high.z, p.z + by));
 }
 
-// From distances along rays.
-static void fill(struct stage *s, const struct relume_image *depth, double camera_z)
+// From distances along rays: how far the nearest is.
+static float fill(struct stage *s, const struct relume_image *depth, double camera_z)
+{
+    const bool flat = s->kind == STAGE_FLAT;
+    float nearest = INFINITY;
+    for (int y = 0, i = 0; y < s->height; y++)
+        for (int x = 0; x < s->width; x++, i++) {
+            const double d = (double)depth->data[i];
+            const double far = flat ? d - camera_z : d / vec3_length(ray_of(s, x + 0.5, y + 0.5));
+            s->far[i] = isfinite(far) ? (float)far : INFINITY;
+            if (flat || s->far[i] > 0.0f)
+                nearest = fminf(nearest, s->far[i]);
+        }
+    return nearest;
+}
+
+// How large it is.
+static double enclose(struct stage *s, double farthest)
 {
     s->low = vec3_of(INFINITY, INFINITY, INFINITY);
     s->high = vec3_scale(s->low, -1.0);
     for (int y = 0, i = 0; y < s->height; y++)
         for (int x = 0; x < s->width; x++, i++) {
-            const vec3 ray = ray_of(s, x + 0.5, y + 0.5);
-            const double d = (double)depth->data[i];
-            const double far = s->kind == STAGE_FLAT ? d - camera_z : d / vec3_length(ray);
-            s->far[i] = isfinite(far) ? (float)far : INFINITY;
-            if (isfinite(far))
+            const double far = (double)s->far[i];
+            if (!(far <= farthest) || isinf(far))
+                s->far[i] = INFINITY;
+            else
                 grow(s, at_distance(s, x + 0.5, y + 0.5, far), MARGIN * side_at(s, far));
         }
+    return vec3_length(vec3_sub(s->high, s->low));
 }
 
 // Of a tile and those around it; panoramas close.
@@ -283,11 +308,15 @@ relume_status stage_create(struct stage *s, const struct relume_geometry *g, con
     if (!s->far || !s->thick || !s->front)
         return RELUME_ENOMEM;
     set_up(s, g, uv);
-    fill(s, depth, g->camera_z);
+    const double nearest = (double)fill(s, depth, g->camera_z);
+    const int longer = s->width > s->height ? s->width : s->height;
+    const double large = enclose(s, s->kind == STAGE_FLAT ? nearest + DEEPEST * longer * s->pixel
+                                                          : (double)INFINITY);
+    // Pixels shrink towards an eye. A ray that meets it would go in ever smaller steps for ever.
+    s->least_side = s->pixel * fmax(nearest / 8.0, 1e-6 * large);
     find_fronts(s);
-    const float large = (float)vec3_length(vec3_sub(s->high, s->low));
     for (size_t i = 0; i < n; i++)
-        s->thick[i] = large;
+        s->thick[i] = (float)large;
     return RELUME_OK;
 }
 

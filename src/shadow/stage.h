@@ -16,7 +16,9 @@ struct stage {
     struct relume_pose pose;    // directions of the view in the world
     vec3 eye;                   // the origin of the view, in the world
     double scale[2], shift[2];  // pixel = scale x + shift, x per unit of distance, angle or world
+    double axis;                // z of rays: -1, or 1 where the eye is behind its window
     double pixel;               // side of a pixel at distance 1, or of STAGE_FLAT everywhere
+    double least_side;          // rays take pixels for no smaller: there is no surface so near
     int width, height;
     float *far;      // [height][width]: how far the surface is along the axis, from the pole's axis
                      // (cylinder) or from the eye (sphere); infinite: background

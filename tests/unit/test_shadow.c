@@ -461,6 +461,135 @@ static void lights_left_out_decide(void **state)
     scene_close(&s);
 }
 
+// What a view of that depth shows of a light: none of this may take for ever.
+static void reach(uint8_t *reached, const struct relume_geometry *g, const float *depth, vec3 light)
+{
+    const struct relume_image image = {SIDE, SIDE, 1, .data = (float *)(uintptr_t)depth};
+    struct relume_image model;
+    relume_shadows *shadows;
+    unlearnt(&model, SIDE, SIDE, 0.01f);
+    CHECK_OK(relume_shadows_create(&shadows, g, (double[2]){0}, &image, &model));
+    CHECK_OK(relume_shadows_trace(reached, shadows, vec3_unit(light), 1));
+    relume_shadows_destroy(&shadows);
+    relume_image_destroy(&model);
+}
+
+// Renderers write background as some large number; rays along the axis went there in steps of
+// pixels: 1e12 of them.
+static void far_background_is_background(void **state)
+{
+    (void)state;
+    static const float background[] = {1e4f, 65504.0f, 1e10f, 3e38f};
+    static const double up[] = {1.0, -1.0};
+    const struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, SIDE, SIDE);
+    float depth[PIXELS];
+    uint8_t reached[PIXELS];
+    for (int k = 0; k < 8; k++) {
+        for (int i = 0; i < PIXELS; i++)
+            depth[i] = i < PIXELS / 2 ? background[k % 4] : 4.0f;
+        reach(reached, &g, depth, vec3_of(0.0, 0.0, up[k / 4]));
+        assert_int_equal(reached[SIDE], RELUME_SHADOW_REACHED);
+    }
+}
+
+// A ray from the middle of a pixel through the eye itself, where pixels have no size.
+static void rays_pass_the_eye(void **state)
+{
+    (void)state;
+    enum { WIDTH = 255, TALL = 15, ALL = WIDTH * TALL };
+    static const enum relume_projection projection[] = {RELUME_SPHERICAL, RELUME_CYLINDRICAL};
+    struct relume_vec3 light[8];
+    float *pictures = malloc(8 * 3 * ALL * sizeof *pictures), depth[ALL];
+    for (int i = 0; i < 8 * 3 * ALL; i++)
+        pictures[i] = 0.5f;
+    for (int i = 0; i < ALL; i++)
+        depth[i] = 2.0f;
+    for (int i = 0; i < 8; i++)
+        light[i] = vec3_unit(vec3_of(0.0, 0.1 * (i & 6), i & 1 ? -1.0 : 1.0));
+    for (int k = 0; k < 2; k++) {
+        struct relume_image model;
+        const struct relume_manifest m = {.lights = 8,
+                                          .directions = light,
+                                          .geometry =
+                                              relume_geometry_default(projection[k], WIDTH, TALL)};
+        const struct relume_pictures all = {
+            .width = WIDTH, .height = TALL, .channels = 3, .data = pictures, .depth = depth};
+        relume_capture *capture;
+        CHECK_OK(relume_capture_create(&capture, &m, &all, NULL));
+        CHECK_OK(relume_shadows_learn(&model, capture, 0, NULL));
+        relume_image_destroy(&model);
+        relume_capture_destroy(&capture);
+    }
+    free(pictures);
+}
+
+// A slab is looked at from either side.
+static void an_eye_behind_its_window_sees_the_same(void **state)
+{
+    (void)state;
+    struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, SIDE, SIDE), back;
+    float depth[PIXELS];
+    uint8_t reached[2][PIXELS];
+    g.perspective = true;
+    back = g;
+    back.camera_z = -g.camera_z;
+    const vec3 light = vec3_unit(vec3_of(0.5, 0.3, 0.8));
+    int dark = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        const vec3 d = vec3_of(across(i % SIDE), -across(i / SIDE), -g.camera_z);
+        const double at = is_disc(d.x, d.y) ? 0.8 : 1.0;
+        depth[i] = (float)(at * vec3_length(d));
+    }
+    reach(reached[0], &g, depth, light);
+    reach(reached[1], &back, depth, vec3_of(light.x, light.y, -light.z));
+    for (int i = 0; i < PIXELS; i++) {
+        assert_int_equal(reached[0][i], reached[1][i]);
+        dark += reached[0][i] == 0;
+    }
+    assert_true(dark > 10);
+    g.camera_z = 0.0;
+    assert_false(relume_shadows_suit(&g));
+}
+
+// Radiance beyond what half floats hold.
+static void what_is_learnt_can_be_stored(void **state)
+{
+    (void)state;
+    struct scene s;
+    struct relume_image model;
+    scene_open(&s);
+    for (int i = 0; i < LIGHTS * PIXELS * 3; i++)
+        s.pictures[i] *= i / (PIXELS * 3) % 2 ? 1e6f : 3e37f;
+    CHECK_OK(relume_shadows_learn(&model, s.capture, 0, NULL));
+    for (int i = 0; i < PIXELS * RELUME_SHADOW_CHANNELS; i++)
+        assert_true(fabsf(model.data[i]) <= 65504.0f);
+    relume_image_destroy(&model);
+    scene_close(&s);
+}
+
+static bool until(void *user, const char *what, double done)
+{
+    (void)what;
+    return done < *(const double *)user;
+}
+
+static void learning_can_be_left(void **state)
+{
+    (void)state;
+    static const double times[] = {0.1, 0.3, 0.7};
+    struct scene s;
+    scene_open(&s);
+    for (int i = 0; i < 3; i++) {
+        struct relume_image model;
+        const struct relume_log log = {.progress = until, .user = (void *)(uintptr_t)&times[i]};
+        assert_int_equal(relume_shadows_learn(&model, s.capture, 0,
+                                              relume_shadows_params(.log = &log, .threads = 1)),
+                         RELUME_ECANCEL);
+        assert_null(model.data);
+    }
+    scene_close(&s);
+}
+
 static void what_cannot_be_is_refused(void **state)
 {
     (void)state;
@@ -513,6 +642,11 @@ int main(void)
         cmocka_unit_test(near_lights_throw_shadows),
         cmocka_unit_test(parts_and_threads_agree),
         cmocka_unit_test(lights_left_out_decide),
+        cmocka_unit_test(far_background_is_background),
+        cmocka_unit_test(rays_pass_the_eye),
+        cmocka_unit_test(an_eye_behind_its_window_sees_the_same),
+        cmocka_unit_test(what_is_learnt_can_be_stored),
+        cmocka_unit_test(learning_can_be_left),
         cmocka_unit_test(what_cannot_be_is_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -23,7 +23,7 @@ as_one() { # name processes capture options...
     name=$1 n=$2 capture=$3
     shift 3
     rm -f whole.exr together.exr
-    relume encode "$capture" "$@" -o whole.exr
+    relume encode "$capture" --shadows no "$@" -o whole.exr
     processes "$n" encode "$capture" "$@" -o together.exr -q
     same "$name" whole.exr together.exr
 }

@@ -18,7 +18,7 @@ joined() { # name capture parts options...: the parts, backwards, are the file o
     name=$1 capture=$2 parts=$3
     shift 3
     rm -f whole.exr joined.exr
-    relume encode "$capture" "$@" -o whole.exr
+    relume encode "$capture" --shadows no "$@" -o whole.exr
     encode_parts "$capture" "$parts" "$@"
     relume join $(ls -r ./*.part) -o joined.exr
     same "$name" whole.exr joined.exr
@@ -63,7 +63,7 @@ shared() { # name capture parts options...: learnt first, then the parts, backwa
     name=$1 capture=$2 parts=$3
     shift 3
     rm -rf learnt ./*.part
-    relume encode "$capture" "$@" -o whole.exr
+    relume encode "$capture" --shadows no "$@" -o whole.exr
     for i in $(seq "$parts"); do
         relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" || return
     done
@@ -139,7 +139,7 @@ with_loss() { # name capture parts options...: learnt in rounds, the parts backw
     name=$1 capture=$2 parts=$3 rounds=0
     shift 3
     rm -rf learnt ./*.part
-    relume encode "$capture" "$@" -o whole.exr
+    relume encode "$capture" --shadows no "$@" -o whole.exr
     while [ "$(grep -c 'all is learnt' said.txt)" != "$parts" ] && [ $rounds -lt 12 ]; do
         rounds=$((rounds + 1))
         for i in $(seq "$parts"); do

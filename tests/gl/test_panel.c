@@ -425,7 +425,10 @@ static void passes_are_those_of_the_library(void **state)
         struct relume_normals normals;
         const struct relume_codes *codes;
         fixture_fetch(&codes, &f, 0);
-        assert_int_equal(relume_normals_fit(&normals, codes, NULL), RELUME_OK);
+        assert_int_equal(
+            relume_normals_fit(&normals, codes,
+                               relume_normals_params(.eye = relume_geometry_eye(geometry))),
+            RELUME_OK);
         struct relume_image towards;
         assert_int_equal(relume_image_create(&towards, W, H, 3), RELUME_OK);
         for (int i = 0; i < W * H; i++) {

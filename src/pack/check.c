@@ -46,6 +46,14 @@ static relume_status check_depth(relume_pack *pack, int view)
     return status;
 }
 
+static relume_status check_shadow(relume_pack *pack, int view)
+{
+    struct relume_image image;
+    const relume_status status = relume_pack_shadow(&image, pack, view);
+    relume_image_destroy(&image);
+    return status;
+}
+
 static relume_status check_whole(relume_pack *pack, int view)
 {
     struct relume_image image;
@@ -101,7 +109,7 @@ static relume_status check_view(relume_pack *pack, int view)
             status = check_band(pack, view, level, &band);
         }
     }
-    return status;
+    return status ? status : check_shadow(pack, view);
 }
 
 struct tiles {

@@ -196,7 +196,7 @@ relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, in
         status = exr_read(pack->file, pack->parts[view].shadow, NULL, pack->threads, shadow_block,
                           out, pack->log);
     if (!status && !is_sound_shadow(out))
-        status = reader_bad(pack, "shadow", "finite colours of 0 or more");
+        status = reader_bad(pack, "shadow", "finite colours and a thickness, of 0 or more");
     if (status)
         relume_image_destroy(out);
     return status;

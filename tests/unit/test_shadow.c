@@ -567,6 +567,68 @@ static void what_is_learnt_can_be_stored(void **state)
     scene_close(&s);
 }
 
+// A file with such a model: what relume_pack_check says of it.
+static relume_status checked(const struct relume_image *model)
+{
+    relume_coder *coder;
+    relume_coefficients *coefficients;
+    struct relume_image depth;
+    const struct relume_vec3 front = {0.0, 0.0, 1.0};
+    const char plane[PIXELS] = {0};
+    const void *const planes[3] = {plane, plane, plane};
+    CHECK_OK(relume_coder_create(&coder, relume_basis_find("table"), &front, 1, NULL));
+    CHECK_OK(relume_image_create(&depth, SIDE, SIDE, 1));
+    const struct relume_codes codes = {.coder = coder,
+                                       .width = SIDE,
+                                       .height = SIDE,
+                                       .planes = 3,
+                                       .storage = RELUME_STORE_8,
+                                       .plane = planes,
+                                       .scale = (float[]){1, 1, 1},
+                                       .offset = (float[]){0, 0, 0}};
+    CHECK_OK(relume_coefficients_keep(&coefficients, &codes,
+                                      relume_encode_params(.scratch = path_of("scratch"))));
+    const struct relume_pack_view view = {
+        .coefficients = coefficients, .depth = &depth, .shadow = model};
+    const struct relume_pack_contents contents = {
+        .coder = coder,
+        .domain = RELUME_DOMAIN_LINEAR,
+        .display = {.curve = RELUME_CURVE_SRGB},
+        .geometry = relume_geometry_default(RELUME_PLANAR, SIDE, SIDE),
+        .views = 1,
+        .view = &view,
+    };
+    CHECK_OK(relume_pack_write(&contents, path_of("model.exr"), NULL));
+    relume_coefficients_destroy(&coefficients);
+    relume_coder_destroy(&coder);
+    relume_image_destroy(&depth);
+    return relume_pack_check(path_of("model.exr"), NULL);
+}
+
+// What a file cannot be relit with, check says.
+static void what_is_stored_is_checked(void **state)
+{
+    (void)state;
+    static const struct {
+        int channel;
+        float value;
+        relume_status status;
+    } row[] = {{RELUME_SHADOW_THICK, INFINITY, RELUME_OK},
+               {RELUME_SHADOW_THICK, NAN, RELUME_EDAMAGED},
+               {RELUME_SHADOW_THICK, -1.0f, RELUME_EDAMAGED},
+               {RELUME_SHADOW_COLOUR, INFINITY, RELUME_EDAMAGED},
+               {RELUME_SHADOW_MATTE, -65504.0f, RELUME_OK},
+               {RELUME_SHADOW_MATTE, INFINITY, RELUME_EDAMAGED}};
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        struct relume_image model;
+        unlearnt(&model, SIDE, SIDE, 1.0f);
+        model.data[(size_t)(PIXELS / 3) * RELUME_SHADOW_CHANNELS + (size_t)row[i].channel] =
+            row[i].value;
+        assert_int_equal(checked(&model), row[i].status);
+        relume_image_destroy(&model);
+    }
+}
+
 static bool until(void *user, const char *what, double done)
 {
     (void)what;
@@ -646,6 +708,7 @@ int main(void)
         cmocka_unit_test(rays_pass_the_eye),
         cmocka_unit_test(an_eye_behind_its_window_sees_the_same),
         cmocka_unit_test(what_is_learnt_can_be_stored),
+        cmocka_unit_test(what_is_stored_is_checked),
         cmocka_unit_test(learning_can_be_left),
         cmocka_unit_test(what_cannot_be_is_refused),
     };

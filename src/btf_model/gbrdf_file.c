@@ -260,7 +260,10 @@ static relume_status read_map(const relume_btf_fitted *m, int part, const struct
         }
     exr_blocks_close(&blocks);
     mem_free(row);
-    return status;
+    return status == RELUME_EDAMAGED
+               ? log_fail(r->log, status, "%s: truncated or damaged in part '%s'", r->path,
+                          parts[part].name)
+               : status;
 }
 
 static relume_status read_maps(relume_btf_fitted *m, const struct reader *r)

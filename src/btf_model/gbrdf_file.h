@@ -1,4 +1,4 @@
-// gbrdf_file.h - a g-BRDF as one EXR file of six parts (docs/format.md)
+// gbrdf_file.h - a g-BRDF as one EXR file of six parts (docs/gbrdf.md)
 #ifndef BTF_MODEL_GBRDF_FILE_H
 #define BTF_MODEL_GBRDF_FILE_H
 

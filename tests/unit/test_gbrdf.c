@@ -556,6 +556,7 @@ static void test_hostile(void **state)
     uint8_t *bytes = test_read(path, &size);
     int opened = 0, refused = 0;
     uint32_t seed = 3;
+    struct test_log log;
     for (int i = 0; i < 240; i++) {
         // every place of the headers is tried, some of the maps
         const size_t at = i < 180 ? (size_t)i * 12 % size : test_random(&seed) % size;
@@ -563,9 +564,13 @@ static void test_hostile(void **state)
         bytes[at] = (uint8_t)(kept ^ (1u << i % 8));
         test_write(path, bytes, i % 8 == 7 ? at : size);
         bytes[at] = kept;
-        const relume_status status = relume_btf_fitted_open(&m, path, NULL);
+        test_log_init(&log);
+        const relume_status status =
+            relume_btf_fitted_open(&m, path, relume_btf_params(.log = &log.log));
         assert_true(!status || relume_status_is_input(status));
         if (status) {
+            // every one has its sentence
+            assert_non_null(strstr(log.text, "planted.exr: "));
             refused++;
             continue;
         }

@@ -257,12 +257,24 @@ relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels
         out, btf, o->model < 0 ? relume_btf_model_find("rfnlc") : relume_btf_models[o->model], &p);
 }
 
+// Before the fit, which may take long.
+static relume_status check_fit(const struct btf_options *o)
+{
+    const bool held = o->model >= 0 && (o->levels == 0 || o->levels == 1) &&
+                      relume_btf_models[o->model] == relume_btf_model_find("gbrdf");
+    return btf_is_model_file(o->output) && !held
+               ? usage_error("%s: an .exr file holds a g-BRDF of one level of detail; expected "
+                             "--model gbrdf without --levels, or a folder",
+                             o->output)
+               : btf_check_model_output(o);
+}
+
 static relume_status fit(const struct args *args)
 {
     const struct btf_options *o = (const void *)args;
     relume_btf *btf = NULL, *part = NULL;
     relume_btf_fitted *fitted = NULL;
-    relume_status status = btf_check_model_output(o);
+    relume_status status = check_fit(o);
     if (!status)
         status = btf_open(&btf, o->args.input[0], o);
     if (!status)

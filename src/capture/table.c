@@ -231,6 +231,11 @@ static relume_status refuse_broken(relume_table *t, int first)
     if (others)
         snprintf(more, sizeof more, ", and some of %d more image%s", others, relume_plural(others));
     const size_t n = t->broken[first];
+    if (!n)  // finite in the file, but not by the curve
+        return log_fail(t->log, RELUME_EDAMAGED,
+                        "%s: values are too bright to be converted; expected finite light: lower "
+                        "the exposure, or another --transfer",
+                        m->view[t->view].images[first]);
     return log_fail(t->log, RELUME_EDAMAGED,
                     "%s: %zu pixel%s NaN or infinite%s; expected finite radiance; 'relume "
                     "encode --repair' replaces such pixels",

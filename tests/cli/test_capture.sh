@@ -54,6 +54,7 @@ expect_fail 'grey outside' 2 'white region 90,90' out "$RELUME" capture photos -
 expect_fail 'no grey region' 2 'four numbers x,y,w,h' out "$RELUME" capture photos --lights lights.txt --white 9,9 -o out
 expect_fail 'an integrable surface of given lights' 2 'needs --refine-lights' out "$RELUME" capture photos \
     --lights lights.txt --integrable -o out
+expect_fail 'a width of nothing' 2 'needs --height FILE.exr' out "$RELUME" capture photos --lights lights.txt --width 50 -o out
 expect_ok 'refined, integrable' 'curl is' "$RELUME" capture photos --lights lights.txt --refine-lights --integrable -o curl
 below 'lights that were right stay so' "$(angles curl)" 2
 expect_ok 'brightness alone' 'lamps of equal brightness' "$RELUME" capture photos --lights lights.txt --refine-brightness -o bright

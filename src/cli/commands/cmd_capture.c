@@ -208,6 +208,8 @@ static relume_status check_options(const struct capture_options *o)
     if (given(o, &o->white) && !(o->white[2] >= 1.0 && o->white[3] >= 1.0))
         return usage_error("--white: expected a width and height of 1 or more; found %g and %g",
                            o->white[2], o->white[3]);
+    if (given(o, &o->width) && !o->height)
+        return usage_error("capture: --width needs --height FILE.exr");
     if (o->relight && !o->encode)
         return usage_error("capture: --relight needs --encode FILE.exr");
     return RELUME_OK;

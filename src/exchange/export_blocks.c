@@ -315,10 +315,10 @@ static void say_sizes(const struct blocks *b)
     const double photographs = 6.0 * pixels * relume_coder_info(b->codes->coder)->lights;
     log_line(
         b->e->log, RELUME_NOTE,
-        "%d eigenimages of %.4g MiB, %.4g MiB as half floats (%.3g:1); the photographs as half "
+        "%d eigenimage%s of %.4g MiB, %.4g MiB as half floats (%.3g:1); the photographs as half "
         "floats %.4g MiB (%.4g:1)",
-        b->terms, each / mib, 6.0 * pixels / mib, 6.0 * pixels / each, photographs / mib,
-        photographs / (b->terms * each));
+        b->terms, relume_plural(b->terms), each / mib, 6.0 * pixels / mib, 6.0 * pixels / each,
+        photographs / mib, photographs / (b->terms * each));
 }
 
 // ---------------------------------------------------------------- all of it

@@ -43,6 +43,7 @@ static relume_status find_members(relume_pack *p, int part)
         *v = (struct view_parts){.codes = part,
                                  .depth = n[2] ? part : -1,
                                  .mask = -1,
+                                 .shadow = -1,
                                  .anchor = anchor,
                                  .words = {at, n[1]},
                                  .depth_words = {at + n[1], n[2]},

@@ -137,11 +137,11 @@ static relume_status find_shadow(relume_pack *p, int view, int *part)
     const struct exr_part_info i = exr_part_info(p->file, *part);
     bool good = i.width == p->info.width && i.height == p->info.height && i.uniform &&
                 i.sample == EXR_SAMPLE_HALF && i.channels == RELUME_SHADOW_CHANNELS &&
-                p->parts[view].depth >= 0;
+                p->parts[view].depth >= 0 && !p->info.levels;
     for (int c = 0; good && c < i.channels; c++)
         good = !strcmp(exr_channel_name(p->file, *part, c), channel[c]);
     if (!good)
-        return reader_bad(p, name, "eight half channels of the views' size, and depth");
+        return reader_bad(p, name, "eight half channels of the views' size, depth and no reduced levels");
     p->parts[view].shadow = (*part)++;
     p->info.has_shadow = true;
     return RELUME_OK;

@@ -49,8 +49,10 @@ static relume_status prepare(struct judge *j, bool unseen)
 
 static void predict(const struct judge *j, size_t texel, int v, int l, float rgb[3])
 {
-    const struct model_blend at = {j->view[v], j->light[l], j->btf->info.view[v],
-                                   j->btf->info.light[l]};
+    const struct model_blend at = {.view = j->view[v],
+                                   .light = j->light[l],
+                                   .v = j->btf->info.view[v],
+                                   .l = j->btf->info.light[l]};
     model_blend(j->model, texel, &at, rgb);
 }
 

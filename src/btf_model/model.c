@@ -324,7 +324,8 @@ void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_bl
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < v.count; i++)
         for (int j = 0; j < l.count; j++) {
-            const struct model_at one = {texel, v.index[i], l.index[j], v.direction, l.direction};
+            const struct model_at one = {texel,      at->place,   v.index[i],
+                                         l.index[j], v.direction, l.direction};
             float value[3];
             m->model->eval(m, &one, value);
             for (int c = 0; c < 3; c++)
@@ -343,7 +344,7 @@ void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,
     if (!(view.z > 0.0) || !(light.z > 0.0))
         return;
     const struct model_blend at = {relume_direction_mesh_at(fitted->view_mesh, view),
-                                   relume_direction_mesh_at(fitted->light_mesh, light), view,
-                                   light};
+                                   relume_direction_mesh_at(fitted->light_mesh, light), view, light,
+                                   NULL};
     model_blend(fitted, (size_t)y * (size_t)fitted->width + (size_t)x, &at, rgb);
 }

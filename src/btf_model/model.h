@@ -42,7 +42,8 @@ struct relume_btf_fitted {
 // One value that is asked for. Models that are gridded over views (lights) get measured ones only.
 struct model_at {
     size_t texel;
-    int view, light;  // of the fitted directions, where the model is gridded
+    const double *place;  // in texels, where the model is `continuous`; NULL: the texel's middle
+    int view, light;      // of the fitted directions, where the model is gridded
     vec3 v, l;
 };
 
@@ -64,6 +65,7 @@ struct relume_btf_model {
     const char *name;
     const char *summary;
     bool view_grid, light_grid;            // known at measured views (lights) only
+    bool continuous;                       // knows all places of the sample, not texels only
     int clusters, components, lobes;       // defaults; 0: the model has none
     int most_clusters;                     // 0: 65536
     int most_components;                   // 0: 256
@@ -127,6 +129,7 @@ relume_status model_save_into(const relume_btf_fitted *m, const char *folder,
 struct model_blend {
     struct relume_direction_blend view, light;
     vec3 v, l;
+    const double *place;  // as model_at
 };
 void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_blend *at,
                  float rgb[3]);

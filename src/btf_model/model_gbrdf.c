@@ -84,8 +84,9 @@ static const double LEAST_COSINE = 1e-6;
 static void eval(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
 {
     const size_t width = (size_t)m->width;
-    gbrdf_evaluate(m->prepared, (double)(at->texel % width) + 0.5,
-                   (double)(at->texel / width) + 0.5, at->v, at->l, rgb);
+    const double middle[2] = {(double)(at->texel % width) + 0.5, (double)(at->texel / width) + 0.5};
+    const double *place = at->place ? at->place : middle;
+    gbrdf_evaluate(m->prepared, place[0], place[1], at->v, at->l, rgb);
     for (int c = 0; c < 3 && m->without_cosine; c++)
         rgb[c] /= (float)fmax(at->l.z, LEAST_COSINE);
 }
@@ -116,6 +117,7 @@ static struct relume_btf_cost cost(const relume_btf_fitted *m)
 const struct relume_btf_model model_gbrdf = {
     .name = "gbrdf",
     .summary = "relief, a few NDFs, and maps of colour, reflectance, rotation and label to edit",
+    .continuous = true,
     .clusters = 8,
     .most_clusters = 64,
     .layout = layout,

@@ -51,12 +51,18 @@ void relume_btf_fitted_sample(const relume_btf_fitted *m, double x, double y, bo
                               struct relume_vec3 view, struct relume_vec3 light, float rgb[3])
 {
     const struct corners c = corners_of(x, y, bilinear, m->width, m->height);
+    const double place[2] = {x, y};
     double sum[3] = {0.0, 0.0, 0.0};
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(view.z > 0.0) || !(light.z > 0.0))
         return;
-    const struct model_blend at = {relume_direction_mesh_at(m->view_mesh, view),
-                                   relume_direction_mesh_at(m->light_mesh, light), view, light};
+    struct model_blend at = {relume_direction_mesh_at(m->view_mesh, view),
+                             relume_direction_mesh_at(m->light_mesh, light), view, light, NULL};
+    if (bilinear && m->model->continuous) {
+        at.place = place;
+        model_blend(m, 0, &at, rgb);
+        return;
+    }
     for (int i = 0; i < 4; i++) {
         float value[3];
         if (c.weight[i / 2][i % 2] == 0.0)

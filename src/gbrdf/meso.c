@@ -4,8 +4,9 @@
 
 // Lower rays are traced as if they had this z: they would cross hundreds of texels.
 static const double FLATTEST = 0.03;
-// No relief is stepped through more often than this; steps are longer then.
-enum { MOST_STEPS = 1024, REFINEMENTS = 7 };
+// No relief is stepped through more often than this; steps are longer then. So both rays of 32
+// places stay below the 65535 rounds after which llvmpipe ends the loops of a pixel.
+enum { MOST_STEPS = 960, REFINEMENTS = 7 };
 // In texels: what rounding leaves of the height of a place on the relief itself.
 static const double ABOVE = 0.01;
 

@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 enum { VERSION = 1, MOST_MATERIALS = 256, MOST_OBJECTS = 4096, MOST_COVERINGS = 1024 };
@@ -162,7 +163,10 @@ static relume_status open_material(struct relume_object_material *m, const char 
         return RELUME_ENOMEM;
     if (holds(folder, "surface.json"))
         return open_surface(m, folder, &p);
-    return holds(folder, "model.json") ? open_model(m, folder, &p) : open_measured(m, folder, &p);
+    const size_t n = strlen(folder);
+    const bool exr = n > 4 && !strcasecmp(folder + n - 4, ".exr");
+    return exr || holds(folder, "model.json") ? open_model(m, folder, &p)
+                                              : open_measured(m, folder, &p);
 }
 
 relume_status objects_material(relume_objects *o, const char *folder, int *number,

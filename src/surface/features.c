@@ -38,8 +38,10 @@ static void choose_pictures(struct work *w)
     for (int i = 0; i < PICTURES; i++) {
         const vec3 v = w->m->view[i / SIDE * w->m->views / SIDE];
         const vec3 l = w->m->light[i % SIDE * w->m->lights / SIDE];
-        w->at[i] = (struct model_blend){relume_direction_mesh_at(w->m->view_mesh, v),
-                                        relume_direction_mesh_at(w->m->light_mesh, l), v, l};
+        w->at[i] = (struct model_blend){.view = relume_direction_mesh_at(w->m->view_mesh, v),
+                                        .light = relume_direction_mesh_at(w->m->light_mesh, l),
+                                        .v = v,
+                                        .l = l};
     }
 }
 

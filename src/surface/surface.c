@@ -135,9 +135,13 @@ relume_status relume_btf_surface_create(relume_btf_surface **out, const relume_b
         return log_fail(
             log, RELUME_EINVAL, "map: of a sample of %d x %d texels; expected %d x %d as the model",
             map->info.sample_width, map->info.sample_height, model->width, model->height);
-    const relume_status status =
+    relume_status status =
         map ? relume_btf_map_create(&copy, &map->info, log) : whole_sample(&copy, model);
-    return status ? status : surface_start(out, model, copy);
+    if (!status)
+        status = surface_start(out, model, copy);
+    if (!status)
+        (*out)->whole = !map;
+    return status;
 }
 
 void relume_btf_surface_destroy(relume_btf_surface **surface)
@@ -170,6 +174,7 @@ struct blend {
     const relume_btf_oriented_light *ambient;
     const relume_btf_environment *summed;  // or NULL: an environment that is summed over the lights
     struct relume_btf_oriented_light sky;
+    bool between;  // the model says itself what lies between its texels
 };
 
 static struct blend blend_of(const relume_btf_surface *s, const struct relume_btf_ray *ray)
@@ -178,7 +183,8 @@ static struct blend blend_of(const relume_btf_surface *s, const struct relume_bt
     struct blend b = {.at = {.view = relume_direction_mesh_at(m->view_mesh, ray->view),
                              .v = ray->view,
                              .l = ray->light},
-                      .ambient = ray->ambient};
+                      .ambient = ray->ambient,
+                      .between = s->whole && m->model->continuous && !ray->ambient};
     if (ray->sky && m->model->lit)
         b.sky = sky_ambient(ray->sky, &ray->frame);
     else if (ray->sky)
@@ -203,6 +209,16 @@ static void add_level(const struct surface_level *level, const struct relume_btf
     const double u = x * level->map.width / finest->width - 0.5;
     const double v = y * level->map.height / finest->height - 0.5;
     const double left = floor(u), top = floor(v);
+    if (at->between) {
+        struct model_blend one = at->at;
+        const double place[2] = {u + 0.5, v + 0.5};
+        float value[3];
+        one.place = place;
+        model_blend(level->model, 0, &one, value);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += weight * value[c];
+        return;
+    }
     const struct bilinear b = {.across = u - left, .down = v - top};
     for (int i = 0; i < 4; i++) {
         const float w = bilinear_sharef(&b, i, weight);

@@ -45,6 +45,7 @@ static inline uint32_t map_at(const struct relume_btf_map_info *i, int64_t x, in
 
 struct relume_btf_surface {
     relume_btf_fitted *own;  // of surfaces that were opened, or NULL
+    bool whole;              // the sample as it is: neighbours are those that it has
     int levels;
     struct surface_level {
         const relume_btf_fitted *model;

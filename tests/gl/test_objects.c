@@ -59,7 +59,7 @@ static void write_mesh(const char *path)
 }
 
 // A surface of two tiles of the sample, in a matrix of 3 x 2.
-static void make_surface(const relume_btf_fitted *model)
+static void make_surface(const relume_btf_fitted *model, const char *name)
 {
     enum { TILE = 5 };
     static const uint16_t matrix[6] = {0, 1, 1, 1, 0, 0};
@@ -81,7 +81,7 @@ static void make_surface(const relume_btf_fitted *model)
     relume_btf_surface *surface;
     assert_int_equal(relume_btf_map_create(&map, &info, &fixture_log), RELUME_OK);
     assert_int_equal(relume_btf_surface_create(&surface, model, map, &fixture_log), RELUME_OK);
-    assert_int_equal(relume_btf_surface_save(surface, path_of("surface"), NULL), RELUME_OK);
+    assert_int_equal(relume_btf_surface_save(surface, path_of(name), NULL), RELUME_OK);
     relume_btf_surface_destroy(&surface);
     relume_btf_map_destroy(&map);
 }
@@ -115,10 +115,25 @@ static void make_materials(void)
                          RELUME_OK);
         assert_int_equal(relume_btf_fitted_save(fitted, path_of(*m), NULL), RELUME_OK);
         if (!strcmp(*m, "vpca"))
-            make_surface(fitted);
+            make_surface(fitted, "surface");
         relume_btf_fitted_destroy(&fitted);
     }
     relume_btf_destroy(&btf);
+}
+
+// A g-BRDF with a relief to follow rays into, as a file, and on a tiled surface, where its texels
+// have other neighbours.
+static void make_gbrdf(void)
+{
+    relume_btf_fitted *planted;
+    assert_int_equal(
+        relume_gbrdf_plant(&planted,
+                           relume_gbrdf_plant_params(.log = &fixture_log, .size = TEXELS,
+                                                     .directions = relume_btf_set_find("coarse"))),
+        RELUME_OK);
+    assert_int_equal(relume_btf_fitted_save(planted, path_of("gbrdf.exr"), NULL), RELUME_OK);
+    make_surface(planted, "surface-gbrdf");
+    relume_btf_fitted_destroy(&planted);
 }
 
 static relume_objects *open_objects(double repeat)
@@ -131,6 +146,8 @@ static relume_objects *open_objects(double repeat)
     for (const char *const *m = models; *m; m++)
         snprintf(kept[n++], sizeof kept[0], "%s", path_of(*m));
     snprintf(kept[n++], sizeof kept[0], "%s", path_of("surface"));
+    snprintf(kept[n++], sizeof kept[0], "%s", path_of("gbrdf.exr"));
+    snprintf(kept[n++], sizeof kept[0], "%s", path_of("surface-gbrdf"));
     for (int i = 0; i < n; i++)
         materials[i] = kept[i];
     relume_objects *o;
@@ -307,6 +324,8 @@ static void models_agree_under_the_sky(void **state)
         assert_int_equal(relume_objects_choose(t.objects, i, material_of(t.objects, list[i])),
                          RELUME_OK);
     compare(&t, rig, "all at once");
+    choose(t.objects, material_of(t.objects, "gbrdf"));
+    compare(&t, rig, "gbrdf");
     relume_rig_destroy(&rig);
     finish(&t);
 }
@@ -461,6 +480,7 @@ static int open_all(void **state)
     write_mesh(path_of("mesh.obj"));
     write_lights();
     make_materials();
+    make_gbrdf();
     return fixture_open(state);
 }
 

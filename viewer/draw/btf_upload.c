@@ -10,20 +10,21 @@
 #include <string.h>
 
 const struct btf_shader btf_shaders[] = {
-    {"measured", "btf_measured.frag", {3}, false},
-    {"lit", "btf_lit.frag", {3}, true},
-    {"bump", "btf_bump.frag", {3, 3, 3}, false},
-    {"laf", "btf_laf.frag", {3, 3, 4}, true},
-    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}, true},
-    {"rfp", "btf_rfp.frag", {3}, false},
-    {"rfnl", "btf_rfnl.frag", {3, 3, 4}, true},
-    {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}, true},
-    {"cmf", "btf_cmf.frag", {3, 1}, false},
-    {"vpca", "btf_vpca.frag", {3, 3, 1}, false},
-    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}, false},
-    {"fmf", "btf_fmf.frag", {1, 3}, false},
-    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}, false},
-    {NULL, NULL, {0}, false},
+    {"measured", "btf_measured.frag", {3}, false, false},
+    {"lit", "btf_lit.frag", {3}, true, false},
+    {"bump", "btf_bump.frag", {3, 3, 3}, false, false},
+    {"laf", "btf_laf.frag", {3, 3, 4}, true, false},
+    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}, true, false},
+    {"rfp", "btf_rfp.frag", {3}, false, false},
+    {"rfnl", "btf_rfnl.frag", {3, 3, 4}, true, false},
+    {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}, true, false},
+    {"cmf", "btf_cmf.frag", {3, 1}, false, false},
+    {"vpca", "btf_vpca.frag", {3, 3, 1}, false, false},
+    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}, false, false},
+    {"fmf", "btf_fmf.frag", {1, 3}, false, false},
+    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}, false, false},
+    {"gbrdf", "btf_gbrdf.frag", {1, 1, BTF_PAIR, 1, 3}, false, true},
+    {NULL, NULL, {0}, false, false},
 };
 
 const struct btf_shader *btf_shader_find(const char *model)
@@ -65,11 +66,11 @@ static relume_status fill(struct btf_material *m, const struct gl *gl, int i, GL
 }
 
 // Halfs by three, with room for a fourth: GL 3.3 has no buffers of three.
-static void widen(uint16_t *to, const uint16_t *from, size_t texels)
+static void widen(uint16_t *to, const uint16_t *from, const uint16_t *fourth, size_t texels)
 {
     for (size_t i = 0; i < texels; i++) {
         memcpy(to + 4 * i, from + 3 * i, 3 * sizeof *to);
-        to[4 * i + 3] = 0;
+        to[4 * i + 3] = fourth ? fourth[i] : 0;
     }
 }
 
@@ -86,14 +87,16 @@ static GLenum format_of(const struct relume_btf_array *a, int numbers)
 }
 
 static relume_status upload_array(struct btf_material *m, const struct gl *gl, int i,
-                                  const struct relume_btf_array *a, const struct relume_log *log)
+                                  const struct relume_btf_array *a,
+                                  const struct relume_btf_array *fourth,
+                                  const struct relume_log *log)
 {
     static const size_t sizes[] = {[RELUME_BTF_U8] = 1,
                                    [RELUME_BTF_U16] = 2,
                                    [RELUME_BTF_HALF] = 2,
                                    [RELUME_BTF_FLOAT] = 4,
                                    [RELUME_BTF_U32] = 4};
-    const int numbers = m->shader->numbers[i];
+    const int numbers = fourth ? 3 : m->shader->numbers[i];
     size_t count = 1;
     for (int d = 0; d < a->dims; d++)
         count *= a->shape[d];
@@ -103,7 +106,7 @@ static relume_status upload_array(struct btf_material *m, const struct gl *gl, i
     uint16_t *wide = malloc(texels * 4 * sizeof *wide);
     if (!wide)
         return RELUME_ENOMEM;
-    widen(wide, a->data, texels);
+    widen(wide, a->data, fourth ? fourth->data : NULL, texels);
     const relume_status status =
         fill(m, gl, i, GL_RGBA16F, texels, texels * 4 * sizeof *wide, wide, log);
     free(wide);
@@ -126,7 +129,7 @@ static relume_status upload_measured(struct btf_material *m, const struct gl *gl
     for (int v = 0; v < info->views; v++)
         for (int l = 0; l < info->lights; l++)
             widen(wide + 4 * area * ((size_t)v * (size_t)info->lights + (size_t)l),
-                  relume_btf_picture(btf, v, l), area);
+                  relume_btf_picture(btf, v, l), NULL, area);
     const relume_status status =
         fill(m, gl, 0, GL_RGBA16F, texels, texels * 4 * sizeof *wide, wide, log);
     free(wide);
@@ -287,11 +290,39 @@ static relume_status upload_map(struct btf_material *m, const struct gl *gl,
 static relume_status upload_fitted(struct btf_material *m, const struct gl *gl,
                                    const relume_btf_fitted *fitted, const struct relume_log *log)
 {
-    struct relume_btf_array a;
+    struct relume_btf_array a, fourth;
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < BTF_ARRAYS && relume_btf_fitted_array(&a, fitted, i); i++)
-        status = upload_array(m, gl, i, &a, log);
+    for (int i = 0, k = 0; !status && i < BTF_ARRAYS && relume_btf_fitted_array(&a, fitted, k);
+         i++, k++) {
+        const bool pair = m->shader->numbers[i] == BTF_PAIR;
+        if (pair)
+            relume_btf_fitted_array(&fourth, fitted, ++k);
+        status = upload_array(m, gl, i, &a, pair ? &fourth : NULL, log);
+    }
     return status;
+}
+
+// What the rays of a g-BRDF need to know of its relief. Twins: gbrdf_prepare, meso_settle.
+static void describe_relief(struct btf_level *level, const relume_btf_fitted *fitted)
+{
+    enum { DEPTH = 0, LIGHT = 6 };
+    // rays as flat as meso.c follows, in steps of half a texel, and what each place takes besides
+    enum { STEPS_A_TEXEL = 2 * 34, BESIDES = 64 };
+    struct relume_btf_array depth, light;
+    if (!relume_btf_fitted_array(&depth, fitted, DEPTH) ||
+        !relume_btf_fitted_array(&light, fitted, LIGHT))
+        return;
+    const float *z = depth.data;
+    float low = z[0], high = z[0];
+    for (int i = 1; i < level->area; i++) {
+        low = fminf(low, z[i]);
+        high = fmaxf(high, z[i]);
+    }
+    const float scale = (float)level->side[0];
+    level->relief[0] = low * scale;
+    level->relief[1] = high * scale;
+    level->relief[2] = *(const float *)light.data;
+    level->ray_steps = BESIDES + 2 * STEPS_A_TEXEL * (int)ceilf(scale * (high - low));
 }
 
 static relume_status upload_level(struct btf_material *m, const struct gl *gl,
@@ -304,6 +335,9 @@ static relume_status upload_level(struct btf_material *m, const struct gl *gl,
     level->width = at.map->columns * at.map->width;
     level->height = at.map->rows * at.map->height;
     level->area = i->width * i->height;
+    level->side[0] = i->width, level->side[1] = i->height;
+    if (m->shader->relief)
+        describe_relief(level, at.model);
     memcpy(level->counts, (int[4]){i->views, i->lights, i->components, i->lobes},
            sizeof level->counts);
     const relume_status status =

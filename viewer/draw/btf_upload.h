@@ -10,12 +10,16 @@
 
 enum { BTF_ARRAYS = 5, BTF_MESHES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_MESHES + 1, BTF_LEVELS = 17 };
 
+// Three numbers of an array and, as the fourth, one of the array after it.
+enum { BTF_PAIR = 31 };
+
 // How a model is drawn.
 struct btf_shader {
     const char *model;        // NULL ends the list
     const char *source;       // a file of viewer/shaders/btf
-    int numbers[BTF_ARRAYS];  // of a texel of each array: 1, 3 or 4; 0: there is none
-    bool lobes;  // which an environment is looked up for, rather than summed over the lights
+    int numbers[BTF_ARRAYS];  // of a texel of each array: 1, 3 or 4; BTF_PAIR; 0: there is none
+    bool lobes;   // which an environment is looked up for, rather than summed over the lights
+    bool relief;  // which rays are followed into: level.relief
 };
 extern const struct btf_shader btf_shaders[];
 // NULL when a model cannot be drawn.
@@ -39,6 +43,8 @@ enum {
 struct btf_level {
     GLuint texture[BTF_BUFFERS], buffer[BTF_BUFFERS];
     int width, height, area, counts[4], map[4];  // as btf.glsl
+    float relief[3];                             // as gbrdf.frag.glsl
+    int side[2], ray_steps;                      // of the sample; of both rays, at most
 };
 struct btf_material {
     const struct btf_shader *shader;

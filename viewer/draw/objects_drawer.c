@@ -44,6 +44,8 @@ static const char *const btf_uniforms[] = {
     "sky_rgb",
     "sky_table",
     "some_lights",
+    "relief",
+    "side",
     LIGHT_NAMES,
     SHADOW_NAMES,
 };
@@ -375,12 +377,12 @@ static void set_uniforms(const struct objects_drawer *t, const struct program *p
 }
 
 // Lights that one pass sums over: llvmpipe ends all loops of a pixel, without a word, after 65535
-// rounds. A model goes through its components, at most once for each of three views, for four
-// texels at each of up to eight places.
+// rounds. A model goes through its components, at most once for each of three views, or follows two
+// rays, for four texels at each of up to eight places.
 static int lights_at_once(const struct btf_level *l)
 {
     enum { MOST_ROUNDS = 60000, PLACES = 4 * 8, MESH_ROUNDS = 16 };
-    const int rounds = PLACES * (MESH_ROUNDS + 3 * l->counts[2]);
+    const int rounds = PLACES * (MESH_ROUNDS + 3 * l->counts[2] + l->ray_steps);
     return rounds < MOST_ROUNDS ? MOST_ROUNDS / rounds : 1;
 }
 
@@ -409,6 +411,8 @@ static void draw_levels(const struct objects_drawer *t, const struct program *pr
         gl->Uniform1i(at[AREA], l->area);
         gl->Uniform4i(at[MAP], l->map[0], l->map[1], l->map[2], l->map[3]);
         gl->Uniform4i(at[COUNTS], l->counts[0], l->counts[1], l->counts[2], l->counts[3]);
+        gl->Uniform3f(at[RELIEF], l->relief[0], l->relief[1], l->relief[2]);
+        gl->Uniform2i(at[SIDE], l->side[0], l->side[1]);
         btf_use(m, gl, i);
         draw_level(t, program, &place, l, sums);
     }

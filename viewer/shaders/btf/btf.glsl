@@ -1,6 +1,7 @@
 // What all models share: a pixel of the surface, the light sample of the pass, measured directions
 // around any direction. Before it: view_grid and light_grid (struct relume_btf_model); after it:
-// model_eval, or, where OWN_BLEND is defined, model_blend; where LOBES is, also model_lit.
+// model_eval, or, where OWN_BLEND is defined, model_blend; where LOBES is, also model_lit; where
+// OWN_PLACES is, also model_at, which knows what lies between texels.
 //
 // Compiled twice: for light samples, and with SKY defined for an environment. Each level of detail is a
 // pass of its own, which adds its part of what lies between two levels.
@@ -140,9 +141,17 @@ int texel_of(ivec2 at)
                           map.x * map.y + (number * map.w + inside.y) * map.z + inside.x).r);
 }
 
+#ifdef OWN_PLACES
+vec3 model_at(vec2 at, Blend v, Blend l);
+#endif
+
 // Twin: add_level.
 vec3 btf_sample(vec2 at, Blend v, Blend l, mat3 frame)
 {
+#ifdef OWN_PLACES
+    if (map.x == 0)
+        return max(model_at(at, v, l), 0.0);
+#endif
     vec2 corner = floor(bilinear ? at - 0.5 : at);
     vec2 part_of = bilinear ? at - 0.5 - corner : vec2(0.0);
     vec3 sum = vec3(0.0);

@@ -43,13 +43,14 @@ struct relume_objects_params {
     (&(const struct relume_objects_params){RELUME_SIZED(relume_objects_params), __VA_ARGS__})
 
 // Read a description (docs/objects.md). Meshes are OBJ, PLY or what Assimp reads, such as glTF;
-// materials are folders of BTFs, of fitted models or of surfaces. What a mesh lacks is made, with a
-// warning: normals, texture coordinates (from the three axes). An input status with a sentence,
-// RELUME_ENOMEM, RELUME_ESYSTEM when Embree or the reader of a format is missing.
+// materials are folders of BTFs, of fitted models or of surfaces, .btf files of Bonn's data base,
+// or g-BRDFs as .exr. What a mesh lacks is made, with a warning: normals, texture coordinates (from
+// the three axes). An input status with a sentence, RELUME_ENOMEM, RELUME_ESYSTEM when Embree or
+// the reader of a format is missing.
 RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
                                                 const struct relume_objects_params *params);
 // One mesh, all of it of the first of `count` materials, its texture repeated `repeat` times (0: 1)
-// in each direction. Likewise.
+// in each direction; `mesh` NULL: a cushion, which shows all of a sample from many sides. Likewise.
 RELUME_RESULT relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
                                                    const char *const *materials, int count,
                                                    double repeat,

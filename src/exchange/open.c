@@ -34,6 +34,9 @@ static enum relume_kind kind_of_folder(const char *path, const struct relume_log
 {
     if (holds(path, "info.json", log))
         return RELUME_KIND_FOREIGN;
+    if (holds(path, "btf.json", log) || holds(path, "model.json", log) ||
+        holds(path, "surface.json", log))
+        return RELUME_KIND_MATERIAL;
     char *lp = holds(path, "capture.json", log) ? NULL : tree_only(path, ".lp");
     const bool capture = lp || holds(path, "capture.json", log);
     mem_free(lp);
@@ -41,7 +44,7 @@ static enum relume_kind kind_of_folder(const char *path, const struct relume_log
 }
 
 enum { HEAD = 4096 };
-static const char exr_magic[] = "\x76\x2f\x31\x01";
+static const char exr_magic[] = "\x76\x2f\x31\x01", gbrdf[] = "gbrdfVersion";
 
 static bool is_among(const char *path, const char *const *endings)
 {
@@ -73,12 +76,16 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
         return RELUME_KIND_FOREIGN;
     if (path_ends(path, ".lp"))
         return RELUME_KIND_CAPTURE;
+    if (path_ends(path, ".btf"))
+        return RELUME_KIND_MATERIAL;
     FILE *f = input_open(path, log);
     const size_t n = f ? fread(head, 1, HEAD, f) : 0;
     if (f)
         fclose(f);
     if (path_ends(path, ".json"))
         return kind_of_json(head, n, path);
+    if (n > 4 && !memcmp(head, exr_magic, 4) && memmem(head, n, gbrdf, sizeof gbrdf))
+        return RELUME_KIND_MATERIAL;
     if (n > 4 && !memcmp(head, exr_magic, 4))
         return picture_head_is_relume(head, n) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     if (relume_image_can_save(path) || is_among(path, photographs))
@@ -93,8 +100,9 @@ enum relume_kind relume_kind_of(const char *path)
 
 const char *relume_kind_name(enum relume_kind kind)
 {
-    static const char *const names[] = {"relume file", "RTI of another format", "capture",
-                                        "picture", "nothing known"};
+    static const char *const names[] = {"relume file",   "RTI of another format",
+                                        "capture",       "picture",
+                                        "nothing known", "measured material"};
     return names[kind];
 }
 
@@ -162,6 +170,11 @@ static relume_status convert(enum relume_kind kind, const char *path, const char
                              const struct relume_open_params *p)
 {
     switch (kind) {
+    case RELUME_KIND_MATERIAL:
+        return log_fail(p->log, RELUME_EFORMAT,
+                        "%s: this is a measured material; see it with 'relume-view %s', work with "
+                        "it by 'relume btf'",
+                        path, path);
     case RELUME_KIND_FOREIGN:
         return relume_import(path, out,
                              relume_import_params(.log = p->log, .limits = p->limits,

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "image/image.h"
 
-
 uint64_t parts_codes_bytes(const struct relume_codes *codes)
 {
     const size_t size = codes->books ? 2 : relume_storage_bytes(codes->storage);

@@ -42,8 +42,8 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                            const struct av1_effort *effort, int threads,
                            const struct relume_log *log);
 
-// A rectangle of a view coded by itself: its codes before[planes][height][width], those after it was
-// decoded again, and the bytes it took. Errors as above.
+// A rectangle of a view coded by itself: its codes before[planes][height][width], those after it
+// was decoded again, and the bytes it took. Errors as above.
 relume_status lossy_try(uint16_t *before, uint16_t *after, size_t *bytes, relume_coefficients *from,
                         const struct relume_rect *at, const struct av1_effort *effort, int threads,
                         const struct relume_log *log);

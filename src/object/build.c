@@ -217,6 +217,42 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
     return status;
 }
 
+// Slopes of up to 40 degrees to all sides.
+static const double CUSHION = 0.42;
+
+static relume_status make_cushion(struct mesh_file *file)
+{
+    enum { SIDE = 48 };
+    *file = (struct mesh_file){.has_uv = true};
+    for (int i = 0; i < (SIDE + 1) * (SIDE + 1); i++) {
+        const double u = (double)(i % (SIDE + 1)) / SIDE, v = (double)(i / (SIDE + 1)) / SIDE;
+        const double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
+        const double fx = 1.0 - x * x, fy = 1.0 - y * y;
+        const vec3 normal = vec3_of(2.0 * CUSHION * x * fy, 2.0 * CUSHION * y * fx, 1.0);
+        mesh_vertex(&file->mesh, vec3_of(x, y, CUSHION * fx * fy), vec3_unit(normal),
+                    vec3_of(u, v, 0));
+    }
+    for (uint32_t j = 0; j < SIDE; j++)
+        for (uint32_t i = 0; i < SIDE; i++) {
+            const uint32_t a = j * (SIDE + 1) + i, b = a + SIDE + 1;
+            mesh_triangle(&file->mesh, a, a + 1, b + 1, 0);
+            mesh_triangle(&file->mesh, a, b + 1, b, 0);
+        }
+    const int part = mesh_file_part(file, "cushion");
+    return part < 0 || file->mesh.failed ? RELUME_ENOMEM : RELUME_OK;
+}
+
+relume_status objects_add_cushion(relume_objects *o, struct standing *standing,
+                                  const struct relume_objects_params *params)
+{
+    struct mesh_file file;
+    relume_status status = make_cushion(&file);
+    if (!status)
+        status = add_parts(o, &file, standing, "cushion", params ? params->log : NULL);
+    mesh_file_free(&file);
+    return status;
+}
+
 relume_status objects_finish(relume_objects *o, const struct relume_objects_params *params)
 {
     const struct relume_log *log = params ? params->log : NULL;

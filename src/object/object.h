@@ -37,6 +37,9 @@ struct standing {
 // Add a mesh file. An input status, RELUME_ENOMEM.
 relume_status objects_add(relume_objects *o, const char *path, struct standing *standing,
                           const struct relume_objects_params *params);
+// The same for a cushion: a square of side 2 that lies on z = 0 by its rim and rises to its middle.
+relume_status objects_add_cushion(relume_objects *o, struct standing *standing,
+                                  const struct relume_objects_params *params);
 // Tangents, and what rays need. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status objects_finish(relume_objects *o, const struct relume_objects_params *params);
 

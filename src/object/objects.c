@@ -415,7 +415,7 @@ relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
     for (int i = 0, number; i < count && !status; i++)
         status = objects_material(o, materials[i], &number, &own);
     if (!status)
-        status = objects_add(o, mesh, &s, &own);
+        status = mesh ? objects_add(o, mesh, &s, &own) : objects_add_cushion(o, &s, &own);
     if (!status)
         status = objects_finish(o, &own);
     if (status)

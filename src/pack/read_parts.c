@@ -141,7 +141,8 @@ static relume_status find_shadow(relume_pack *p, int view, int *part)
     for (int c = 0; good && c < i.channels; c++)
         good = !strcmp(exr_channel_name(p->file, *part, c), channel[c]);
     if (!good)
-        return reader_bad(p, name, "eight half channels of the views' size, depth and no reduced levels");
+        return reader_bad(p, name,
+                          "eight half channels of the views' size, depth and no reduced levels");
     p->parts[view].shadow = (*part)++;
     p->info.has_shadow = true;
     return RELUME_OK;

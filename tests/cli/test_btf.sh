@@ -119,8 +119,15 @@ printf 'light dir 0.3 0.2 1\nframe second.png\n' >stay.txt
 "$VIEWER" quad.json --size 40x40 --script stay.txt
 check 'objects that are opened later are the same' cmp first.png second.png
 if cmp -s lpca.png first.png; then not_ok 'a script opens a material' 'nothing changed'; else ok 'a script opens a material'; fi
-"$VIEWER" rfnl --offscreen x.png 2>err.txt
-check 'a material without a mesh' grep -qx "relume-view: rfnl: this is a material; use 'relume-view rfnl --mesh FILE' to see it on a mesh" err.txt
+expect_ok 'a material by itself' - "$VIEWER" rfnl --light 'dir 0.3 0.2 1' --size 40x40 --offscreen cushion.png
+printf 'light dir 0.3 0.2 1\nframe later.png\n' >stay.txt
+"$VIEWER" --material rfnl --material lpca --size 40x40 --script stay.txt
+check 'is on the cushion of --material' cmp cushion.png later.png
+"$VIEWER" quad.obj --material rfnl --offscreen x.png 2>err.txt
+check 'a scene and a material' grep -qx 'relume-view: --material: expected --mesh, for an object in a scene' err.txt
+"$VIEWER" --repeat 2 --offscreen x.png 2>err.txt
+check 'nothing to repeat' grep -q 'repeat: expected a material' err.txt
+expect_fail 'a material is no scene' 1 "rfnl: this is a measured material; see it with 'relume-view rfnl'" x.png "$RELUME" relight rfnl -o x.png
 "$RELUME" synth box -o box --size 40 --views 2x2 --lights 12 --samples 1 -q && "$RELUME" encode box -o box.exr -q
 for light in 'dir 0.4 0.3 1' 'point 0.4 0.3 1.5'; do
     "$RELUME" relight box.exr --objects quad.json -o cpu.png --light "$light" -q 2>err.txt || not_ok 'relight --objects' "$(cat err.txt)"
@@ -216,6 +223,11 @@ expect_ok 'expand' - "$RELUME" btf expand planted.exr -o expanded
 expect_ok 'render' - "$RELUME" btf render planted.exr -o planted.png --light 'dir 0.4 0.2 0.8'
 expect_ok 'eval' - "$RELUME" btf eval planted.exr expanded --json
 below 'the file is what it shows' "$(field relative_rms out.txt)" 0.001
+expect_ok 'render on a mesh' - "$RELUME" btf render planted.exr --mesh quad.obj -o cpu.exr --eye 1,-1,1.2 --light 'dir -0.8 0.2 0.3' --picture 60x60 --samples 1 -q
+"$VIEWER" planted.exr --mesh quad.obj --eye 1,-1,1.2 --light 'dir -0.8 0.2 0.3' --size 60x60 --offscreen gl.exr 2>err.txt || not_ok 'relume-view of a g-BRDF' "$(cat err.txt)"
+above 'relume-view shows a g-BRDF as the reference' "$("$RELUME" compare cpu.exr gl.exr | sed -n 's/^psnr_db *//p')" 60
+expect_ok 'a g-BRDF by itself' - "$VIEWER" planted.exr --size 60x60 --offscreen cushion.png
+expect_fail 'a g-BRDF is no scene' 1 "planted.exr: this is a measured material; see it with 'relume-view planted.exr'" x.png "$RELUME" relight planted.exr -o x.png
 expect_ok 'fit' - "$RELUME" btf fit expanded --model gbrdf -o found.exr
 "$RELUME" btf fit expanded --model gbrdf -o again.exr --threads 1
 check 'the same bytes for any number of threads' cmp found.exr again.exr

@@ -117,9 +117,10 @@ static const struct option options[] = {
     TEXT("--mesh", objects.mesh, "FILE",
          "one mesh instead, covered with --material: .obj, .ply, .gltf, .glb, ..."),
     OWN("--material", objects, "DIR",
-        "--mesh: a BTF or a model of one; repeat for more to choose from", take_material),
+        "a BTF or a model of one, on --mesh or a cushion; repeat for more to choose from",
+        take_material),
     NUMBER("--repeat", objects.repeat, "N",
-           "--mesh: repeat the material N times across its texture; default: 1", 0.001, 10000),
+           "repeat the material N times across the mesh's texture; default: 1", 0.001, 10000),
     TEXT("--capture", capture, "CAPTURE", "the photographs, for --pass difference"),
     INT("--threads", threads, "N", "threads that read files; default: all cores", 0, 256),
     BYTES("--max-memory", limits.max_memory, "SIZE",
@@ -187,9 +188,9 @@ static const struct option options[] = {
 void options_help(void)
 {
     puts("usage: relume-view [FILE] [OPTION ...]\n\n"
-         "Look at a relume file in a window, under any light and from other viewpoints. Without "
-         "FILE\n"
-         "the window says how to open one.\n\n"
+         "Look at a relume file in a window, under any light and from other viewpoints; at a "
+         "measured\n"
+         "material on a mesh, or on a cushion. Without FILE the window says how to open one.\n\n"
          "options:");
     options_print(options, NULL, 22);
     puts("\n"
@@ -202,7 +203,7 @@ void options_help(void)
             printf("        %-12s %s\n", b->shown, b->what);
     puts("        A relume file or a description of objects dropped onto the window is opened; a "
          "material\n"
-         "        covers the mesh of --mesh.\n\n"
+         "        covers the mesh of --mesh, or a cushion.\n\n"
          "A window shows a panorama as a perspective look ahead. --offscreen without a framing "
          "option\n"
          "shows what `relume relight` shows: planar files and panoramas their view 0, slabs the "
@@ -214,7 +215,7 @@ void options_help(void)
          "        click X Y             press, release left|right X Y    move X Y\n"
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
-         "        open FILE: another relume file, objects, or a material for --mesh\n"
+         "        open FILE: another relume file, objects, or a material\n"
          "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
          "        glare sources on|off: visible lights\n"
          "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
@@ -243,14 +244,15 @@ void options_release(struct options *o)
     light_list_release(&o->start);
 }
 
-// FILE is a scene; or a description of objects; or, beside --mesh without --material, a material.
+// FILE is a scene; or a description of objects; or a material, for --mesh without --material or, by
+// itself, for a cushion.
 static relume_status choose_objects(struct options *o, const struct relume_log *log)
 {
     struct session_objects *w = &o->objects;
     if (o->file && session_is_description(o->file) && !w->description && !w->mesh) {
         w->description = o->file;
         o->file = NULL;
-    } else if (o->file && w->mesh && !w->materials) {
+    } else if (o->file && !w->materials && (w->mesh || session_is_material(o->file))) {
         w->material[w->materials++] = o->file;
         o->file = NULL;
     }
@@ -258,9 +260,11 @@ static relume_status choose_objects(struct options *o, const struct relume_log *
         return say(log, RELUME_EINVAL, "expected one of --objects and --mesh; found both");
     if (w->mesh && !w->materials)
         return say(log, RELUME_EINVAL, "--mesh: expected a material for it; see --material");
-    if (!w->mesh && (w->materials || w->repeat != 0.0))
-        return say(log, RELUME_EINVAL, "--material and --repeat need --mesh");
-    o->stage = !o->file && (w->mesh || w->description);
+    if (w->materials && !w->mesh && (o->file || w->description))
+        return say(log, RELUME_EINVAL, "--material: expected --mesh, for an object in a scene");
+    if (!w->materials && w->repeat != 0.0)
+        return say(log, RELUME_EINVAL, "--repeat: expected a material, as FILE or by --material");
+    o->stage = !o->file && (w->materials || w->description);
     return RELUME_OK;
 }
 

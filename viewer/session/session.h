@@ -30,7 +30,7 @@ struct recording {
     char path[SESSION_TEXT + 16];
 };
 
-// Objects that are asked for: a description, or a mesh and its materials.
+// Objects that are asked for: a description, or materials on a mesh (NULL: on a cushion).
 enum { SESSION_MATERIALS = 32 };
 struct session_objects {
     const char *description, *mesh;  // NULL: none
@@ -90,7 +90,8 @@ struct session {
 // Say it in the panel and, for a while, over the picture.
 void session_say(struct session *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// Open `path`, also a description of objects, or a material for the mesh that was asked for, and
+// Open `path`, also a description of objects, or a material for the mesh that was asked for or a
+// cushion, and
 // start the app; the session is untouched when that fails.
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead);
@@ -102,6 +103,8 @@ relume_status session_take_objects(struct session *s, const struct session_objec
 // For session_open: what is no relume file, and objects on a stage of their own in place of what is
 // shown.
 bool session_is_objects(const char *path);
+// Whether it is a material: relume_kind_of.
+bool session_is_material(const char *path);
 // Whether it is, by its name, a description of objects: a .json that is nothing else.
 bool session_is_description(const char *path);
 relume_status session_open_objects(struct session *s, const char *path,

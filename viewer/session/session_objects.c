@@ -3,14 +3,9 @@
 
 #include "common/vec.h"
 
-#include "program/say.h"
-
-#include <limits.h>
 #include <relume/exchange.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 relume_status session_take_objects(struct session *s, const struct session_objects *wanted)
 {
@@ -18,29 +13,15 @@ relume_status session_take_objects(struct session *s, const struct session_objec
     s->wanted = *wanted;
     if (wanted->description)
         return relume_objects_open(&s->objects, wanted->description, &params);
-    if (wanted->mesh)
+    if (wanted->materials)
         return relume_objects_of_mesh(&s->objects, wanted->mesh, wanted->material,
                                       wanted->materials, wanted->repeat, &params);
     return RELUME_OK;
 }
 
-static bool is_folder(const char *path)
+bool session_is_material(const char *path)
 {
-    struct stat s;
-    return !stat(path, &s) && S_ISDIR(s.st_mode);
-}
-
-static bool holds(const char *folder, const char *name)
-{
-    char path[PATH_MAX];
-    const int n = snprintf(path, sizeof path, "%s/%s", folder, name);
-    return n < (int)sizeof path && !access(path, F_OK);
-}
-
-static bool is_material(const char *path)
-{
-    return is_folder(path) &&
-           (holds(path, "btf.json") || holds(path, "model.json") || holds(path, "surface.json"));
+    return relume_kind_of(path) == RELUME_KIND_MATERIAL;
 }
 
 bool session_is_description(const char *path)
@@ -53,7 +34,7 @@ bool session_is_description(const char *path)
 
 bool session_is_objects(const char *path)
 {
-    return session_is_description(path) || is_material(path);
+    return session_is_description(path) || session_is_material(path);
 }
 
 relume_status session_open_objects(struct session *s, const char *path,
@@ -62,15 +43,11 @@ relume_status session_open_objects(struct session *s, const char *path,
     const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
     relume_objects *objects;
     relume_status status;
-    if (!is_folder(path))
-        status = relume_objects_open(&objects, path, &params);
-    else if (s->wanted.mesh)
+    if (session_is_material(path))
         status =
             relume_objects_of_mesh(&objects, s->wanted.mesh, &path, 1, s->wanted.repeat, &params);
     else
-        return say(s->log, RELUME_EFORMAT,
-                   "%s: this is a material; use 'relume-view %s --mesh FILE' to see it on a mesh",
-                   path, path);
+        status = relume_objects_open(&objects, path, &params);
     if (status)
         return status;
     relume_objects *was = s->objects;

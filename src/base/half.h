@@ -2,6 +2,7 @@
 #ifndef BASE_HALF_H
 #define BASE_HALF_H
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -42,6 +43,15 @@ static inline uint16_t half_from_float(float f)
     h = magnitude >= 0x477ff000u ? 0x7c00u : h;  // 65520 and above round to infinity
     h = magnitude > 0x7f800000u ? 0x7e00u : h;
     return (uint16_t)(h | (u >> 16 & 0x8000u));
+}
+
+// To 8 significant bits: steps of a 128th to a 256th, which no display of 8 bits shows. What is too
+// large becomes the largest.
+static inline uint16_t half_coarse(float f)
+{
+    const uint32_t u = bits_of_float(f);
+    const float coarse = float_of_bits((u + 0x7fffu + (u >> 16 & 1u)) & 0xffff0000u);
+    return half_from_float(fminf(fmaxf(coarse, -65504.0f), 65504.0f));
 }
 
 #endif

@@ -106,19 +106,6 @@ float coefficients_half_scale(struct range r)
     return scale;
 }
 
-// To 8 significant bits: steps of a 128th to a 256th, which no display of 8 bits shows.
-static float round_coarse(float value)
-{
-    int exponent;
-    const float part = frexpf(value, &exponent);
-    return ldexpf(rintf(ldexpf(part, 8)), exponent - 8);
-}
-
-static uint16_t coarse_half(float value)
-{
-    return half_from_float(fminf(fmaxf(round_coarse(value), -65504.0f), 65504.0f));
-}
-
 // What a plane's codes must span. A mask makes it hold 0.
 static struct range whole_range(struct range r, bool masked)
 {
@@ -226,7 +213,7 @@ void coefficients_wait(const relume_coefficients *c, int plane, int row, const f
         kernels_choose(0)->unpack->words(values, n, r.min, scale, words);
     else if (c->coarse)
         for (size_t x = 0; x < n; x++)
-            words[x] = coarse_half(values[x] / over);
+            words[x] = half_coarse(values[x] / over);
     else
         for (size_t x = 0; x < n; x++)
             words[x] = half_from_float(values[x] / over);

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
+#include "math/lsq.h"
 #include "math/luminance.h"
 
 #include <relume/shadow.h>
@@ -13,13 +14,16 @@
 #include <math.h>
 #include <string.h>
 
+enum { FREE = 0x8000 };  // the sign of half floats that are never below 0
+
 // The photographs of a view.
 struct looked {
     struct stage stage;
     size_t pixels;
     int lights;                   // that count
     vec3 *light, *turned;         // [lights], in the world, in the view
-    uint16_t *grey;               // [lights][pixels]: luminance, half floats
+    uint16_t *grey;               // [lights][pixels]: luminance, half floats; FREE: nothing is in
+                                  // the way of the light
     float *colour;                // [pixels][3]: sums over the lights
     float *bright;                // [pixels]: at least as bright is what light reaches
     float (*least)[STAGE_LEAST];  // [workers][pixels]
@@ -42,7 +46,7 @@ static void looked_destroy(struct looked *l)
 // Bytes of all pixels: photographs, what is found, the surface with its depth.
 static uint64_t held(const struct looked *l, int lights)
 {
-    const size_t found = 4 + RELUME_SHADOW_CHANNELS, surface = 3;
+    const size_t found = 4 + RELUME_SHADOW_CHANNELS, surface = 5;
     return (uint64_t)l->pixels *
            ((uint64_t)lights * sizeof *l->grey + (uint64_t)l->workers * sizeof *l->least +
             (found + surface) * sizeof(float));
@@ -141,9 +145,8 @@ static bool by_bands(struct looked *l, int threads, void (*row)(void *, size_t, 
     return true;
 }
 
-static bool is_lit(const struct looked *l, int light, size_t pixel)
+static bool is_lit(const struct looked *l, size_t pixel, float value)
 {
-    const float value = float_from_half(l->grey[(size_t)light * l->pixels + pixel]);
     return value > 0.0f && value >= l->bright[pixel];
 }
 
@@ -154,11 +157,15 @@ static void carve_row(void *context, size_t y, int worker)
     const size_t width = (size_t)l->stage.width;
     vec3 p;
     y += (size_t)l->row;
-    for (size_t x = 0; x < width; x++)
-        for (int i = 0;
-             stage_point(&p, &l->stage, (double)x + 0.5, (double)y + 0.5) && i < l->lights; i++)
-            if (is_lit(l, i, y * width + x))
-                stage_carve(least, &l->stage, p, l->turned[i]);
+    for (size_t x = 0; x < width; x++) {
+        uint16_t *grey = l->grey + y * width + x;
+        if (!stage_point(&p, &l->stage, (double)x + 0.5, (double)y + 0.5))
+            continue;
+        for (int i = 0; i < l->lights; i++, grey += l->pixels)
+            if (is_lit(l, y * width + x, float_from_half(*grey)) &&
+                stage_carve(least, &l->stage, p, l->turned[i]))
+                *grey |= FREE;
+    }
 }
 
 // Some rays err, by a pixel at an edge: the smallest distances but a few are believed.
@@ -180,53 +187,29 @@ static bool carve(struct looked *l, const struct relume_log *log)
 
 // ---------------------------------------------------------------- matte
 
-// 8 significant bits, and a half float.
 static float coarse(float value)
 {
-    const uint32_t bits = (bits_of_float(value) + 0x8000u) & 0xffff0000u;
-    return copysignf(float_from_half(half_from_float(most_half(fabsf(float_of_bits(bits))))),
-                     value);
-}
-
-// Symmetric, positive definite: Cholesky's factors in place.
-static void solve_four(double x[4], double a[4][4])
-{
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j <= i; j++) {
-            double sum = a[i][j];
-            for (int k = 0; k < j; k++)
-                sum -= a[i][k] * a[j][k];
-            a[i][j] = i == j ? sqrt(sum) : sum / a[j][j];
-        }
-    for (int i = 0; i < 4; i++) {
-        for (int k = 0; k < i; k++)
-            x[i] -= a[i][k] * x[k];
-        x[i] /= a[i][i];
-    }
-    for (int i = 3; i >= 0; i--) {
-        for (int k = i + 1; k < 4; k++)
-            x[i] -= a[k][i] * x[k];
-        x[i] /= a[i][i];
-    }
+    return float_from_half(half_coarse(value));
 }
 
 // a + b.L by least squares over the lights that arrive; where these leave it open it stays small.
 static void fit_pixel(const struct looked *l, size_t pixel, vec3 p, float matte[4])
 {
-    double a[4][4] = {{0.01}, {0.0, 0.1}, {0.0, 0.0, 0.1}, {0.0, 0.0, 0.0, 0.1}}, x[4] = {0.0};
+    double a[16] = {[0] = 0.01, [5] = 0.1, [10] = 0.1, [15] = 0.1}, x[4] = {0.0};
     for (int i = 0; i < l->lights; i++) {
-        if (!stage_reaches(&l->stage, p, l->turned[i], INFINITY))
+        const uint16_t grey = l->grey[(size_t)i * l->pixels + pixel];
+        if (!(grey & FREE) && !stage_reaches(&l->stage, p, l->turned[i], INFINITY))
             continue;
-        const double value = (double)float_from_half(l->grey[(size_t)i * l->pixels + pixel]);
+        const double value = (double)float_from_half(grey & ~FREE);
         const double f[4] = {1.0, l->light[i].x, l->light[i].y, l->light[i].z};
         for (int r = 0; r < 4; r++) {
             x[r] += f[r] * value;
             for (int c = 0; c <= r; c++)
-                a[r][c] += f[r] * f[c];
+                a[4 * r + c] += f[r] * f[c];
         }
     }
-    solve_four(x, a);
-    for (int i = 0; i < 4; i++)
+    const bool solved = lsq_solve(a, 4, x, 1);
+    for (int i = 0; solved && i < 4; i++)
         matte[i] = coarse((float)x[i]);
 }
 

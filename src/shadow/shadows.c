@@ -71,7 +71,7 @@ static size_t pixels_of(const relume_shadows *s)
 
 uint64_t relume_shadows_bytes(const relume_shadows *s)
 {
-    uint64_t each = (2 + MATTE) * sizeof(float);
+    uint64_t each = (4 + MATTE) * sizeof(float);
     for (int i = 0; s->reached && i < s->lights; i++)
         each += s->reached[i] != NULL;
     return each * pixels_of(s);

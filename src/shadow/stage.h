@@ -9,6 +9,11 @@
 
 enum stage_kind { STAGE_FLAT, STAGE_EYE, STAGE_CYLINDER, STAGE_SPHERE };
 
+// How far four neighbours are, at least and at most.
+struct cell {
+    float least, most;
+};
+
 // Coordinates are those of the view: its eye, or for parallel rays the middle of its plane, is the
 // origin, the axis -z (planar, slabs), the pole y (panoramas).
 struct stage {
@@ -20,11 +25,12 @@ struct stage {
     double pixel;               // side of a pixel at distance 1, or of STAGE_FLAT everywhere
     double least_side;          // rays take pixels for no smaller: there is no surface so near
     int width, height;
-    float *far;      // [height][width]: how far the surface is along the axis, from the pole's axis
-                     // (cylinder) or from the eye (sphere); infinite: background
-    float *thick;    // [height][width]: behind it, where light is stopped
-    float *front;    // [rows of tiles][columns]: what is nearest in a tile or beside it
-    vec3 low, high;  // a box around the surface
+    float *far;    // [height][width]: how far the surface is along the axis, from the pole's axis
+                   // (cylinder) or from the eye (sphere); infinite: background
+    float *thick;  // [height][width]: behind it, where light is stopped
+    float *front;  // [rows of tiles][columns]: what is nearest in a tile or beside it
+    struct cell *cell;  // [height + 1][width + 1]: of the pixels on both sides of each corner
+    vec3 low, high;     // a box around the surface
 };
 
 bool stage_suits(const struct relume_geometry *g);
@@ -52,10 +58,11 @@ bool stage_point(vec3 *point, const struct stage *s, double x, double y);
 bool stage_reaches(const struct stage *s, vec3 point, vec3 direction, double distance);
 
 // Light does reach it: the surfaces that its ray passes behind are no thicker than that. The
-// STAGE_LEAST smallest distances behind each pixel are kept, in `least`, rising.
+// STAGE_LEAST smallest distances behind each pixel are kept, in `least`, rising. True where the ray
+// passes behind nothing: stage_reaches is then true however thick things are.
 enum { STAGE_LEAST = 8 };
 // A value among them.
 void stage_keep_least(float least[STAGE_LEAST], float value);
-void stage_carve(float (*least)[STAGE_LEAST], const struct stage *s, vec3 point, vec3 direction);
+bool stage_carve(float (*least)[STAGE_LEAST], const struct stage *s, vec3 point, vec3 direction);
 
 #endif

@@ -291,12 +291,12 @@ static const char *forbids_shadows(const struct request *r, const relume_capture
                : NULL;
 }
 
-// What decides is the middle view. A gain of half a decibel is seen. Two microseconds a sample are
-// a minute on two cores; what takes longer waits until it is asked for.
+// What decides is the middle view. A gain of half a decibel is seen. One microsecond a sample (two
+// in panoramas) is a minute or two on two cores; what takes longer waits until it is asked for.
 static relume_status decide_shadows(const struct args *args, const relume_capture *capture,
                                     struct request *r)
 {
-    static const double MOST_SAMPLES = 64e6, LEAST_GAIN_DB = 0.5;
+    static const double MOST_SAMPLES = 100e6, LEAST_GAIN_DB = 0.5;
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const char *why = forbids_shadows(r, capture);
     const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;

@@ -41,8 +41,9 @@ gbrdf:base math image btf:base image directions btf
 btf_model:base math image btf gbrdf:base image light directions btf btf_environment
 surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base object
+reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
-object:base math mesh frame:base image capture light relight view slab_set pack frame viewport btf btf_environment surface object renderer
+object:base math mesh frame:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection object renderer
 helper:base image mesh:base
 measure:base math kernel image:*
 program:base:base image

@@ -30,6 +30,7 @@
 #include <relume/photograph.h>
 #include <relume/photometric.h>
 #include <relume/psf.h>
+#include <relume/reflection.h>
 #include <relume/relight.h>
 #include <relume/relighter.h>
 #include <relume/renderer.h>

@@ -1,0 +1,129 @@
+// reflection.h - edited reflections: what a mirror shows is moved by hand, smoothly over its
+// surface, and nothing else changes (Ritschel 2009, "Perceptually-motivated, interactive rendering
+// and editing of global illumination", chapter 7)
+//
+// A constraint says that the reflection direction r at a place p of the surface, as an eye saw it,
+// shall be e instead. Between constraints a rotation is found at each place q (moving least
+// squares, Eq. 7.2, 7.3, 7.5):
+//     R(q) = argmin over rotations of sum_n w_n |R r_n - e_n|^2,   w_n = 1 / d(p_n, q)^2
+// which is the rotational factor of M = sum_n w_n e_n r_n^T with determinant +1 (orthogonal
+// Procrustes; the inverse in the thesis's Eq. 7.4 stands on the wrong side and is not needed). Of
+// one constraint, and wherever M leaves a turn open, it is the least rotation. d is never taken
+// below 1/1000 of the size of the surface, so that constraints are met to 1e-5 or so.
+//
+// Regions bound the effect: a(q) is 1 within, 0 outside, with a smooth step between; the rotation
+// is that of a R + (1 - a) r r^T (Eq. 7.7), so that r goes over into R r. A constraint counts in
+// the regions that hold its place; outside all of them it does nothing. Where regions overlap each
+// counts by its a. Without regions every constraint counts everywhere.
+#ifndef RELUME_REFLECTION_H
+#define RELUME_REFLECTION_H
+
+#include <relume/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---------------------------------------------------------------- an edit
+
+// Plain data. Directions have any length but 0 and point away from the surface.
+struct relume_reflection_constraint {
+    struct relume_vec3 position;  // p, on the surface, world units
+    struct relume_vec3 original;  // r: what is reflected there unedited, as `eye` sees it
+    struct relume_vec3 edited;    // e: what shall be reflected
+    struct relume_vec3 eye;       // where it was made from; to return to
+};
+
+enum relume_reflection_shape {
+    RELUME_REFLECTION_BALL = 0,  // all surface within `radius` of the centre, also of other pieces
+    RELUME_REFLECTION_GEODESIC,  // `radius` along the surface, from its place nearest to the centre
+    RELUME_REFLECTION_STROKES,   // within `radius` of lines drawn on the surface
+};
+
+// Where an edit is seen. Plain data; points are borrowed as said where it is used.
+struct relume_reflection_region {
+    enum relume_reflection_shape shape;
+    struct relume_vec3 centre;         // BALL, GEODESIC
+    double radius;                     // > 0: within it the edit is seen whole
+    double border;                     // >= 0: so much further out it has gone
+    const struct relume_vec3 *stroke;  // STROKES: `points` places, at least one; a line from each
+    int points;                        // to the next
+};
+
+enum { RELUME_REFLECTION_CONSTRAINTS_MOST = 256, RELUME_REFLECTION_REGIONS_MOST = 32 };
+
+// What is done to the reflections of an object. Plain data.
+struct relume_reflection_edit {
+    const struct relume_reflection_constraint *constraint;  // [constraints]; none: all as it is
+    int constraints;
+    const struct relume_reflection_region *region;  // [regions]; none: everywhere
+    int regions;
+    bool geodesic;           // d along the surface; else straight
+    bool frozen;             // reflections are those that `eye` sees, wherever one looks from
+    struct relume_vec3 eye;  // of `frozen`
+};
+
+// A surface, for distances along it: borrowed during the call. Triangles that meet in equal places
+// are joined.
+struct relume_reflection_surface {
+    const float *position;  // x, y, z of the first vertex
+    size_t stride;          // bytes from one vertex to the next
+    size_t vertices;
+    const uint32_t (*triangle)[3];  // [triangles]
+    size_t triangles;
+};
+
+// ---------------------------------------------------------------- the field of rotations
+
+// An edit that can be asked. Never changes. Thread-safety: safe.
+typedef struct relume_reflection relume_reflection;
+
+struct relume_reflection_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    const char *name;  // how sentences call the edit; default: "reflections"
+    int threads;       // default: all cores
+};
+#define relume_reflection_params(...)                                                              \
+    (&(const struct relume_reflection_params){RELUME_SIZED(relume_reflection_params), __VA_ARGS__})
+
+// Copies the edit. Warns of constraints outside every region, which do nothing, and of those in one
+// place that want different things, of which the mean is shown. RELUME_EINVAL with a sentence where
+// a number is not finite, a direction 0, a radius not above 0, a count too large; RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_reflection_create(
+    relume_reflection **out, const struct relume_reflection_edit *edit,
+    const struct relume_reflection_surface *surface, const struct relume_reflection_params *params);
+RELUME_API void relume_reflection_destroy(relume_reflection **reflection);
+// The edit, whose directions are unit vectors; it belongs to the reflection.
+RELUME_API const struct relume_reflection_edit *relume_reflection_edit(
+    const relume_reflection *reflection);
+
+// A place of the surface: of triangle (vertex[0], vertex[1], vertex[2]), weighted by weight[].
+// Vertices and weights count only for distances along the surface.
+struct relume_reflection_place {
+    struct relume_vec3 position;
+    uint32_t vertex[3];
+    double weight[3];
+};
+// Whether a constraint does something: it lies in a region, or there are no regions.
+RELUME_API bool relume_reflection_acts(const relume_reflection *reflection, int constraint);
+// a(q) of a region, in [0, 1].
+RELUME_API double relume_reflection_weight(const relume_reflection *reflection, int region,
+                                           const struct relume_reflection_place *place);
+// The edited direction e(q) = R_a(q) r of the unit vector r.
+RELUME_API struct relume_vec3 relume_reflection_turn(const relume_reflection *reflection,
+                                                     const struct relume_reflection_place *place,
+                                                     struct relume_vec3 r);
+// ---------------------------------------------------------------- mirrors
+
+// r of Eq. 7.1, unit: what a mirror of unit normal n shows at `position` to `eye`, or to the eye of
+// a frozen edit (NULL: no edit).
+RELUME_API struct relume_vec3 relume_reflection_original(const relume_reflection *reflection,
+                                                         struct relume_vec3 position,
+                                                         struct relume_vec3 normal,
+                                                         struct relume_vec3 eye);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

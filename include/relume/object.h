@@ -11,6 +11,10 @@
 // light that reaches the point, in each colour: of 64 light samples drawn from the environment,
 // each times n.l, what nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire
 // 2018).
+//
+// A part may be a mirror instead: it shows its surroundings, which are the relit panorama that it
+// stands in, or the environment lights of the rig where there is none; no objects, and of other
+// lights no highlights. What it shows can be edited (reflection.h).
 #ifndef RELUME_OBJECT_H
 #define RELUME_OBJECT_H
 
@@ -19,6 +23,7 @@
 #include <relume/frame.h>
 #include <relume/image.h>
 #include <relume/light.h>
+#include <relume/reflection.h>
 #include <relume/renderer.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
@@ -75,6 +80,11 @@ struct relume_object_material {
     bool mapped;                        // the surface has a map; else it is the sample
     int width, height;                  // texels of one repeat
     uint64_t bytes;                     // of its arrays
+    // A mirror has no arrays: of what it reflects it shows F + (1 - F) (1 - cos)^5, the angle from
+    // its normal to the eye (Schlick 1994, "An inexpensive BRDF model for physically-based
+    // rendering").
+    bool mirror;
+    float reflectance[3];  // F, of a mirror, in [0, 1]
 };
 
 // Triangles of one mesh that show one material.
@@ -83,6 +93,7 @@ struct relume_object_part {
     int material;         // that it is shown in
     bool bilinear;        // between texels; else the nearest
     size_t first, count;  // triangles
+    int object;           // of the description that it belongs to, from 0
 };
 
 // Everything belongs to the objects.
@@ -96,12 +107,45 @@ struct relume_objects_info {
     const struct relume_object_material *material;  // [materials]
     int materials;
     struct relume_vec3 min, max;  // of the vertices
+    int objects;                  // of the description
 };
 // It belongs to the objects.
 RELUME_API const struct relume_objects_info *relume_objects_info(const relume_objects *objects);
 
 // Show a part in another of the materials. RELUME_EINVAL when there is no such part or material.
 RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int part, int material);
+
+// ---------------------------------------------------------------- reflections
+
+// Edit the reflections of an object's mirrors from now on; NULL: as they are. Copied. Errors of
+// relume_reflection_create; then all is as before.
+RELUME_RESULT relume_status relume_objects_set_reflections(
+    relume_objects *objects, int object, const struct relume_reflection_edit *edit,
+    const struct relume_reflection_params *params);
+// How the reflections of an object are edited, until they are set again; NULL: as they are.
+RELUME_API const relume_reflection *relume_objects_reflections(const relume_objects *objects,
+                                                               int object);
+// The edits of a file (docs/reflections.md), which replace those of the objects that it names. An
+// input status with a sentence, errors of relume_reflection_create.
+RELUME_RESULT relume_status relume_objects_load_reflections(
+    relume_objects *objects, const char *path, const struct relume_reflection_params *params);
+// Write all edits to such a file. RELUME_ESYSTEM with a sentence, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_objects_save_reflections(const relume_objects *objects,
+                                                            const char *path,
+                                                            const struct relume_log *log);
+
+// What a mirror of the objects shows of their reflections at a place that a ray from `eye` hits.
+struct relume_object_reflection {
+    struct relume_reflection_place place;  // vertices are those of relume_objects_info
+    int object, part;
+    struct relume_vec3 normal;            // unit, towards the eye
+    struct relume_vec3 original, edited;  // unit
+};
+// False where the ray (of any length but 0) hits nothing; any part reflects here, also if it is no
+// mirror.
+RELUME_API bool relume_objects_reflect(struct relume_object_reflection *out,
+                                       const relume_objects *objects, struct relume_vec3 eye,
+                                       struct relume_vec3 direction);
 
 // ---------------------------------------------------------------- lights
 

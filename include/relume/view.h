@@ -189,7 +189,7 @@ RELUME_API bool relume_panorama_pixel(double xy[2], const struct relume_geometry
 
 // Bilinear value in a direction, continuous over the wrap, the poles and the cube's edges; black
 // and false where there is nothing. Of `params`, which may be NULL, `need` is looked at, for view
-// 0.
+// 0, and `filter`, where it is RELUME_FILTER_NEAREST: then it is the nearest texel's.
 RELUME_API bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry,
                                        const struct relume_image *image,
                                        struct relume_vec3 direction,

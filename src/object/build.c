@@ -138,6 +138,7 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
         .material = c->material,
         .bilinear = !c->nearest,
         .first = o->mesh.triangle_count,
+        .object = o->info.objects,
     };
     return RELUME_OK;
 }
@@ -196,6 +197,7 @@ static relume_status add_parts(relume_objects *o, const struct mesh_file *file, 
             o->part[o->info.parts - 1].count =
                 o->mesh.triangle_count - o->part[o->info.parts - 1].first;
     }
+    o->info.objects++;
     return status ? status : o->mesh.failed ? RELUME_ENOMEM : RELUME_OK;
 }
 
@@ -260,9 +262,10 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     if (!o->mesh.triangle_count)
         return log_fail(log, RELUME_EUNFIT, "the objects have no surface");
     relume_status status = tangents_make(&t, &o->mesh);
+    o->reflection = mem_zeroed((size_t)o->info.objects, sizeof *o->reflection);
     o->vertices = t.vertices, o->triangles = t.triangles;
-    if (status)
-        return status;
+    if (status || !o->reflection)
+        return status ? status : RELUME_ENOMEM;
     if (t.flat)
         log_line(log, RELUME_WARNING,
                  "%zu of %zu vertices have no texture direction; materials may be turned there",

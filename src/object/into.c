@@ -1,4 +1,5 @@
 // into.c - objects in a relit scene
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
@@ -161,7 +162,7 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
         !(isnan(p[0]) || point.distance < vec3_dot(to, ray.direction)))
         return;
     objects_spread(&point, l->o, &ray, &right, &below);
-    objects_shade(rgb, l->o, &point, vec3_scale(ray.direction, -1.0), l->lighting);
+    objects_shade(rgb, l->o, &point, ray.origin, l->lighting);
 }
 
 static relume_status layer(struct relume_image *out, const struct layered *l,
@@ -190,7 +191,35 @@ static relume_status light_scene(struct relume_image *scene, const struct relume
 struct standing_in {
     const relume_objects *objects;
     struct relume_render_params params;
+    bool said;  // that mirrors are black
 };
+
+// The panorama, relit, and the places that it shows, for mirrors.
+static relume_status find_surround(struct surround *s, relume_renderer *renderer,
+                                   const struct relume_camera *camera)
+{
+    const struct relume_camera whole = {.framing = RELUME_FRAME_VIEW, .view = camera->view};
+    s->geometry = &renderer->info->geometry;
+    s->filter = renderer->params.filter;
+    const relume_status status = renderer_bare_frame(&s->panorama, renderer, &whole);
+    return status ? status : relume_renderer_places(&s->places, renderer, &whole);
+}
+
+static relume_status light_objects(struct lighting *lighting, relume_renderer *renderer,
+                                   const struct relume_camera *camera,
+                                   const struct relume_light *lights, int n)
+{
+    struct standing_in *in = renderer->over;
+    const bool around = renderer->info->geometry.projection >= RELUME_CYLINDRICAL;
+    relume_status status = lighting_create(lighting, in->objects, lights, n, &in->params);
+    if (!status && around && objects_have_mirrors(in->objects))
+        status = find_surround(&lighting->surround, renderer, camera);
+    if (!status && !in->said && surround_lacks(&lighting->surround, in->objects)) {
+        log_line(in->params.log, RELUME_WARNING, "%s", SURROUND_LACKS);
+        in->said = true;
+    }
+    return status;
+}
 
 static relume_status draw_over(struct relume_image *out, relume_renderer *renderer,
                                const struct relume_camera *camera)
@@ -211,7 +240,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
         status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), camera,
                                        places.width, places.height);
     if (!status)
-        status = lighting_create(&lighting, objects, lights, n, params);
+        status = light_objects(&lighting, renderer, camera, lights, n);
     if (!status)
         status = light_scene(&scene, &places, objects, renderer, camera, lights, n, params);
     const struct layered layers = {objects, &viewport, &scene, &places, &lighting};
@@ -229,7 +258,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
 relume_status relume_renderer_set_objects(relume_renderer *renderer, const relume_objects *objects,
                                           const struct relume_render_params *params)
 {
-    const struct standing_in in = {objects, PARAMS_WORK(relume_render_params, params)};
+    const struct standing_in in = {objects, PARAMS_WORK(relume_render_params, params), false};
     struct standing_in *copy = objects ? mem_copy(&in, 1, sizeof in) : NULL;
     if (objects && !copy)
         return RELUME_ENOMEM;

@@ -2,8 +2,11 @@
 #include "base/memory.h"
 #include "object/object.h"
 
-static bool is_shown(const relume_objects *o, int material)
+// Mirrors show environments as they are.
+static bool needs_sky(const relume_objects *o, int material)
 {
+    if (o->material[material].mirror)
+        return false;
     for (int i = 0; i < o->info.parts; i++)
         if (o->part[i].material == material)
             return true;
@@ -47,7 +50,7 @@ static relume_status make_sky(struct sky_light *sky, const relume_objects *o,
     relume_status status = sky->prefiltered && sky->sky ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < o->info.materials && !status; i++) {
         relume_prefiltered_maps *prefiltered;
-        if (!is_shown(o, i))
+        if (!needs_sky(o, i))
             continue;
         status = find_prefiltered(&prefiltered, sky, o, i, light, threads);
         if (!status)
@@ -60,7 +63,8 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
                               const struct relume_light *lights, int n,
                               const struct relume_render_params *params)
 {
-    *out = (struct lighting){.materials = o->info.materials,
+    *out = (struct lighting){.surround = {.light = lights, .lights = n},
+                             .materials = o->info.materials,
                              .no_shadows = params && params->no_shadows};
     relume_status status =
         relume_objects_lights(&out->light_sample, &out->light_samples, o, lights, n);
@@ -93,6 +97,8 @@ void lighting_destroy(struct lighting *l)
         mem_free(l->sky[i].prefiltered);
         mem_free(l->sky[i].sky);
     }
+    relume_image_destroy(&l->surround.panorama);
+    relume_image_destroy(&l->surround.places);
     mem_free(l->sky);
     mem_free(l->light_sample);
     *l = (struct lighting){.light_sample = NULL};

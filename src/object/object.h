@@ -2,6 +2,7 @@
 #ifndef OBJECT_OBJECT_H
 #define OBJECT_OBJECT_H
 
+#include "base/json.h"
 #include "mesh/trace.h"
 
 #include <relume/object.h>
@@ -14,12 +15,17 @@ struct relume_objects {
     uint32_t (*triangles)[3];
     struct relume_object_part *part;  // [parts]
     struct relume_object_material *material;
-    char **folder;  // [materials]: as it was opened
+    char **folder;                   // [materials]: as it was opened
+    relume_reflection **reflection;  // [objects]; NULL: as it is
 };
 
 // The part's material, opened when it is not there yet; its number. An input status, RELUME_ENOMEM.
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params);
+
+// A mirror of that reflectance. RELUME_ELIMIT with a sentence, RELUME_ENOMEM.
+relume_status objects_mirror(relume_objects *o, const float reflectance[3], int *number,
+                             const struct relume_objects_params *params);
 
 // How a mesh stands and how its parts are covered.
 struct covering {
@@ -40,6 +46,12 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
 // The same for a cushion: a square of side 2 that lies on z = 0 by its rim and rises to its middle.
 relume_status objects_add_cushion(relume_objects *o, struct standing *standing,
                                   const struct relume_objects_params *params);
+// The edits of JSON value `edit`, of the file `path`, for an object. Errors of
+// relume_objects_load_reflections.
+relume_status objects_read_reflections(relume_objects *o, int object, const jvalue *edit,
+                                       const char *path,
+                                       const struct relume_reflection_params *params);
+
 // Tangents, and what rays need. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status objects_finish(relume_objects *o, const struct relume_objects_params *params);
 
@@ -55,6 +67,7 @@ struct surface_point {
     double s, t;
     double right[2], down[2];  // what (s, t) grow by from pixel to pixel; 0: nothing is known
     size_t triangle;
+    double corner[3];  // weights
     int part;
 };
 struct ray {
@@ -78,7 +91,16 @@ struct sky_light {
     relume_prefiltered_maps **prefiltered;  // [materials]; NULL also where it is that of another
     relume_btf_environment **sky;           // [materials]
 };
+// What mirrors show: a panorama with the places that it shows, or environments.
+struct surround {
+    const struct relume_geometry *geometry;  // NULL: no panorama
+    struct relume_image panorama, places;    // owned
+    enum relume_filter filter;
+    const struct relume_light *light;  // borrowed; other ones than environments do not count
+    int lights;
+};
 struct lighting {
+    struct surround surround;
     struct relume_object_light *light_sample;
     int light_samples;
     struct sky_light *sky;
@@ -92,9 +114,21 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
                               const struct relume_render_params *params);
 void lighting_destroy(struct lighting *lighting);
 
+// Whether a part is a mirror that has nothing to show, and what is said then.
+#define SURROUND_LACKS                                                                             \
+    "mirrors are black: outside of panoramas they show environment lights only, and there is "     \
+    "none; add --light \"env MAP\""
+bool objects_have_mirrors(const relume_objects *o);
+bool surround_lacks(const struct surround *surround, const relume_objects *o);
+// What a mirror shows to `eye` there.
+void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
+                  vec3 eye, const struct surround *surround);
+// What lies in a direction (unit) from a place.
+void surround_value(float rgb[3], const struct surround *surround, vec3 place, vec3 direction);
+
 // What the point shows of all lights.
 void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
-                   vec3 towards_eye, const struct lighting *lighting);
+                   vec3 eye, const struct lighting *lighting);
 
 // ---------------------------------------------------------------- pictures
 

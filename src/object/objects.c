@@ -39,6 +39,9 @@ void relume_objects_destroy(relume_objects **objects)
         close_material(&o->material[i]);
         mem_free(o->folder[i]);
     }
+    for (int i = 0; o->reflection && i < o->info.objects; i++)
+        relume_reflection_destroy(&o->reflection[i]);
+    mem_free(o->reflection);
     mem_free(o->vertices);
     mem_free(o->triangles);
     mem_free(o->part);
@@ -169,26 +172,55 @@ static relume_status open_material(struct relume_object_material *m, const char 
                                               : open_measured(m, folder, &p);
 }
 
+// Room for one more.
+static relume_status need_material(relume_objects *o, const char *name,
+                                   const struct relume_log *log)
+{
+    const size_t count = (size_t)o->info.materials;
+    if (o->info.materials == MOST_MATERIALS)
+        return log_fail(log, RELUME_ELIMIT, "%s: expected at most %d materials", name,
+                        MOST_MATERIALS);
+    return mem_grow(&o->material, count, sizeof *o->material) &&
+                   mem_grow(&o->folder, count, sizeof *o->folder)
+               ? RELUME_OK
+               : RELUME_ENOMEM;
+}
+
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params)
 {
-    const struct relume_log *log = params ? params->log : NULL;
     for (*number = 0; *number < o->info.materials; ++*number)
-        if (!strcmp(o->folder[*number], folder))
+        if (o->folder[*number] && !strcmp(o->folder[*number], folder))
             return RELUME_OK;
-    if (o->info.materials == MOST_MATERIALS)
-        return log_fail(log, RELUME_ELIMIT, "%s: expected at most %d materials", folder,
-                        MOST_MATERIALS);
-    const size_t count = (size_t)o->info.materials;
-    if (!mem_grow(&o->material, count, sizeof *o->material) ||
-        !mem_grow(&o->folder, count, sizeof *o->folder))
-        return RELUME_ENOMEM;
+    relume_status status = need_material(o, folder, params ? params->log : NULL);
+    if (status)
+        return status;
     o->folder[*number] = mem_text(folder);
-    relume_status status = open_material(&o->material[*number], folder, params);
+    status = open_material(&o->material[*number], folder, params);
     if (!status && !o->folder[*number])
         status = RELUME_ENOMEM;
     o->info.materials++;  // destroyed with the others, also when it is broken
     return status;
+}
+
+relume_status objects_mirror(relume_objects *o, const float reflectance[3], int *number,
+                             const struct relume_objects_params *params)
+{
+    for (*number = 0; *number < o->info.materials; ++*number) {
+        const struct relume_object_material *m = &o->material[*number];
+        if (m->mirror && !memcmp(m->reflectance, reflectance, sizeof m->reflectance))
+            return RELUME_OK;
+    }
+    const relume_status status = need_material(o, "mirror", params ? params->log : NULL);
+    char *name = status ? NULL : mem_text("mirror");
+    if (!name)
+        return status ? status : RELUME_ENOMEM;
+    struct relume_object_material *m = &o->material[*number];
+    *m = (struct relume_object_material){.name = name, .model = "mirror", .mirror = true};
+    memcpy(m->reflectance, reflectance, sizeof m->reflectance);
+    o->folder[*number] = NULL;
+    o->info.materials++;
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- the description
@@ -222,11 +254,37 @@ static relume_status know(const struct reader *r, const jvalue *object, const ch
                  near ? near : "", near ? "'?" : "");
 }
 
+// One number for all, or one for each: what a mirror reflects.
+static relume_status read_mirror(const struct reader *r, const jvalue *value, int *number)
+{
+    static const char *const known[] = {"mirror", NULL};
+    const jvalue *m = jvalue_member(value, "mirror");
+    double f[3];
+    float reflectance[3];
+    relume_status status = know(r, value, known);
+    if (status)
+        return status;
+    if (!jvalue_numbers(m, f, 3)) {
+        if (!jvalue_number(m, &f[0]))
+            return wrong(r, "mirror: expected the part of light that it reflects, or [r, g, b]");
+        f[1] = f[2] = f[0];
+    }
+    for (int c = 0; c < 3; c++) {
+        if (!(f[c] >= 0.0 && f[c] <= 1.0))
+            return wrong(r, "mirror: expected 0 to 1; found %g", f[c]);
+        reflectance[c] = (float)f[c];
+    }
+    return objects_mirror(r->o, reflectance, number, r->params);
+}
+
 static relume_status read_folder(const struct reader *r, const jvalue *text, int *number)
 {
     const char *name = jvalue_text(text);
+    if (jvalue_is_object(text))
+        return read_mirror(r, text, number);
     if (!name || !*name)
-        return wrong(r, "material: expected the folder of a BTF or of a model, or a list of them");
+        return wrong(r, "material: expected the folder of a BTF or of a model, {\"mirror\": 1}, or "
+                        "a list of them");
     char *folder = mesh_beside(r->path, name);
     const relume_status status =
         folder ? objects_material(r->o, folder, number, r->params) : RELUME_ENOMEM;
@@ -339,7 +397,7 @@ static relume_status read_coverings(const struct reader *r, const jvalue *object
 
 static relume_status read_object(const struct reader *r, const jvalue *object)
 {
-    static const char *const known[] = {"mesh", "pose", "parts", NULL};
+    static const char *const known[] = {"mesh", "pose", "parts", "reflections", NULL};
     struct standing s = {.frame = frame_world};
     const char *mesh = jvalue_text(jvalue_member(object, "mesh"));
     if (!jvalue_is_object(object) || !mesh || !*mesh)
@@ -378,6 +436,21 @@ static relume_status read_all(struct reader *r, const jvalue *root)
     relume_status status = RELUME_OK;
     for (r->object = 0; r->object < n && !status; r->object++)
         status = read_object(r, jvalue_item(list, r->object));
+    return status ? status : objects_finish(r->o, r->params);
+}
+
+// Of the finished objects: edits ask where their surface is.
+static relume_status read_edits(const struct reader *r, const jvalue *root)
+{
+    const jvalue *list = jvalue_member(root, "objects");
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < r->o->info.objects && !status; i++) {
+        const jvalue *edit = jvalue_member(jvalue_item(list, (size_t)i), "reflections");
+        if (edit)
+            status = objects_read_reflections(
+                r->o, i, edit, r->path,
+                relume_reflection_params(.log = r->log, .threads = r->params->threads));
+    }
     return status;
 }
 
@@ -393,7 +466,7 @@ relume_status relume_objects_open(relume_objects **out, const char *path,
     if (!status)
         status = read_all(&r, root);
     if (!status)
-        status = objects_finish(o, &own);
+        status = read_edits(&r, root);
     jvalue_free(&root);
     if (status)
         relume_objects_destroy(&o);

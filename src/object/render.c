@@ -77,6 +77,7 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
                                           vec3_sub(vector(v[2]->position), first)));
     out->distance = (double)hit.distance;
     out->triangle = hit.triangle;
+    memcpy(out->corner, weight, sizeof weight);
     memset(out->right, 0, sizeof out->right);
     memset(out->down, 0, sizeof out->down);
     out->part = (int)o->mesh.triangles[hit.triangle].material;
@@ -209,10 +210,14 @@ static void add_sky(float rgb[3], const relume_objects *o, const struct surface_
         rgb[c] += share[c] * value[c];
 }
 
-void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *p,
-                   vec3 towards_eye, const struct lighting *lighting)
+void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 eye,
+                   const struct lighting *lighting)
 {
-    vec3 view = local(p, towards_eye);
+    if (o->material[o->part[p->part].material].mirror) {
+        mirror_shade(rgb, o, p, eye, &lighting->surround);
+        return;
+    }
+    vec3 view = local(p, vec3_unit(vec3_sub(eye, p->position)));
     view = vec3_unit(vec3_of(view.x, view.y, fmax(view.z, LOWEST)));
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     for (int i = 0; i < lighting->light_samples; i++)
@@ -304,7 +309,7 @@ static void view_value(float rgb[3], const void *context, double x, double y, do
     if (!objects_hit(&p, v->o, ray.origin, ray.direction))
         return;
     objects_spread(&p, v->o, &ray, &right, &below);
-    objects_shade(rgb, v->o, &p, vec3_scale(ray.direction, -1.0), &v->lighting);
+    objects_shade(rgb, v->o, &p, ray.origin, &v->lighting);
 }
 
 relume_status relume_objects_render(struct relume_image *out, const relume_objects *objects,
@@ -313,8 +318,11 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
                                     const struct relume_render_params *params)
 {
     const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
-    struct view view = {objects, window, out->width, out->height, {0}};
+    struct view view = {
+        .o = objects, .window = window, .width = out->width, .height = out->height};
     relume_status status = lighting_create(&view.lighting, objects, lights, n, &own);
+    if (!status && surround_lacks(&view.lighting.surround, objects))
+        log_line(own.log, RELUME_WARNING, "%s", SURROUND_LACKS);
     if (!status)
         status = objects_trace(out, view_value, &view, &own);
     lighting_destroy(&view.lighting);

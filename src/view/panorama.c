@@ -402,8 +402,13 @@ bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry
                             const struct relume_image *image, struct relume_vec3 direction,
                             const struct relume_view_params *params)
 {
-    const struct panorama p = {geometry,    image->width,         image->height,
-                               image->data, RELUME_FILTER_LINEAR, params};
+    const bool nearest = params && params->filter == RELUME_FILTER_NEAREST;
+    const struct panorama p = {geometry,
+                               image->width,
+                               image->height,
+                               image->data,
+                               nearest ? RELUME_FILTER_NEAREST : RELUME_FILTER_LINEAR,
+                               params};
     const struct layout *layout = usable_layout(geometry, image);
     if (layout)
         return sample(rgb, &p, layout, direction);

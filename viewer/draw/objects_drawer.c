@@ -447,6 +447,8 @@ static relume_status shade_part(struct objects_drawer *t, int part, int material
 {
     const struct program *program;
     const struct gl *gl = t->gl;
+    if (relume_objects_info(t->objects)->material[material].mirror)
+        return RELUME_OK;
     relume_status status = use_material(&program, t, part, material, false);
     if (status)
         return status;
@@ -469,6 +471,8 @@ relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int m
     const struct sky_map *map;
     const struct program *program;
     const struct gl *gl = t->gl;
+    if (relume_objects_info(t->objects)->material[material].mirror)
+        return RELUME_OK;
     relume_status status = need_material(t, material);
     struct btf_material *m = &t->material[material];
     if (!status)

@@ -6,7 +6,7 @@
 
 struct btf_options {
     struct args args;
-    const char *output, *mesh, *map;
+    const char *output, *mesh, *reflections, *map;
     const struct relume_btf_set *directions;
     int model;  // its place in relume_btf_models, or -1
     struct ints models;
@@ -66,6 +66,7 @@ relume_status btf_check_model_output(const struct btf_options *o);
 bool btf_is_objects(const struct btf_options *o);
 // These, ray traced.
 relume_status btf_render_objects(const struct btf_options *o);
-relume_status objects_open(relume_objects **out, const char *path, const struct args *args);
+relume_status objects_open(relume_objects **out, const char *path, const char *reflections,
+                           const struct args *args);
 
 #endif

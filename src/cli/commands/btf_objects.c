@@ -11,10 +11,16 @@ bool btf_is_objects(const struct btf_options *o)
     return o->mesh || (dot && !strcmp(dot, ".json"));
 }
 
-relume_status objects_open(relume_objects **out, const char *path, const struct args *args)
+relume_status objects_open(relume_objects **out, const char *path, const char *reflections,
+                           const struct args *args)
 {
-    return relume_objects_open(out, path,
-                               relume_objects_params(.log = args->log, .threads = args->threads));
+    const relume_status status = relume_objects_open(
+        out, path, relume_objects_params(.log = args->log, .threads = args->threads));
+    return status || !reflections
+               ? status
+               : relume_objects_load_reflections(
+                     *out, reflections,
+                     relume_reflection_params(.log = args->log, .threads = args->threads));
 }
 
 static relume_status open_them(relume_objects **out, const struct btf_options *o)
@@ -22,7 +28,7 @@ static relume_status open_them(relume_objects **out, const struct btf_options *o
     const char *input = o->args.input[0], *mesh = o->mesh;
     *out = NULL;
     if (!mesh)
-        return objects_open(out, input, &o->args);
+        return objects_open(out, input, o->reflections, &o->args);
     return relume_objects_of_mesh(
         out, mesh, &input, 1, o->repeat,
         relume_objects_params(.log = o->args.log, .threads = o->args.threads));

@@ -100,6 +100,9 @@ static const struct option options[] = {
     GROUP("objects"),
     TEXT("--mesh", mesh, "FILE",
          "render: cover this mesh with the material: .obj, .ply, .gltf, .glb, ..."),
+    TEXT("--reflections", reflections, "FILE",
+         "render, of a description of objects: what their mirrors shall reflect where "
+         "(docs/reflections.md)"),
     NUMBER("--repeat", repeat, "N",
            "--mesh: repeat the material N times across its texture; default: 1", 0.001, 10000),
     INT("--samples", samples, "N", "render objects: N x N rays a pixel; default: 3", 1, 16),

@@ -12,7 +12,7 @@ enum { GLARE_PASS = RELUME_PASSES };  // of the frame, not of its views
 
 struct relight_options {
     struct args args;
-    const char *output, *objects, *capture;
+    const char *output, *objects, *reflections, *capture;
     double crop[4];
     int size[2], view, samples, radius, cpu_mask;
     struct relume_vec3 eye, look_at, up;
@@ -102,7 +102,10 @@ static const struct option options[] = {
     GLARE_OPTIONS,
     GROUP("objects"),
     TEXT("--objects", objects, "FILE",
-         "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth"),
+         "objects covered with BTFs, or mirrors, in the scene (docs/objects.md); needs a file with "
+         "depth"),
+    TEXT("--reflections", reflections, "FILE",
+         "--objects: what their mirrors shall reflect where (docs/reflections.md)"),
     INT("--samples", samples, "N", "--objects: N x N rays a pixel; default: 3", 1, 16),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
@@ -176,6 +179,8 @@ static relume_status check_pass(const struct relight_options *o)
             o->pass != belongs[i].other)
             return usage_error("relight: %s works only with --pass %s", belongs[i].option,
                                relume_pass_name(belongs[i].pass));
+    if (o->reflections && !o->objects)
+        return usage_error("--reflections: works only with --objects; add --objects FILE");
     if (o->pass == RELUME_PASS_DIFFERENCE && !o->capture)
         return usage_error("relight: --pass difference needs --capture");
     if (o->pass != RELUME_PASS_COLOUR && o->pass != GLARE_PASS && o->objects)
@@ -206,7 +211,7 @@ static relume_status set_objects(relume_objects **objects, relume_renderer *rend
 {
     if (!o->objects)
         return RELUME_OK;
-    const relume_status status = objects_open(objects, o->objects, &o->args);
+    const relume_status status = objects_open(objects, o->objects, o->reflections, &o->args);
     return status ? status
                   : relume_renderer_set_objects(renderer, *objects,
                                                 relume_render_params(.log = o->args.log,

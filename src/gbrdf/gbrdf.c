@@ -156,8 +156,19 @@ void gbrdf_evaluate(const struct gbrdf *g, double x, double y, vec3 v, vec3 l, f
 
 // ---------------------------------------------------------------- energy
 
-// A little less than all, for what halfs round up.
-static const double MOST = 0.999;
+// What is limited stays a little below all, for what halfs round up; so it is not limited again.
+static const double MOST = 0.999, ALLOWED = 0.9998;
+
+static bool keeps_to_it(const struct gbrdf_maps *maps, size_t i, const struct ndf_albedo *albedo)
+{
+    const float r0 = float_from_half(maps->r0[i]);
+    bool good = r0 >= 0.0f && r0 <= 1.0f;
+    for (size_t c = 0; good && c < 3; c++) {
+        const float cd = float_from_half(maps->diffuse[3 * i + c]);
+        good = cd >= 0.0f && (double)cd + ndf_reflects(albedo, (int)c, (double)r0) <= ALLOWED;
+    }
+    return good;
+}
 
 static void limit_texel(struct gbrdf_maps *maps, size_t i, const struct ndf_albedo *albedo)
 {
@@ -171,20 +182,30 @@ static void limit_texel(struct gbrdf_maps *maps, size_t i, const struct ndf_albe
     }
 }
 
-void gbrdf_limit_energy(struct gbrdf_maps *maps)
+void gbrdf_limit_material(struct gbrdf_maps *maps, int label)
 {
-    for (int label = 0; label < maps->materials; label++) {
-        uint16_t *ndf = maps->ndf + (size_t)label * NDF_VALUES;
-        float value[NDF_VALUES];
-        struct ndf_albedo albedo;
-        for (int i = 0; i < NDF_VALUES; i++)
-            value[i] = fmaxf(float_from_half(ndf[i]), 0.0f);
+    uint16_t *ndf = maps->ndf + (size_t)label * NDF_VALUES;
+    float value[NDF_VALUES];
+    struct ndf_albedo albedo;
+    double share = 0.0;
+    for (int i = 0; i < NDF_VALUES; i++)
+        value[i] = fmaxf(float_from_half(ndf[i]), 0.0f);
+    ndf_albedo(&albedo, value);
+    for (int c = 0; c < 3; c++)
+        share = fmax(share, ndf_reflects(&albedo, c, 0.0));
+    if (share > ALLOWED) {
         ndf_limit(value, 0.0, MOST);
         ndf_albedo(&albedo, value);
-        for (int i = 0; i < NDF_VALUES; i++)
-            ndf[i] = half_from_float(value[i]);
-        for (size_t i = 0; i < (size_t)maps->width * (size_t)maps->height; i++)
-            if (maps->label[i] == label)
-                limit_texel(maps, i, &albedo);
     }
+    for (int i = 0; i < NDF_VALUES; i++)
+        ndf[i] = half_from_float(value[i]);
+    for (size_t i = 0; i < (size_t)maps->width * (size_t)maps->height; i++)
+        if (maps->label[i] == label && !keeps_to_it(maps, i, &albedo))
+            limit_texel(maps, i, &albedo);
+}
+
+void gbrdf_limit_energy(struct gbrdf_maps *maps)
+{
+    for (int label = 0; label < maps->materials; label++)
+        gbrdf_limit_material(maps, label);
 }

@@ -47,5 +47,7 @@ void gbrdf_evaluate(const struct gbrdf *g, double x, double y, vec3 v, vec3 l, f
 // Whatever was found, no texel sends back more than comes in: distributions that do without any r0
 // are scaled, then r0 is lowered where it must be, then the diffuse colour.
 void gbrdf_limit_energy(struct gbrdf_maps *maps);
+// The same of the texels of one material; what keeps to it stays as it is, bit by bit.
+void gbrdf_limit_material(struct gbrdf_maps *maps, int label);
 
 #endif

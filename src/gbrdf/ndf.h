@@ -47,4 +47,11 @@ void ndf_limit(float *ndf, double r0, double most);
 // The greatest r0 in [0, 1] at which no more than `most` is, 0 where none is.
 double ndf_most_r0(const struct ndf_albedo *albedo, double most);
 
+// The slopes of all micro-normals times `factor`: GGX of one alpha becomes GGX of another. What the
+// micro-normals cover of the plane stays, in each channel.
+void ndf_widen(float *ndf, double factor);
+// GGX of `alpha` (Walter et al. 2007, Eq. 33), a quarter of it: so at normal incidence a material
+// shines as by the usual D F G / (4 cos cos). Lobes narrower than the cells are as wide as these.
+void ndf_ggx(float *ndf, double alpha, const double rgb[3]);
+
 #endif

@@ -68,6 +68,8 @@ struct relume_maps {
     struct relume_maps_material material[RELUME_MAPS_MOST_MATERIALS];
     struct relume_maps_quality fitted;    // over the lights that were fitted, at most 16 of them
     struct relume_maps_quality held_out;  // over those that were not
+    double width_mm;  // of a folder that was opened: the width of the picture; 0: not known
+    bool directx;     // ... and that its normal.png has its green pointing down
 };
 RELUME_API void relume_maps_destroy(struct relume_maps *maps);
 
@@ -122,7 +124,8 @@ struct relume_maps_write_params {
     bool directx;     // normal.png has its green pointing down the picture, for programs that want
                       // it so; model.gltf has an upward one of its own, as glTF says
     int mesh;         // columns of a mesh displaced by the height, up to 1024; default: a plane
-    double width_mm;  // width of the picture; default: not known, a world unit is taken as a metre
+    double width_mm;  // width of the picture; default: that of the maps, else a world unit is taken
+                      // as a metre
 };
 #define relume_maps_write_params(...)                                                              \
     (&(const struct relume_maps_write_params){RELUME_SIZED(relume_maps_write_params), __VA_ARGS__})
@@ -131,6 +134,13 @@ struct relume_maps_write_params {
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_maps_write(const struct relume_maps *maps, const char *path,
                                               const struct relume_maps_write_params *params);
+
+// The maps of such a folder again, from its .exr files and maps.json; edits that are kept with it
+// are not applied (relume/edit.h). What is known of the view and how near the maps come to
+// photographs is not read. `*out` is empty on failure. An input status with a sentence,
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_maps_open(struct relume_maps *out, const char *path,
+                                             const struct relume_log *log);
 
 #ifdef __cplusplus
 }

@@ -243,8 +243,10 @@ static void look_over(struct writing *w)
 relume_status relume_maps_write(const struct relume_maps *maps, const char *path,
                                 const struct relume_maps_write_params *params)
 {
-    const struct relume_maps_write_params p = PARAMS_WORK(relume_maps_write_params, params);
+    struct relume_maps_write_params p = PARAMS_WORK(relume_maps_write_params, params);
     const double width = maps->pixel * maps->width;
+    p.width_mm = p.width_mm != 0.0 ? p.width_mm : maps->width_mm;
+    p.directx |= maps->directx;
     struct writing w = {
         .maps = maps,
         .params = &p,

@@ -38,7 +38,8 @@ post:base math kernel image:base image tone eye psf glare
 frame:base math image:base image capture coder pack light relight shadow view slab_set frame viewport evaluate normals enhance renderer relighter rig
 btf:base math image:base image directions capture btf
 gbrdf:base math image btf:base image directions btf
-btf_model:base math image btf gbrdf:base image light directions btf btf_environment
+edit:base math image gbrdf:base image edit maps
+btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
 surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base object
 reflect:base math kernel:base reflection

@@ -100,6 +100,7 @@ struct relume_btf_params {
     // Files of Bonn: without values, which take long; only relume_btf_info may be asked for.
     bool outline;
     int threads;
+    bool unedited;  // models: without the edits that are kept with them (relume/edit.h)
 };
 #define relume_btf_params(...)                                                                     \
     (&(const struct relume_btf_params){RELUME_SIZED(relume_btf_params), __VA_ARGS__})
@@ -204,8 +205,8 @@ RELUME_RESULT relume_status relume_btf_fit(relume_btf_fitted **out, const relume
 RELUME_RESULT relume_status relume_btf_fitted_save(const relume_btf_fitted *fitted,
                                                    const char *path,
                                                    const struct relume_btf_params *params);
-// The folder or file again; the caller destroys `*out`. An input status with a sentence,
-// RELUME_ENOMEM.
+// The folder or file again, with the edits that are kept with a g-BRDF (relume/edit.h); the caller
+// destroys `*out`. An input status with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
                                                    const struct relume_btf_params *params);
 RELUME_API void relume_btf_fitted_destroy(relume_btf_fitted **fitted);
@@ -220,6 +221,7 @@ struct relume_btf_fitted_info {
     int levels;                       // at least 1
     uint64_t bytes_levels;            // of the arrays of all levels
     double rim;  // mean cosine of the lowest measured lights, below which values fall to 0
+    int edits, edits_undone;  // that apply, and that are undone (relume/edit.h)
 };
 // It belongs to `fitted`.
 RELUME_API const struct relume_btf_fitted_info *relume_btf_fitted_info(

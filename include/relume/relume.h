@@ -24,6 +24,7 @@
 #include <relume/maps.h>
 #include <relume/slab_depth.h>
 #include <relume/directions.h>
+#include <relume/edit.h>
 #include <relume/normals.h>
 #include <relume/object.h>
 #include <relume/pack.h>

@@ -1,22 +1,63 @@
-// gbrdf_plant.c - the g-BRDF of which everything is known, as a fitted model
+// gbrdf_plant.c - g-BRDFs that were not fitted: from maps and directions, and the one of which
+// everything is known
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
 #include "btf_model/model_gbrdf.h"
+#include "gbrdf/fit.h"
 #include "gbrdf/planted.h"
 
-static relume_status make_directions(relume_btf_fitted *m, const struct relume_btf_set *set,
+static relume_status copy_directions(relume_btf_fitted *m, const struct gbrdf_directions *d,
                                      const struct relume_log *log)
 {
-    m->views = m->lights = set->count;
-    m->view = mem_array((size_t)set->count, sizeof *m->view);
-    m->light = mem_array((size_t)set->count, sizeof *m->light);
+    m->views = d->views;
+    m->lights = d->lights;
+    m->without_cosine = d->without_cosine;
+    m->view = mem_copy(d->view, (size_t)d->views, sizeof *m->view);
+    m->light = mem_copy(d->light, (size_t)d->lights, sizeof *m->light);
     if (!m->view || !m->light)
         return RELUME_ENOMEM;
-    relume_btf_set_directions(set, m->view);
-    relume_btf_set_directions(set, m->light);
     const relume_status status = btf_make_mesh(&m->view_mesh, m->view, m->views, NULL, "", log);
     return status ? status : btf_make_mesh(&m->light_mesh, m->light, m->lights, NULL, "", log);
+}
+
+relume_status gbrdf_model_create(relume_btf_fitted **out, const struct gbrdf_maps *maps,
+                                 const struct gbrdf_directions *directions,
+                                 const struct relume_log *log)
+{
+    relume_btf_fitted *m = *out = mem_zeroed(1, sizeof *m);
+    if (!m)
+        return RELUME_ENOMEM;
+    m->model = &model_gbrdf;
+    m->width = maps->width;
+    m->height = maps->height;
+    m->texels = (size_t)maps->width * (size_t)maps->height;
+    relume_status status = copy_directions(m, directions, log);
+    if (!status)
+        status = gbrdf_maps_store(m, maps);
+    if (!status)
+        status = model_gbrdf.prepare(m);
+    if (status)
+        relume_btf_fitted_destroy(out);
+    else
+        model_settle(m);
+    return status;
+}
+
+relume_status gbrdf_model_of_set(relume_btf_fitted **out, const struct gbrdf_maps *maps,
+                                 const struct relume_btf_set *set, const struct relume_log *log)
+{
+    set = set ? set : relume_btf_set_find("bonn");
+    vec3 *d = mem_array((size_t)set->count, sizeof *d);
+    if (d)
+        relume_btf_set_directions(set, d);
+    *out = NULL;
+    const relume_status status =
+        d ? gbrdf_model_create(out, maps,
+                               &(struct gbrdf_directions){d, d, set->count, set->count, false}, log)
+          : RELUME_ENOMEM;
+    mem_free(d);
+    return status;
 }
 
 relume_status relume_gbrdf_plant(relume_btf_fitted **out,
@@ -24,29 +65,15 @@ relume_status relume_gbrdf_plant(relume_btf_fitted **out,
 {
     const struct relume_gbrdf_plant_params p = PARAMS(relume_gbrdf_plant_params, params);
     const int size = p.size ? p.size : 64;
+    struct gbrdf_maps maps;
     *out = NULL;
     if (size < 1 || size > 1024)
         return log_fail(p.log, RELUME_EINVAL, "size: expected 1 to 1024 texels; found %d", size);
-    relume_btf_fitted *m = mem_zeroed(1, sizeof *m);
-    if (!m)
-        return RELUME_ENOMEM;
-    m->model = &model_gbrdf;
-    m->width = m->height = size;
-    m->texels = (size_t)size * (size_t)size;
-    m->clusters = PLANTED_MATERIALS;
-    relume_status status =
-        make_directions(m, p.directions ? p.directions : relume_btf_set_find("bonn"), p.log);
-    if (!status)
-        status = model_make_arrays(m);
+    relume_status status = gbrdf_maps_create(&maps, size, size, PLANTED_MATERIALS);
     if (!status) {
-        struct gbrdf_maps maps = gbrdf_maps_of(m);
         gbrdf_plant(&maps, p.seed);
-        status = model_gbrdf.prepare(m);
+        status = gbrdf_model_of_set(out, &maps, p.directions, p.log);
     }
-    if (status)
-        relume_btf_fitted_destroy(&m);
-    else
-        model_settle(m);
-    *out = m;
+    gbrdf_maps_free(&maps);
     return status;
 }

@@ -4,6 +4,8 @@
 #include "base/memory.h"
 #include "base/outdir.h"
 #include "base/outfile.h"
+#include "base/params.h"
+#include "btf_model/edited.h"
 #include "btf_model/gbrdf_file.h"
 
 #include <errno.h>
@@ -277,15 +279,17 @@ static relume_status open_half(relume_btf_fitted *m, const char *folder, int lev
 relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
                                      const struct relume_btf_params *params)
 {
+    const struct relume_btf_params p = PARAMS(relume_btf_params, params);
     int levels = 1;
-    relume_status status = gbrdf_file_named(path) ? gbrdf_file_open(out, path, params)
-                                                  : open_level(out, path, &levels, params);
+    relume_status status = gbrdf_file_named(path) ? gbrdf_file_open(out, path, &p)
+                                                  : open_level(out, path, &levels, &p);
     relume_btf_fitted *m = *out;
     for (int level = 1; level < levels && !status; level++, m = m->half)
-        status = open_half(m, path, level, params);
-    if (status)
+        status = open_half(m, path, level, &p);
+    if (status) {
         relume_btf_fitted_destroy(out);
-    else
-        model_settle(*out);
-    return status;
+        return status;
+    }
+    model_settle(*out);
+    return p.unedited ? RELUME_OK : model_apply_edits(out, path, p.log);
 }

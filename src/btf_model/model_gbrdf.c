@@ -37,6 +37,17 @@ struct gbrdf_maps gbrdf_maps_of(const relume_btf_fitted *m)
     };
 }
 
+relume_status gbrdf_maps_store(relume_btf_fitted *m, const struct gbrdf_maps *maps)
+{
+    const void *from[] = {maps->depth, maps->rotation, maps->diffuse, maps->r0,
+                          maps->label, maps->ndf,      maps->light};
+    m->clusters = maps->materials;
+    const relume_status status = model_make_arrays(m);
+    for (int i = 0; !status && i < m->arrays; i++)
+        memcpy(m->array[i].data, from[i], npy_bytes(&m->array[i].npy));
+    return status;
+}
+
 // As many materials as were found, in place of as many as there may be.
 static relume_status fit(struct fitting *f)
 {
@@ -49,16 +60,8 @@ static relume_status fit(struct fitting *f)
                                                                 .resample = f->resample,
                                                                 .seed = f->seed,
                                                                 .threads = f->threads});
-    if (!status) {
-        m->clusters = found.materials;
-        status = model_make_arrays(m);
-    }
-    if (!status) {
-        const void *from[] = {found.depth, found.rotation, found.diffuse, found.r0,
-                              found.label, found.ndf,      found.light};
-        for (int i = 0; i < m->arrays; i++)
-            memcpy(m->array[i].data, from[i], npy_bytes(&m->array[i].npy));
-    }
+    if (!status)
+        status = gbrdf_maps_store(m, &found);
     gbrdf_maps_free(&found);
     return status;
 }

@@ -63,7 +63,9 @@ echo "    case \$command:\$last in"
 for c in $commands; do helps "$c" | options | cases "$c:"; done
 for c in $commands; do
     words=$(tasks "$c" | tr '\n' ' ')
-    [ -z "$words" ] || echo "        $c:$c) COMPREPLY=(\$(compgen -W \"$words\" -- \"\$word\")); return ;;"
+    # a command that runs by itself takes files as well
+    case $("$relume" "$c" --help | head -n 1) in *' -o '*) files='-f ' ;; *) files= ;; esac
+    [ -z "$words" ] || echo "        $c:$c) COMPREPLY=(\$(compgen ${files}-W \"$words\" -- \"\$word\")); return ;;"
 done
 echo "        synth:synth) COMPREPLY=(\$(compgen -W \"$scenes\" -- \"\$word\")); return ;;"
 echo "    esac"

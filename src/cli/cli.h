@@ -39,12 +39,14 @@ struct command {
     const char *summary;  // one line
     const char *example;  // complete command line
     int min_inputs, max_inputs;
-    bool names_built_in;                 // inputs are names of what is built in, never files
-    const struct option *options;        // common options are added
-    const char *groups;                  // help shows these groups only; NULL: all
-    size_t size;                         // of the struct that they fill
-    const void *defaults;                // such a struct; NULL: zeros
-    const struct command *const *tasks;  // instead of all that: what its next word names
+    bool names_built_in;           // inputs are names of what is built in, never files
+    const struct option *options;  // common options are added
+    const char *groups;            // help shows these groups only; NULL: all
+    size_t size;                   // of the struct that they fill
+    const void *defaults;          // such a struct; NULL: zeros
+    // What its next word names, in place of all that; or, of a command that runs by itself, its
+    // first word alone.
+    const struct command *const *tasks;
     relume_status (*run)(const struct args *args);
 };
 // With the `options` that fill OPTIONS, and `run`, of its file.

@@ -257,6 +257,8 @@ static relume_status choose_task(struct parsed *p, int *argc, char **argv)
     const struct command *const *tasks = p->command->tasks;
     const struct command *task = NULL;
     int i = 0;
+    if (p->command->run && !(*argc > 0 && find_command(tasks, argv[0])))
+        return RELUME_OK;
     while (i < *argc && !(task = find_command(tasks, argv[i])) &&
            (argv[i][0] == '-' || (i > 0 && argv[i - 1][0] == '-')))  // that may be its value
         i++;

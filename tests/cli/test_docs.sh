@@ -7,7 +7,9 @@ docs="$TOP/docs"
 {
     "$VIEWER" --help
     for c in $("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" --help; done
-    for t in $("$RELUME" btf --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p'); do "$RELUME" btf "$t" --help; done
+    for c in btf maps; do
+        for t in $("$RELUME" "$c" --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" "$t" --help; done
+    done
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
 # options of other programs that the texts use, a mistake that they show, and old spellings
 printf '%s\n' --cflags --libs --static --info --version --lihgt --table --hdr --slab --panorama >>known.txt

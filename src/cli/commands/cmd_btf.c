@@ -330,14 +330,14 @@ static relume_status model_info(const struct btf_options *o)
     const struct relume_btf_fitted_info *i = relume_btf_fitted_info(fitted);
     const uint64_t raw = relume_btf_bytes(i->width, i->height, i->views, i->lights);
     if (o->json)
-        printf(
-            "{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
-            "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
-            "\"bytes_each\": %llu, \"levels\": %d, \"bytes_levels\": %llu, \"raw_bytes\": %llu}\n",
-            relume_btf_model_name(i->model), i->width, i->height, i->views, i->lights, i->clusters,
-            i->components, i->lobes, (unsigned long long)i->bytes,
-            (unsigned long long)i->bytes_each, i->levels, (unsigned long long)i->bytes_levels,
-            (unsigned long long)raw);
+        printf("{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
+               "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
+               "\"bytes_each\": %llu, \"levels\": %d, \"bytes_levels\": %llu, \"raw_bytes\": %llu, "
+               "\"edits\": %d, \"edits_undone\": %d}\n",
+               relume_btf_model_name(i->model), i->width, i->height, i->views, i->lights,
+               i->clusters, i->components, i->lobes, (unsigned long long)i->bytes,
+               (unsigned long long)i->bytes_each, i->levels, (unsigned long long)i->bytes_levels,
+               (unsigned long long)raw, i->edits, i->edits_undone);
     else
         printf(
             "model    %s: %s\ntexels   %d x %d\nviews    %d\nlights   %d\nbytes    %llu, %llu of "
@@ -346,6 +346,8 @@ static relume_status model_info(const struct btf_options *o)
             i->height, i->views, i->lights, (unsigned long long)i->bytes,
             (unsigned long long)i->bytes_each, (double)raw / (double)i->bytes, i->levels,
             (unsigned long long)i->bytes_levels);
+    if (!o->json && i->edits + i->edits_undone)
+        printf("edits    %d, %d undone\n", i->edits, i->edits_undone);
     relume_btf_fitted_destroy(&fitted);
     return RELUME_OK;
 }
@@ -440,13 +442,13 @@ TASK(plant, btf_plant, "-o OUT [OPTION ...]",
 TASK(expand, btf_expand, "MODEL -o DIR", "write what a model shows in its directions as a BTF",
      "relume btf expand planted.exr -o planted_btf", 1, "output;");
 
-static const struct command *const tasks[] = {&task_fit,   &task_eval,   &task_compare,
-                                              &task_info,  &task_render, &task_tile,
-                                              &task_plant, &task_expand, NULL};
+static const struct command *const tasks[] = {
+    &task_fit,   &task_eval,   &task_compare,  &task_info,     &task_render, &task_tile,
+    &task_plant, &task_expand, &btf_task_edit, &btf_task_make, NULL};
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render|tile|plant|expand ...",
+    .usage = "fit|eval|compare|info|render|tile|plant|expand|edit|make ...",
     .summary = "measured materials: fit models to a BTF, compare and render them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 1,

@@ -1,5 +1,5 @@
 // cmd_maps.c - relume maps: colour, gloss and relief as maps for other programs
-#include "cli.h"
+#include "commands/maps_edit.h"
 
 #include <math.h>
 
@@ -214,7 +214,10 @@ static relume_status run(const struct args *args)
     return status;
 }
 
+static const struct command *const tasks[] = {&maps_task_edit, NULL};
+
 const struct command command_maps = {
+    .tasks = tasks,
     COMMAND("maps", "FILE|CAPTURE -o DIR [OPTION ...]",
             "normal, colour, gloss and height maps, glTF and MaterialX, for other programs",
             "relume maps statue -o statue-maps --width 120", 1, 1),

@@ -49,6 +49,11 @@ relume_status btf_open_capture(relume_btf **out, const char *path,
 relume_status btf_open_ubo(relume_btf **out, const char *path,
                            const struct relume_btf_params *params);
 
+// Store the pictures [height][width][3] that `picture` gives of all views and lights.
+// RELUME_ENOMEM.
+relume_status btf_fill(relume_btf *btf, int threads, const void *context,
+                       void (*picture)(const void *context, int view, int light, float *rgb));
+
 // The side of the next level of detail.
 int btf_half_side(int side);
 

@@ -2,10 +2,7 @@
 #include "gbrdf/pairs.h"
 
 #include "base/memory.h"
-#include "base/thread.h"
 #include "math/vec.h"
-
-#include <stdatomic.h>
 
 // Directions within a third of a degree are one: tables of angles are rounded.
 static const double SAME = 0.006;
@@ -42,27 +39,16 @@ relume_status pairs_reciprocal(struct picture_pair **out, int *count, const relu
 }
 
 struct resampling {
-    const relume_btf *from;
-    relume_btf *to;
-    atomic_bool failed;
+    const relume_btf *from, *to;
 };
 
-static void resample_view(void *context, size_t view, int worker)
+static void resample(const void *context, int view, int light, float *rgb)
 {
-    (void)worker;
-    struct resampling *r = context;
+    const struct resampling *r = context;
     const struct relume_btf_info *info = relume_btf_info(r->to);
-    float *rgb = mem_array(3 * btf_texels(r->to), sizeof *rgb);
-    for (int l = 0; rgb && l < info->lights; l++) {
-        for (int y = 0; y < info->height; y++)
-            for (int x = 0; x < info->width; x++)
-                relume_btf_evaluate(r->from, x, y, info->view[view], info->light[l],
-                                    rgb + 3 * ((size_t)y * (size_t)info->width + (size_t)x));
-        relume_btf_store(r->to, (int)view, l, rgb);
-    }
-    if (!rgb)
-        r->failed = true;
-    mem_free(rgb);
+    for (int y = 0; y < info->height; y++)
+        for (int x = 0; x < info->width; x++, rgb += 3)
+            relume_btf_evaluate(r->from, x, y, info->view[view], info->light[light], rgb);
 }
 
 relume_status pairs_resample(relume_btf **out, const relume_btf *btf, int threads,
@@ -73,12 +59,10 @@ relume_status pairs_resample(relume_btf **out, const relume_btf *btf, int thread
     info.light = info.view;
     info.without_cosine = false;  // evaluation multiplies by it
     info.relief = info.normals = (struct relume_image){0};
-    const relume_status status = relume_btf_create(out, &info, relume_btf_params(.log = log));
+    relume_status status = relume_btf_create(out, &info, relume_btf_params(.log = log));
+    if (!status)
+        status = btf_fill(*out, threads, &(struct resampling){btf, *out}, resample);
     if (status)
-        return status;
-    struct resampling r = {btf, *out, false};
-    thread_for(threads, (size_t)info.views, resample_view, &r);
-    if (r.failed)
         relume_btf_destroy(out);
-    return r.failed ? RELUME_ENOMEM : RELUME_OK;
+    return status;
 }

@@ -105,6 +105,16 @@ struct relume_reflection_place {
     uint32_t vertex[3];
     double weight[3];
 };
+// Constraints that count together: those of a region, or all where there are no regions. They
+// belong to the reflection.
+struct relume_reflection_set {
+    const int *member;  // numbers of constraints
+    int members;
+};
+// One for each region, or a single one. `*least`, in world units: no distance to a constraint is
+// taken to be less. For whoever draws by themselves.
+RELUME_API struct relume_reflection_set relume_reflection_set_of(
+    double *least, const relume_reflection *reflection, int region);
 // Whether a constraint does something: it lies in a region, or there are no regions.
 RELUME_API bool relume_reflection_acts(const relume_reflection *reflection, int constraint);
 // a(q) of a region, in [0, 1].

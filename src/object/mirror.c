@@ -5,7 +5,6 @@
 // Premecz 2005, "Approximate ray-tracing on the GPU with distance impostors"), in steps of equal
 // angle to the eye or so. A ray that passes behind something goes on: what is there the panorama
 // has not seen. One that hits nothing ends in the far distance.
-#include "math/bilinear.h"
 #include "object/object.h"
 
 #include <relume/light.h>
@@ -98,17 +97,17 @@ static void panorama_value(float rgb[3], const struct surround *s, vec3 place, v
 
 // ---------------------------------------------------------------- environments
 
+// The map is laid out as a spherical panorama.
 static void add_environment(float rgb[3], const struct relume_light *light, vec3 direction)
 {
-    const struct relume_image *map = relume_environment_map(light->environment);
+    static const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
     const vec3 d = relume_environment_turn(direction, -light->rotate_deg);
-    const double x = (atan2(d.x, -d.z) + M_PI) / (2.0 * M_PI) * map->width;
-    const double y = acos(fmin(fmax(d.y, -1.0), 1.0)) / M_PI * map->height;
-    const struct bilinear b = bilinear_at(x - 0.5, y - 0.5, map->width, map->height, EDGE_WRAPPED);
-    for (int k = 0; k < 4; k++)
-        for (int c = 0; c < 3; c++)
-            rgb[c] += light->rgb[c] * (float)bilinear_share(&b, k, 1.0) *
-                      map->data[3 * b.at[k] + (size_t)c];
+    float value[3];
+    if (!relume_panorama_sample(value, &sphere, relume_environment_map(light->environment), d,
+                                NULL))
+        return;
+    for (int c = 0; c < 3; c++)
+        rgb[c] += light->rgb[c] * value[c];
 }
 
 void surround_value(float rgb[3], const struct surround *s, vec3 place, vec3 direction)

@@ -83,7 +83,7 @@ static bool read_vector(const jvalue *value, vec3 *out)
 static relume_status find_original(const struct reading *r, size_t number,
                                    struct relume_reflection_constraint *c)
 {
-    const double BESIDE = 0.02;  // of the objects' size
+    const double BESIDE = 0.1;  // of the objects' size
     const double size = vec3_length(vec3_sub(r->o->info.max, r->o->info.min));
     const vec3 way = vec3_sub(c->position, c->eye);
     struct relume_object_reflection seen;

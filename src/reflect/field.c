@@ -42,6 +42,13 @@ const struct relume_reflection_edit *relume_reflection_edit(const relume_reflect
     return &reflection->edit;
 }
 
+struct relume_reflection_set relume_reflection_set_of(double *least, const relume_reflection *f,
+                                                      int region)
+{
+    *least = f->least;
+    return (struct relume_reflection_set){f->gathered[region].member, f->gathered[region].members};
+}
+
 bool relume_reflection_acts(const relume_reflection *f, int constraint)
 {
     for (int i = 0; i < gathered_count(f); i++)

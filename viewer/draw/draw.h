@@ -91,6 +91,8 @@ extern const struct fragment draw_mean_fragment;
 void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
                const struct target *sum);
 
+// The shader that knows how a panorama is laid out.
+const char *draw_panorama_shader(const struct relume_geometry *geometry);
 // A perspective look into a panorama.
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
                                    const struct relume_geometry *geometry,

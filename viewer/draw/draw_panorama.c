@@ -9,15 +9,19 @@ static const char *const uniforms[] = {
     "stereographic", "look_size",  "exposure", "disc",
 };
 
+const char *draw_panorama_shader(const struct relume_geometry *geometry)
+{
+    return geometry->projection == RELUME_CUBE        ? "panorama_cube.frag"
+           : geometry->projection == RELUME_SPHERICAL ? "panorama_sphere.frag"
+           : geometry->disc                           ? "panorama_discs.frag"
+                                                      : "panorama_cylinder.frag";
+}
+
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
                                    const struct relume_geometry *geometry,
                                    const struct relume_log *log)
 {
-    const char *name = geometry->projection == RELUME_CUBE        ? "panorama_cube.frag"
-                       : geometry->projection == RELUME_SPHERICAL ? "panorama_sphere.frag"
-                       : geometry->disc                           ? "panorama_discs.frag"
-                                                                  : "panorama_cylinder.frag";
-    return program_create(program, gl, name, uniforms, COUNT, log);
+    return program_create(program, gl, draw_panorama_shader(geometry), uniforms, COUNT, log);
 }
 
 void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,

@@ -138,6 +138,7 @@ relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *g
                                  .objects = objects,
                                  .uniforms = {.gl = gl, .log = log},
                                  .maps = {.gl = gl, .log = log},
+                                 .mirrors = {.gl = gl, .log = log},
                                  .grid = gl->software ? 1 : FINER};
     const struct relume_vec3 extent = vec3_sub(info->max, info->min);
     t->radius = 0.5 * vec3_length(extent);
@@ -195,6 +196,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
     shadow_map_destroy(&t->shadow);
     light_uniforms_forget(&t->uniforms);
     sky_maps_forget(&t->maps);
+    mirrors_forget(&t->mirrors);
     t->gl->DeleteVertexArrays(1, &t->array);
     t->gl->DeleteBuffers(1, &t->vertices);
     t->gl->DeleteBuffers(1, &t->indices);
@@ -510,6 +512,22 @@ static relume_status add_sample(struct objects_drawer *t, int light_sample, int 
     return status;
 }
 
+static relume_status add_mirrors(struct objects_drawer *t, int only)
+{
+    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    const struct mirror_surface surface = {&t->place, &t->normal, t->projection.eye};
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < info->parts && !status; i++) {
+        const int material = only >= 0 ? only : info->part[i].material;
+        if (!info->material[material].mirror)
+            continue;
+        target_resume(&t->shaded, t->gl);
+        status = mirrors_draw(&t->mirrors, t->objects, i, material, &surface, &t->panorama,
+                              t->light, t->lights);
+    }
+    return status;
+}
+
 relume_status objects_drawer_shade(struct objects_drawer *t,
                                    const struct frame_projection *projection, int width, int height,
                                    int only)
@@ -527,6 +545,8 @@ relume_status objects_drawer_shade(struct objects_drawer *t,
     for (int i = 0; i < t->lights && !status; i++)
         if (t->light[i].kind == RELUME_LIGHT_ENVIRONMENT)
             status = objects_drawer_add_sky(t, i, only);
+    if (!status)
+        status = add_mirrors(t, only);
     return status ? status : gl_check(gl, "drawing objects", t->log);
 }
 

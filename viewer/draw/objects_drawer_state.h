@@ -6,6 +6,7 @@
 #include "draw/draw.h"
 #include "draw/shadow_map.h"
 #include "draw/frame_projection.h"
+#include "draw/mirrors.h"
 #include "draw/sky_maps.h"
 
 struct objects_drawer_program {
@@ -25,6 +26,8 @@ struct objects_drawer {
     struct btf_material *material;  // [materials]; without a shader until it is shown
     struct light_uniforms uniforms;
     struct sky_maps maps;
+    struct mirrors mirrors;
+    struct mirror_panorama panorama;  // that they show, of the present frame
     struct shadow_map shadow;
     // Of the frame, `grid` times finer; `other` is in another material, to compare with.
     struct target place, normal, tangent, footprint, shaded, other;

@@ -171,6 +171,28 @@ static relume_status light_scene(struct renderer *r, const struct frame_request 
     return status;
 }
 
+static bool has_mirrors(const relume_objects *objects)
+{
+    const struct relume_objects_info *info = relume_objects_info(objects);
+    for (int i = 0; i < info->materials; i++)
+        if (info->material[i].mirror)
+            return true;
+    return false;
+}
+
+// The panorama that mirrors show, under all lights.
+static relume_status find_surround(struct renderer *r, const struct frame_request *q,
+                                   const struct relume_light *lights, int count)
+{
+    r->drawer.panorama = (struct mirror_panorama){.geometry = NULL};
+    if (r->geometry.projection < RELUME_CYLINDRICAL || !has_mirrors(r->drawer.objects))
+        return RELUME_OK;
+    const relume_status status = renderer_relight_views(r, q, lights, count);
+    if (!status && r->relit[0] && r->place[0].texture)
+        r->drawer.panorama = (struct mirror_panorama){&r->geometry, r->relit[0], &r->place[0]};
+    return status;
+}
+
 static relume_status draw_scene(struct renderer *r, const struct frame_request *q,
                                 const struct place *place, const struct relume_light *lights,
                                 int count, bool seen)
@@ -189,7 +211,9 @@ static relume_status draw_scene(struct renderer *r, const struct frame_request *
     }
     if (!status)
         status = find_scene(r, q, *place);
-    return status ? status : light_scene(r, q, place, lights, count);
+    if (!status)
+        status = light_scene(r, q, place, lights, count);
+    return status ? status : find_surround(r, q, lights, count);
 }
 
 // ---------------------------------------------------------------- the objects

@@ -114,6 +114,8 @@ static const struct option options[] = {
          "difference"),
     TEXT("--objects", objects.description, "FILE",
          "objects covered with BTFs (docs/objects.md), in the scene or alone"),
+    TEXT("--reflections", objects.reflections, "FILE",
+         "what their mirrors shall reflect where (docs/reflections.md)"),
     TEXT("--mesh", objects.mesh, "FILE",
          "one mesh instead, covered with --material: .obj, .ply, .gltf, .glb, ..."),
     OWN("--material", objects, "DIR",
@@ -264,6 +266,9 @@ static relume_status choose_objects(struct options *o, const struct relume_log *
         return say(log, RELUME_EINVAL, "--material: expected --mesh, for an object in a scene");
     if (!w->materials && w->repeat != 0.0)
         return say(log, RELUME_EINVAL, "--repeat: expected a material, as FILE or by --material");
+    if (w->reflections && !w->description)
+        return say(log, RELUME_EINVAL,
+                   "--reflections: expected a description of objects; add --objects FILE");
     o->stage = !o->file && (w->materials || w->description);
     return RELUME_OK;
 }

@@ -33,7 +33,7 @@ struct recording {
 // Objects that are asked for: a description, or materials on a mesh (NULL: on a cushion).
 enum { SESSION_MATERIALS = 32 };
 struct session_objects {
-    const char *description, *mesh;  // NULL: none
+    const char *description, *mesh, *reflections;  // NULL: none
     const char *material[SESSION_MATERIALS];
     int materials;
     double repeat;  // 0: 1

@@ -11,8 +11,14 @@ relume_status session_take_objects(struct session *s, const struct session_objec
 {
     const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
     s->wanted = *wanted;
-    if (wanted->description)
-        return relume_objects_open(&s->objects, wanted->description, &params);
+    if (wanted->description) {
+        const relume_status status = relume_objects_open(&s->objects, wanted->description, &params);
+        return status || !wanted->reflections
+                   ? status
+                   : relume_objects_load_reflections(
+                         s->objects, wanted->reflections,
+                         relume_reflection_params(.log = s->log, .threads = s->threads));
+    }
     if (wanted->materials)
         return relume_objects_of_mesh(&s->objects, wanted->mesh, wanted->material,
                                       wanted->materials, wanted->repeat, &params);

@@ -52,6 +52,7 @@ float azimuth_column(vec3 d)
     return (atan(d.x, -d.z) + PI) / (2.0 * PI) * float(textureSize(view, 0).x);
 }
 
+#ifndef MIRROR
 void main()
 {
     vec3 ray = look_ray(look, look_size, gl_FragCoord.xy);
@@ -67,3 +68,4 @@ void main()
         }
     color = vec4(exposure * sum / float(across.count * down.count), 1.0);
 }
+#endif

@@ -58,3 +58,7 @@ bool panorama_pixel(out vec2 xy, out int face, vec3 d)
     face = cube_pixel(xy, d);
     return true;
 }
+
+#ifdef MIRROR
+#include "mirror.glsl"
+#endif

@@ -30,3 +30,7 @@ vec3 panorama_texel(int face, int x, int y)
     ivec2 size = textureSize(view, 0);
     return fetch(wrap_index(x, size.x), clamp(y, 0, size.y - 1));
 }
+
+#ifdef MIRROR
+#include "mirror.glsl"
+#endif

@@ -107,3 +107,7 @@ vec3 panorama_sample(vec3 d)
         return rim_sample(d, xy.x, h < 0.0, 2.0 * from_rim);
     return cylinder_bilinear(xy - 0.5);
 }
+
+#ifdef MIRROR
+#include "mirror.glsl"
+#endif

@@ -1,4 +1,5 @@
 // What a panorama shows when its image is one layout of texels, which its shader states.
+#define PANORAMA_LAYOUT
 // False when the panorama does not show that direction. `face`: of a cube.
 bool panorama_pixel(out vec2 xy, out int face, vec3 direction);
 vec3 panorama_texel(int face, int x, int y);

@@ -28,3 +28,7 @@ vec3 panorama_texel(int face, int x, int y)
     return 0.5 * (fetch(wrap_index(column + size.x / 2, size.x), row) +
                   fetch(wrap_index(column + (size.x + 1) / 2, size.x), row));
 }
+
+#ifdef MIRROR
+#include "mirror.glsl"
+#endif

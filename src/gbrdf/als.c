@@ -10,6 +10,7 @@
 #include "gbrdf/als.h"
 
 #include "gbrdf/brdf.h"
+#include "math/bilinear.h"
 #include "math/luminance.h"
 
 #include <string.h>
@@ -22,8 +23,33 @@ static const double DARK = 0.2;
 static const double WELL_KNOWN = 0.1;
 enum { SWEEPS = 60 };
 
-int als_gather(struct als_sample *out, const struct flat *flat, size_t texel, double turn,
-               const float *values, const struct als_form *form)
+static void put(struct als_samples *out, const struct als_form *form, vec3 k1, vec3 k2,
+                const float value[3])
+{
+    struct als_block *b = &out->block[out->count / ALS_LANES];
+    const int i = out->count++ % ALS_LANES, side = form->side;
+    const vec3 h = vec3_unit(vec3_add(k1, k2));
+    double at[2];
+    if (!i)
+        memset(b, 0, sizeof *b);
+    for (int c = 0; c < form->channels; c++)
+        b->value[c][i] = form->channels == 1 ? luminance_709f(value) : value[c];
+    b->cosine[i] = (float)k1.z;
+    b->share[i] = (float)(k1.z / brdf_masking(k1.z, k2.z));
+    b->grazing[i] = (float)brdf_grazing(vec3_dot(k1, h));
+    ndf_place(h, side, at);
+    // a place beyond the middles of the outermost cells is theirs
+    const double x = fmin(fmax(at[0] - 0.5, 0.0), side - 1.0),
+                 y = fmin(fmax(at[1] - 0.5, 0.0), side - 1.0);
+    const int column = index_clamped((int)x, side - 1), row = index_clamped((int)y, side - 1);
+    const struct bilinear cells = {.across = x - column, .down = y - row};
+    b->cell[i] = (uint16_t)(row * side + column);
+    for (int k = 0; k < 4; k++)
+        b->corner[k][i] = bilinear_sharef(&cells, k, 1.0f);
+}
+
+void als_gather(struct als_samples *out, const struct flat *flat, size_t texel, double turn,
+                const float *values, const struct als_form *form)
 {
     const struct relume_btf_info *info = relume_btf_info(flat->btf);
     const uint8_t *seen = flat->seen + texel * (size_t)flat->views;
@@ -31,7 +57,8 @@ int als_gather(struct als_sample *out, const struct flat *flat, size_t texel, do
     const vec3 n = flat->normal[texel];
     const struct gbrdf_texel frame = {.normal = {(float)n.x, (float)n.y, (float)n.z},
                                       .turn = {(float)cos(turn), (float)sin(turn)}};
-    int count = 0;
+    double sum = 0.0;
+    out->count = 0;
     for (int v = 0; v < flat->views; v++) {
         const vec3 k2 = gbrdf_local(&frame, info->view[v]);
         if (!seen[v] || k2.z < (double)LEAST_COSINE)
@@ -41,46 +68,39 @@ int als_gather(struct als_sample *out, const struct flat *flat, size_t texel, do
             const vec3 k1 = gbrdf_local(&frame, info->light[l]);
             if (!lit[l] || k1.z < (double)LEAST_COSINE)
                 continue;
-            const vec3 h = vec3_unit(vec3_add(k1, k2));
             const float *from = values + 3 * ((size_t)v * (size_t)flat->lights + (size_t)l);
-            const double scale =
-                (info->without_cosine ? info->light[l].z : 1.0) / (M_PI * form->light);
-            struct als_sample *s = &out[count++];
-            double at[2];
-            for (int c = 0; c < 3; c++)
-                s->value[c] = fmaxf(from[c] * (float)scale, 0.0f);
-            if (form->channels == 1)
-                s->value[0] = luminance_709f(s->value);
-            s->cosine = (float)k1.z;
-            s->share = (float)(k1.z / brdf_masking(k1.z, k2.z));
-            s->grazing = (float)brdf_grazing(vec3_dot(k1, h));
-            ndf_place(h, form->side, at);
-            s->place[0] = (float)at[0] - 0.5f;
-            s->place[1] = (float)at[1] - 0.5f;
+            const float scale =
+                (float)((info->without_cosine ? info->light[l].z : 1.0) / (M_PI * form->light));
+            const float value[3] = {fmaxf(from[0] * scale, 0.0f), fmaxf(from[1] * scale, 0.0f),
+                                    fmaxf(from[2] * scale, 0.0f)};
+            put(out, form, k1, k2, value);
+            sum += form->channels == 1 ? luminance_709(value)
+                                       : (double)(value[0] + value[1] + value[2]) / 3.0;
         }
     }
-    return count;
+    out->least = out->count ? (float)(DARK * sum / out->count + 1e-9) : 1.0f;
 }
 
-// What is added to values before they divide.
-static double floor_of(const struct als_sample *sample, int n, int channels)
+void als_look(struct als_samples *samples, const float *q, const struct als_form *form)
 {
-    double sum = 0.0;
-    for (int i = 0; i < n; i++)
-        for (int c = 0; c < channels; c++)
-            sum += (double)sample[i].value[c];
-    return n ? DARK * sum / (channels * n) + 1e-9 : 1.0;
+    const size_t blocks = als_blocks((size_t)samples->count);
+    const int channels = form->channels, below = channels * form->side;
+    for (struct als_block *b = samples->block; b < samples->block + blocks; b++)
+        for (int i = 0; i < ALS_LANES; i++) {
+            const float *from = q + channels * b->cell[i];
+            for (int c = 0; c < channels; c++, from++)
+                b->shine[c][i] =
+                    b->share[i] *
+                    (b->corner[0][i] * from[0] + b->corner[1][i] * from[channels] +
+                     b->corner[2][i] * from[below] + b->corner[3][i] * from[below + channels]);
+        }
 }
 
-static double weight_of(double value, double model, double least)
+// What divides an error, squared.
+static inline float weight_of(float value, float model, float least)
 {
-    const double w = 1.0 / fmax(fmax(value, model), least);
+    const float more = value > model ? value : model, w = 1.0f / (more > least ? more : least);
     return w * w;
-}
-
-static struct bilinear cells_of(const struct als_sample *s, int side)
-{
-    return bilinear_at((double)s->place[0], (double)s->place[1], side, side, EDGE_CLAMPED);
 }
 
 // ---------------------------------------------------------------- a texel beside its distribution
@@ -91,15 +111,62 @@ struct normal_equations {
     double m[UNKNOWNS][UNKNOWNS], right[UNKNOWNS];
 };
 
-static void add_row(struct normal_equations *e, int channel, const double lambda[3], double value,
-                    double weight)
+// Sums of one channel, lane by lane: products of cd's, a's and b's factors, and of these and the
+// value.
+enum { CC, CA, CB, AA, AB, BB, CV, AV, BV, SUMS };
+// Of single precision, as many blocks as lose nothing.
+enum { RUN = 16 };
+
+static void add_block(float sum[SUMS][ALS_LANES], const struct als_block *b, int channel,
+                      const struct als_texel *t, float scale, float least)
 {
-    const int at[3] = {CD + channel, A, B};
-    for (int i = 0; i < 3; i++) {
-        e->right[at[i]] += weight * lambda[i] * value;
-        for (int j = 0; j < 3; j++)
-            e->m[at[i]][at[j]] += weight * lambda[i] * lambda[j];
+    const float *value = b->value[channel], *shine = b->shine[channel];
+    const float diffuse = (float)t->diffuse[channel], r0 = (float)t->r0, rest = 1.0f - r0;
+    for (int i = 0; i < ALS_LANES; i++) {
+        const float v = value[i], c = b->cosine[i] * (float)(1.0 / M_PI), a = scale * shine[i];
+        const float g = b->grazing[i], w = weight_of(v, c * diffuse + a * (r0 + rest * g), least);
+        const float wc = w * c, wa = w * a, wb = wa * g;
+        sum[CC][i] += wc * c;
+        sum[CA][i] += wc * a;
+        sum[CB][i] += wc * a * g;
+        sum[AA][i] += wa * a;
+        sum[AB][i] += wb * a;
+        sum[BB][i] += wb * a * g;
+        sum[CV][i] += wc * v;
+        sum[AV][i] += wa * v;
+        sum[BV][i] += wb * v;
     }
+}
+
+static void flush(struct normal_equations *e, int c, float sum[SUMS][ALS_LANES])
+{
+    double all[SUMS] = {0.0};
+    for (int k = 0; k < SUMS; k++)
+        for (int i = 0; i < ALS_LANES; i++)
+            all[k] += (double)sum[k][i];
+    memset(sum, 0, SUMS * sizeof *sum);
+    e->m[CD + c][CD + c] += all[CC];
+    e->m[CD + c][A] = e->m[A][CD + c] += all[CA];
+    e->m[CD + c][B] = e->m[B][CD + c] += all[CB];
+    e->m[A][A] += all[AA];
+    e->m[A][B] = e->m[B][A] += all[AB];
+    e->m[B][B] += all[BB];
+    e->right[CD + c] += all[CV];
+    e->right[A] += all[AV];
+    e->right[B] += all[BV];
+}
+
+static void gather_equations(struct normal_equations *e, const struct als_texel *t, float scale,
+                             const struct als_form *form, const struct als_samples *samples)
+{
+    const size_t blocks = als_blocks((size_t)samples->count);
+    float sum[3][SUMS][ALS_LANES] = {{{0.0f}}};
+    for (size_t k = 0; k < blocks; k++)
+        for (int c = 0; c < form->channels; c++) {
+            add_block(sum[c], &samples->block[k], c, t, scale, samples->least);
+            if (k % RUN == RUN - 1 || k + 1 == blocks)
+                flush(e, c, sum[c]);
+        }
 }
 
 // One unknown after the other, each within its bounds.
@@ -128,26 +195,13 @@ static void tie(struct normal_equations *e)
     *e = tied;
 }
 
-double als_fit_texel(struct als_texel *t, const float *q, const struct als_form *form,
-                     const struct als_sample *sample, int n, bool fixed)
+double als_fit_texel(struct als_texel *t, float scale, const struct als_form *form,
+                     const struct als_samples *samples, bool fixed)
 {
     static const double most[UNKNOWNS] = {1.0, 1.0, 1.0, 1.0, INFINITY};
     static const double any[UNKNOWNS] = {1.0, 1.0, 1.0, INFINITY, INFINITY};
-    const double least = floor_of(sample, n, form->channels);
     struct normal_equations e = {.right = {0.0}};
-    for (int i = 0; i < n; i++) {
-        const struct bilinear b = cells_of(&sample[i], form->side);
-        for (int c = 0; c < form->channels; c++) {
-            const double shine = (double)sample[i].share *
-                                 (double)bilinear_valuef(&b, q, (size_t)form->channels, (size_t)c);
-            const double lambda[3] = {(double)sample[i].cosine / M_PI, shine,
-                                      shine * (double)sample[i].grazing};
-            const double value = (double)sample[i].value[c];
-            const double model = lambda[0] * t->diffuse[c] +
-                                 shine * (t->r0 + (1.0 - t->r0) * (double)sample[i].grazing);
-            add_row(&e, c, lambda, value, weight_of(value, model, least));
-        }
-    }
+    gather_equations(&e, t, scale, form, samples);
     double x[UNKNOWNS] = {t->diffuse[0], t->diffuse[1], t->diffuse[2], t->r0, 1.0 - t->r0};
     if (fixed)
         tie(&e);
@@ -157,33 +211,39 @@ double als_fit_texel(struct als_texel *t, const float *q, const struct als_form 
         t->r0 = x[A];
         return 1.0;
     }
-    const double scale = x[A] + x[B];
-    if (scale > 1e-9)
-        t->r0 = x[A] / scale;
-    return fmax(scale, 1e-4);
+    const double both = x[A] + x[B];
+    if (both > 1e-9)
+        t->r0 = x[A] / both;
+    return fmax(both, 1e-4);
 }
 
 // ---------------------------------------------------------------- the distribution beside texels
 
-void als_add(struct als_sums *sums, const struct als_texel *t, const float *q,
-             const struct als_form *form, const struct als_sample *sample, int n)
+void als_add(struct als_sums *sums, const struct als_texel *t, float scale,
+             const struct als_form *form, const struct als_samples *samples)
 {
-    const double least = floor_of(sample, n, form->channels);
-    for (int i = 0; i < n; i++) {
-        const struct als_sample *s = &sample[i];
-        const struct bilinear b = cells_of(s, form->side);
-        const double lambda = (double)s->share * (t->r0 + (1.0 - t->r0) * (double)s->grazing);
-        const size_t channels = (size_t)form->channels;
-        for (size_t c = 0; c < channels; c++) {
-            const double value = (double)s->value[c];
-            const double model = (double)s->cosine * t->diffuse[c] / M_PI +
-                                 lambda * (double)bilinear_valuef(&b, q, channels, c);
-            const double w = weight_of(value, model, least), delta = value - model;
-            for (int k = 0; k < 4; k++) {
-                const double share = bilinear_share(&b, k, w);
-                sums->above[b.at[k]][c] += share * lambda * delta;
-                sums->below[b.at[k]][c] += share * lambda * lambda;
+    const size_t blocks = als_blocks((size_t)samples->count);
+    const float r0 = (float)t->r0, rest = 1.0f - r0, least = samples->least;
+    const int corner[4] = {0, 1, form->side, form->side + 1};
+    for (size_t k = 0; k < blocks; k++) {
+        const struct als_block *b = &samples->block[k];
+        float above[ALS_LANES], below[ALS_LANES];
+        for (int c = 0; c < form->channels; c++) {
+            const float diffuse = (float)(t->diffuse[c] / M_PI);
+            for (int i = 0; i < ALS_LANES; i++) {
+                const float fresnel = r0 + rest * b->grazing[i], lambda = b->share[i] * fresnel;
+                const float value = b->value[c][i];
+                const float model = b->cosine[i] * diffuse + scale * b->shine[c][i] * fresnel;
+                const float w = weight_of(value, model, least) * lambda;
+                above[i] = w * (value - model);
+                below[i] = w * lambda;
             }
+            for (int i = 0; i < ALS_LANES; i++)
+                for (int n = 0; n < 4; n++) {
+                    const int cell = b->cell[i] + corner[n];
+                    sums->above[cell][c] += (double)(b->corner[n][i] * above[i]);
+                    sums->below[cell][c] += (double)(b->corner[n][i] * below[i]);
+                }
         }
     }
 }
@@ -225,19 +285,20 @@ void als_solve(float *q, const struct als_sums *sums, const struct als_form *for
 }
 
 void als_fit_alone(struct als_texel *t, float *q, struct als_sums *scratch,
-                   const struct als_sample *sample, int n, const struct als_form *form, int rounds)
+                   struct als_samples *samples, const struct als_form *form, int rounds)
 {
     const int cells = form->side * form->side, values = cells * form->channels;
     for (int i = 0; i < values; i++)
         q[i] = 0.05f;
     *t = (struct als_texel){{0.2, 0.2, 0.2}, 0.3};
     for (int round = 0; round < rounds; round++) {
-        const float scale = (float)als_fit_texel(t, q, form, sample, n, false);
+        als_look(samples, q, form);
+        const float scale = (float)als_fit_texel(t, 1.0f, form, samples, false);
         for (int i = 0; i < values; i++)
             q[i] *= scale;
         memset(scratch->above, 0, (size_t)cells * sizeof *scratch->above);
         memset(scratch->below, 0, (size_t)cells * sizeof *scratch->below);
-        als_add(scratch, t, q, form, sample, n);
+        als_add(scratch, t, scale, form, samples);
         als_solve(q, scratch, form, t->diffuse);
     }
 }

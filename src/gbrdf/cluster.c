@@ -16,7 +16,7 @@
 #include <string.h>
 
 // Centres are learned from no more texels than this.
-enum { LEARN = 2048, ROUNDS = 12, STARTS = 3, RELAXATIONS = 4, MOST_CLUSTERS = 64 };
+enum { LEARN = 1024, ROUNDS = 12, STARTS = 3, RELAXATIONS = 4, MOST_CLUSTERS = 64 };
 // Of the pole; further out, half vectors are rare.
 static const double WIDEST = 60.0 * M_PI / 180.0;
 // What a turn must gain of the unit correlation: those of round distributions mean nothing.
@@ -70,15 +70,16 @@ void polar_from(float polar[POLAR_VALUES], const float *q, int side)
 // c[shift] for all shifts, of products with `a` shifted forwards; none waits for another.
 static void correlate(float c[POLAR_AROUND], const float *a, const float *b)
 {
-    memset(c, 0, POLAR_AROUND * sizeof *c);
+    float sum[POLAR_AROUND] = {0.0f};
     for (int r = 0; r < POLAR_RINGS; r++, a += POLAR_AROUND, b += POLAR_AROUND) {
         float twice[2 * POLAR_AROUND];
         memcpy(twice, a, POLAR_AROUND * sizeof *a);
         memcpy(twice + POLAR_AROUND, a, POLAR_AROUND * sizeof *a);
         for (int i = 0; i < POLAR_AROUND; i++)
             for (int s = 0; s < POLAR_AROUND; s++)
-                c[s] += twice[i + s] * b[i];
+                sum[s] += twice[i + s] * b[i];
     }
+    memcpy(c, sum, sizeof sum);
 }
 
 double polar_align(const float *polar, const float *centre, double *shift)
@@ -114,8 +115,10 @@ struct learning {
     size_t texels;
     int count, threads;
     float centre[MOST_CLUSTERS][POLAR_VALUES];
-    double *distance, *shift;  // [texel][count], of those that are looked at
-    size_t stride, looked;     // every so manieth texel
+    double *distance, *shift;  // [texel][row], of those that are looked at
+    size_t row;
+    size_t stride, looked;  // every so manieth texel
+    int known;              // centres that have not moved since the last look
 };
 
 static const float *texel_of(const struct learning *w, size_t item)
@@ -127,14 +130,15 @@ static void compare(void *context, size_t item, int worker)
 {
     (void)worker;
     const struct learning *w = context;
-    for (int k = 0; k < w->count; k++) {
-        const size_t at = item * (size_t)w->count + (size_t)k;
+    for (int k = w->known; k < w->count; k++) {
+        const size_t at = item * w->row + (size_t)k;
         w->distance[at] = polar_align(texel_of(w, item), w->centre[k], &w->shift[at]);
     }
 }
 
-static void look(struct learning *w, size_t stride)
+static void look(struct learning *w, size_t stride, int known)
 {
+    w->known = known;
     w->stride = stride;
     w->looked = (w->texels + stride - 1) / stride;
     thread_for(w->threads, w->looked, compare, w);
@@ -142,26 +146,31 @@ static void look(struct learning *w, size_t stride)
 
 static int nearest(const struct learning *w, size_t item)
 {
-    const double *d = w->distance + item * (size_t)w->count;
+    const double *d = w->distance + item * w->row;
     int best = 0;
     for (int k = 1; k < w->count; k++)
         best = d[k] < d[best] ? k : best;
     return best;
 }
 
-// The mean of those nearest to each; a centre of none stays.
-static void move_centres(struct learning *w)
+// The mean of those nearest to each; a centre of none stays. False when none moves.
+static bool move_centres(struct learning *w)
 {
+    bool moves = false;
     for (int k = 0; k < w->count; k++) {
         double sum[POLAR_VALUES] = {0.0}, length = 0.0;
         for (size_t i = 0; i < w->looked; i++)
             if (nearest(w, i) == k)
-                add_turned(sum, texel_of(w, i), w->shift[i * (size_t)w->count + (size_t)k]);
+                add_turned(sum, texel_of(w, i), w->shift[i * w->row + (size_t)k]);
         for (int i = 0; i < POLAR_VALUES; i++)
             length += sum[i] * sum[i];
-        for (int i = 0; i < POLAR_VALUES && length > 0.0; i++)
-            w->centre[k][i] = (float)(sum[i] / sqrt(length));
+        for (int i = 0; i < POLAR_VALUES && length > 0.0; i++) {
+            const float to = (float)(sum[i] / sqrt(length));
+            moves |= to != w->centre[k][i];
+            w->centre[k][i] = to;
+        }
     }
+    return moves;
 }
 
 // k-means++ (Arthur, Vassilvitskii 2007): far ones are likely to be the next centre.
@@ -174,14 +183,14 @@ static void seed_centres(struct learning *w, int count, size_t stride, struct ra
         w->stride = stride;
         memcpy(w->centre[next], texel_of(w, chosen), sizeof w->centre[next]);
         w->count = next + 1;
-        look(w, stride);
+        look(w, stride, next);
         double sum = 0.0;
         for (int pass = 0; pass < 2; pass++) {
             const double target = pass ? random_next(chance) * sum : INFINITY;
             sum = 0.0;
             chosen = w->looked - 1;
             for (size_t i = 0; i < w->looked && sum <= target; i++) {
-                const double d = w->distance[i * (size_t)w->count + (size_t)nearest(w, i)];
+                const double d = w->distance[i * w->row + (size_t)nearest(w, i)];
                 sum += d * d;
                 if (pass && sum > target)
                     chosen = i;
@@ -195,7 +204,7 @@ static double spread(const struct learning *w)
 {
     double sum = 0.0;
     for (size_t i = 0; i < w->looked; i++) {
-        const double d = w->distance[i * (size_t)w->count + (size_t)nearest(w, i)];
+        const double d = w->distance[i * w->row + (size_t)nearest(w, i)];
         sum += d * d;
     }
     return sum;
@@ -218,11 +227,12 @@ static double learn(struct learning *w, int count, size_t stride, uint64_t seed,
     for (int start = 0; start < STARTS; start++) {
         struct random chance = random_stream(seed, (uint64_t)count, (uint64_t)start);
         seed_centres(w, count, stride, &chance);
-        for (int round = 0; round < ROUNDS; round++) {
-            look(w, stride);
-            move_centres(w);
+        bool moves = true;
+        for (int round = 0; round < ROUNDS && moves; round++) {
+            look(w, stride, 0);
+            moves = move_centres(w);
         }
-        look(w, stride);
+        look(w, stride, 0);
         const double now = spread(w);
         if (now < least) {
             least = now;
@@ -243,7 +253,7 @@ static bool relax(const struct learning *w, float *p, int width, int height)
     for (size_t i = 0; i < w->texels; i++) {
         float sum = 0.0f;
         for (size_t k = 0; k < n; k++)
-            sum += p[i * n + k] = (float)(1.0 / (pow(w->distance[i * n + k], 2) + 1e-6));
+            sum += p[i * n + k] = (float)(1.0 / (pow(w->distance[i * w->row + k], 2) + 1e-6));
         for (size_t k = 0; k < n; k++)
             p[i * n + k] /= sum;
     }
@@ -276,7 +286,7 @@ static relume_status label(struct clusters *out, struct learning *w, int width, 
 {
     const size_t n = (size_t)w->count;
     float *p = mem_array(w->texels * n, sizeof *p);
-    look(w, 1);
+    look(w, 1, 0);
     if (!p || !relax(w, p, width, height)) {
         mem_free(p);
         return RELUME_ENOMEM;
@@ -286,7 +296,7 @@ static relume_status label(struct clusters *out, struct learning *w, int width, 
         for (size_t k = 1; k < n; k++)
             best = p[i * n + k] > p[i * n + best] ? k : best;
         out->label[i] = (uint8_t)best;
-        out->rotation[i] = (float)(2.0 * M_PI / POLAR_AROUND * w->shift[i * n + best]);
+        out->rotation[i] = (float)(2.0 * M_PI / POLAR_AROUND * w->shift[i * w->row + best]);
     }
     mem_free(p);
     return RELUME_OK;
@@ -310,7 +320,7 @@ relume_status clusters_find(struct clusters *out, const float *polar, int width,
         w->shift = mem_array(texels * (size_t)most, sizeof(double));
     }
     if (out->label && out->rotation && w && tried && w->distance && w->shift) {
-        w->polar = polar, w->texels = texels, w->threads = threads;
+        w->polar = polar, w->texels = texels, w->threads = threads, w->row = (size_t)most;
         out->separation = INFINITY;
         for (int n = exact ? most : FEWEST; n <= most; n++) {
             const double index = learn(w, n, stride, seed, tried);

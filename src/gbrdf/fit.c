@@ -106,17 +106,17 @@ static double light_of(const relume_btf *btf)
 static void fit_alone(void *context, size_t texel, const float *values)
 {
     struct work *w = context;
-    struct als_sample *sample = mem_array(w->pairs, sizeof *sample);
+    struct als_samples samples = {mem_array(als_blocks(w->pairs), sizeof *samples.block), 0, 0.0f};
     struct als_sums *sums = mem_array(1, sizeof *sums);
     float q[COARSE_SIDE * COARSE_SIDE];
     const struct als_form form = {COARSE_SIDE, 1, 1 + (int)w->pairs / COARSE_PAIRS, w->light};
-    if (sample && sums) {
-        const int n = als_gather(sample, &w->flat, texel, 0.0, values, &form);
-        als_fit_alone(&w->texel[texel], q, sums, sample, n, &form, COARSE_ROUNDS);
+    if (samples.block && sums) {
+        als_gather(&samples, &w->flat, texel, 0.0, values, &form);
+        als_fit_alone(&w->texel[texel], q, sums, &samples, &form, COARSE_ROUNDS);
         polar_from(w->polar + texel * POLAR_VALUES, q, COARSE_SIDE);
     } else
         w->failed = true;
-    mem_free(sample);
+    mem_free(samples.block);
     mem_free(sums);
 }
 
@@ -125,8 +125,8 @@ static void fit_alone(void *context, size_t texel, const float *values)
 struct learner {
     size_t *texel;  // [count]
     int count;
-    struct als_sample *sample;  // [count][pairs]
-    int *n;
+    struct als_block *block;  // of all texels
+    struct als_samples *samples;
     struct als_texel *t;
     struct als_sums *sums;
 };
@@ -159,8 +159,9 @@ static bool gather_texels(struct learner *l, const struct work *w)
     const struct als_form form = fine_form(w);
     for (int i = 0; values && i < l->count; i++) {
         btf_gather(w->flat.btf, l->texel[i], 1, values);
-        l->n[i] = als_gather(l->sample + (size_t)i * w->pairs, &w->flat, l->texel[i],
-                             (double)w->clusters.rotation[l->texel[i]], values, &form);
+        l->samples[i].block = l->block + (size_t)i * als_blocks(w->pairs);
+        als_gather(&l->samples[i], &w->flat, l->texel[i], (double)w->clusters.rotation[l->texel[i]],
+                   values, &form);
         l->t[i] = w->texel[l->texel[i]];
     }
     mem_free(values);
@@ -173,17 +174,16 @@ static void learn_round(struct learner *l, const struct work *w, float *q)
 {
     const struct als_form form = fine_form(w);
     double scale = 0.0, diffuse[3] = {0.0, 0.0, 0.0};
-    for (int i = 0; i < l->count; i++)
-        scale +=
-            als_fit_texel(&l->t[i], q, &form, l->sample + (size_t)i * w->pairs, l->n[i], false) /
-            l->count;
+    for (int i = 0; i < l->count; i++) {
+        als_look(&l->samples[i], q, &form);
+        scale += als_fit_texel(&l->t[i], 1.0f, &form, &l->samples[i], false) / l->count;
+    }
     for (int i = 0; i < NDF_VALUES; i++)
         q[i] *= (float)scale;
     memset(l->sums, 0, sizeof *l->sums);
     for (int i = 0; i < l->count; i++) {
-        const struct als_sample *sample = l->sample + (size_t)i * w->pairs;
-        als_fit_texel(&l->t[i], q, &form, sample, l->n[i], true);
-        als_add(l->sums, &l->t[i], q, &form, sample, l->n[i]);
+        als_fit_texel(&l->t[i], (float)scale, &form, &l->samples[i], true);
+        als_add(l->sums, &l->t[i], (float)scale, &form, &l->samples[i]);
         for (int c = 0; c < 3; c++)
             diffuse[c] += l->t[i].diffuse[c] / l->count;
     }
@@ -196,16 +196,16 @@ static void learn_material(void *context, size_t label, int worker)
     struct work *w = context;
     struct learner l = {
         .texel = mem_array(MATERIAL_TEXELS + 1, sizeof *l.texel),
-        .n = mem_array(MATERIAL_TEXELS, sizeof *l.n),
+        .samples = mem_array(MATERIAL_TEXELS, sizeof *l.samples),
         .t = mem_array(MATERIAL_TEXELS, sizeof *l.t),
         .sums = mem_array(1, sizeof *l.sums),
     };
     l.count = l.texel ? choose_texels(l.texel, w, (int)label) : 0;
-    l.sample = mem_array((size_t)l.count * w->pairs, sizeof *l.sample);
+    l.block = mem_array((size_t)l.count * als_blocks(w->pairs), sizeof *l.block);
     float *q = w->ndf[label];
     for (int i = 0; i < NDF_VALUES; i++)
         q[i] = 0.05f;
-    if (l.texel && l.n && l.t && l.sums && l.sample && gather_texels(&l, w))
+    if (l.texel && l.samples && l.t && l.sums && l.block && gather_texels(&l, w))
         for (int round = 0; l.count && round < MATERIAL_ROUNDS; round++)
             learn_round(&l, w, q);
     else
@@ -215,8 +215,8 @@ static void learn_material(void *context, size_t label, int worker)
         r0 += l.t[i].r0 / l.count;
     ndf_limit(q, r0, 1.0);
     mem_free(l.texel);
-    mem_free(l.sample);
-    mem_free(l.n);
+    mem_free(l.block);
+    mem_free(l.samples);
     mem_free(l.t);
     mem_free(l.sums);
 }
@@ -226,15 +226,15 @@ static void learn_material(void *context, size_t label, int worker)
 static void fit_beside(void *context, size_t texel, const float *values)
 {
     struct work *w = context;
-    struct als_sample *sample = mem_array(w->pairs, sizeof *sample);
+    struct als_samples samples = {mem_array(als_blocks(w->pairs), sizeof *samples.block), 0, 0.0f};
     const struct als_form form = fine_form(w);
-    if (sample) {
-        const int n =
-            als_gather(sample, &w->flat, texel, (double)w->clusters.rotation[texel], values, &form);
-        als_fit_texel(&w->texel[texel], w->ndf[w->clusters.label[texel]], &form, sample, n, true);
+    if (samples.block) {
+        als_gather(&samples, &w->flat, texel, (double)w->clusters.rotation[texel], values, &form);
+        als_look(&samples, w->ndf[w->clusters.label[texel]], &form);
+        als_fit_texel(&w->texel[texel], 1.0f, &form, &samples, true);
     } else
         w->failed = true;
-    mem_free(sample);
+    mem_free(samples.block);
 }
 
 static relume_status for_texels(struct work *w, const char *what,

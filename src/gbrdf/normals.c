@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-enum { LEAST_PAIRS = 8, ROUNDS = 20, MOST_STEPS = 200 };
+enum { LEAST_PAIRS = 8, MOST_PAIRS = 1100, ROUNDS = 20, MOST_STEPS = 200 };
 // Errors of the logarithm beyond this are of shadows and of what other parts send.
 static const double OUTLIER = 0.3;
 static const double LEAST_COSINE = 0.1, STEEPEST = 3.0;
@@ -25,7 +25,7 @@ struct work {
     vec3 *out;
     const struct flat *flat;
     const struct picture_pair *pairs;
-    int count;
+    int count, stride;  // every so manieth pair: many more say the same
 };
 
 struct equation {
@@ -48,10 +48,11 @@ static int collect(struct equation *out, const struct work *w, size_t texel, con
     const struct relume_btf_info *info = relume_btf_info(w->flat->btf);
     const uint8_t *seen = w->flat->seen + texel * (size_t)w->flat->views;
     double mean = 0.0, gram[9] = {0.0}, size[3], axis[9];
-    int n = 0;
-    for (int i = 0; i < w->count; i++)
-        mean += value_of(w, values, w->pairs[i].view[0], w->pairs[i].light[0]) / w->count;
-    for (int i = 0; i < w->count; i++) {
+    int n = 0, looked = 0;
+    for (int i = 0; i < w->count; i += w->stride, looked++)
+        mean += value_of(w, values, w->pairs[i].view[0], w->pairs[i].light[0]);
+    mean /= looked;
+    for (int i = 0; i < w->count; i += w->stride) {
         const struct picture_pair *p = &w->pairs[i];
         // the first picture is lit from where the second is seen
         const vec3 k1 = info->view[p->view[1]], k2 = info->view[p->view[0]];
@@ -61,7 +62,9 @@ static int collect(struct equation *out, const struct work *w, size_t texel, con
             !(other > DARK * mean))
             continue;
         const vec3 row = vec3_sub(vec3_scale(k2, one), vec3_scale(k1, other));
-        lsq_add_gram(gram, 3, (const double[3]){row.x, row.y, row.z}, 1);
+        const double r[3] = {row.x, row.y, row.z};
+        for (int k = 0; k < 9; k++)
+            gram[k] += r[k / 3] * r[k % 3];
         out[n++] = (struct equation){k1, k2, log(one / other)};
     }
     if (n >= LEAST_PAIRS && lsq_eigenvectors(gram, 3, 3, size, axis)) {
@@ -76,27 +79,32 @@ static int collect(struct equation *out, const struct work *w, size_t texel, con
 static double gather(const struct equation *e, int n, const double x[2], double m[4],
                      double right[2])
 {
-    double error = 0.0;
+    // the logarithm of a product of a few errors takes as long as that of one
+    double error = 0.0, errors = 1.0;
     memset(m, 0, 4 * sizeof *m);
     memset(right, 0, 2 * sizeof *right);
     for (int i = 0; i < n; i++) {
         const double c1 = e[i].k1.z - x[0] * e[i].k1.x - x[1] * e[i].k1.y,
                      c2 = e[i].k2.z - x[0] * e[i].k2.x - x[1] * e[i].k2.y;
         if (c1 < LEAST_COSINE || c2 < LEAST_COSINE) {
-            error += log(2.0);
+            errors *= 2.0;
             continue;
         }
-        const double r = e[i].ratio - log(c1) + log(c2), relative = r / OUTLIER;
+        const double r = e[i].ratio - log(c1 / c2), relative = r / OUTLIER;
         const double weight = 1.0 / (1.0 + relative * relative);
         const double d[2] = {e[i].k1.x / c1 - e[i].k2.x / c2, e[i].k1.y / c1 - e[i].k2.y / c2};
-        error += log(1.0 + relative * relative);
+        errors *= 1.0 + relative * relative;
+        if (errors > 1e200) {
+            error += log(errors);
+            errors = 1.0;
+        }
         for (int a = 0; a < 2; a++) {
             right[a] -= weight * d[a] * r;
             for (int b = 0; b < 2; b++)
                 m[2 * a + b] += weight * d[a] * d[b];
         }
     }
-    return error;
+    return error + log(errors);
 }
 
 static void improve(const struct equation *e, int n, double x[2])
@@ -142,7 +150,7 @@ static void find_normal(void *context, size_t texel, const float *values)
 relume_status depth_normals(vec3 *out, const struct flat *flat, const struct picture_pair *pairs,
                             int count, int threads, const struct relume_log *log)
 {
-    struct work w = {out, flat, pairs, count};
+    struct work w = {out, flat, pairs, count, 1 + count / MOST_PAIRS};
     return btf_for_texels(flat->btf, threads, log, "normals", &w, find_normal);
 }
 

@@ -56,13 +56,13 @@ static void test_als(void **state)
     struct flat flat;
     const float z = 0.0f;
     CHECK_OK(flat_make(&flat, btf, &(struct meso){1, 1, &z, 0.0f, 0.0f}, 1, NULL));
-    struct als_sample *sample = malloc(81 * 81 * sizeof *sample);
+    struct als_samples samples = {malloc(als_blocks(81 * 81) * sizeof *samples.block), 0, 0.0f};
     const struct als_form form = {SIDE, 3, 1, 1.0};
-    const int n = als_gather(sample, &flat, 0, 0.0, values, &form);
-    assert_int_equal(n, 81 * 81);
+    als_gather(&samples, &flat, 0, 0.0, values, &form);
+    assert_int_equal(samples.count, 81 * 81);
     struct als_sums *sums = malloc(sizeof *sums);
     struct als_texel t;
-    als_fit_alone(&t, q, sums, sample, n, &form, 40);
+    als_fit_alone(&t, q, sums, &samples, &form, 40);
     // what 40 rounds leave; 80 leave 1e-5
     CHECK_NEAR(t.r0, 0.08, 1e-4);
     for (int c = 0; c < 3; c++) {
@@ -72,7 +72,7 @@ static void test_als(void **state)
     flat_free(&flat);
     relume_btf_destroy(&btf);
     free(values);
-    free(sample);
+    free(samples.block);
     free(sums);
 }
 

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -161,6 +162,11 @@ RELUME_API void relume_files_abandon(void);
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_file_save(const char *path, const void *bytes, size_t size,
                                              const struct relume_log *log);
+// The same of a text that `print` writes, which is called once with `context` and a stream in
+// memory.
+RELUME_RESULT relume_status relume_file_print(const char *path,
+                                              void (*print)(const void *context, FILE *to),
+                                              const void *context, const struct relume_log *log);
 
 // What relume_file_save would refuse before it writes, for work that takes long: `path` is a file
 // that is read here (RELUME_EINVAL with a sentence), or a folder or may not be written, or its own

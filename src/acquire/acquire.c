@@ -140,22 +140,19 @@ static relume_status write_manifest(const struct acquisition *s, const char *pat
     return status;
 }
 
-static relume_status write_lp(const struct acquisition *s, const char *path)
+static void print_lp(const void *context, FILE *f)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f)
-        return RELUME_ENOMEM;
+    const struct acquisition *s = context;
     fprintf(f, "%d\n", s->shots);
     for (int i = 0; i < s->shots; i++) {
         const vec3 d = s->out->direction[i];
         fprintf(f, "%s %.7f %.7f %.7f\n", s->shot[i].name, d.x, d.y, d.z);
     }
-    const relume_status status =
-        fclose(f) ? RELUME_ENOMEM : outfile_save(path, text, size, s->p.log);
-    mem_free_libc(text);
-    return status;
+}
+
+static relume_status write_lp(const struct acquisition *s, const char *path)
+{
+    return relume_file_print(path, print_lp, s, s->p.log);
 }
 
 static relume_status copy_mask(const struct acquisition *s, const char *path)

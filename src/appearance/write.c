@@ -20,16 +20,12 @@ relume_status write_bytes(const struct writing *w, const char *name, const void 
 }
 
 relume_status write_text(const struct writing *w, const char *name,
-                         void (*put)(FILE *f, const struct writing *w))
+                         void (*put)(const void *w, FILE *f))
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f)
-        return RELUME_ENOMEM;
-    put(f, w);
-    const relume_status status = fclose(f) ? RELUME_ENOMEM : write_bytes(w, name, text, size);
-    mem_free_libc(text);
+    char *path = mem_format("%s/%s", w->folder, name);
+    const relume_status status =
+        path ? relume_file_print(path, put, w, w->params->log) : RELUME_ENOMEM;
+    mem_free(path);
     return status;
 }
 
@@ -197,8 +193,9 @@ static void put_quality(FILE *f, const char *name, const struct relume_maps_qual
     fputs("}", f);
 }
 
-static void put_description(FILE *f, const struct writing *w)
+static void put_description(const void *context, FILE *f)
 {
+    const struct writing *w = context;
     const struct relume_maps *m = w->maps;
     const double mm = w->params->width_mm;
     fprintf(f, "{\n\"format\": \"relume-maps\", \"version\": 1,\n\"width\": %d, \"height\": %d",

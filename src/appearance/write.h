@@ -17,7 +17,7 @@ struct writing {
 
 // A file of text, or of text that `put` prints.
 relume_status write_text(const struct writing *w, const char *name,
-                         void (*put)(FILE *f, const struct writing *w));
+                         void (*put)(const void *w, FILE *f));
 relume_status write_bytes(const struct writing *w, const char *name, const void *bytes,
                           size_t size);
 

@@ -65,8 +65,9 @@ static void put_input(FILE *f, const char *name, const char *type)
             type, name);
 }
 
-static void put_document(FILE *f, const struct writing *w)
+static void put_document(const void *context, FILE *f)
 {
+    const struct writing *w = context;
     const double to_metres = w->params->width_mm > 0.0 ? 0.001 : w->metres;
     fputs("<?xml version=\"1.0\"?>\n<materialx version=\"1.38\" colorspace=\"lin_rec709\">\n", f);
     put_graph(f, w);

@@ -375,3 +375,19 @@ relume_status relume_file_save(const char *path, const void *bytes, size_t size,
 {
     return outfile_save(path, bytes, size, log);
 }
+
+relume_status relume_file_print(const char *path, void (*print)(const void *context, FILE *to),
+                                const void *context, const struct relume_log *log)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    FILE *memory = open_memstream(&bytes, &size);
+    if (!memory)
+        return RELUME_ENOMEM;
+    print(context, memory);
+    const bool short_of_memory = ferror(memory);
+    const relume_status status =
+        fclose(memory) || short_of_memory ? RELUME_ENOMEM : outfile_save(path, bytes, size, log);
+    mem_free_libc(bytes);
+    return status;
+}

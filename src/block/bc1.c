@@ -5,7 +5,6 @@
 // neighbours of each of the six numbers. Always the form without a transparent colour.
 #include "block/line.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -45,19 +44,7 @@ static struct choice choose(const struct ends *ends, const uint8_t (*rgb)[3])
     struct choice out = {.ends = *ends};
     int palette[COLOURS][3];
     make_palette(palette, ends);
-    for (int i = 0; i < BLOCK_PIXELS; i++) {
-        int least = INT_MAX;
-        for (int k = 0; k < COLOURS; k++) {
-            int error = 0;
-            for (int c = 0; c < 3; c++)
-                error += (rgb[i][c] - palette[k][c]) * (rgb[i][c] - palette[k][c]);
-            if (error < least) {
-                least = error;
-                out.index[i] = (uint8_t)k;
-            }
-        }
-        out.error += least;
-    }
+    out.error = line_nearest(out.index, (const int(*)[3])palette, COLOURS, rgb);
     return out;
 }
 

@@ -23,20 +23,7 @@ static void choose(struct choice *c, const uint8_t (*rgb)[3])
     for (int k = 0; k < STEPS; k++)
         for (int i = 0; i < 3; i++)
             palette[k][i] = ((64 - parts[k]) * c->end[0][i] + parts[k] * c->end[1][i] + 32) >> 6;
-    c->error = 0;
-    for (int i = 0; i < BLOCK_PIXELS; i++) {
-        int least = INT_MAX;
-        for (int k = 0; k < STEPS; k++) {
-            int error = 0;
-            for (int n = 0; n < 3; n++)
-                error += (rgb[i][n] - palette[k][n]) * (rgb[i][n] - palette[k][n]);
-            if (error < least) {
-                least = error;
-                c->index[i] = (uint8_t)k;
-            }
-        }
-        c->error += least;
-    }
+    c->error = line_nearest(c->index, (const int(*)[3])palette, STEPS, rgb);
 }
 
 // The nearest of 128 values with that last bit.

@@ -1,6 +1,7 @@
 // line.c - the line in colour space along which the pixels of a block are placed
 #include "block/line.h"
 
+#include <limits.h>
 #include <math.h>
 
 enum { ROUNDS = 8 };
@@ -86,4 +87,24 @@ int line_refit(struct line *out, const uint8_t (*rgb)[3], const float at[BLOCK_P
         out->end[1][c] = clip((b * aa - a * ab) / determinant);
     }
     return 1;
+}
+
+int line_nearest(uint8_t index[BLOCK_PIXELS], const int (*palette)[3], int colours,
+                 const uint8_t (*rgb)[3])
+{
+    int sum = 0;
+    for (int i = 0; i < BLOCK_PIXELS; i++) {
+        int least = INT_MAX;
+        for (int k = 0; k < colours; k++) {
+            int error = 0;
+            for (int c = 0; c < 3; c++)
+                error += (rgb[i][c] - palette[k][c]) * (rgb[i][c] - palette[k][c]);
+            if (error < least) {
+                least = error;
+                index[i] = (uint8_t)k;
+            }
+        }
+        sum += least;
+    }
+    return sum;
 }

@@ -14,4 +14,8 @@ struct line line_fit(const uint8_t (*rgb)[3]);
 // one place.
 int line_refit(struct line *out, const uint8_t (*rgb)[3], const float at[BLOCK_PIXELS]);
 
+// The colour of `palette` that is nearest to each pixel; the sum of squared errors.
+int line_nearest(uint8_t index[BLOCK_PIXELS], const int (*palette)[3], int colours,
+                 const uint8_t (*rgb)[3]);
+
 #endif

@@ -202,8 +202,9 @@ static void print_ranges(FILE *out, const struct blocks *b)
     }
 }
 
-static void print_description(FILE *out, const struct blocks *b)
+static void print_description(const void *context, FILE *out)
 {
+    const struct blocks *b = context;
     char text[32];
     fprintf(
         out,
@@ -214,8 +215,9 @@ static void print_description(FILE *out, const struct blocks *b)
     fputs(" ] }\n", out);
 }
 
-static void print_shader(FILE *out, const struct blocks *b)
+static void print_shader(const void *context, FILE *out)
 {
+    const struct blocks *b = context;
     static const char head[] =
         "// Relights eigenimages: include this in a fragment shader. `light` is the direction\n"
         "// towards the lamp: x right, y up, z towards the viewer. Add lamps after this, as "
@@ -247,20 +249,11 @@ static void print_shader(FILE *out, const struct blocks *b)
 }
 
 static relume_status write_text(const struct blocks *b, const outdir *dir, const char *name,
-                                void (*print)(FILE *, const struct blocks *))
+                                void (*print)(const void *, FILE *))
 {
-    char *bytes = NULL, path[4096];
-    size_t size = 0;
-    FILE *memory = open_memstream(&bytes, &size);
-    if (!memory)
-        return RELUME_ENOMEM;
-    print(memory, b);
-    relume_status status = fclose(memory) ? RELUME_ENOMEM : RELUME_OK;
+    char path[4096];
     snprintf(path, sizeof path, "%s/%s", outdir_path(dir), name);
-    if (!status)
-        status = outfile_save(path, bytes, size, b->e->log);
-    mem_free_libc(bytes);
-    return status;
+    return relume_file_print(path, print, b, b->e->log);
 }
 
 // ---------------------------------------------------------------- how good, how small

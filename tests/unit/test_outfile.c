@@ -50,6 +50,11 @@ static void expect_content(const char *where, const char *want)
     assert_string_equal(text, want);
 }
 
+static void print_number(const void *context, FILE *to)
+{
+    fprintf(to, "%d\n", *(const int *)context);
+}
+
 static void test_whole_or_not_at_all(void **state)
 {
     (void)state;
@@ -74,8 +79,12 @@ static void test_whole_or_not_at_all(void **state)
     expect_content(path, "hello world");
     CHECK_OK(outfile_save(path, "x", 1, NULL));
     expect_content(path, "x");
+    CHECK_OK(relume_file_print(path, print_number, &(const int){42}, NULL));
+    expect_content(path, "42\n");
     assert_int_equal(entries(folder), 1);
     unlink(path);
+    assert_int_equal(relume_file_print("/nowhere/at/all", print_number, &(const int){1}, NULL),
+                     RELUME_EIO);
 }
 
 static void test_refusals(void **state)

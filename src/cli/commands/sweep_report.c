@@ -352,28 +352,29 @@ static relume_status save_diagram(const struct sweep *sweep)
     return status;
 }
 
-static relume_status save_table(const struct sweep *sweep, const char *extension,
-                                void (*print)(const struct sweep *, FILE *))
+static void print_csv(const void *sweep, FILE *to)
 {
-    char *bytes = NULL, path[4096];
-    size_t size = 0;
-    FILE *memory = open_memstream(&bytes, &size);
-    if (!memory)
-        return RELUME_ENOMEM;
-    print(sweep, memory);
-    relume_status status = fclose(memory) ? RELUME_ENOMEM : RELUME_OK;
+    sweep_print_csv(sweep, to);
+}
+
+static void print_json(const void *sweep, FILE *to)
+{
+    sweep_print_json(sweep, to);
+}
+
+static relume_status save_table(const struct sweep *sweep, const char *extension,
+                                void (*print)(const void *, FILE *))
+{
+    char path[4096];
     snprintf(path, sizeof path, "%s%s", sweep->out, extension);
-    if (!status)
-        status = relume_file_save(path, bytes, size, sweep->args->log);
-    free(bytes);
-    return status;
+    return relume_file_print(path, print, sweep, sweep->args->log);
 }
 
 relume_status sweep_save(const struct sweep *sweep)
 {
-    relume_status status = save_table(sweep, ".csv", sweep_print_csv);
+    relume_status status = save_table(sweep, ".csv", print_csv);
     if (!status)
-        status = save_table(sweep, ".json", sweep_print_json);
+        status = save_table(sweep, ".json", print_json);
     return status ? status : save_diagram(sweep);
 }
 

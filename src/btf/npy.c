@@ -120,6 +120,23 @@ static relume_status map_file(struct npy_file *f, const char *path, const struct
     return RELUME_OK;
 }
 
+// Where an odd header leaves the values between the addresses of their kind, they are copied.
+static relume_status align_values(struct npy_file *f, size_t offset, const struct relume_log *log)
+{
+    const size_t bytes = f->map_size - offset;
+    f->data = (const char *)f->map + offset;
+    if (!bytes || offset % npy_item(f->npy.kind) == 0)
+        return RELUME_OK;
+    void *copy = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (copy == MAP_FAILED)
+        return log_fail(log, RELUME_ENOMEM, "no memory for %zu bytes of values", bytes);
+    f->data = memcpy(copy, f->data, bytes);
+    munmap(f->map, f->map_size);
+    f->map = copy;
+    f->map_size = bytes;
+    return RELUME_OK;
+}
+
 relume_status npy_open(struct npy_file *file, const char *path, const struct relume_log *log)
 {
     *file = (struct npy_file){.map = NULL};
@@ -133,10 +150,10 @@ relume_status npy_open(struct npy_file *file, const char *path, const struct rel
     if (!status && file->map_size - offset != npy_bytes(&file->npy))
         status = log_fail(log, RELUME_EDAMAGED, "%s: expected %zu bytes of values; found %zu", path,
                           npy_bytes(&file->npy), file->map_size - offset);
+    if (!status)
+        status = align_values(file, offset, log);
     if (status)
         npy_close(file);
-    else
-        file->data = (const char *)file->map + offset;
     return status;
 }
 

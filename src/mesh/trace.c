@@ -131,12 +131,14 @@ void trace_leave(const float p[3], const float normal[3], float out[3])
     const float fixed_step = 1.0f / 65536.0f;
     const float spacings = 256.0f;
     for (int c = 0; c < 3; c++) {
+        if (!(fabsf(p[c]) >= near_zero)) {
+            out[c] = p[c] + fixed_step * normal[c];
+            continue;
+        }
         const int32_t steps = relume_whole(spacings * normal[c]);
         int32_t bits;
         memcpy(&bits, &p[c], sizeof bits);
         bits += p[c] < 0.0f ? -steps : steps;
-        float moved;
-        memcpy(&moved, &bits, sizeof moved);
-        out[c] = fabsf(p[c]) < near_zero ? p[c] + fixed_step * normal[c] : moved;
+        memcpy(&out[c], &bits, sizeof bits);
     }
 }

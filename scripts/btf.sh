@@ -37,6 +37,17 @@ done
 "$draw" column "$pictures/btf-materials.png" $(names row1 row2 row3)
 echo "  $pictures/btf-materials.png"
 
+sample stone-faults stone --size 64 --blur 1 --noise 0.02 --shift 0.5 --flicker 0.03
+n=0 list=
+for view in '0.05,-0.1,0.99|dir 0.3 -0.85 0.42' '0.75,-0.3,0.6|dir -0.3 0.3 0.9'; do
+    n=$((n + 1))
+    swatch "stone-sharp-$n" "$out/stone" "${view%|*}" "${view#*|}"
+    swatch "stone-faults-$n" "$out/stone-faults" "${view%|*}" "${view#*|}"
+    list="$list stone-sharp-$n stone-faults-$n"
+done
+"$draw" row "$pictures/btf-faults.png" scale=2 $(names $list)
+echo "  $pictures/btf-faults.png"
+
 n=0
 for view in '0.05,-0.1,0.99|dir 0.3 -0.85 0.42' '0.75,-0.3,0.6|dir -0.3 0.3 0.9'; do
     n=$((n + 1)) list=

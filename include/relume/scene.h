@@ -106,6 +106,17 @@ RELUME_API const char *relume_btf_material_name(const struct relume_btf_material
 // One line for help texts; constant.
 RELUME_API const char *relume_btf_material_summary(const struct relume_btf_material *material);
 
+// What is wrong with the apparatus; all zero: nothing. Each photograph, that is each pair of view
+// and light, has its own error of place and of brightness. Thread-safety: plain data.
+struct relume_btf_faults {
+    double blur;   // of lens and sensor seen from above, standard deviation in texels, [0, 100]; a
+                   // tilted sample is blurred further in the direction of the tilt, as 1 / cosine
+    double noise;  // of a white surface's photons, standard deviation in parts of its light, [0, 1]
+    double shift;  // of the rectified photograph, along u and v, standard deviation in texels, [0,
+                   // 100]
+    double flicker;  // of the lamp from photograph to photograph, standard deviation, [0, 1]
+};
+
 // What a sample is measured by. All that is pointed at is borrowed during the call.
 struct relume_btf_synth_params {
     size_t struct_size;  // filled by the macro (base.h)
@@ -120,7 +131,8 @@ struct relume_btf_synth_params {
     int bounces;    // of light inside the relief, beside direct light; default 1, negative: none
     uint64_t seed;  // of the relief and of the sampling
     int threads;    // default: all cores
-    const char *scratch;  // as in relume_btf_params
+    const char *scratch;              // as in relume_btf_params
+    struct relume_btf_faults faults;  // default: none
 };
 #define relume_btf_synth_params(...)                                                               \
     (&(const struct relume_btf_synth_params){RELUME_SIZED(relume_btf_synth_params), __VA_ARGS__})

@@ -6,7 +6,9 @@
 #include "base/log.h"
 #include "base/params.h"
 #include "base/memory.h"
+#include "base/thread.h"
 #include "math/random.h"
+#include "scene/apparatus.h"
 #include "scene/relief.h"
 #include "scene/render.h"
 
@@ -253,26 +255,55 @@ static relume_status photograph_view(const struct goniometer *g, int view,
     return render_lights(&job, held, report, &reporting);
 }
 
+// Photographs of one view on their way into the BTF.
+struct keeping {
+    const struct goniometer *g;
+    const apparatus *apparatus;  // NULL: without faults
+    struct relume_image *held;   // [lights]
+    float *texels;               // [workers][size][size][3]
+    relume_btf *btf;
+    int view;
+};
+
+static void keep(void *context, size_t light, int worker)
+{
+    const struct keeping *k = context;
+    const struct goniometer *g = k->g;
+    float *texels = k->held[light].data;
+    if (fineness(g) > 1) {
+        texels = k->texels + 3 * (size_t)worker * (size_t)g->p.size * (size_t)g->p.size;
+        resample(g, &k->held[light], texels);
+    }
+    if (k->apparatus)
+        apparatus_spoil(k->apparatus, texels, g->p.view[k->view],
+                        (uint64_t)k->view * (uint64_t)g->p.lights + light, worker);
+    relume_btf_store(k->btf, k->view, (int)light, texels);
+}
+
 static relume_status photograph(const struct goniometer *g, relume_btf *btf)
 {
-    const int fine = fineness(g), side = g->p.size * fine;
-    struct relume_image *held = mem_zeroed((size_t)g->p.lights, sizeof *held);
-    float *texels = mem_array(3 * (size_t)g->p.size * (size_t)g->p.size, sizeof *texels);
-    relume_status status = held && texels ? RELUME_OK : RELUME_ENOMEM;
+    const int side = g->p.size * fineness(g), workers = thread_count(g->p.threads);
+    struct keeping k = {.g = g, .btf = btf};
+    apparatus *apparatus = NULL;
+    k.held = mem_zeroed((size_t)g->p.lights, sizeof *k.held);
+    k.texels =
+        mem_array(3 * (size_t)workers * (size_t)g->p.size * (size_t)g->p.size, sizeof *k.texels);
+    relume_status status = k.held && k.texels ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = apparatus_create(&apparatus, &g->p.faults, g->p.size, g->p.seed, workers);
+    k.apparatus = apparatus;
     for (int l = 0; l < g->p.lights && !status; l++)
-        status = relume_image_create(&held[l], side, side, 3);
-    for (int v = 0; v < g->p.views && !status; v++) {
-        status = photograph_view(g, v, held);
-        for (int l = 0; l < g->p.lights && !status; l++) {
-            if (fine > 1)
-                resample(g, &held[l], texels);
-            relume_btf_store(btf, v, l, fine > 1 ? texels : held[l].data);
-        }
+        status = relume_image_create(&k.held[l], side, side, 3);
+    for (; k.view < g->p.views && !status; k.view++) {
+        status = photograph_view(g, k.view, k.held);
+        if (!status)
+            thread_for(workers, (size_t)g->p.lights, keep, &k);
     }
-    for (int l = 0; held && l < g->p.lights; l++)
-        relume_image_destroy(&held[l]);
-    mem_free(held);
-    mem_free(texels);
+    for (int l = 0; k.held && l < g->p.lights; l++)
+        relume_image_destroy(&k.held[l]);
+    apparatus_destroy(&apparatus);
+    mem_free(k.held);
+    mem_free(k.texels);
     return status;
 }
 
@@ -311,6 +342,13 @@ static relume_status complete(struct goniometer *g, const struct relume_btf_synt
                         g->p.size);
     if (g->p.extent < 1 || g->p.extent > 16)
         return log_fail(g->p.log, RELUME_EINVAL, "extent: expected 1 to 16; found %d", g->p.extent);
+    const struct relume_btf_faults *f = &g->p.faults;
+    if (!(f->blur >= 0.0 && f->blur <= 100.0 && f->shift >= 0.0 && f->shift <= 100.0))
+        return log_fail(g->p.log, RELUME_EINVAL,
+                        "blur, shift: expected 0 to 100 texels; found %g, %g", f->blur, f->shift);
+    if (!(f->noise >= 0.0 && f->noise <= 1.0 && f->flicker >= 0.0 && f->flicker <= 1.0))
+        return log_fail(g->p.log, RELUME_EINVAL, "noise, flicker: expected 0 to 1; found %g, %g",
+                        f->noise, f->flicker);
     const uint64_t side = (uint64_t)g->p.size * (uint64_t)fineness(g);
     const relume_status status = limits_memory(12 * side * side * (uint64_t)g->p.lights,
                                                "a view of this size under all lights", g->p.log);

@@ -54,6 +54,8 @@ expect_ok 'levels of detail' - "$RELUME" btf fit paper --model rfp --levels 3 -o
 if [ "$(field levels info.json)" = 3 ] && [ -f levels/level2/model.json ]; then ok 'three levels'; else not_ok 'three levels' "$(cat info.json)"; fi
 expect_ok 'all levels of detail' - "$RELUME" btf fit paper --model lit --levels -1 -o levels-all -q
 check 'down to one texel' test -f levels-all/level3/model.json -a ! -e levels-all/level4
+expect_ok 'measure with the faults of an apparatus' - "$RELUME" synth --btf wallpaper -o worn --size 8 --directions coarse --samples 1 --bounces 0 --blur 1 --noise 0.02 --shift 0.5 --flicker 0.03 -q
+check 'faults change the values' sh -c '! cmp -s paper/values.npy worn/values.npy'
 "$RELUME" synth --btf leather -o hide --size 16 --extent 2 --directions coarse --samples 1 --bounces 0 -q
 expect_ok 'btf tile' - "$RELUME" btf tile hide -o wide --model rfp --tile 16 --tiles 3 --matrix 5x4 --force -q
 "$RELUME" btf info wide --json >info.json
@@ -189,6 +191,8 @@ expect_fail 'unknown material' 2 "unknown material 'ston'; did you mean 'stone'"
 printf '0 0 1\n0.6 0 -0.8\n0 0.6 0.8\n-0.6 0 0.8\n' >below.txt
 expect_fail 'a direction from below' 1 'below.txt: direction 1: expected a unit vector with z > 0' x "$RELUME" synth --btf stone --directions below.txt -o x
 expect_fail 'two directions' 1 'two.txt: directions: expected 3 or more' x sh -c 'head -1 below.txt >two.txt; sed -n 3p below.txt >>two.txt; exec "$0" synth --btf stone --directions two.txt -o x' "$RELUME"
+expect_fail 'a scene without a lens' 2 'of --btf MATERIAL; found a scene' x "$RELUME" synth box --blur 1 -o x
+expect_fail 'a lamp that is dark' 2 'flicker' x "$RELUME" synth --btf stone --flicker 2 -o x
 expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf stone -o x
 expect_fail 'unknown model' 2 "unknown --models 'rfnk'" - "$RELUME" btf compare paper --models rfnk
 expect_fail 'no model' 2 '--models: expected a value .*found an empty one' - "$RELUME" btf compare paper --models ''

@@ -10,7 +10,7 @@ struct synth_options {
     int size, lights, samples, bounces, seed, extent, views[2];
     enum relume_projection projection;
     enum relume_ring ring;
-    double spread;
+    double spread, blur, noise, shift, flicker;
     bool hemisphere, discs, force;
     struct points eye;
 };
@@ -68,6 +68,18 @@ static const struct option options[] = {
     TEXT("--directions", directions, "SET",
          "--btf: directions of views and lights: bonn (default), dome, coarse, or a file of "
          "directions"),
+    NUMBER("--blur", blur, "T",
+           "--btf: the lens blurs by T texels (standard deviation); default: 0, sharp", 0, 100),
+    NUMBER("--noise", noise, "N",
+           "--btf: noise of a white surface's light, 0.01 for 1 % (standard deviation); default: 0",
+           0, 1),
+    NUMBER("--shift", shift, "T",
+           "--btf: each photograph is off its place by T texels (standard deviation); default: 0",
+           0, 100),
+    NUMBER("--flicker", flicker, "F",
+           "--btf: the lamp differs by F from photograph to photograph, 0.01 for 1 % (standard "
+           "deviation); default: 0",
+           0, 1),
     {0},
 };
 
@@ -162,7 +174,11 @@ static relume_status synth_btf(const struct synth_options *o)
                                     .lights = n, .samples = o->samples,
                                     .bounces =
                                         given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
-                                    .seed = (uint64_t)o->seed, .threads = o->args.threads));
+                                    .seed = (uint64_t)o->seed, .threads = o->args.threads,
+                                    .faults = {.blur = o->blur,
+                                               .noise = o->noise,
+                                               .shift = o->shift,
+                                               .flicker = o->flicker}));
     if (!status)
         status = relume_btf_save(btf, o->output,
                                  relume_btf_params(.log = o->args.log, .force = o->force));
@@ -184,6 +200,13 @@ static relume_status capture(const struct relume_scene_kind *kind,
         status = relume_scene_capture(scene, o->output, params);
     relume_scene_destroy(&scene);
     return status;
+}
+
+// Whether an option is given that scenes do not have.
+static bool of_goniometer(const struct synth_options *o)
+{
+    return given(o, &o->extent) || given(o, &o->directions) || given(o, &o->blur) ||
+           given(o, &o->noise) || given(o, &o->shift) || given(o, &o->flicker);
 }
 
 static relume_status run(const struct args *args)
@@ -213,6 +236,9 @@ static relume_status run(const struct args *args)
                               : synth_btf(o);
     if (!o->args.inputs)
         return usage_error("synth: expected a scene, or --btf MATERIAL");
+    if (of_goniometer(o))
+        return usage_error("synth: --extent, --directions, --blur, --noise, --shift and --flicker "
+                           "are of --btf MATERIAL; found a scene");
     relume_status status = choose_scene(&kind, o->args.input[0], args->log);
     if (!status)
         status = choose_views(&p, kind->projection, o);

@@ -84,6 +84,53 @@ expect_fail 'another model' 1 'model lit cannot be edited; expected gbrdf' - "$R
 expect_fail 'levels of detail' 1 '2 levels of detail' - "$RELUME" btf edit levels --tint 1,1,1
 expect_fail 'a picture' 1 "logo.png.*model.json|logo.png" - "$RELUME" btf edit logo.png --tint 1,1,1
 
+# ---- in the viewer: edits by a script are those of the tool, kept, seen and undone
+"$RELUME" btf plant -o seen.exr --size 12 --directions coarse -q && cp logo.png 'a name.png'
+cat >edits.txt <<'SCRIPT'
+light dir -0.6 0.3 0.7
+frame bare.png
+edit emboss "a name.png" height 0.04 size 0.5
+edit tint 1,0.5,0.4 label 1
+frame changed.png
+edit undo
+edit undo
+frame undone.png
+edit redo
+edit redo
+SCRIPT
+expect_ok 'a script edits' - "$VIEWER" seen.exr --size 80x60 --script edits.txt --offscreen redone.png
+"$RELUME" btf edit seen.exr >list.txt
+check 'its list is kept' sh -c 'printf "%s\n" "1   emboss drawing 12x12 height 0.04 at 0.5,0.5 size 0.5" "2   tint factors 1,0.5,0.4 label 1" | cmp - list.txt'
+differ 'edits are seen at once' bare.png changed.png
+same 'and undone' bare.png undone.png
+same 'and redone' changed.png redone.png
+"$VIEWER" seen.exr --size 80x60 --light 'dir -0.6 0.3 0.7' --offscreen opened.png 2>err.txt
+same 'a file that is opened shows them' changed.png opened.png
+script_fails() { # name, material, pattern
+    "$VIEWER" "$2" --size 80x60 --script edits.txt --offscreen x.png 2>err.txt
+    status=$?
+    errors_of err.txt >only.txt
+    if [ "$status" -eq 1 ] && [ "$(wc -l <only.txt)" -eq 1 ] && grep -q "^relume-view: edits.txt: line 1, .*$3" only.txt && [ ! -e x.png ]; then
+        ok "$1"
+    else
+        not_ok "$1" "status $status; $(cat err.txt)"
+    fi
+}
+while read -r pattern words; do
+    echo "edit $words" >edits.txt
+    script_fails "a script's edit $words" seen.exr "$pattern"
+done <<'SCRIPTS'
+operation paint 3
+operation roughness
+value roughness 0.5 label
+has.no.height roughness 0.5 height 2
+material.9 tint 1,1,1 label 9
+left redo
+such.file emboss nothing.png
+SCRIPTS
+check 'what is refused is not kept' sh -c "'$RELUME' btf edit seen.exr | cmp - list.txt"
+script_fails 'edits of what is none' lit 'expected a g-BRDF to be shown alone'
+
 # ---- from two photographs
 expect_ok 'make' - "$RELUME" btf make logo.png logo.png -o made.exr --relief 0.02 --roughness 0.4 --turn 45 --r0 0.1 --highlight 1,1,0.9
 check 'its size' sh -c "'$RELUME' btf info made.exr | grep -q '^texels   12 x 12'"

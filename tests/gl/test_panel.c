@@ -252,6 +252,48 @@ static void every_control_says_what_it_is_for(void **state)
     panel_destroy(&panel);
 }
 
+// The list of lights is closed: "Edits" is the second row. Buttons wish for what the session does,
+// in words.
+static void edits_are_wished_for(void **state)
+{
+    (void)state;
+    static const struct {
+        double x, y;
+        const char *words;
+    } buttons[] = {
+        {108, 118, "roughness 1"},
+        {190, 118, "tint 1,1,1"},
+        {46, 187, "emboss \"a b.png\" height 0.02"},
+        {116, 187, "engrave \"a b.png\" height 0.02"},
+        {173, 187, "undo"},
+        {216, 187, "redo"},
+    };
+    const struct panel_facts facts = {.edits = "no edits", .edited_materials = 3};
+    OWNED_APP app = make_app();
+    struct panel *panel = make_panel(&app);
+    (void)click(panel, &app, 100, 26);
+    panel_build(panel, &app, &facts);
+    panel_build(panel, &app, &facts);
+    assert_true(walk(panel, &app, &facts, 306, 200) > 100);
+    for (int i = -1; i < (int)(sizeof buttons / sizeof *buttons); i++) {
+        const double x = i < 0 ? 60 : buttons[i].x, y = i < 0 ? 141 : buttons[i].y;
+        (void)tell(panel, APP_MOVE, x, y);
+        assert_true(tell(panel, APP_PRESS, x, y));
+        assert_true(tell(panel, APP_RELEASE, x, y));
+        panel_build(panel, &app, &facts);
+        for (const char *c = i < 0 ? "a b.png" : ""; *c; c++) {
+            const struct app_event e = {.kind = APP_TEXT, .key = *c};
+            assert_true(panel_takes(panel, &e));
+        }
+        panel_build(panel, &app, &facts);
+        assert_int_equal(app.wish, i < 0 ? APP_WISH_NONE : APP_WISH_EDIT);
+        if (i >= 0)
+            assert_string_equal(app.spec, buttons[i].words);
+        app.wish = APP_WISH_NONE;
+    }
+    panel_destroy(&panel);
+}
+
 static void every_window_says_what_it_is_for(void **state)
 {
     (void)state;
@@ -571,6 +613,7 @@ int main(void)
         cmocka_unit_test(the_question_is_answered_by_its_buttons),
         cmocka_unit_test(the_font_is_a_file),
         cmocka_unit_test(every_control_says_what_it_is_for),
+        cmocka_unit_test(edits_are_wished_for),
         cmocka_unit_test(every_window_says_what_it_is_for),
         cmocka_unit_test(tiny_frames_do_no_harm),
         cmocka_unit_test(the_panel_is_drawn_where_it_is),

@@ -337,6 +337,11 @@ static relume_status play_open(struct script *s)
     return with_file(s, s->host.open, "open FILE");
 }
 
+static relume_status play_edit(struct script *s)
+{
+    return with_file(s, s->host.edit, "edit OPERATION VALUE ..., edit undo or edit redo");
+}
+
 static relume_status play_glare(struct script *s)
 {
     char copy[LINE];
@@ -429,6 +434,7 @@ static const struct word {
     {"frame", play_frame, true},  {"shot", play_shot, true},  {"open", play_open, true},
     {"glare", play_glare, true},  {"hint", play_hint, false}, {"quit", play_quit, false},
     {"dock", play_dock, false},   {"set", play_set, true},    {"pass", play_pass, true},
+    {"edit", play_edit, true},
 };
 
 static relume_status play_line(struct script *s)
@@ -443,8 +449,9 @@ static relume_status play_line(struct script *s)
         const relume_status status = words[i].play(s);
         return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
     }
-    return wrong(s, "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
-                    "add, rig, open, glare, dock, hint, set, pass, wait, frame, shot or quit");
+    return wrong(s,
+                 "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
+                 "add, rig, open, edit, glare, dock, hint, set, pass, wait, frame, shot or quit");
 }
 
 relume_status script_open(struct script **out, const char *path, const struct script_host *host)

@@ -24,6 +24,8 @@ struct script_host {
     const struct relume_log *log;
     // What an eye shall do (observer_say); what is wrong is an input status with what was expected.
     relume_status (*glare)(void *user, const char *words, const char **expected);
+    // Edit the g-BRDF that is shown.
+    relume_status (*edit)(void *user, const char *words, const struct relume_log *log);
 };
 
 // An open script. Thread-safety: one thread at a time.

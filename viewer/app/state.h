@@ -132,6 +132,7 @@ enum app_wish {
     APP_WISH_FULL_SCREEN,  // or back from it
     APP_WISH_FOLDER,       // a list of the folder app.spec; "": of the one that was listed last
     APP_WISH_FOCUS,        // on what the frame shows at app.cursor
+    APP_WISH_EDIT,         // of the g-BRDF that is shown, in the words app.spec
     APP_WISH_OPEN          // the file app.spec in place of this one
 };
 enum { APP_SPEC = 4096 };

@@ -37,6 +37,8 @@ void renderer_use_capture(struct renderer *renderer, const relume_capture *captu
 // RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status renderer_use_objects(struct renderer *renderer, relume_objects *objects,
                                    const struct depth_source *places);
+// Others on the same stage, before the old ones are destroyed.
+relume_status renderer_replace_objects(struct renderer *r, relume_objects *objects);
 
 // Draw that frame, linear, into renderer->frame. After renderer_stream, views
 // that are still being read are stood in for by their nearest neighbours, and renderer_is_pending

@@ -29,6 +29,13 @@ void renderer_objects_destroy(struct renderer *r)
     objects_drawer_destroy(&r->drawer);
 }
 
+relume_status renderer_replace_objects(struct renderer *r, relume_objects *objects)
+{
+    renderer_objects_destroy(r);
+    r->place = NULL;
+    return renderer_use_objects(r, objects, NULL);
+}
+
 // ---------------------------------------------------------------- where the eye is
 
 static struct relume_window planar_window(const struct relume_geometry *g)

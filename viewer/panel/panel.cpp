@@ -243,6 +243,8 @@ static bool sections(panel *panel, app *app, const panel_facts *facts)
         changed |= panel_lights(panel, app, facts);
     if (app->file.objects && section("Objects", "the materials of the objects"))
         changed |= panel_objects(app, facts);
+    if (facts->edits && section("Edits", "change the material; the file stays as it is"))
+        panel_edits(panel, app, facts);
     if (section("Picture", "exposure, tone, what is shown, saving and recording"))
         changed |= panel_picture(app, facts);
     if (section("Camera", "viewpoint, zoom and focus", false))

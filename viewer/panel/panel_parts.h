@@ -30,9 +30,13 @@ struct panel {
     char spec[APP_SPEC];
     char environment[APP_SPEC];
     std::vector<panel_run> runs;
-    char path[APP_SPEC];  // of a file to open
-    std::string browsed;  // the folder that it is in
-    int listed;           // the light that the list has scrolled to
+    char path[APP_SPEC];                  // of a file to open
+    std::string browsed;                  // the folder that it is in
+    int listed;                           // the light that the list has scrolled to
+    double roughness = 1, relief = 0.02;  // of the next edit
+    float tint[3] = {1, 1, 1};
+    int label;  // that it is for, counted from 1; 0: all
+    char drawing[APP_SPEC];
 };
 
 // The letters of the panel, from a file (false: it is no font that can be read) or without one.
@@ -57,6 +61,7 @@ bool panel_enhancement(app *app, const panel_facts *facts);
 bool panel_camera(app *app);
 bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
+void panel_edits(panel *panel, app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);
 void panel_file(app *app, const panel_facts *facts);
 

@@ -104,6 +104,13 @@ static relume_status host_open(void *user, const char *path, const struct relume
     return heard(s, session_show(s, path));
 }
 
+static relume_status host_edit(void *user, const char *words, const struct relume_log *log)
+{
+    struct session *s = user;
+    s->listener = log;
+    return heard(s, session_edit(s, words, s->log));
+}
+
 static relume_status host_glare(void *user, const char *words, const char **expected)
 {
     struct session *s = user;
@@ -144,8 +151,9 @@ static relume_status host_shot(void *user, const char *path)
 
 static struct script_host host_of(struct session *s)
 {
-    return (struct script_host){s,         &s->app,    host_send, host_light, host_rig,  host_open,
-                                host_wait, host_frame, host_shot, s->log,     host_glare};
+    return (struct script_host){s,         &s->app,   host_send,  host_light,
+                                host_rig,  host_open, host_wait,  host_frame,
+                                host_shot, s->log,    host_glare, host_edit};
 }
 
 // With all that the options ask for beside it.

@@ -46,6 +46,9 @@ struct session {
     relume_pack *pack;              // NULL: there are objects alone, on a stage
     relume_objects *objects;        // or NULL
     struct session_objects wanted;  // that it was started with; its mesh may be shown otherwise
+    char material[APP_SPEC];        // the file of the only one, "": there is none, or more
+    char edits[1024];               // of it (session_can_edit), for the panel
+    int edited_materials;           // that it has with them
     relume_slab_set *stage;         // what the eye goes around there
     relume_slab_set *around;        // of it, where there are several
     struct pack_source *source;     // of it, for the renderer and its threads
@@ -186,6 +189,15 @@ relume_status session_light(struct session *s, const char *spec, bool replace);
 relume_status session_map(struct session *s, const char *path);
 // The file of the selected environment, else NULL.
 const char *session_map_in_use(const struct session *s);
+// Whether a g-BRDF is shown alone, which can be edited.
+bool session_can_edit(const struct session *s);
+// "undo", "redo" or an operation of relume/edit.h: "OPERATION VALUE [PARAMETER VALUE ...]", quotes
+// around what holds blanks. It is kept beside the file, and shown. RELUME_EINVAL, RELUME_EUNFIT,
+// an input status with a sentence.
+relume_status session_edit(struct session *s, const char *words, const struct relume_log *log);
+// What the panel says of edits; for session_open_stage.
+void session_list_edits(struct session *s);
+
 // The lights of a rig file in place of all; the present ones as a rig file.
 relume_status session_load_rig(struct session *s, const char *path);
 relume_status session_save_rig(struct session *s, const char *path);

@@ -11,6 +11,9 @@ relume_status session_take_objects(struct session *s, const struct session_objec
 {
     const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
     s->wanted = *wanted;
+    s->material[0] = '\0';
+    if (!wanted->description && wanted->materials == 1)
+        snprintf(s->material, sizeof s->material, "%s", wanted->material[0]);
     if (wanted->description) {
         const relume_status status = relume_objects_open(&s->objects, wanted->description, &params);
         return status || !wanted->reflections
@@ -57,10 +60,15 @@ relume_status session_open_objects(struct session *s, const char *path,
     if (status)
         return status;
     relume_objects *was = s->objects;
+    char material[APP_SPEC];
+    memcpy(material, s->material, sizeof material);
     s->objects = objects;
+    snprintf(s->material, sizeof s->material, "%s", session_is_material(path) ? path : "");
     status = session_open_stage(s, start);
-    if (status)
+    if (status) {
         s->objects = was, was = objects;
+        memcpy(s->material, material, sizeof material);
+    }
     relume_objects_destroy(&was);
     return status;
 }
@@ -141,6 +149,7 @@ relume_status session_open_stage(struct session *s, const struct app_state *star
     s->app = app;
     s->app.near_lights = true;
     describe(s, info);
+    session_list_edits(s);
     return RELUME_OK;
 }
 

@@ -134,6 +134,8 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .recording = session_records(s) ? s->recording.path : NULL,
         .recorded_s = (double)s->recording.frame / RECORD_RATE,
         .round_s = (double)s->recording.frames / RECORD_RATE,
+        .edits = session_can_edit(s) ? s->edits : NULL,
+        .edited_materials = s->edited_materials,
         .eye = describe_eye(eye, sizeof eye, &s->renderer.glare),
     };
     if (!status)

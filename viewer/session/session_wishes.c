@@ -114,6 +114,21 @@ static relume_status wish_open(struct session *s)
     return session_drop(s, path);
 }
 
+static relume_status wish_edit(struct session *s)
+{
+    char words[SESSION_TEXT];
+    snprintf(words, sizeof words, "%.200s", s->app.spec);
+    s->notice[0] = '\0';
+    s->listens = true;
+    const bool edited = !session_edit(s, s->app.spec, s->log);
+    s->listens = false;
+    if (edited)
+        session_say(s, "edited: %s", words);
+    else
+        session_say(s, "not edited: %.200s", s->notice);
+    return RELUME_OK;
+}
+
 // For an eye that goes around, the plane in focus is given by its distance in front of the look-at
 // point.
 static double focus_at(const struct session *s, struct relume_vec3 p)
@@ -163,6 +178,7 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_FULL_SCREEN] = wish_full_screen,
         [APP_WISH_FOLDER] = wish_folder,
         [APP_WISH_OPEN] = wish_open,
+        [APP_WISH_EDIT] = wish_edit,
         [APP_WISH_FOCUS] = wish_focus,
     };
     const enum app_wish wish = s->app.wish;

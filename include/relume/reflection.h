@@ -124,6 +124,18 @@ RELUME_API double relume_reflection_weight(const relume_reflection *reflection, 
 RELUME_API struct relume_vec3 relume_reflection_turn(const relume_reflection *reflection,
                                                      const struct relume_reflection_place *place,
                                                      struct relume_vec3 r);
+// The same for n places at once, in single precision, over several cores; `cpu_off` as
+// relume_relight_params. Directions are replaced by the edited ones. Edits that go along the
+// surface are refused with RELUME_EUNFIT. Equal bits for any number of threads.
+struct relume_reflection_places {
+    const float *x, *y, *z;  // [n] each: positions
+    float *rx, *ry, *rz;     // [n] each: unit directions, in and out
+    size_t n;
+};
+RELUME_RESULT relume_status relume_reflection_turn_all(
+    const relume_reflection *reflection, const struct relume_reflection_places *places,
+    unsigned cpu_off, int threads);
+
 // ---------------------------------------------------------------- mirrors
 
 // r of Eq. 7.1, unit: what a mirror of unit normal n shows at `position` to `eye`, or to the eye of

@@ -62,6 +62,18 @@ struct psf_kernels {
     void (*spread_one)(float *out, int n, const float *line, float at, float scale, float weight);
 };
 
+// Rotations between constraints, of a block of places: matrices element by element, rows first.
+// Equal bits in every set.
+enum { TURN_BLOCK = 64 };
+struct turn_kernels {
+    // m = sum_n w_n M_n / sum_n w_n, w_n = 1 / d^2 of the distance from the place to
+    // constraint[n][0..2], d at least `least`; M_n is constraint[n][3..11]
+    void (*sum)(float m[9][TURN_BLOCK], const float place[3][TURN_BLOCK],
+                const float (*constraint)[12], int n, float least);
+    // the rotation nearest to each matrix, in its place; of 0 the identity
+    void (*rotation)(float m[9][TURN_BLOCK]);
+};
+
 struct kernels {
     const char *name;  // as RELUME_CPU has it
     unsigned needs;    // RELUME_CPU_* bits
@@ -71,6 +83,7 @@ struct kernels {
     const struct nearest_kernels *nearest;
     const struct unpack_kernels *unpack;
     const struct psf_kernels *psf;
+    const struct turn_kernels *turn;
     const struct lsq_kernels *lsq;  // kernel/lsq_kernels.h
 };
 
@@ -87,5 +100,6 @@ void words_c(const float *in, size_t n, float least, float scale, uint16_t *out)
 void range_c(const float *in, size_t n, float *min, float *max);
 extern const struct unpack_kernels unpack_c, unpack_avx2, unpack_neon;
 extern const struct psf_kernels psf_c, psf_avx2, psf_avx512;
+extern const struct turn_kernels turn_c, turn_avx2, turn_avx512;
 
 #endif

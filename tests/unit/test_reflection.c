@@ -372,6 +372,108 @@ static void edits_that_cannot_be(void **state)
     relume_reflection_destroy(&f);
 }
 
+// ---------------------------------------------------------------- many at once
+
+enum { MANY = 6000 };
+struct many {
+    float at[3][MANY], r[3][MANY];
+};
+
+static void turn_many(struct many *m, const relume_reflection *f, unsigned cpu_off, int threads,
+                      size_t n)
+{
+    const struct relume_reflection_places places = {m->at[0], m->at[1], m->at[2], m->r[0],
+                                                    m->r[1],  m->r[2],  n};
+    assert_int_equal(relume_reflection_turn_all(f, &places, cpu_off, threads), RELUME_OK);
+}
+
+// As one at a time, in single precision: a turn that the constraints leave open but for 1e-5 is
+// taken as open, which near a constraint shows in what is far from its direction. The same bits for
+// every set of instructions and any number of threads; nothing behind the last place.
+static void many_turn_as_one(void **state)
+{
+    (void)state;
+    static struct many start, got, again;
+    struct relume_reflection_constraint c[SOME];
+    const vec3 line[2] = {{0, 0, 1}, {0, 1, 0}};
+    const struct relume_reflection_region region[3] = {
+        {.centre = {1, 0, 0}, .radius = 0.7, .border = 0.5},
+        {.centre = {0, 0, 1}, .radius = 1.1},
+        {.shape = RELUME_REFLECTION_STROKES,
+         .radius = 0.2,
+         .border = 0.3,
+         .stroke = line,
+         .points = 2}};
+    uint32_t seed = 17;
+    fill(c, 5);
+    for (int i = 0; i < MANY; i++) {
+        const vec3 p = any_direction(&seed), r = any_direction(&seed);
+        const double at[3] = {p.x, p.y, p.z}, d[3] = {r.x, r.y, r.z};
+        for (int k = 0; k < 3; k++)
+            start.at[k][i] = (float)at[k], start.r[k][i] = (float)d[k];
+    }
+    for (int kind = 0; kind < 4; kind++) {
+        const struct relume_reflection_edit edit = {.constraint = c,
+                                                    .constraints = kind == 0 ? 1 : SOME,
+                                                    .region = region,
+                                                    .regions = kind < 2 ? 0 : 2 * kind - 3};
+        relume_reflection *f = create(&edit, NULL);
+        double sum = 0.0;
+        got = start;
+        turn_many(&got, f, ~0u, 1, MANY - 1);
+        for (int i = 0; i < MANY - 1; i++) {
+            const vec3 at =
+                vec3_of((double)start.at[0][i], (double)start.at[1][i], (double)start.at[2][i]);
+            const vec3 r =
+                vec3_of((double)start.r[0][i], (double)start.r[1][i], (double)start.r[2][i]);
+            const vec3 e = vec3_of((double)got.r[0][i], (double)got.r[1][i], (double)got.r[2][i]);
+            const double off = vec3_length(vec3_sub(e, turn_at(f, at, r)));
+            CHECK_NEAR(vec3_length(e), 1.0, 1e-5);
+            sum += off;
+        }
+        CHECK_NEAR(sum / MANY, 0.0, kind == 0 ? 1e-6 : 5e-4);
+        for (int k = 0; k < 3; k++)
+            assert_true(got.r[k][MANY - 1] == start.r[k][MANY - 1]);
+        const unsigned off[] = {RELUME_CPU_AVX512, 0};
+        for (int i = 0; i < 4; i++) {
+            again = start;
+            turn_many(&again, f, off[i % 2], 1 + 2 * (i / 2), MANY - 1);
+            assert_memory_equal(&again, &got, sizeof got);
+        }
+        relume_reflection_destroy(&f);
+    }
+}
+
+// What is no case one by one is none here: no rank, opposite directions, distances of 0.
+static void many_survive_what_is_degenerate(void **state)
+{
+    (void)state;
+    static struct many m;
+    struct relume_reflection_constraint c[3] = {{{0, 0, 0}, {0, 0, 1}, {0, 0, -1}, {0, 0, 5}},
+                                                {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 5}},
+                                                {{0, 0, 0}, {0, 0, -1}, {0, 0, 1}, {0, 0, 5}}};
+    for (int n = 1; n <= 3; n++) {
+        const struct relume_reflection_edit edit = {.constraint = c, .constraints = n};
+        relume_reflection *f = create(&edit, NULL);
+        m = (struct many){.r = {{0, 0.6f, 1}, {0, 0, 0}, {1, 0.8f, 0}}};
+        m.at[0][1] = 1e18f;
+        turn_many(&m, f, 0, 1, 3);
+        for (int i = 0; i < 3; i++)
+            CHECK_NEAR(
+                vec3_length(vec3_of((double)m.r[0][i], (double)m.r[1][i], (double)m.r[2][i])), 1.0,
+                1e-5);
+        relume_reflection_destroy(&f);
+    }
+    const struct relume_reflection_edit along = {.geodesic = true};
+    const float at[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const uint32_t triangle[1][3] = {{0, 1, 2}};
+    const struct relume_reflection_surface surface = {at[0], sizeof at[0], 3, triangle, 1};
+    relume_reflection *f = create(&along, &surface);
+    const struct relume_reflection_places none = {.n = 0};
+    assert_int_equal(relume_reflection_turn_all(f, &none, 0, 1), RELUME_EUNFIT);
+    relume_reflection_destroy(&f);
+}
+
 // ---------------------------------------------------------------- along surfaces
 
 enum { SIDE = 21, SHEET = SIDE * SIDE, HALVES = 2 * (SIDE - 1) * (SIDE - 1) };
@@ -501,6 +603,8 @@ int main(void)
         cmocka_unit_test(strokes_reach_as_far_as_they_are_wide),
         cmocka_unit_test(frozen_edits_keep_their_eye),
         cmocka_unit_test(edits_that_cannot_be),
+        cmocka_unit_test(many_turn_as_one),
+        cmocka_unit_test(many_survive_what_is_degenerate),
         cmocka_unit_test(distances_go_along_the_surface),
         cmocka_unit_test(regions_go_along_the_surface),
         cmocka_unit_test(other_pieces_are_out_of_reach),

@@ -93,14 +93,21 @@ static relume_status choose_texels(struct chosen *c, const struct edited_gbrdf *
                                    const struct relume_edit *e)
 {
     struct relume_image mask = {.width = 0};
+    bool any = false;
     *c = (struct chosen){.texel = mem_array(texels_of(g), sizeof *c->texel)};
     relume_status status = c->texel ? RELUME_OK : RELUME_ENOMEM;
     if (!status && e->label >= 0)
         status = check_label(g, e->label);
     if (!status)
         status = mask_lay(&mask, e, g->maps.width, g->maps.height);
-    for (size_t i = 0; !status && i < texels_of(g); i++)
+    for (size_t i = 0; !status && i < texels_of(g); i++) {
         c->texel[i] = mask.data[i] >= 0.5f && (e->label < 0 || g->maps.label[i] == e->label);
+        any |= c->texel[i];
+    }
+    if (!status && e->mask.data && !any)
+        status = log_fail(g->log, RELUME_EUNFIT,
+                          "the mask leaves no texel; expected one that is white somewhere%s",
+                          e->label < 0 ? "" : " within the material");
     relume_image_destroy(&mask);
     return status;
 }

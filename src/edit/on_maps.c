@@ -107,7 +107,12 @@ static relume_status each_pixel(struct relume_maps *m, const struct relume_edit 
         return log_fail(log, RELUME_EUNFIT,
                         "maps have no labels of materials; expected a mask in place of label %d",
                         e->label);
-    const relume_status status = mask_lay(&mask, e, m->width, m->height);
+    relume_status status = mask_lay(&mask, e, m->width, m->height);
+    float most = 0.0f;
+    for (size_t i = 0; !status && i < pixels_of(m); i++)
+        most = fmaxf(most, mask.data[i]);
+    if (!status && most == 0.0f)
+        status = log_fail(log, RELUME_EUNFIT, "the mask is black; expected white somewhere");
     for (size_t i = 0; !status && i < pixels_of(m); i++)
         change(m, i, fminf(fmaxf(mask.data[i], 0.0f), 1.0f), e);
     relume_image_destroy(&mask);

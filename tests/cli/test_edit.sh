@@ -64,6 +64,8 @@ refused 'labels' "swap: labels: expected two labels" --swap 1
 expect_fail 'a label that is not there' 1 'edit 3, tint: there is no material 9; expected a label from 0 to 2' - "$RELUME" btf edit found.exr --tint 1,1,1 --label 9
 expect_fail 'no drawing' 1 'nothing.png: no such file' - "$RELUME" btf edit found.exr --emboss nothing.png
 expect_fail 'a relief too high' 1 'engrave: the relief becomes higher than one width' - "$RELUME" btf edit found.exr --engrave logo.png --height 1 --engrave logo.png --height 1
+"$RELUME" btf render found.exr -o black.png --light 'dir 0.9 0.9 -0.1' -q
+expect_fail 'a black mask' 1 'the mask leaves no texel' - "$RELUME" btf edit found.exr --tint 1,1,2 --mask black.png
 expect_fail 'onto itself' 2 'found.exr' - "$RELUME" btf edit found.exr -o found.exr
 check 'the list is as it was' test "$list" = "$(cat found.edits.json)"
 cp found.edits.json list.json

@@ -526,11 +526,24 @@ static void test_unfit(void **state)
     struct test_log log;
     relume_btf_fitted *m = planted(SIDE), *out;
     struct relume_edit deep = edit_of("emboss", "height", "1"),
-                       tall = edit_of("emboss", "height", "0.01");
+                       tall = edit_of("emboss", "height", "0.01"),
+                       nowhere = edit_of("turn", "degrees", "5"),
+                       beside = edit_of("tint", "factors", "2,2,2", "label", "0");
+    // a mask that is nearly white, and one of places where the material is not
+    nowhere.mask = picture(3, 3, one);
+    for (int i = 0; i < 9; i++)
+        nowhere.mask.data[i] = 0.49f;
+    beside.mask = picture(SIDE, SIDE, one);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        beside.mask.data[i] = gbrdf_maps_of(m).label[i] == 0 ? 0.0f : 1.0f;
     deep.drawing = picture(1, 1, one);
     tall.drawing = picture(10, 11, one);
     const struct relume_edit unfit[] = {edit_of("tint", "factors", "1,1,1", "label", "3"),
-                                        edit_of("swap", "labels", "0,63"), deep, tall};
+                                        edit_of("swap", "labels", "0,63"),
+                                        deep,
+                                        tall,
+                                        nowhere,
+                                        beside};
     for (size_t i = 0; i < sizeof unfit / sizeof *unfit; i++) {
         relume_edits *edits = list_for(m);
         test_log_init(&log);
@@ -553,7 +566,62 @@ static void test_unfit(void **state)
     relume_edits_destroy(&edits);
     relume_edit_destroy(&deep);
     relume_edit_destroy(&tall);
+    relume_edit_destroy(&nowhere);
+    relume_edit_destroy(&beside);
     relume_btf_fitted_destroy(&m);
+}
+
+// A list is made, kept, read and applied.
+static relume_status all_of_it(const relume_btf_fitted *m, const char *file,
+                               const struct relume_edit *emboss, const struct relume_edit *rough)
+{
+    const uint64_t fingerprint = relume_btf_fitted_fingerprint(m);
+    relume_edits *edits = NULL, *again = NULL;
+    relume_btf_fitted *out = NULL;
+    relume_status status = relume_edits_create(&edits, fingerprint);
+    if (!status)
+        status = relume_edits_add(edits, emboss, NULL);
+    if (!status)
+        status = relume_edits_add(edits, rough, NULL);
+    if (!status)
+        status = relume_edits_save(edits, file, NULL);
+    if (!status)
+        status = relume_edits_open(&again, file, fingerprint, NULL);
+    if (!status)
+        status = relume_btf_fitted_edit(&out, m, again, NULL);
+    assert_int_equal(out == NULL, status != RELUME_OK);
+    relume_btf_fitted_destroy(&out);
+    relume_edits_destroy(&edits);
+    relume_edits_destroy(&again);
+    return status;
+}
+
+// Every allocation fails once: nothing crashes or, under ASan, leaks, and the status says so.
+static void test_memory(void **state)
+{
+    (void)state;
+    char folder[64], file[96];
+    relume_btf_fitted *m = planted(SIDE);
+    struct relume_edit emboss = edit_of("emboss", "height", "0.1"),
+                       rough = edit_of("roughness", "factor", "2");
+    emboss.drawing = picture(5, 5, one);
+    rough.mask = picture(SIDE, SIDE, left_half);
+    test_folder(folder);
+    snprintf(file, sizeof file, "%s/found.exr", folder);
+    bool all_done = false;
+    int n = 0;
+    while (!all_done) {
+        mem_fail_after(++n);
+        const relume_status status = all_of_it(m, file, &emboss, &rough);
+        all_done = mem_fail_pending();
+        mem_fail_after(0);
+        assert_int_equal(status, all_done ? RELUME_OK : RELUME_ENOMEM);
+    }
+    assert_true(n > 30 && n < 1000);
+    relume_edit_destroy(&emboss);
+    relume_edit_destroy(&rough);
+    relume_btf_fitted_destroy(&m);
+    test_folder_remove(folder);
 }
 
 // ---------------------------------------------------------------- from photographs
@@ -711,6 +779,11 @@ static void test_maps_refused(void **state)
         assert_int_equal(edit_maps(&m, &bad[i], &log.log), RELUME_EUNFIT);
         assert_int_equal(log.lines, 1);
     }
+    struct relume_edit black = edit_of("tint", "factors", "2,2,2");
+    black.mask = picture(1, 1, one);
+    black.mask.data[0] = 0.0f;
+    assert_int_equal(edit_maps(&m, &black, NULL), RELUME_EUNFIT);
+    relume_edit_destroy(&black);
     CHECK_OK(relume_edits_create(&edits, 5));
     assert_int_equal(relume_maps_edit(&m, edits, 1, &log.log), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "another version"));
@@ -768,9 +841,9 @@ int main(void)
         cmocka_unit_test(test_undo),         cmocka_unit_test(test_kept),
         cmocka_unit_test(test_packed),       cmocka_unit_test(test_hostile),
         cmocka_unit_test(test_refused),      cmocka_unit_test(test_unfit),
-        cmocka_unit_test(test_make),         cmocka_unit_test(test_maps_relief),
-        cmocka_unit_test(test_maps_colours), cmocka_unit_test(test_maps_refused),
-        cmocka_unit_test(test_maps_folder),
+        cmocka_unit_test(test_make),         cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_maps_relief),  cmocka_unit_test(test_maps_colours),
+        cmocka_unit_test(test_maps_refused), cmocka_unit_test(test_maps_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <relume/object.h>
+#include <relume/vec.h>
 
 static inline void look(const relume_objects *o)
 {
@@ -22,6 +23,15 @@ static inline void look(const relume_objects *o)
         if (!isfinite(image.data[i]))
             abort();
     relume_image_destroy(&image);
+    for (int i = 0; i < 6 * 5; i++) {
+        const struct relume_vec3 at =
+            relume_vec3_along(relume_vec3_along(window.corner, window.right, (i % 6 + 0.5) / 6.0),
+                              window.down, (i / 6 + 0.5) / 5.0);
+        struct relume_object_reflection seen;
+        if (relume_objects_reflect(&seen, o, window.eye, relume_vec3_sub(at, window.eye)) &&
+            !(fabs(relume_vec3_length(seen.edited) - 1.0) < 1e-6))
+            abort();
+    }
 }
 
 // A BTF in the folder, called "btf".

@@ -2,21 +2,27 @@
 // rendered, where every value must be finite. Models that Assimp reads are its own affair.
 #include "fuzz_look.h"
 
-static const char *const words[] = {"format",    "version",   "relume-objects",
-                                    "objects",   "mesh",      "pose",
-                                    "translate", "rotate",    "scale",
-                                    "parts",     "part",      "repeat",
-                                    "offset",    "filter",    "material",
-                                    "nearest",   "bilinear",  "btf",
-                                    "input.obj", "input.ply", "vt",
-                                    "vn",        "usemtl",    "f ",
-                                    "1e308",     "-0",        "nan",
-                                    "inf",       "1e-300",    "element",
-                                    "property",  "list",      "uchar",
-                                    "int",       "ascii",     "vertex",
-                                    "face",      "4096",      "[",
-                                    "]",         "{",         "}",
-                                    ",",         "null",      NULL};
+static const char *const words[] = {"format",      "version",     "relume-objects",
+                                    "objects",     "mesh",        "pose",
+                                    "translate",   "rotate",      "scale",
+                                    "parts",       "part",        "repeat",
+                                    "offset",      "filter",      "material",
+                                    "nearest",     "bilinear",    "btf",
+                                    "input.obj",   "input.ply",   "vt",
+                                    "vn",          "usemtl",      "f ",
+                                    "1e308",       "-0",          "nan",
+                                    "inf",         "1e-300",      "element",
+                                    "property",    "list",        "uchar",
+                                    "int",         "ascii",       "vertex",
+                                    "face",        "4096",        "[",
+                                    "]",           "{",           "}",
+                                    ",",           "null",        "mirror",
+                                    "reflections", "constraints", "regions",
+                                    "position",    "eye",         "direction",
+                                    "target",      "original",    "ball",
+                                    "geodesic",    "stroke",      "radius",
+                                    "border",      "distance",    "frozen",
+                                    NULL};
 
 static const char *const extensions[] = {"json", "obj", "ply"};
 
@@ -62,6 +68,14 @@ int main(int argc, char **argv)
         "\"pose\":{\"translate\":[1,2,3],\"rotate\":[0,1,0,30],\"scale\":2},\"parts\":["
         "{\"part\":\"a\",\"material\":\"btf\",\"repeat\":[2,3],\"offset\":0.5},"
         "{\"material\":[\"btf\",\"btf\"],\"filter\":\"nearest\"}]}]}");
+    add(&f, 0,
+        "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"good.obj\","
+        "\"parts\":[{\"material\":{\"mirror\":[1,0.5,0]}}],\"reflections\":{\"distance\":"
+        "\"geodesic\",\"frozen\":[0,0,9],\"constraints\":[{\"position\":[0.2,0.2,0],\"eye\":"
+        "[0.2,0.2,5],\"direction\":[1,0,0]},{\"position\":[0.3,0.2,0],\"eye\":[0.2,0.2,5],"
+        "\"original\":[0,0,1],\"target\":[3,2,1]}],\"regions\":[{\"ball\":[0,0,0],\"radius\":1},"
+        "{\"geodesic\":[0,0,0],\"radius\":1,\"border\":2},{\"stroke\":[[0,0,0],[1,0,0]],"
+        "\"radius\":0.1,\"border\":0.5}]}}]}");
     add(&f, 1, obj);
     add(&f, 2,
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"

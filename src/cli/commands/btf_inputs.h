@@ -7,6 +7,7 @@
 struct btf_options {
     struct args args;
     const char *output, *mesh, *reflections, *map;
+    double reflection_at[2];
     const struct relume_btf_set *directions;
     int model;  // its place in relume_btf_models, or -1
     struct ints models;
@@ -69,5 +70,8 @@ bool btf_is_objects(const struct btf_options *o);
 relume_status btf_render_objects(const struct btf_options *o);
 relume_status objects_open(relume_objects **out, const char *path, const char *reflections,
                            const struct args *args);
+// What their mirrors reflect along a ray, as a constraint of a file of edits, to standard output.
+relume_status objects_tell_reflection(const relume_objects *objects, struct relume_vec3 eye,
+                                      struct relume_vec3 direction);
 
 #endif

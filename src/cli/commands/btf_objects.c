@@ -3,6 +3,8 @@
 #include "frame_options.h"
 
 #include <math.h>
+#include <relume/vec.h>
+#include <stdio.h>
 #include <string.h>
 
 bool btf_is_objects(const struct btf_options *o)
@@ -21,6 +23,19 @@ relume_status objects_open(relume_objects **out, const char *path, const char *r
                : relume_objects_load_reflections(
                      *out, reflections,
                      relume_reflection_params(.log = args->log, .threads = args->threads));
+}
+
+relume_status objects_tell_reflection(const relume_objects *objects, struct relume_vec3 eye,
+                                      struct relume_vec3 direction)
+{
+    struct relume_object_reflection r;
+    if (!relume_objects_reflect(&r, objects, eye, direction))
+        return usage_error("--reflection-at: expected a pixel that shows an object");
+    const struct relume_vec3 p = r.place.position, e = r.edited;
+    printf("{\"position\": [%.6g, %.6g, %.6g], \"eye\": [%.9g, %.9g, %.9g], "
+           "\"direction\": [%.6g, %.6g, %.6g]}\n",
+           p.x, p.y, p.z, eye.x, eye.y, eye.z, e.x, e.y, e.z);
+    return RELUME_OK;
 }
 
 static relume_status open_them(relume_objects **out, const struct btf_options *o)
@@ -76,6 +91,13 @@ relume_status btf_render_objects(const struct btf_options *o)
     relume_status status = open_them(&objects, o);
     if (!status)
         status = find_window(&window, size, objects, o);
+    if (!status && given(o, o->reflection_at)) {
+        const double *at = o->reflection_at;
+        const struct relume_vec3 on = relume_vec3_along(
+            relume_vec3_along(window.corner, window.right, (at[0] + 0.5) / size[0]), window.down,
+            (at[1] + 0.5) / size[1]);
+        status = objects_tell_reflection(objects, window.eye, relume_vec3_sub(on, window.eye));
+    }
     if (!status)
         status = relume_image_create(&image, size[0], size[1], 3);
     if (!status)

@@ -58,6 +58,10 @@ relume_status btf_render(const struct args *args)
     struct btf_sample sample = {.btf = NULL};
     relume_btf_surface *surface = NULL;
     relume_status status = picture_name(args->log, "-o", o->output);
+    if ((o->reflections || given(o, o->reflection_at)) && (o->mesh || !btf_is_objects(o)))
+        return usage_error("--reflections and --reflection-at: expected a description of objects "
+                           "(.json); found '%s'",
+                           input);
     if (!status && btf_is_objects(o))
         return btf_render_objects(o);
     if (!status && btf_is_surface(input)) {

@@ -103,6 +103,10 @@ static const struct option options[] = {
     TEXT("--reflections", reflections, "FILE",
          "render, of a description of objects: what their mirrors shall reflect where "
          "(docs/reflections.md)"),
+    NUMBERS("--reflection-at", reflection_at, "x,y",
+            "render, of a description of objects: print what is reflected at this pixel, as a "
+            "constraint for --reflections",
+            2),
     NUMBER("--repeat", repeat, "N",
            "--mesh: repeat the material N times across its texture; default: 1", 0.001, 10000),
     INT("--samples", samples, "N", "render objects: N x N rays a pixel; default: 3", 1, 16),

@@ -13,7 +13,7 @@ enum { GLARE_PASS = RELUME_PASSES };  // of the frame, not of its views
 struct relight_options {
     struct args args;
     const char *output, *objects, *reflections, *capture;
-    double crop[4];
+    double crop[4], reflection_at[2];
     int size[2], view, samples, radius, cpu_mask;
     struct relume_vec3 eye, look_at, up;
     double fov, pan, tilt, zoom, aperture, focus, gain, highlight, exponent, range[2];
@@ -106,6 +106,10 @@ static const struct option options[] = {
          "depth"),
     TEXT("--reflections", reflections, "FILE",
          "--objects: what their mirrors shall reflect where (docs/reflections.md)"),
+    NUMBERS("--reflection-at", reflection_at, "x,y",
+            "--objects: print what is reflected at this pixel of the picture, as a constraint for "
+            "--reflections",
+            2),
     INT("--samples", samples, "N", "--objects: N x N rays a pixel; default: 3", 1, 16),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
@@ -179,8 +183,9 @@ static relume_status check_pass(const struct relight_options *o)
             o->pass != belongs[i].other)
             return usage_error("relight: %s works only with --pass %s", belongs[i].option,
                                relume_pass_name(belongs[i].pass));
-    if (o->reflections && !o->objects)
-        return usage_error("--reflections: works only with --objects; add --objects FILE");
+    if ((o->reflections || given(o, o->reflection_at)) && !o->objects)
+        return usage_error("--reflections and --reflection-at work only with --objects; add "
+                           "--objects FILE");
     if (o->pass == RELUME_PASS_DIFFERENCE && !o->capture)
         return usage_error("relight: --pass difference needs --capture");
     if (o->pass != RELUME_PASS_COLOUR && o->pass != GLARE_PASS && o->objects)
@@ -217,6 +222,24 @@ static relume_status set_objects(relume_objects **objects, relume_renderer *rend
                                                 relume_render_params(.log = o->args.log,
                                                                      .samples = o->samples,
                                                                      .threads = o->args.threads));
+}
+
+static relume_status tell_reflection(const relume_objects *objects, relume_pack *pack,
+                                     const struct relight_options *o,
+                                     const struct relume_camera *camera,
+                                     const struct relume_image *frame)
+{
+    struct relume_viewport viewport;
+    struct relume_vec3 eye, direction;
+    if (!given(o, o->reflection_at))
+        return RELUME_OK;
+    const relume_status status =
+        relume_frame_viewport(&viewport, pack, camera, frame->width, frame->height);
+    if (status)
+        return status;
+    relume_viewport_ray(&eye, &direction, &viewport, o->reflection_at[0] + 0.5,
+                        o->reflection_at[1] + 0.5);
+    return objects_tell_reflection(objects, eye, direction);
 }
 
 // ---------------------------------------------------------------- glare
@@ -361,6 +384,8 @@ static relume_status render(const struct relight_options *o, const struct relume
         status = set_objects(&objects, renderer, o);
     if (!status)
         status = draw(&frame, renderer, o, camera);
+    if (!status)
+        status = tell_reflection(objects, pack, o, camera, &frame);
     if (!status && o->pass == GLARE_PASS)
         status = add_glare(&frame, renderer, o, camera);
     if (!status && o->pass == RELUME_PASS_NORMALS)

@@ -1,0 +1,34 @@
+#!/bin/sh
+# Mirrors and edited reflections from the command line: a constraint that is printed changes
+# nothing, another one does, in the tool as in the viewer; bad input.
+. "$(dirname "$0")/lib.sh"
+
+awk -v n=24 -f "$TOP/scripts/ball.awk" >ball.obj
+objects='{"format":"relume-objects","version":1,"objects":[{"mesh":"ball.obj","parts":[{"material":{"mirror":1}}],
+    "pose":{"scale":0.5,"translate":[0,0,-2]}}]}'
+echo "$objects" >ball.json
+edit() {
+    echo "{\"format\":\"relume-reflections\",\"version\":1,\"edits\":[{\"constraints\":[$1]}]}"
+}
+"$RELUME" synth attic -q -o room --projection spherical --size 32 --lights 6 --samples 1
+"$RELUME" encode -q room -o room.exr
+look="--pan 0 --zoom 2 --size 48x32"
+"$RELUME" relight room.exr --objects ball.json $look -o plain.exr --light 'dir 0 1 0' -q --reflection-at 24,12 >constraint.json || not_ok 'relight --reflection-at' ''
+edit "$(cat constraint.json)" >same.json
+"$RELUME" relight room.exr --objects ball.json --reflections same.json $look -o same.exr --light 'dir 0 1 0' -q
+check 'a printed constraint changes nothing' sh -c "'$RELUME' compare plain.exr same.exr | awk '/max_abs/ { exit !(\$2 < 2e-3) }'"
+edit "$(sed 's/"direction.*/"direction": [0, -1, 0]}/' constraint.json)" >down.json
+"$RELUME" relight room.exr --objects ball.json --reflections down.json $look -o down.exr --light 'dir 0 1 0' --samples 1 -q
+check 'another direction changes it' sh -c "'$RELUME' compare plain.exr down.exr | awk '/max_abs/ { exit !(\$2 > 0.02) }'"
+"$VIEWER" room.exr --objects ball.json --reflections down.json $look --offscreen gl.exr --light 'dir 0 1 0' || not_ok 'relume-view --reflections' ''
+check 'the viewer shows the same' sh -c "'$RELUME' compare down.exr gl.exr | awk '/psnr_db/ { exit !(\$2 > 35) }'"
+"$RELUME" btf render ball.json -o alone.png --picture 16x16 --light 'dir 0 0 1' 2>warned.txt
+check 'a mirror without surroundings is told' grep -q 'mirrors are black' warned.txt
+
+expect_fail 'edits without objects' 2 'add --objects FILE' x.exr "$RELUME" relight room.exr --reflections down.json -o x.exr
+expect_fail 'edits that are not there' 1 'none.json' x.exr "$RELUME" relight room.exr --objects ball.json --reflections none.json -o x.exr
+expect_fail 'a pixel without an object' 2 'expected a pixel that shows an object' x.exr "$RELUME" relight room.exr --objects ball.json $look --reflection-at 0,0 -o x.exr
+expect_fail 'edits for what is no description' 2 'expected a description of objects' x.png "$RELUME" btf render ball.obj --reflections down.json -o x.png
+"$VIEWER" room.exr --reflections down.json --offscreen x.png 2>err.txt
+check 'edits without objects, in the viewer' grep -q 'add --objects FILE' err.txt
+finish

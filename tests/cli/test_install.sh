@@ -165,7 +165,7 @@ if command -v bash >/dev/null; then
     check "completion of options" offers "--compression --coefficients --colour --codebook --codebook-start --commands" relume encode --co
     check "completion of values" offers "8 10 12 16 half log float" relume encode --bits ""
     check "completion of tasks" offers "render" relume btf re
-    check "completion of a task's options" offers "--tiles --tile" relume btf tile --ti
+    check "completion of a task's options" offers "--tiles --tile" relume btf tile --til
     check "completion of scenes" offers "teapot" relume synth te
     check "completion of the viewer" offers "--offscreen" relume-view --off
 else

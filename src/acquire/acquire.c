@@ -270,7 +270,8 @@ static relume_status fit(struct acquisition *s, const relume_capture *capture)
         status = acquire_warn(
             s,
             "the photographs do not fit the lights: %.0f %% brightness error; wrong order, lamps "
-            "of unequal brightness (--refine-lights), or linear photographs (--transfer linear)?",
+            "of unequal brightness (--refine-brightness), or linear photographs (--transfer "
+            "linear)?",
             100.0 * mean_miss(&out->photometric));
     return status;
 }

@@ -482,10 +482,11 @@ relume_status relume_acquire_refine(struct relume_vec3 *direction, double *inten
     if (!status)
         status = read_pixels(&r, p.log);
     if (!status && r.pixels < 200)
-        status = log_fail(p.log, RELUME_EUNFIT,
-                          "lights cannot be refined: %zu pixels are lit by half of the lights; "
-                          "expected some hundred",
-                          r.pixels);
+        status =
+            log_fail(p.log, RELUME_EUNFIT,
+                     "lights cannot be refined: %zu pixels are lit by half of the lights; "
+                     "expected some hundred; too dark, or linear photographs (--transfer linear)?",
+                     r.pixels);
     if (!status)
         status = solve(&r, &believed, m->directions, residual, p.log);
     if (!status && believed && p.integrable)

@@ -4,7 +4,7 @@
 //
 // FOLDER (default ../shared/data/diligent) holds ball and bear: 001.png ... 096.png, mask.png,
 // light_directions.txt, light_intensities.txt and normals.npy. Mean angle in degrees for all
-// lights, and over five draws of ten of them.
+// lights, over five draws of ten of them, and where the lamps' brightness is not known.
 #define RELUME_VEC3_SHORT
 #include <relume/relume.h>
 
@@ -98,7 +98,28 @@ static double mean_angle(const struct relume_image *normal, const struct object 
     return sum / n;
 }
 
-static double measure(const struct object *o, const int *light, int lights, bool plain)
+static relume_capture *create(int width, int height, int lights, struct relume_vec3 *direction,
+                              float (*intensity)[3], float *data, float *mask)
+{
+    relume_capture *capture;
+    must(relume_capture_create(
+             &capture,
+             &(struct relume_manifest){.geometry =
+                                           relume_geometry_default(RELUME_PLANAR, width, height),
+                                       .lights = lights,
+                                       .directions = direction,
+                                       .intensities = (const float(*)[3])intensity},
+             &(struct relume_pictures){
+                 .width = width, .height = height, .channels = 3, .data = data, .mask = mask},
+             NULL),
+         "capture");
+    return capture;
+}
+
+// What the fit is told of the lamps' brightness, and by what it fits.
+enum way { TOLD, LEAST_SQUARES, UNTOLD, ESTIMATED };
+
+static double measure(const struct object *o, const int *light, int lights, enum way way)
 {
     const int width = o->mask.width, height = o->mask.height;
     const size_t pixels = (size_t)width * (size_t)height;
@@ -112,26 +133,27 @@ static double measure(const struct object *o, const int *light, int lights, bool
     for (int i = 0; i < lights; i++) {
         const struct relume_vec3 rgb = o->intensity[light[i]];
         direction[i] = o->direction[light[i]];
-        intensity[i][0] = (float)rgb.x;
-        intensity[i][1] = (float)rgb.y;
-        intensity[i][2] = (float)rgb.z;
+        intensity[i][0] = way < UNTOLD ? (float)rgb.x : 1.0f;
+        intensity[i][1] = way < UNTOLD ? (float)rgb.y : 1.0f;
+        intensity[i][2] = way < UNTOLD ? (float)rgb.z : 1.0f;
         for (size_t k = 0; k < 3 * pixels; k++)
             data[3 * pixels * (size_t)i + k] = 8.0f * o->photograph[light[i]].data[k];
     }
-    relume_capture *capture;
     struct relume_photometric fit;
-    must(relume_capture_create(
-             &capture,
-             &(struct relume_manifest){.geometry =
-                                           relume_geometry_default(RELUME_PLANAR, width, height),
-                                       .lights = lights,
-                                       .directions = direction,
-                                       .intensities = (const float(*)[3])intensity},
-             &(struct relume_pictures){
-                 .width = width, .height = height, .channels = 3, .data = data, .mask = mask},
-             NULL),
-         "capture");
-    must(relume_photometric_fit(&fit, capture, 0, relume_photometric_params(.plain = plain)),
+    relume_capture *capture = create(width, height, lights, direction, intensity, data, mask);
+    if (way == ESTIMATED) {
+        double found[LIGHTS], residual[2];
+        must(relume_acquire_refine(direction, found, residual, capture,
+                                   relume_acquire_refine_params(.brightness = true)),
+             "brightness");
+        relume_capture_destroy(&capture);
+        for (int i = 0; i < lights; i++)
+            for (int c = 0; c < 3; c++)
+                intensity[i][c] = (float)found[i];
+        capture = create(width, height, lights, direction, intensity, data, mask);
+    }
+    must(relume_photometric_fit(&fit, capture, 0,
+                                relume_photometric_params(.plain = way == LEAST_SQUARES)),
          "fit");
     const double angle = mean_angle(&fit.normal, o, mask);
     relume_photometric_destroy(&fit);
@@ -168,11 +190,14 @@ int main(int argc, char **argv)
         }
         for (int k = 0; k < DRAWS; k++) {
             draw(light, (unsigned)k + 1);
-            few += measure(&o, light, FEW, false) / DRAWS;
+            few += measure(&o, light, FEW, TOLD) / DRAWS;
         }
         draw(light, 1);
-        printf("normals of %s: %.2f degrees, least squares %.2f; of ten lights %.2f\n", names[n],
-               measure(&o, light, LIGHTS, false), measure(&o, light, LIGHTS, true), few);
+        printf("normals of %s: %.2f degrees, least squares %.2f; of ten lights %.2f; brightness of "
+               "lamps not told %.2f, estimated %.2f\n",
+               names[n], measure(&o, light, LIGHTS, TOLD),
+               measure(&o, light, LIGHTS, LEAST_SQUARES), few, measure(&o, light, LIGHTS, UNTOLD),
+               measure(&o, light, LIGHTS, ESTIMATED));
         relume_image_destroy(&o.mask);
         for (int i = 0; i < LIGHTS; i++)
             relume_image_destroy(o.photograph + i);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Pictures of docs/btf.md and docs/objects.md.
+# Pictures of docs/btf.md, docs/gbrdf.md and docs/objects.md.
 # btf.sh BUILD_FOLDER WORK_FOLDER PICTURES_FOLDER
 # Samples and models stay in the work folder, which may be that of tests/bench/btf_tables.sh, and are
 # used again. The cow is left out where ../shared/data is not there.
@@ -61,6 +61,20 @@ for view in '0.05,-0.1,0.99|dir 0.3 -0.85 0.42' '0.75,-0.3,0.6|dir -0.3 0.3 0.9'
 done
 "$draw" column "$pictures/btf-models.png" $(names models1 models2)
 echo "  $pictures/btf-models.png"
+
+# g-BRDFs in the viewer: planted, the same found from what it shows, and a weave, measured and found.
+[ -d "$out/planted" ] || { "$relume" btf plant -o "$out/planted.exr" && "$relume" btf expand "$out/planted.exr" -o "$out/planted"; }
+sample threads weave --size 128 --directions coarse --samples 1
+[ -f "$out/found.exr" ] || "$relume" btf fit "$out/planted" --model gbrdf --clusters 3 -o "$out/found.exr" -q
+[ -f "$out/threads.exr" ] || "$relume" btf fit "$out/threads" --model gbrdf -o "$out/threads.exr" -q
+list=
+for m in planted.exr found.exr threads threads.exr; do
+    "$1/relume-view" "$out/$m" --size 300x300 --eye 0.9,-2.3,3.4 --look-at 0,0,0.1 --fov 29 --light 'dir -0.6 0.5 0.7 rgb 1.3 1.3 1.3' \
+        --light 'dir 0.7 -0.3 0.6 rgb 0.3 0.3 0.4' --offscreen "$out/panels/cushion-$m.exr"
+    list="$list cushion-$m"
+done
+"$draw" row "$pictures/gbrdf.jpg" $(names $list)
+echo "  $pictures/gbrdf.jpg"
 
 [ -f "$cow" ] || { echo "skipped: $cow is not there"; exit 0; }
 sample cloth corduroy --size 32

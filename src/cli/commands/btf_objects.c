@@ -85,7 +85,7 @@ static relume_status render(struct relume_image *image, const relume_objects *ob
 relume_status btf_render_objects(const struct btf_options *o)
 {
     relume_objects *objects = NULL;
-    struct relume_window window;
+    struct relume_window window = {.eye = {0, 0, 0}};
     struct relume_image image = {0};
     const int size[2] = {o->picture[0] ? o->picture[0] : 512, o->picture[1] ? o->picture[1] : 512};
     relume_status status = open_them(&objects, o);

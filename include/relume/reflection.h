@@ -50,7 +50,10 @@ struct relume_reflection_region {
     int points;                        // to the next
 };
 
-enum { RELUME_REFLECTION_CONSTRAINTS_MOST = 256, RELUME_REFLECTION_REGIONS_MOST = 32 };
+enum {
+    RELUME_REFLECTION_CONSTRAINTS_MOST = 256,
+    RELUME_REFLECTION_REGIONS_MOST = 32
+};  // of an edit
 
 // What is done to the reflections of an object. Plain data.
 struct relume_reflection_edit {
@@ -124,14 +127,15 @@ RELUME_API double relume_reflection_weight(const relume_reflection *reflection, 
 RELUME_API struct relume_vec3 relume_reflection_turn(const relume_reflection *reflection,
                                                      const struct relume_reflection_place *place,
                                                      struct relume_vec3 r);
-// The same for n places at once, in single precision, over several cores; `cpu_off` as
-// relume_relight_params. Directions are replaced by the edited ones. Edits that go along the
-// surface are refused with RELUME_EUNFIT. Equal bits for any number of threads.
+// Many places.
 struct relume_reflection_places {
     const float *x, *y, *z;  // [n] each: positions
     float *rx, *ry, *rz;     // [n] each: unit directions, in and out
-    size_t n;
+    size_t n;                // how many
 };
+// relume_reflection_turn for all of them, in single precision, over several cores; `cpu_off` as
+// relume_relight_params. Directions are replaced by the edited ones. Equal bits for any number of
+// threads. RELUME_EUNFIT for edits that go along the surface; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_reflection_turn_all(
     const relume_reflection *reflection, const struct relume_reflection_places *places,
     unsigned cpu_off, int threads);

@@ -25,7 +25,7 @@ codebook:base math kernel image coder team:base coder codebook team
 team:base:base io team
 selection:base math image coder compare:base image capture coder codebook heldout team tone
 lossy:base math:base image coder
-shadow:base math image:base image capture coder light shadow
+shadow:base math image:base image capture coder light maps shadow
 encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team shadow
 pack:base geometry image coder lossy:base image capture codebook coder pack shadow
 foreign:base math image:base image directions coder relight

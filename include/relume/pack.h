@@ -68,6 +68,8 @@ struct relume_pack_view {
     int anchor;          // that view
     float depth_step;    // depth is written in steps of its inverse, of that size; 0: as it is
     const struct relume_image *shadow;  // as relume_shadows_learn gives it, or NULL
+    const struct relume_image *gloss;   // as relume_gloss_learn gives it, of files of one view
+                                        // without `shadow`, or NULL
 };
 // Which part of a file is written, where several machines share the work; relume_pack_join makes
 // one file of all parts. Borrowed.
@@ -183,6 +185,8 @@ struct relume_pack_encode_params {
     struct relume_transfer display;  // as relume_encode_params
     bool shadows;  // learn what shadows are traced with (shadow.h). Of captures with depth and
                    // distant lights; not with loss, in parts or with reduced levels
+    const struct relume_image *gloss;  // what highlights wander by (relume_gloss_learn), of the
+                                       // only view; likewise, and without `shadows`. Default: none
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \
@@ -262,6 +266,7 @@ struct relume_pack_info {
     struct relume_encode_report report;  // NaN where the file does not say
     uint64_t file_bytes;
     bool has_shadow;  // shadows can be traced: relume_pack_shadow
+    bool has_gloss;   // highlights wander: relume_pack_gloss
 };
 // It belongs to the pack.
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
@@ -297,7 +302,10 @@ RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pa
 // What shadows of a view are traced with (shadow.h); empty when the file has none.
 RELUME_RESULT relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack,
                                                int view);
-// The same, ready to be traced; NULL when the file has none. The caller destroys it.
+// What highlights of a view wander by (shadow.h); empty when the file has none.
+RELUME_RESULT relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack,
+                                              int view);
+// Either, ready to be added; NULL when the file has neither. The caller destroys it.
 RELUME_RESULT relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view);
 
 // Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing

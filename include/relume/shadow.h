@@ -1,4 +1,4 @@
-// shadow.h - shadows that wander with the light, traced through the depth of a view
+// shadow.h - shadows and highlights that wander with the light
 //
 // Between two captured lights interpolation fades one shadow out and another in. Where depth is
 // known the edge can move instead. With rho_i captured under light i, w_i the weights of the lights
@@ -12,6 +12,10 @@
 // A view sees fronts alone. How deep the things are that light is stopped by is learnt from the
 // photographs: where light arrives, nothing stood in its way (Savarese et al. 2007 carve volumes by
 // that). f is matte: colour times max(0, a + b.L), by least squares over the lights that arrive.
+//
+// Without depth highlights can wander in the same way: V is 1, and f a share of what a surface of
+// the pixel's normal, colour and gloss shows (GGX, relume/maps.h). The share is that with which the
+// captured lights, each left out, are foretold best: where the model does not fit it is 0.
 #ifndef RELUME_SHADOW_H
 #define RELUME_SHADOW_H
 
@@ -90,11 +94,41 @@ RELUME_RESULT relume_status relume_shadows_judge(struct relume_shadows_gain *out
                                                  bool display,
                                                  const struct relume_shadows_params *params);
 
+// Channels of a view whose highlights wander.
+enum {
+    RELUME_GLOSS_COLOUR = 0,     // r, g, b: of the matte surface, or what a metal shines like;
+                                 // linear, 0 or more
+    RELUME_GLOSS_NORMAL = 3,     // x and y of a unit vector towards the viewer
+    RELUME_GLOSS_ROUGHNESS = 5,  // glTF's, 0 to 1
+    RELUME_GLOSS_SHINE = 6,      // reflectance at normal incidence; below 0: a metal
+    RELUME_GLOSS_SHARE = 7,      // of that which counts, 0 or more
+    RELUME_GLOSS_CHANNELS = 8,   // in all
+};
+
+// As relume_shadows_create, of what relume_gloss_learn found, for planar views that are seen
+// orthographically. RELUME_EINVAL for other channels, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_gloss_create(relume_shadows **out,
+                                                const struct relume_image *model);
+
+// Learn the view of a planar orthographic capture with distant lights; `display`: codes will be of
+// the display domain. `*model` is created with RELUME_GLOSS_CHANNELS channels, each number of 8
+// significant bits. `skip` must be NULL. RELUME_EINVAL for other captures, errors of
+// relume_maps_fit and relume_coder_learn.
+RELUME_RESULT relume_status relume_gloss_learn(struct relume_image *model,
+                                               const relume_capture *capture, bool display,
+                                               const struct relume_shadows_params *params);
+// As relume_shadows_judge, `traced_db` being that of wandering highlights; means of the lights'
+// decibels.
+RELUME_RESULT relume_status relume_gloss_judge(struct relume_shadows_gain *out,
+                                               const relume_capture *capture, bool display,
+                                               const struct relume_shadows_params *params);
+
 // Lights whose shadows are traced: directional ones, and near ones but areas.
 RELUME_API bool relume_shadows_count(enum relume_light_kind kind);
 // Add the last two terms for each of these to a picture of linear light, which becomes black where
 // it would be less. The picture is the rectangle of the view at `left`, `top` of its
-// size, relit from codes of `coder` and `domain` (`display`: its curve). RELUME_ENOMEM.
+// size, relit from codes of `coder` and `domain` (`display`: its curve). Highlights wander under
+// directional lights only. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
                                                relume_shadows *shadows,
                                                const struct relume_codes *codes,

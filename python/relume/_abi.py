@@ -70,7 +70,7 @@ struct relume_pack_params { size_t struct_size; void *log; void *limits; int com
 struct relume_pack_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int compression;
     int threads; void *books; bool share; bool no_depth; int pyramid; double psnr_db, bytes_per_pixel; void *writer;
     int part, parts; void *options; bool free_storage; void *team; bool learn_only;
-    struct relume_transfer display; bool shadows; };
+    struct relume_transfer display; bool shadows; void *gloss; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
     size_t repaired; int black_images; };
 struct relume_encode_report { double fit_rms; double store_rms; double steps_rms; double psnr_db; double typical;
@@ -79,7 +79,7 @@ struct relume_pack_info { int version; void *coder; int domain; struct relume_tr
     int storage; char *compression; struct relume_geometry geometry; int slabs; void *slab;
     int width, height; int levels; int tile; int views; void *uv; void *slab_of; bool has_depth, has_mask;
     int coefficients, planes; int books; int codes; bool shared;
-    struct relume_encode_report report; uint64_t file_bytes; bool has_shadow; };
+    struct relume_encode_report report; uint64_t file_bytes; bool has_shadow; bool has_gloss; };
 struct relume_codes { void *coder; int domain; struct relume_transfer display;
     int width, height, planes; int storage; void *plane; void *scale, *offset; int books;
     void *index; void *vectors; void *book_codes; };

@@ -94,6 +94,7 @@ relume_status material_extras(struct material *m, int i)
         status =
             relume_shadows_learn(&m->shadow[i], m->capture, i,
                                  relume_shadows_params(.log = m->p->log, .threads = m->p->threads));
+    m->view[i].gloss = m->p->gloss;
     m->view[i].shadow = m->shadow[i].data ? &m->shadow[i] : NULL;
     m->view[i].depth = m->depth[i].data ? &m->depth[i] : NULL;
     m->view[i].mask = m->mask[i].data ? &m->mask[i] : NULL;

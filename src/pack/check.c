@@ -49,7 +49,10 @@ static relume_status check_depth(relume_pack *pack, int view)
 static relume_status check_shadow(relume_pack *pack, int view)
 {
     struct relume_image image;
-    const relume_status status = relume_pack_shadow(&image, pack, view);
+    relume_status status = relume_pack_shadow(&image, pack, view);
+    relume_image_destroy(&image);
+    if (!status)
+        status = relume_pack_gloss(&image, pack, view);
     relume_image_destroy(&image);
     return status;
 }

@@ -21,6 +21,12 @@ enum { FORMAT_TILE = 128 };
         "B", "G", "R", "a", "bx", "by", "bz", "thickness"                                          \
     }
 
+// Of what highlights wander by: colour, normal, roughness, reflectance, share.
+#define FORMAT_GLOSS_CHANNELS                                                                      \
+    {                                                                                              \
+        "B", "G", "R", "nx", "ny", "roughness", "shine", "trust"                                   \
+    }
+
 #define ATTR_FORMAT        "relume.format"
 #define ATTR_VERSION       "relume.version"
 #define ATTR_CREATOR       "relume.creator"

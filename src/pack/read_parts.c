@@ -127,6 +127,17 @@ static relume_status find_view(relume_pack *p, int view, int *part)
     return status || p->coded ? status : check_shares(p, view);
 }
 
+static bool is_learnt(const relume_pack *p, int part, const char *const *channel)
+{
+    const struct exr_part_info i = exr_part_info(p->file, part);
+    bool good = i.width == p->info.width && i.height == p->info.height && i.uniform &&
+                i.sample == EXR_SAMPLE_HALF && i.channels == RELUME_SHADOW_CHANNELS &&
+                !p->info.levels;
+    for (int c = 0; good && c < i.channels; c++)
+        good = !strcmp(exr_channel_name(p->file, part, c), channel[c]);
+    return good;
+}
+
 // Behind all else: programs that do not know them do not see them.
 static relume_status find_shadow(relume_pack *p, int view, int *part)
 {
@@ -134,17 +145,27 @@ static relume_status find_shadow(relume_pack *p, int view, int *part)
     char name[48];
     if (!is_next(p, *part, name, view, ".shadow"))
         return RELUME_OK;
-    const struct exr_part_info i = exr_part_info(p->file, *part);
-    bool good = i.width == p->info.width && i.height == p->info.height && i.uniform &&
-                i.sample == EXR_SAMPLE_HALF && i.channels == RELUME_SHADOW_CHANNELS &&
-                p->parts[view].depth >= 0 && !p->info.levels;
-    for (int c = 0; good && c < i.channels; c++)
-        good = !strcmp(exr_channel_name(p->file, *part, c), channel[c]);
-    if (!good)
+    if (p->parts[view].depth < 0 || !is_learnt(p, *part, channel))
         return reader_bad(p, name,
                           "eight half channels of the views' size, depth and no reduced levels");
     p->parts[view].shadow = (*part)++;
     p->info.has_shadow = true;
+    return RELUME_OK;
+}
+
+static relume_status find_gloss(relume_pack *p, int *part)
+{
+    static const char *const channel[] = FORMAT_GLOSS_CHANNELS;
+    char name[48];
+    if (p->info.has_shadow || !is_next(p, *part, name, 0, ".gloss"))
+        return RELUME_OK;
+    if (p->info.views != 1 || p->info.geometry.projection != RELUME_PLANAR ||
+        p->info.geometry.perspective || !is_learnt(p, *part, channel))
+        return reader_bad(p, name,
+                          "eight half channels of the view's size, one planar orthographic view "
+                          "and no reduced levels");
+    p->gloss = (*part)++;
+    p->info.has_gloss = true;
     return RELUME_OK;
 }
 
@@ -166,6 +187,8 @@ relume_status reader_find_parts(relume_pack *p)
             status = check_shares(p, v);
     for (int v = 0; !status && v < p->info.views; v++)
         status = find_shadow(p, v, &part);
+    if (!status)
+        status = find_gloss(p, &part);
     if (status)
         return status;
     p->info.tile = p->coded ? reader_coded_tile(p) : exr_part_info(p->file, p->parts[0].codes).tile;

@@ -153,19 +153,34 @@ relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int
     return reader_load_plane(out, pack, pack->parts[view].depth, &all);
 }
 
-// In the order in which EXR sorts the names of the channels.
-static void shadow_block(void *context, const struct relume_rect *at, const void *samples)
+// What was learnt of a view, its channels in the order in which EXR sorts their names.
+struct learnt {
+    struct relume_image *image;
+    const int *order;
+};
+
+static void learnt_block(void *context, const struct relume_rect *at, const void *samples)
 {
-    static const int order[RELUME_SHADOW_CHANNELS] = {3, 2, 1, 4, 5, 6, 7, 0};
-    struct relume_image *to = context;
+    const struct learnt *l = context;
+    const int channels = l->image->channels;
     for (int y = at->top; y < at->top + at->height; y++)
-        for (int c = 0; c < RELUME_SHADOW_CHANNELS; c++) {
-            const uint16_t *from = exr_samples(samples, at, at, y, RELUME_SHADOW_CHANNELS, c, 2);
-            float *out = to->data + ((size_t)y * (size_t)to->width + (size_t)at->left) *
-                                        RELUME_SHADOW_CHANNELS;
+        for (int c = 0; c < channels; c++) {
+            const uint16_t *from = exr_samples(samples, at, at, y, channels, c, 2);
+            float *out = l->image->data + ((size_t)y * (size_t)l->image->width + (size_t)at->left) *
+                                              (size_t)channels;
             for (int x = 0; x < at->width; x++)
-                out[x * RELUME_SHADOW_CHANNELS + order[c]] = float_from_half(from[x]);
+                out[x * channels + l->order[c]] = float_from_half(from[x]);
         }
+}
+
+static relume_status read_learnt(struct relume_image *out, relume_pack *pack, int part,
+                                 const int order[RELUME_SHADOW_CHANNELS])
+{
+    struct learnt l = {out, order};
+    const relume_status status =
+        relume_image_create(out, pack->info.width, pack->info.height, RELUME_SHADOW_CHANNELS);
+    return status ? status
+                  : exr_read(pack->file, part, NULL, pack->threads, learnt_block, &l, pack->log);
 }
 
 // Colours and thicknesses of 0 or more, the rest finite.
@@ -183,18 +198,29 @@ static bool is_sound_shadow(const struct relume_image *image)
     return sound;
 }
 
+// Finite, and but for normals and reflectances 0 or more.
+static bool is_sound_gloss(const struct relume_image *image)
+{
+    const size_t n = (size_t)image->width * (size_t)image->height;
+    bool sound = true;
+    for (size_t i = 0; i < n; i++) {
+        const float *p = image->data + RELUME_GLOSS_CHANNELS * i;
+        for (int c = 0; c < RELUME_GLOSS_CHANNELS; c++)
+            sound &= isfinite(p[c]) && (p[c] >= 0.0f || c == RELUME_GLOSS_NORMAL ||
+                                        c == RELUME_GLOSS_NORMAL + 1 || c == RELUME_GLOSS_SHINE);
+    }
+    return sound;
+}
+
 relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, int view)
 {
+    static const int order[RELUME_SHADOW_CHANNELS] = {3, 2, 1, 4, 5, 6, 7, 0};
     *out = (struct relume_image){0};
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
     if (pack->parts[view].shadow < 0)
         return RELUME_OK;
-    relume_status status =
-        relume_image_create(out, pack->info.width, pack->info.height, RELUME_SHADOW_CHANNELS);
-    if (!status)
-        status = exr_read(pack->file, pack->parts[view].shadow, NULL, pack->threads, shadow_block,
-                          out, pack->log);
+    relume_status status = read_learnt(out, pack, pack->parts[view].shadow, order);
     if (!status && !is_sound_shadow(out))
         status = reader_bad(pack, "shadow", "finite colours and a thickness, of 0 or more");
     if (status)
@@ -202,10 +228,26 @@ relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, in
     return status;
 }
 
-relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view)
+relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack, int view)
+{
+    static const int order[RELUME_GLOSS_CHANNELS] = {2, 1, 0, 3, 4, 5, 6, 7};
+    *out = (struct relume_image){0};
+    if (view < 0 || view >= pack->info.views)
+        return RELUME_EINVAL;
+    if (!pack->info.has_gloss)
+        return RELUME_OK;
+    relume_status status = read_learnt(out, pack, pack->gloss, order);
+    if (!status && !is_sound_gloss(out))
+        status =
+            reader_bad(pack, "gloss", "finite numbers; colours, roughness and share 0 or more");
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}
+
+static relume_status open_shadows(relume_shadows **out, relume_pack *pack, int view)
 {
     struct relume_image depth = {0}, model;
-    *out = NULL;
     relume_status status = relume_pack_shadow(&model, pack, view);
     if (!status && model.data)
         status = relume_pack_depth(&depth, pack, view);
@@ -215,6 +257,19 @@ relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int v
     if (status == RELUME_EINVAL)
         status = reader_bad(pack, "shadow", "none in views of this projection");
     relume_image_destroy(&depth);
+    relume_image_destroy(&model);
+    return status;
+}
+
+relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view)
+{
+    struct relume_image model;
+    *out = NULL;
+    if (!pack->info.has_gloss)
+        return open_shadows(out, pack, view);
+    relume_status status = relume_pack_gloss(&model, pack, view);
+    if (!status)
+        status = relume_gloss_create(out, &model);
     relume_image_destroy(&model);
     return status;
 }

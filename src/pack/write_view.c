@@ -236,30 +236,45 @@ void writer_add_levels(struct writer *w, int index)
     }
 }
 
-// The channels of relume_shadows_learn in the order in which EXR sorts their names.
-static const int shadow_order[RELUME_SHADOW_CHANNELS] = {3, 2, 1, 4, 5, 6, 7, 0};
+enum { LEARNT = 8 };
+_Static_assert(LEARNT == (int)RELUME_SHADOW_CHANNELS && LEARNT == (int)RELUME_GLOSS_CHANNELS,
+               "both parts are written by one function");
 
+static void learnt_rows(const struct relume_image *image, int row, int rows, const int *order,
+                        uint16_t *halves)
+{
+    const size_t width = (size_t)image->width;
+    const float *from = image->data + (size_t)row * width * LEARNT;
+    for (int y = 0; y < rows; y++, from += width * LEARNT)
+        for (int c = 0; c < LEARNT; c++)
+            for (size_t x = 0; x < width; x++)
+                *halves++ = half_from_float(from[x * LEARNT + (size_t)order[c]]);
+}
+
+// The channels of relume_shadows_learn in the order in which EXR sorts their names.
 static relume_status shadow_rows(void *context, int row, int rows, void *samples)
 {
-    const struct relume_image *image = context;
-    const size_t width = (size_t)image->width;
-    const float *from = image->data + (size_t)row * width * RELUME_SHADOW_CHANNELS;
-    uint16_t *halves = samples;
-    for (int y = 0; y < rows; y++, from += width * RELUME_SHADOW_CHANNELS)
-        for (int c = 0; c < RELUME_SHADOW_CHANNELS; c++)
-            for (size_t x = 0; x < width; x++)
-                *halves++ =
-                    half_from_float(from[x * RELUME_SHADOW_CHANNELS + (size_t)shadow_order[c]]);
+    static const int order[LEARNT] = {3, 2, 1, 4, 5, 6, 7, 0};
+    learnt_rows(context, row, rows, order, samples);
     return RELUME_OK;
 }
 
-void writer_add_shadow(struct writer *w, int index)
+static relume_status gloss_rows(void *context, int row, int rows, void *samples)
 {
-    static const char *const channel[] = FORMAT_SHADOW_CHANNELS;
+    static const int order[LEARNT] = {2, 1, 0, 3, 4, 5, 6, 7};
+    learnt_rows(context, row, rows, order, samples);
+    return RELUME_OK;
+}
+
+void writer_add_learnt(struct writer *w, int index)
+{
+    static const char *const shadow[] = FORMAT_SHADOW_CHANNELS, *const gloss[] =
+                                                                    FORMAT_GLOSS_CHANNELS;
     const struct relume_pack_view *view = &w->contents->view[index];
-    add_plane(w, "shadow", index, view->shadow, channel, EXR_SAMPLE_HALF, shadow_rows);
-    if (view->shadow)
-        w->parts[w->count - 1].channels = RELUME_SHADOW_CHANNELS;
+    add_plane(w, "shadow", index, view->shadow, shadow, EXR_SAMPLE_HALF, shadow_rows);
+    add_plane(w, "gloss", index, view->gloss, gloss, EXR_SAMPLE_HALF, gloss_rows);
+    if (view->shadow || view->gloss)
+        w->parts[w->count - 1].channels = LEARNT;
 }
 
 void writer_add_view(struct writer *w, int index, bool shared)

@@ -132,7 +132,7 @@ static void add_parts(struct writer *w)
     for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
         writer_add_view(w, i, shared);
     for (int i = 0; !c->share && i < c->views; i++)
-        writer_add_shadow(w, i);
+        writer_add_learnt(w, i);
 }
 
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,

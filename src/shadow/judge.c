@@ -1,4 +1,5 @@
-// judge.c - whether traced shadows are better than faded ones, by lights left out
+// judge.c - whether shadows and highlights that wander are better than those that fade, by lights
+// left out
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -9,7 +10,9 @@
 #include <string.h>
 
 enum { LEFT_OUT = 6, LEAST_LIGHTS = 8 };
-enum { COMPARED = 2 };  // ways to interpolate: `chord`, `delaunay`; the second is also traced
+// Ways to interpolate. Highlights wander with the first, shadows with the second.
+enum { CHORD, DELAUNAY, COMPARED };
+static const double LEAST_SQUARE = 1e-8;  // 80 dB
 
 // One light that is left out.
 struct met {
@@ -23,6 +26,8 @@ struct met {
 struct judging {
     const relume_capture *capture;
     int view;
+    bool gloss;                 // highlights are judged, not shadows
+    relume_capture *rest;       // with the lights that are kept
     struct relume_codes codes;  // of no pixels: how lights are interpolated
     relume_shadows *shadows;
     struct relume_transfer display;
@@ -31,8 +36,7 @@ struct judging {
     relume_coder *coder[COMPARED];  // of the same lights
     struct met met[LEFT_OUT];
     int met_count;
-    double faded[COMPARED], traced;  // squared errors of display values
-    size_t values;
+    double error[COMPARED + 1];  // mean squares of display values; the last: what wanders
 };
 
 static void judging_destroy(struct judging *j)
@@ -48,6 +52,7 @@ static void judging_destroy(struct judging *j)
     for (int k = 0; k < COMPARED; k++)
         relume_coder_destroy(&j->coder[k]);
     relume_shadows_destroy(&j->shadows);
+    relume_capture_destroy(&j->rest);
     mem_free(j->kept);
 }
 
@@ -56,8 +61,8 @@ static float shown(const struct judging *j, float linear)
     return relume_transfer_encode(j->display, fminf(fmaxf(linear, 0.0f), 1.0f));
 }
 
-static double squared_error(const struct judging *j, const struct relume_image *a,
-                            const struct relume_image *b)
+static double mean_square(const struct judging *j, const struct relume_image *a,
+                          const struct relume_image *b)
 {
     const size_t n = 3 * (size_t)a->width * (size_t)a->height;
     double sum = 0.0;
@@ -65,7 +70,21 @@ static double squared_error(const struct judging *j, const struct relume_image *
         const double d = (double)(shown(j, a->data[i]) - shown(j, b->data[i]));
         sum += d * d;
     }
-    return sum;
+    return sum / (double)n;
+}
+
+// Shadows by the mean square over all lights. Of highlights the lowest lights would decide alone:
+// by the mean of decibels.
+static void take_error(struct judging *j, int k, const struct relume_image *guess,
+                       const struct relume_image *truth)
+{
+    const double error = mean_square(j, guess, truth);
+    j->error[k] += (j->gloss ? log10(fmax(error, LEAST_SQUARE)) : error) / j->met_count;
+}
+
+static double decibels(const struct judging *j, double error)
+{
+    return -10.0 * (j->gloss ? error : log10(error));
 }
 
 // ---------------------------------------------------------------- what is read
@@ -153,40 +172,49 @@ static relume_status compare(struct judging *j, struct met *m)
 {
     for (int k = 0; k < COMPARED; k++) {
         show(j, &m->guess[k], m->share[k]);
-        j->faded[k] += squared_error(j, &m->guess[k], &m->truth);
+        take_error(j, k, &m->guess[k], &m->truth);
     }
-    struct relume_image *guess = &m->guess[1];
+    struct relume_image *guess = &m->guess[j->gloss ? CHORD : DELAUNAY];
     const relume_status status =
         relume_shadows_add(guess, 0, 0, j->shadows, &j->codes, &m->lamp, 1, j->p->threads);
-    if (!status) {
-        j->traced += squared_error(j, guess, &m->truth);
-        j->values += 3 * (size_t)guess->width * (size_t)guess->height;
-    }
+    if (!status)
+        take_error(j, COMPARED, guess, &m->truth);
     return status;
 }
 
 // ---------------------------------------------------------------- what is learnt
 
-// How the lights that are kept are interpolated, both ways.
-static relume_status open_rest(struct judging *j, const bool *skip)
+static relume_status select_rest(struct judging *j, const bool *skip)
 {
-    const struct relume_manifest *m = relume_capture_manifest(j->capture);
+    const int lights = relume_capture_manifest(j->capture)->lights;
+    int n = 0;
+    for (int i = 0; i < lights; i++)
+        if (!skip[i])
+            j->kept[n++] = i;
+    return relume_capture_select(&j->rest, j->capture, j->kept, n);
+}
+
+// How the lights that are kept are interpolated, both ways.
+static relume_status open_rest(struct judging *j)
+{
     const struct relume_basis *table = relume_basis_find("table");
     const struct relume_encode_params encode = {
         .log = j->p->log, .domain = j->codes.domain, .threads = j->p->threads};
-    relume_capture *rest = NULL;
-    int n = 0;
-    for (int i = 0; i < m->lights; i++)
-        if (!skip[i])
-            j->kept[n++] = i;
-    relume_status status = relume_capture_select(&rest, j->capture, j->kept, n);
+    relume_status status = relume_coder_learn(&j->coder[CHORD], table, j->rest,
+                                              relume_coder_params(.choose = true), &encode);
     if (!status)
-        status = relume_coder_learn(&j->coder[0], table, rest, relume_coder_params(.choose = true),
-                                    &encode);
+        status = relume_coder_learn(&j->coder[DELAUNAY], table, j->rest, NULL, &encode);
+    j->codes.coder = j->coder[j->gloss ? CHORD : DELAUNAY];
+    return status;
+}
+
+static relume_status learn_gloss(struct judging *j)
+{
+    struct relume_image model;
+    relume_status status = relume_gloss_learn(&model, j->rest, is_display(j), j->p);
     if (!status)
-        status = relume_coder_learn(&j->coder[1], table, rest, NULL, &encode);
-    j->codes.coder = j->coder[1];
-    relume_capture_destroy(&rest);
+        status = relume_gloss_create(&j->shadows, &model);
+    relume_image_destroy(&model);
     return status;
 }
 
@@ -216,9 +244,11 @@ static relume_status judge(struct judging *j, const bool *skip)
     relume_status status = limits_memory(pixels * LEFT_OUT * (1 + COMPARED) * 3 * sizeof(float),
                                          "comparing the shadows of a view", j->p->log);
     if (!status)
-        status = learn_rest(j, skip);
+        status = select_rest(j, skip);
     if (!status)
-        status = open_rest(j, skip);
+        status = j->gloss ? learn_gloss(j) : learn_rest(j, skip);
+    if (!status)
+        status = open_rest(j);
     for (int i = 0; !status && i < lights; i++)
         if (skip[i])
             status = expect(j, i);
@@ -231,30 +261,45 @@ static relume_status judge(struct judging *j, const bool *skip)
     return status;
 }
 
+static relume_status judge_lights(struct relume_shadows_gain *out, struct judging *j)
+{
+    const int lights = relume_capture_manifest(j->capture)->lights;
+    const int out_of = lights / 4 < LEFT_OUT ? lights / 4 : LEFT_OUT;
+    *out = (struct relume_shadows_gain){.lights = out_of};
+    if (lights < LEAST_LIGHTS)
+        return RELUME_EINVAL;
+    bool *skip = mem_zeroed((size_t)lights, sizeof *skip);
+    j->kept = mem_array((size_t)lights, sizeof *j->kept);
+    j->codes.display = j->display = relume_encode_display(j->capture);
+    for (int i = 0; skip && i < out_of; i++)
+        skip[(2 * i + 1) * lights / (2 * out_of)] = true;
+    const relume_status status = skip && j->kept ? judge(j, skip) : RELUME_ENOMEM;
+    out->faded_db = decibels(j, fmin(j->error[CHORD], j->error[DELAUNAY]));
+    out->traced_db = decibels(j, j->error[COMPARED]);
+    judging_destroy(j);
+    mem_free(skip);
+    return status;
+}
+
 relume_status relume_shadows_judge(struct relume_shadows_gain *out, const relume_capture *capture,
                                    int view, bool display,
                                    const struct relume_shadows_params *params)
 {
     const struct relume_shadows_params p = PARAMS_WORK(relume_shadows_params, params);
-    const int lights = relume_capture_manifest(capture)->lights;
-    const int out_of = lights / 4 < LEFT_OUT ? lights / 4 : LEFT_OUT;
     struct judging j = {.capture = capture,
                         .view = view,
                         .codes.domain = display ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
-                        .display = relume_encode_display(capture),
                         .p = &p};
-    *out = (struct relume_shadows_gain){.lights = out_of};
-    if (lights < LEAST_LIGHTS)
-        return RELUME_EINVAL;
-    bool *skip = mem_zeroed((size_t)lights, sizeof *skip);
-    j.kept = mem_array((size_t)lights, sizeof *j.kept);
-    j.codes.display = j.display;
-    for (int i = 0; skip && i < out_of; i++)
-        skip[(2 * i + 1) * lights / (2 * out_of)] = true;
-    const relume_status status = skip && j.kept ? judge(&j, skip) : RELUME_ENOMEM;
-    out->faded_db = -10.0 * log10(fmin(j.faded[0], j.faded[1]) / (double)j.values);
-    out->traced_db = -10.0 * log10(j.traced / (double)j.values);
-    judging_destroy(&j);
-    mem_free(skip);
-    return status;
+    return judge_lights(out, &j);
+}
+
+relume_status relume_gloss_judge(struct relume_shadows_gain *out, const relume_capture *capture,
+                                 bool display, const struct relume_shadows_params *params)
+{
+    const struct relume_shadows_params p = PARAMS_WORK(relume_shadows_params, params);
+    struct judging j = {.capture = capture,
+                        .gloss = true,
+                        .codes.domain = display ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
+                        .p = &p};
+    return judge_lights(out, &j);
 }

@@ -1,4 +1,5 @@
 // shadows.c - a view whose shadows are traced, and what that adds to a relit picture
+#include "shadow/gloss.h"
 #include "shadow/shadows.h"
 
 #include "base/memory.h"
@@ -49,6 +50,24 @@ relume_status relume_shadows_create(relume_shadows **out, const struct relume_ge
     return status;
 }
 
+relume_status relume_gloss_create(relume_shadows **out, const struct relume_image *model)
+{
+    *out = NULL;
+    if (model->channels != RELUME_GLOSS_CHANNELS)
+        return RELUME_EINVAL;
+    relume_shadows *s = *out = mem_zeroed(1, sizeof *s);
+    if (!s)
+        return RELUME_ENOMEM;
+    const size_t n = (size_t)model->width * (size_t)model->height * RELUME_GLOSS_CHANNELS;
+    const relume_status status =
+        relume_image_create(&s->gloss, model->width, model->height, RELUME_GLOSS_CHANNELS);
+    if (status)
+        relume_shadows_destroy(out);
+    else
+        memcpy(s->gloss.data, model->data, n * sizeof *model->data);
+    return status;
+}
+
 void relume_shadows_destroy(relume_shadows **shadows)
 {
     relume_shadows *s = *shadows;
@@ -60,6 +79,7 @@ void relume_shadows_destroy(relume_shadows **shadows)
     mem_free(s->reached);
     relume_coder_destroy(&s->between);
     stage_destroy(&s->stage);
+    relume_image_destroy(&s->gloss);
     mem_free(s->matte);
     mem_free(s);
 }
@@ -71,6 +91,9 @@ static size_t pixels_of(const relume_shadows *s)
 
 uint64_t relume_shadows_bytes(const relume_shadows *s)
 {
+    if (s->gloss.data)
+        return (uint64_t)s->gloss.width * (uint64_t)s->gloss.height * RELUME_GLOSS_CHANNELS *
+               sizeof(float);
     uint64_t each = (4 + MATTE) * sizeof(float);
     for (int i = 0; s->reached && i < s->lights; i++)
         each += s->reached[i] != NULL;
@@ -359,6 +382,17 @@ static relume_status add_near(const struct adding *a, const struct relume_light 
     return RELUME_OK;
 }
 
+static relume_status add_gloss(struct relume_image *picture, int left, int top,
+                               const relume_shadows *s, const struct relume_codes *codes,
+                               const struct relume_light *lights, int n, int threads)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < n; i++)
+        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL)
+            status = gloss_add(picture, left, top, &s->gloss, codes, &lights[i], threads);
+    return status;
+}
+
 bool relume_shadows_count(enum relume_light_kind kind)
 {
     return kind == RELUME_LIGHT_DIRECTIONAL ||
@@ -369,6 +403,8 @@ relume_status relume_shadows_add(struct relume_image *picture, int left, int top
                                  relume_shadows *shadows, const struct relume_codes *codes,
                                  const struct relume_light *lights, int n, int threads)
 {
+    if (shadows->gloss.data)
+        return add_gloss(picture, left, top, shadows, codes, lights, n, threads);
     relume_status status = need_between(shadows, relume_coder_info(codes->coder));
     for (int i = 0; !status && i < n; i++) {
         struct adding a = {

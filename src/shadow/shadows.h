@@ -11,6 +11,7 @@ struct relume_shadows {
     float *matte;           // [height][width][RELUME_SHADOW_CHANNELS - 1]: colour, a, b
     relume_coder *between;  // of the captured lights: what lies between them; NULL: not needed yet
     int lights;
+    struct relume_image gloss;  // what highlights wander by (gloss.h); nothing else is then used
     uint8_t **reached;  // [lights] -> [height][width], as relume_shadows_trace; NULL: not asked for
 };
 

@@ -19,7 +19,7 @@ struct encode_options {
     struct domain_choice domain;
     enum relume_compression compression;
     enum relume_pyramid pyramid;
-    enum shadows { SHADOWS_DEFAULT, SHADOWS_AUTO, SHADOWS_YES, SHADOWS_NO } shadows;
+    enum wander { WANDER_DEFAULT, WANDER_AUTO, WANDER_YES, WANDER_NO } shadows, highlights;
     struct relume_transfer transfer;
     double quality, psnr, bytes_per_pixel, ridge, assume_depth;
     unsigned luminance;
@@ -86,7 +86,12 @@ static const struct option options[] = {
     NAME("--shadows", shadows, "S",
          "auto, yes or no: trace shadows through the depth, so that they move with the light; "
          "default: auto with basis auto, where they foresee photographs left out better; else no",
-         SHADOWS_AUTO, "auto", "yes", "no"),
+         WANDER_AUTO, "auto", "yes", "no"),
+    NAME("--highlights", highlights, "S",
+         "auto, yes or no: fit normals, colour and gloss, by which highlights move with the light; "
+         "auto: where they foresee photographs left out better; planar captures without traced "
+         "shadows; slower; default: no",
+         WANDER_AUTO, "auto", "yes", "no"),
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
     FLAG("--skip-missing", skip_missing, "leave out lights whose image does not exist"),
@@ -120,7 +125,7 @@ struct request {
     struct relume_coder_params coder;
     struct relume_pack_encode_params pack;
     struct relume_books_params books;
-    enum shadows shadows;
+    enum wander shadows, highlights;
     bool decide;     // the capture decides what the options leave open
     double quality;  // 0: the usual
     double unseen;   // lights left out, dB; 0: not known
@@ -270,17 +275,11 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
 
 // ---------------------------------------------------------------- shadows
 
-// Why shadows cannot be traced in this file; NULL: they can.
-static const char *forbids_shadows(const struct request *r, const relume_capture *capture)
+// Why neither shadows nor highlights can move in this file; NULL: they can.
+static const char *forbids_moving(const struct request *r, const relume_capture *capture)
 {
-    const struct relume_manifest *m = relume_capture_manifest(capture);
-    for (int i = 0; i < m->views; i++)
-        if (!m->view[i].depth || r->pack.no_depth)
-            return "expected depth in every view";
-    if (m->positions)
+    if (relume_capture_manifest(capture)->positions)
         return "expected distant lights";
-    if (!relume_shadows_suit(&m->geometry))
-        return "expected views that are no cube and no cylinder with discs";
     if (!r->decide && !r->basis->learned && r->basis != relume_basis_find("table"))
         return "expected basis pca, eigen or table";
     if (is_coded(r) || r->pack.parts)
@@ -291,22 +290,35 @@ static const char *forbids_shadows(const struct request *r, const relume_capture
                : NULL;
 }
 
-// What decides is the middle view. A gain of half a decibel is seen. One microsecond a sample (two
+static const char *forbids_shadows(const struct request *r, const relume_capture *capture)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    for (int i = 0; i < m->views; i++)
+        if (!m->view[i].depth || r->pack.no_depth)
+            return "expected depth in every view";
+    if (!relume_shadows_suit(&m->geometry))
+        return "expected views that are no cube and no cylinder with discs";
+    return forbids_moving(r, capture);
+}
+
+static const double LEAST_GAIN_DB = 0.5;  // which is seen
+
+// What decides is the middle view. One microsecond a sample (two
 // in panoramas) is a minute or two on two cores; what takes longer waits until it is asked for.
 static relume_status decide_shadows(const struct args *args, const relume_capture *capture,
                                     struct request *r)
 {
-    static const double MOST_SAMPLES = 100e6, LEAST_GAIN_DB = 0.5;
+    static const double MOST_SAMPLES = 100e6;
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const char *why = forbids_shadows(r, capture);
     const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
     const double samples = (double)relume_capture_width(capture) * relume_capture_height(capture) *
                            m->lights * m->views;
     struct relume_shadows_gain gain;
-    if (r->shadows == SHADOWS_YES && why)
+    if (r->shadows == WANDER_YES && why)
         return say(args->log, RELUME_EUNFIT, "%s: shadows cannot be traced; %s", r->input, why);
-    r->pack.shadows = r->shadows == SHADOWS_YES;
-    if (r->shadows != SHADOWS_AUTO || why || m->lights < 8)
+    r->pack.shadows = r->shadows == WANDER_YES;
+    if (r->shadows != WANDER_AUTO || why || m->lights < 8)
         return RELUME_OK;
     if (samples > MOST_SAMPLES) {
         announce(args, RELUME_NOTE,
@@ -328,6 +340,48 @@ static relume_status decide_shadows(const struct args *args, const relume_captur
                  "%.1f dB PSNR, faded ones at %.1f; --shadows no leaves that out",
                  r->input, gain.lights, gain.traced_db, gain.faded_db);
     return status == RELUME_ECANCEL || status == RELUME_ENOMEM ? status : RELUME_OK;
+}
+
+static const char *forbids_highlights(const struct request *r, const relume_capture *capture)
+{
+    enum { LEAST_LIGHTS = 16 };  // four of them are left out
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    if (r->pack.shadows)
+        return "expected --shadows no";
+    if (m->views != 1 || m->slabs || m->geometry.projection != RELUME_PLANAR ||
+        m->geometry.perspective)
+        return "expected one planar orthographic view";
+    if (m->lights < LEAST_LIGHTS)
+        return "expected at least 16 lights";
+    return forbids_moving(r, capture);
+}
+
+static relume_status decide_highlights(const struct args *args, const relume_capture *capture,
+                                       struct request *r, struct relume_image *model)
+{
+    const struct relume_shadows_params *p =
+        relume_shadows_params(.log = args->log, .threads = args->threads);
+    const char *why = forbids_highlights(r, capture);
+    const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
+    struct relume_shadows_gain gain = {.lights = 0};
+    relume_status status = RELUME_OK;
+    if (r->highlights == WANDER_YES && why)
+        return say(args->log, RELUME_EUNFIT, "%s: highlights cannot move; %s", r->input, why);
+    if (r->highlights != WANDER_YES && (r->highlights != WANDER_AUTO || why))
+        return RELUME_OK;
+    if (r->highlights == WANDER_AUTO)
+        status = relume_gloss_judge(&gain, capture, display, p);
+    if (status || (gain.lights && !(gain.traced_db - gain.faded_db >= LEAST_GAIN_DB)))
+        return status;
+    status = relume_gloss_learn(model, capture, display, p);
+    r->pack.gloss = status ? NULL : model;
+    r->unseen = gain.lights ? gain.traced_db : r->unseen;
+    if (!status && gain.lights)
+        announce(args, RELUME_NOTE,
+                 "%s: highlights move with the light: %d lights left out are shown at %.1f dB "
+                 "PSNR, faded ones at %.1f",
+                 r->input, gain.lights, gain.traced_db, gain.faded_db);
+    return status;
 }
 
 // Where nobody asked for even steps and they turn out too coarse, as halves.
@@ -511,11 +565,14 @@ static relume_status encode_team(const struct args *args, struct request *r,
 {
     relume_coder *coder = NULL;
     struct relume_encode_report report;
+    struct relume_image gloss = {0};
     relume_status status = decide_shadows(args, capture, r);
     if (r->pack.shadows && !r->coder.interpolant) {  // what traced shadows are added to
         r->coder.interpolant = relume_interpolant_find("delaunay");
         r->coder.choose = false;
     }
+    if (!status)
+        status = decide_highlights(args, capture, r, &gloss);
     if (!status)
         status = learn(&coder, capture, r);
     if (!status && (!r->learn_only || has_steps(r, capture)))
@@ -529,6 +586,7 @@ static relume_status encode_team(const struct args *args, struct request *r,
                      "%s: very bright highlights: %s will ruin the picture; use --bits half",
                      r->output, storage_words(r->pack.storage));
     }
+    relume_image_destroy(&gloss);
     relume_coder_destroy(&coder);
     return status;
 }
@@ -647,12 +705,13 @@ static relume_status run(const struct args *args)
                  .free_storage = !o->bits,
                  .learn_only = o->learn_only,
                  .threads = args->threads},
+        .highlights = o->highlights,
         .decide = !o->basis && !books && !o->robust && !o->luminance,
         .quality = o->quality,
         .learnt = o->learnt,
         .learn_only = o->learn_only,
     };
-    r.shadows = o->shadows ? o->shadows : r.decide ? SHADOWS_AUTO : SHADOWS_NO;
+    r.shadows = o->shadows ? o->shadows : r.decide ? WANDER_AUTO : WANDER_NO;
     if (r.quality > 0.0 && (!r.decide || o->coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
                            "--basis, --coefficients, --codebook and --robust");
@@ -686,7 +745,7 @@ relume_status encode_as_usual(const struct args *args, const char *capture, cons
         .basis = &relume_basis_pca,
         .coder = {.choose = true},
         .pack = {.log = args->log, .compression = RELUME_COMPRESS_PIZ, .threads = args->threads},
-        .shadows = SHADOWS_AUTO,
+        .shadows = WANDER_AUTO,
         .decide = true,
     };
     return encode(args, &r);

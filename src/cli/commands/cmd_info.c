@@ -60,9 +60,9 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
     json_number(stdout, i->report.fit_rms);
     printf(", \"store_rms\": ");
     json_number(stdout, i->report.store_rms);
-    printf(", \"depth\": %s, \"mask\": %s, \"shadows\": %s, \"file_bytes\": ",
+    printf(", \"depth\": %s, \"mask\": %s, \"shadows\": %s, \"highlights\": %s, \"file_bytes\": ",
            i->has_depth ? "true" : "false", i->has_mask ? "true" : "false",
-           i->has_shadow ? "true" : "false");
+           i->has_shadow ? "true" : "false", i->has_gloss ? "true" : "false");
     if (isfinite(bytes))
         printf("%.0f", bytes);
     else
@@ -119,11 +119,14 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     if (i->levels)
         printf("pyramid       %d smaller level%s, tiles of %d pixels\n", i->levels,
                relume_plural(i->levels), i->tile);
-    printf("extras        %s%s%s%s\n", i->has_depth ? "depth" : "",
-           i->has_shadow ? ", shadows" : "", i->has_depth && i->has_mask ? ", " : "",
-           i->has_mask    ? "mask"
-           : i->has_depth ? ""
-                          : "none");
+    const char *extra[] = {i->has_depth ? "depth" : NULL, i->has_shadow ? "shadows" : NULL,
+                           i->has_gloss ? "highlights" : NULL, i->has_mask ? "mask" : NULL};
+    int extras = 0;
+    printf("extras        ");
+    for (size_t k = 0; k < sizeof extra / sizeof *extra; k++)
+        if (extra[k])
+            printf("%s%s", extras++ ? ", " : "", extra[k]);
+    puts(extras ? "" : "none");
     if (isfinite(bytes))
         printf("file          %.0f bytes, %.3f bits per pixel and view\n", bytes,
                bits_per_pixel(i, bytes));

@@ -1,0 +1,113 @@
+// gloss.c - highlights that wander, added to a relit picture
+#include "shadow/gloss.h"
+
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <math.h>
+
+static const float LEAST_ROUGHNESS = 0.05f;  // as src/appearance/ggx.h
+static const float LEAST_WEIGHT = 1e-4f;     // of a captured light that counts
+
+void gloss_shown(float rgb[3], const float *pixel, vec3 light)
+{
+    const float x = pixel[RELUME_GLOSS_NORMAL], y = pixel[RELUME_GLOSS_NORMAL + 1];
+    const float z = sqrtf(fmaxf(1.0f - x * x - y * y, 1e-6f));
+    const float lx = (float)light.x, ly = (float)light.y, lz = (float)light.z;
+    const float cosine = x * lx + y * ly + z * lz;
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    if (!(cosine > 0.0f))
+        return;
+    const float half = fmaxf((cosine + z) / sqrtf(fmaxf(2.0f + 2.0f * lz, 1e-6f)), 0.0f);
+    const float r = fmaxf(pixel[RELUME_GLOSS_ROUGHNESS], LEAST_ROUGHNESS), a2 = r * r * r * r;
+    const float d = half * half * (a2 - 1.0f) + 1.0f;
+    const float lobe = a2 * cosine /
+                       (d * d * (cosine + sqrtf(a2 + (1.0f - a2) * cosine * cosine)) *
+                        (z + sqrtf(a2 + (1.0f - a2) * z * z)));
+    const float shine = pixel[RELUME_GLOSS_SHINE];
+    for (int c = 0; c < 3; c++) {
+        const float colour = pixel[RELUME_GLOSS_COLOUR + c];
+        rgb[c] = fminf(shine < 0.0f ? colour * lobe : colour * cosine + shine * lobe, 1.0f);
+    }
+}
+
+void gloss_wanders(float rgb[3], const float *pixel, const struct gloss_light *l)
+{
+    float between[3] = {0.0f, 0.0f, 0.0f}, known[3];
+    for (int i = 0; i < l->captured; i++) {
+        if (fabsf(l->weight[i]) < LEAST_WEIGHT)
+            continue;
+        gloss_shown(known, pixel, l->from[i]);
+        for (int c = 0; c < 3; c++)
+            between[c] += l->weight[i] *
+                          (l->display ? relume_transfer_encode(*l->display, known[c]) : known[c]);
+    }
+    gloss_shown(rgb, pixel, l->light);
+    for (int c = 0; c < 3; c++)
+        rgb[c] -= l->display ? relume_transfer_decode(*l->display, between[c]) : between[c];
+}
+
+struct adding {
+    struct relume_image *picture;
+    int left, top;
+    const struct relume_image *model;
+    struct gloss_light light;
+    float rgb[3];
+};
+
+static void add_row(void *context, size_t row, int worker)
+{
+    (void)worker;
+    const struct adding *a = context;
+    const size_t width = (size_t)a->picture->width;
+    const float *pixel =
+        a->model->data + RELUME_GLOSS_CHANNELS *
+                             (((size_t)a->top + row) * (size_t)a->model->width + (size_t)a->left);
+    float *out = a->picture->data + 3 * row * width;
+    for (size_t x = 0; x < width; x++, out += 3, pixel += RELUME_GLOSS_CHANNELS) {
+        const float share = pixel[RELUME_GLOSS_SHARE];
+        float more[3];
+        if (!(share > 0.0f))
+            continue;
+        gloss_wanders(more, pixel, &a->light);
+        for (int c = 0; c < 3; c++)
+            out[c] = fmaxf(out[c] + a->rgb[c] * share * more[c], fminf(out[c], 0.0f));
+    }
+}
+
+// The captured lights, of the interpolant of the codes.
+static relume_status know(relume_coder **out, const struct relume_coder_info *info)
+{
+    struct relume_coder_params p =
+        *relume_coder_params(.hemispherical = info->hemispherical, .pole_y = info->pole_y,
+                             .interpolant = info->interpolant, .decode = true);
+    for (int i = 0; i < 4; i++)
+        p.parameter[i] = info->parameter[i];
+    return relume_coder_create(out, relume_basis_find("table"), info->directions, info->lights, &p);
+}
+
+relume_status gloss_add(struct relume_image *picture, int left, int top,
+                        const struct relume_image *model, const struct relume_codes *codes,
+                        const struct relume_light *light, int threads)
+{
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    relume_coder *between = NULL;
+    float *weights = mem_array(3 * (size_t)info->lights, sizeof *weights), constant[3];
+    struct adding a = {.picture = picture, .left = left, .top = top, .model = model};
+    const float share =
+        (float)relume_coder_clamp(&a.light.light, codes->coder, vec3_unit(light->direction));
+    relume_status status = weights ? know(&between, info) : RELUME_ENOMEM;
+    if (!status) {
+        relume_coder_weights(between, a.light.light, weights, constant);
+        a.light.captured = info->lights;
+        a.light.from = info->directions;
+        a.light.weight = weights;
+        a.light.display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL;
+        for (int c = 0; c < 3; c++)
+            a.rgb[c] = share * light->rgb[c];
+        thread_for(threads, (size_t)picture->height, add_row, &a);
+    }
+    relume_coder_destroy(&between);
+    mem_free(weights);
+    return status;
+}

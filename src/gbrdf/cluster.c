@@ -302,6 +302,23 @@ static relume_status label(struct clusters *out, struct learning *w, int width, 
     return RELUME_OK;
 }
 
+// A centre between others may lose all its texels where borders are settled.
+static void drop_empty(struct clusters *out, size_t texels)
+{
+    bool used[MOST_CLUSTERS] = {false};
+    uint8_t number[MOST_CLUSTERS] = {0};
+    int count = 0;
+    for (size_t i = 0; i < texels; i++)
+        used[out->label[i]] = true;
+    for (int k = 0; k < out->count; k++) {
+        number[k] = (uint8_t)count;
+        count += used[k];
+    }
+    for (size_t i = 0; i < texels; i++)
+        out->label[i] = number[out->label[i]];
+    out->count = count;
+}
+
 relume_status clusters_find(struct clusters *out, const float *polar, int width, int height,
                             int most, bool exact, uint64_t seed, int threads)
 {
@@ -333,6 +350,8 @@ relume_status clusters_find(struct clusters *out, const float *polar, int width,
         w->count = out->count;
         memcpy(w->centre, best, sizeof w->centre);
         status = label(out, w, width, height);
+        if (!status)
+            drop_empty(out, texels);
     }
     if (w) {
         mem_free(w->distance);

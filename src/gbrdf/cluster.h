@@ -21,7 +21,7 @@ struct clusters {
     float *rotation;    // [texels], radians
 };
 // Of width x height texels with polar[texel][POLAR_VALUES], the best number of at most `most`, or
-// that number where `exact`. RELUME_ENOMEM.
+// that number where `exact`, less those that end without a texel. RELUME_ENOMEM.
 relume_status clusters_find(struct clusters *out, const float *polar, int width, int height,
                             int most, bool exact, uint64_t seed, int threads);
 void clusters_free(struct clusters *c);

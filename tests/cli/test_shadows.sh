@@ -28,6 +28,8 @@ above 'the viewer shows what relight shows' "$(alike traced.png window.png)" 45
 below 'which are other shadows' "$(alike traced.png faded.png)" 30
 
 # ---- where it cannot be
+expect_ok 'too little memory' 'box: between the lamps shadows fade; tracing them takes more than --max-memory allows' \
+    "$RELUME" encode box -o small.exr --max-memory 300K
 mkdir flat && sed 's/"depth": "[^"]*", //' box/capture.json >flat/capture.json && ln -s ../box/view00 flat/view00
 expect_fail 'no depth' 1 'flat: shadows cannot be traced; expected depth in every view' e.exr \
     "$RELUME" encode flat -o e.exr --shadows yes --allow-outside

@@ -332,6 +332,11 @@ static relume_status decide_shadows(const struct args *args, const relume_captur
     const relume_status status =
         relume_shadows_judge(&gain, capture, m->views / 2, display,
                              relume_shadows_params(.log = &quiet, .threads = args->threads));
+    if (status == RELUME_ELIMIT)
+        announce(args, RELUME_NOTE,
+                 "%s: between the lamps shadows fade; tracing them takes more than --max-memory "
+                 "allows",
+                 r->input);
     r->pack.shadows = !status && gain.traced_db - gain.faded_db >= LEAST_GAIN_DB;
     r->unseen = r->pack.shadows ? gain.traced_db : 0.0;
     if (r->pack.shadows)

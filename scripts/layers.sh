@@ -50,7 +50,8 @@ measure:base math kernel image:*
 program:base:base image
 cli:program:*
 mpi::io team
-cli/commands:commands program measure:*
+cli/materials:materials program:*
+cli/commands:commands materials program measure:*
 viewer/common::base vec
 viewer/app:common program:*
 viewer/gl:common program:base image
@@ -130,7 +131,7 @@ grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.
         print "layers: " what >"/dev/stderr"
         bad = 1
     }
-    # src/ROOM, src/cli/commands and viewer/ROOM hold files of their own rule
+    # src/ROOM, src/cli/ROOM and viewer/ROOM hold files of their own rule
     function room(part) {
         if (part[1] == "viewer")
             return part[1] "/" part[2]

@@ -284,14 +284,14 @@ static relume_status photograph(const struct goniometer *g, relume_btf *btf)
 {
     const int side = g->p.size * fineness(g), workers = thread_count(g->p.threads);
     struct keeping k = {.g = g, .btf = btf};
-    apparatus *apparatus = NULL;
+    apparatus *faulty = NULL;
     k.held = mem_zeroed((size_t)g->p.lights, sizeof *k.held);
     k.texels =
         mem_array(3 * (size_t)workers * (size_t)g->p.size * (size_t)g->p.size, sizeof *k.texels);
     relume_status status = k.held && k.texels ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = apparatus_create(&apparatus, &g->p.faults, g->p.size, g->p.seed, workers);
-    k.apparatus = apparatus;
+        status = apparatus_create(&faulty, &g->p.faults, g->p.size, g->p.seed, workers);
+    k.apparatus = faulty;
     for (int l = 0; l < g->p.lights && !status; l++)
         status = relume_image_create(&k.held[l], side, side, 3);
     for (; k.view < g->p.views && !status; k.view++) {
@@ -301,7 +301,7 @@ static relume_status photograph(const struct goniometer *g, relume_btf *btf)
     }
     for (int l = 0; k.held && l < g->p.lights; l++)
         relume_image_destroy(&k.held[l]);
-    apparatus_destroy(&apparatus);
+    apparatus_destroy(&faulty);
     mem_free(k.held);
     mem_free(k.texels);
     return status;

@@ -100,7 +100,7 @@ static void open_around(struct around *t)
 {
     open_app(t);
     t->file = fixture_make(VIEWS, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    const struct code_source source = {fixture_fetch, NULL, &t->file, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &t->file, NULL, NULL};
     assert_int_equal(
         renderer_create(&t->renderer, &fixture_gl, &source, &t->slab[0], NULL, VIEWS, &fixture_log),
         RELUME_OK);

@@ -82,7 +82,7 @@ static void run(int books, enum relume_domain domain, double bound)
     make(&f, books, domain);
     for (int n = 0; n <= LIGHTS; n++)
         assert_int_equal(relume_relight(&want[n], &f.codes, lights, n, NULL), RELUME_OK);
-    const struct code_source source = {fetch, forget, &f, NULL};
+    const struct code_source source = {fetch, forget, &f, NULL, NULL};
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     for (int n = 0; n <= LIGHTS; n++) {
         const struct target *target;

@@ -45,7 +45,7 @@ static void a_view_is_drawn_texel_by_texel(void **state)
     enum { W = 53, H = 31 };
     struct fixture_file f = fixture_make(2, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 2, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct renderer r;
     assert_int_equal(
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 2, &fixture_log),
@@ -70,7 +70,7 @@ static void a_reduced_view_is_averaged(void **state)
     enum { W = 32, H = 20 };
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct renderer r;
     assert_int_equal(
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
@@ -140,7 +140,7 @@ static void open_slab(struct slab_test *t, int width, int height)
                                  .views = CAMERAS,
                                  .uv_min = {-1, -0.5},
                                  .uv_max = {1, 0.5}};
-    const struct code_source source = {fixture_fetch, NULL, &t->file, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &t->file, NULL, NULL};
     assert_int_equal(renderer_create(&t->renderer, &fixture_gl, &source, &t->about.geometry,
                                      (const double(*)[2])t->uv, CAMERAS, &fixture_log),
                      RELUME_OK);
@@ -416,7 +416,7 @@ static void one_row_and_one_camera_are_drawn(void **state)
                                       .views = n,
                                       .uv_min = {-0.5, 0.2},
                                       .uv_max = {0.5, 0.2}};
-        const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+        const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
         struct renderer r;
         assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, n, &fixture_log),
                          RELUME_OK);
@@ -435,7 +435,7 @@ static void cameras_without_a_grid_are_refused(void **state)
     (void)state;
     static const double uv[][2] = {{0, 0}, {1, 1}};
     const struct relume_geometry g = slab_geometry();
-    const struct code_source source = {fixture_fetch, NULL, NULL, NULL};
+    const struct code_source source = {fixture_fetch, NULL, NULL, NULL, NULL};
     struct renderer r;
     assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, 2, NULL), RELUME_EUNFIT);
 }
@@ -451,7 +451,7 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
     struct fixture_file f =
         fixture_make(1, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, true);
     const struct app_file file = {.geometry = *g, .width = width, .height = height, .views = 1};
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct renderer r;
     assert_int_equal(renderer_create(&r, &fixture_gl, &source, g, NULL, 1, &fixture_log),
                      RELUME_OK);
@@ -510,7 +510,7 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
     enum { W = 200, H = 200 };
     struct fixture_file f = fixture_make(1, 4, 4, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct renderer r;
     assert_int_equal(
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),

@@ -125,7 +125,7 @@ static void check_kind(struct relighter *r, const struct relume_codes *codes, co
 static void check_codes(const struct relume_codes *codes, const char *name)
 {
     struct source_file file = {*codes};
-    const struct code_source source = {fetch, NULL, &file, find_surface};
+    const struct code_source source = {fetch, NULL, &file, find_surface, NULL};
     struct relighter r;
     relume_weight_grid *grid;
     relume_refit *refit = NULL;
@@ -295,7 +295,7 @@ static void without_a_surface(void **state)
 {
     (void)state;
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     const struct relume_light light = light_of(RELUME_LIGHT_POINT);
     struct relighter r;
     const struct target *target;
@@ -319,7 +319,7 @@ static void views_arrive_later(void **state)
 {
     (void)state;
     struct fixture_file f = fixture_make(4, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    const struct code_source source = {fetch_slowly, NULL, &f, find_surface};
+    const struct code_source source = {fetch_slowly, NULL, &f, find_surface, NULL};
     const struct relume_light lights[] = {light_of(RELUME_LIGHT_DIRECTIONAL),
                                           light_of(RELUME_LIGHT_POINT)};
     const struct target *target;
@@ -359,7 +359,7 @@ static void a_view_can_be_waited_for(void **state)
 {
     (void)state;
     struct fixture_file f = fixture_make(3, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    const struct code_source source = {fetch_slowly, NULL, &f, NULL};
+    const struct code_source source = {fetch_slowly, NULL, &f, NULL, NULL};
     const struct relume_light light = light_of(RELUME_LIGHT_DIRECTIONAL);
     const struct target *target;
     struct relighter r;
@@ -385,7 +385,7 @@ static relume_status refuse(const struct relume_codes **out, void *user, int vie
 static void a_broken_view_is_heard_of(void **state)
 {
     (void)state;
-    const struct code_source source = {refuse, NULL, NULL, NULL};
+    const struct code_source source = {refuse, NULL, NULL, NULL, NULL};
     const struct relume_light light = light_of(RELUME_LIGHT_DIRECTIONAL);
     const struct target *target;
     struct relighter r;

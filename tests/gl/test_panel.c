@@ -546,7 +546,7 @@ static void the_inspector_magnifies_about_the_light(void **state)
     const struct relume_codes *codes;
     fixture_fetch(&codes, &f, 0);
     const struct relume_pack_info info = {.coder = codes->coder, .width = 7, .height = 5};
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     struct inspector in;
     bool shown;

@@ -36,7 +36,7 @@ static void run(enum relume_storage storage, enum relume_domain domain, const ch
                 double bound)
 {
     struct fixture_file f = fixture_make(1, W, H, storage, domain, false);
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct relighter r;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     compare_lights(&r, &f, what, bound);
@@ -80,7 +80,7 @@ static void run_coder(const struct relume_basis *basis, const struct relume_code
     for (int d = 0; d < 2; d++) {
         const enum relume_domain domain = d ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
         struct fixture_file f = fixture_make(1, W, H, storage, domain, false);
-        const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+        const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
         relume_coder *sh = f.coder;
         struct relighter r;
         assert_int_equal(relume_coder_create(&f.coder, basis, relume_coder_info(sh)->directions,
@@ -136,7 +136,7 @@ static void run_curve(struct relume_transfer curve, const char *what, double bou
 {
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     f.codes[0].display = curve;
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct relighter r;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     compare_lights(&r, &f, what, bound);
@@ -162,7 +162,7 @@ static void many_arrays(void **state)
     for (int d = 0; d < 2; d++) {
         const enum relume_domain domain = d ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
         struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, domain, false);
-        const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+        const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
         struct relighter r;
         assert_int_equal(relighter_create(&r, &narrow, &source, 1, &fixture_log), RELUME_OK);
         compare_lights(&r, &f, "two layers an array", d ? display_bound : linear_bound);
@@ -176,7 +176,7 @@ static void codes_are_fetched_once(void **state)
 {
     (void)state;
     struct fixture_file f = fixture_make(3, 8, 8, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct relighter r;
     const struct target *target;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
@@ -196,7 +196,7 @@ static void old_views_leave_a_full_memory(void **state)
 {
     (void)state;
     struct fixture_file f = fixture_make(3, 8, 8, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct relighter r;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
     r.budget = 8 * 8 * (7 * 4 + 16) * 3 / 2;
@@ -225,7 +225,7 @@ static relume_status refuse(const struct relume_codes **out, void *user, int vie
 static void a_broken_source_is_passed_on(void **state)
 {
     (void)state;
-    const struct code_source source = {refuse, NULL, NULL, NULL};
+    const struct code_source source = {refuse, NULL, NULL, NULL, NULL};
     struct relighter r;
     const struct target *target;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);

@@ -80,7 +80,7 @@ static void free_lender(struct lender *l)
 
 static struct code_source source_of(struct lender *l)
 {
-    return (struct code_source){lend, take_back, l, find_surface};
+    return (struct code_source){lend, take_back, l, find_surface, NULL};
 }
 
 static void begin(struct relighter *r, const struct gl *gl, struct lender *l, int views)
@@ -198,7 +198,7 @@ static void without_a_surface(void **state)
 {
     (void)state;
     struct lender l = make_lender(1, RELUME_DOMAIN_LINEAR);
-    const struct code_source source = {lend, take_back, &l, NULL};
+    const struct code_source source = {lend, take_back, &l, NULL, NULL};
     const struct relume_light light = {
         .kind = RELUME_LIGHT_POINT, .position = {0, 0, 1}, .rgb = {1, 1, 1}};
     const struct target *target;

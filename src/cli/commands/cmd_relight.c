@@ -1,6 +1,6 @@
 // cmd_relight.c - relume relight: a file under any lights, as a picture
 #include "cli.h"
-#include "commands/btf_inputs.h"
+#include "materials/btf_inputs.h"
 #include "develop.h"
 #include "frame_options.h"
 #include "glare_options.h"

@@ -1,5 +1,5 @@
 // maps_edit.c - relume maps edit: folders of maps that people change
-#include "commands/maps_edit.h"
+#include "materials/maps_edit.h"
 
 #include "edit_options.h"
 

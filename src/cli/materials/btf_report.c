@@ -1,5 +1,5 @@
 // btf_report.c - the rows of `relume btf compare` and `eval`
-#include "commands/btf_report.h"
+#include "materials/btf_report.h"
 
 #include "program/clock.h"
 

@@ -1,5 +1,5 @@
 // btf_edit.c - relume btf edit and make: g-BRDFs that people change and make
-#include "commands/btf_inputs.h"
+#include "materials/btf_inputs.h"
 #include "edit_options.h"
 
 struct btf_edit_options {

@@ -1,6 +1,6 @@
 // cmd_btf.c - relume btf: measured materials, the models that compress them, and how good they are
-#include "commands/btf_inputs.h"
-#include "commands/btf_report.h"
+#include "materials/btf_inputs.h"
+#include "materials/btf_report.h"
 #include "program/clock.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // btf_objects.c - relume btf render --mesh, or of a description of objects
-#include "commands/btf_inputs.h"
+#include "materials/btf_inputs.h"
 #include "frame_options.h"
 
 #include <math.h>

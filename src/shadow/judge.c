@@ -82,6 +82,11 @@ static void take_error(struct judging *j, int k, const struct relume_image *gues
     j->error[k] += (j->gloss ? log10(fmax(error, LEAST_SQUARE)) : error) / j->met_count;
 }
 
+static const char *doing(const struct judging *j)
+{
+    return j->gloss ? "judging highlights" : "judging shadows";
+}
+
 static double decibels(const struct judging *j, double error)
 {
     return -10.0 * (j->gloss ? error : log10(error));
@@ -143,7 +148,7 @@ static relume_status read_all(struct judging *j, const bool *skip)
     relume_status status = RELUME_OK;
     for (int i = 0, rank = 0, left = 0; !status && i < lights; i++) {
         struct relume_image image = {0};
-        if (!log_progress(j->p->log, "judging shadows", 0.5 * i / lights))
+        if (!log_progress(j->p->log, doing(j), 0.5 * i / lights))
             return RELUME_ECANCEL;
         status = relume_capture_masked(&image, j->capture, j->view, i, j->p->log);
         if (!status && skip[i]) {
@@ -242,7 +247,9 @@ static relume_status judge(struct judging *j, const bool *skip)
     const uint64_t pixels =
         (uint64_t)relume_capture_width(j->capture) * (uint64_t)relume_capture_height(j->capture);
     relume_status status = limits_memory(pixels * LEFT_OUT * (1 + COMPARED) * 3 * sizeof(float),
-                                         "comparing the shadows of a view", j->p->log);
+                                         j->gloss ? "comparing the highlights of a view"
+                                                  : "comparing the shadows of a view",
+                                         j->p->log);
     if (!status)
         status = select_rest(j, skip);
     if (!status)
@@ -255,7 +262,7 @@ static relume_status judge(struct judging *j, const bool *skip)
     if (!status)
         status = read_all(j, skip);
     for (int i = 0; !status && i < j->met_count; i++)
-        status = log_progress(j->p->log, "judging shadows", 0.5 + 0.5 * i / j->met_count)
+        status = log_progress(j->p->log, doing(j), 0.5 + 0.5 * i / j->met_count)
                      ? compare(j, &j->met[i])
                      : RELUME_ECANCEL;
     return status;

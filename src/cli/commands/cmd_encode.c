@@ -275,18 +275,18 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
 
 // ---------------------------------------------------------------- shadows
 
-// Why neither shadows nor highlights can move in this file; NULL: they can.
+// What was expected where neither shadows nor highlights can move; NULL: they can.
 static const char *forbids_moving(const struct request *r, const relume_capture *capture)
 {
     if (relume_capture_manifest(capture)->positions)
-        return "expected distant lights";
+        return "distant lights";
     if (!r->decide && !r->basis->learned && r->basis != relume_basis_find("table"))
-        return "expected basis pca, eigen or table";
+        return "basis pca, eigen or table";
     if (is_coded(r) || r->pack.parts)
-        return "expected no --psnr, no --bytes-per-pixel and no parts";
+        return "no --psnr, no --bytes-per-pixel and no parts";
     return r->pack.pyramid == RELUME_PYRAMID_YES ||
                    (double)relume_capture_width(capture) * relume_capture_height(capture) > 16e6
-               ? "expected views without reduced levels"
+               ? "views without reduced levels"
                : NULL;
 }
 
@@ -295,9 +295,9 @@ static const char *forbids_shadows(const struct request *r, const relume_capture
     const struct relume_manifest *m = relume_capture_manifest(capture);
     for (int i = 0; i < m->views; i++)
         if (!m->view[i].depth || r->pack.no_depth)
-            return "expected depth in every view";
+            return "depth in every view";
     if (!relume_shadows_suit(&m->geometry))
-        return "expected views that are no cube and no cylinder with discs";
+        return "views that are no cube and no cylinder with discs";
     return forbids_moving(r, capture);
 }
 
@@ -316,7 +316,8 @@ static relume_status decide_shadows(const struct args *args, const relume_captur
                            m->lights * m->views;
     struct relume_shadows_gain gain;
     if (r->shadows == WANDER_YES && why)
-        return say(args->log, RELUME_EUNFIT, "%s: shadows cannot be traced; %s", r->input, why);
+        return say(args->log, RELUME_EUNFIT, "%s: shadows cannot be traced; expected %s", r->input,
+                   why);
     r->pack.shadows = r->shadows == WANDER_YES;
     if (r->shadows != WANDER_AUTO || why || m->lights < 8)
         return RELUME_OK;
@@ -352,40 +353,78 @@ static const char *forbids_highlights(const struct request *r, const relume_capt
     enum { LEAST_LIGHTS = 16 };  // four of them are left out
     const struct relume_manifest *m = relume_capture_manifest(capture);
     if (r->pack.shadows)
-        return "expected --shadows no";
+        return "--shadows no";
     if (m->views != 1 || m->slabs || m->geometry.projection != RELUME_PLANAR ||
         m->geometry.perspective)
-        return "expected one planar orthographic view";
+        return "one planar orthographic view";
     if (m->lights < LEAST_LIGHTS)
-        return "expected at least 16 lights";
+        return "at least 16 lights";
     return forbids_moving(r, capture);
+}
+
+// What was found out when highlights move by themselves, or not.
+static void say_highlights(const struct args *args, const struct request *r, relume_status status,
+                           const struct relume_shadows_gain *gain)
+{
+    if (r->pack.gloss)
+        announce(args, RELUME_NOTE,
+                 "%s: highlights move with the light: %d lights left out are shown at %.1f dB "
+                 "PSNR, faded ones at %.1f",
+                 r->input, gain->lights, gain->traced_db, gain->faded_db);
+    else if (status == RELUME_ELIMIT)
+        announce(args, RELUME_NOTE,
+                 "%s: highlights fade; moving them takes more than --max-memory allows", r->input);
+    else if (status)
+        announce(args, RELUME_NOTE, "%s: highlights fade; no surface could be fitted (%s)",
+                 r->input, relume_status_text(status));
+    else
+        announce(args, RELUME_NOTE,
+                 "%s: highlights fade: %d lights left out are shown at %.1f dB PSNR, moving ones "
+                 "at %.1f",
+                 r->input, gain->lights, gain->faded_db, gain->traced_db);
+}
+
+static relume_status try_highlights(const struct args *args, const relume_capture *capture,
+                                    struct request *r, struct relume_image *model, bool display)
+{
+    struct relume_log quiet = *args->log;
+    quiet.message = NULL;  // of what is wrong with a photograph encoding says more
+    const struct relume_shadows_params *p =
+        relume_shadows_params(.log = &quiet, .threads = args->threads);
+    struct relume_shadows_gain gain;
+    relume_status status = relume_gloss_judge(&gain, capture, display, p);
+    if (!status && gain.traced_db - gain.faded_db >= LEAST_GAIN_DB) {
+        status = relume_gloss_learn(model, capture, display, p);
+        r->pack.gloss = status ? NULL : model;
+    }
+    if (r->pack.gloss)
+        r->unseen = gain.traced_db;
+    if (status == RELUME_ECANCEL || status == RELUME_ENOMEM)
+        return status;
+    say_highlights(args, r, status, &gain);
+    return RELUME_OK;
 }
 
 static relume_status decide_highlights(const struct args *args, const relume_capture *capture,
                                        struct request *r, struct relume_image *model)
 {
-    const struct relume_shadows_params *p =
-        relume_shadows_params(.log = args->log, .threads = args->threads);
+    if (r->highlights != WANDER_YES && r->highlights != WANDER_AUTO)
+        return RELUME_OK;
     const char *why = forbids_highlights(r, capture);
     const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
-    struct relume_shadows_gain gain = {.lights = 0};
-    relume_status status = RELUME_OK;
     if (r->highlights == WANDER_YES && why)
-        return say(args->log, RELUME_EUNFIT, "%s: highlights cannot move; %s", r->input, why);
-    if (r->highlights != WANDER_YES && (r->highlights != WANDER_AUTO || why))
+        return say(args->log, RELUME_EUNFIT, "%s: highlights cannot move; expected %s", r->input,
+                   why);
+    if (why) {
+        announce(args, RELUME_NOTE, "%s: highlights fade; expected %s, for them to move", r->input,
+                 why);
         return RELUME_OK;
+    }
     if (r->highlights == WANDER_AUTO)
-        status = relume_gloss_judge(&gain, capture, display, p);
-    if (status || (gain.lights && !(gain.traced_db - gain.faded_db >= LEAST_GAIN_DB)))
-        return status;
-    status = relume_gloss_learn(model, capture, display, p);
+        return try_highlights(args, capture, r, model, display);
+    const relume_status status = relume_gloss_learn(
+        model, capture, display, relume_shadows_params(.log = args->log, .threads = args->threads));
     r->pack.gloss = status ? NULL : model;
-    r->unseen = gain.lights ? gain.traced_db : r->unseen;
-    if (!status && gain.lights)
-        announce(args, RELUME_NOTE,
-                 "%s: highlights move with the light: %d lights left out are shown at %.1f dB "
-                 "PSNR, faded ones at %.1f",
-                 r->input, gain.lights, gain.traced_db, gain.faded_db);
     return status;
 }
 

@@ -1,0 +1,89 @@
+#!/bin/sh
+# Highlights that move with the light, by the normals and gloss of a planar capture: when they do, that they are better
+# under lights never seen, and that the tool and the viewer show the same. A shallow dome with Blinn's highlight.
+. "$(dirname "$0")/lib.sh"
+psnr() { "$RELUME" eval "$1" "$2" -q --json | tr ',' '\n' | sed -n 's/.*"psnr_pooled_db": *//p' | head -1; }
+alike() { "$RELUME" compare "$1" "$2" | sed -n 's/^psnr_db *//p'; }
+has() { "$RELUME" info "$1" --json | grep -q "\"highlights\": $2"; }
+dome() { # folder, lights, a turn of them
+    mkdir "$1" && awk -v d="$1" -v n="$2" -v turn="$3" -v s=24 '
+        function put(v) { v = v > 1 ? 1 : v; return int(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ^ (1 / 2.4) - 0.055) + 0.5) }
+        BEGIN {
+            print n >(d "/dirs.lp")
+            for (i = 0; i < n; i++) {
+                z = 1 - 0.75 * (i + 0.5) / n; a = 2.399963 * (i + turn); r = sqrt(1 - z * z)
+                x = r * cos(a); y = r * sin(a); half = sqrt(2 + 2 * z)
+                name = sprintf("p%02d.ppm", i)
+                print name, x, y, z >(d "/dirs.lp")
+                name = d "/" name
+                printf "P3 %d %d 255\n", s, s >name
+                for (k = 0; k < s * s; k++) {
+                    u = 0.4 * ((k % s + 0.5) / s * 2 - 1); v = 0.4 * (1 - (int(k / s) + 0.5) / s * 2)
+                    w = sqrt(1 - u * u - v * v); c = u * x + v * y + w * z; c = c < 0 ? 0 : c
+                    shine = c > 0 ? 0.4 * ((c + w) / half) ^ 120 : 0
+                    print put(0.3 * c + shine), put(0.2 * c + shine), put(0.1 * c + shine) >name
+                }
+                close(name)
+            }
+        }'
+}
+
+dome glossy 40 0
+dome unseen 9 0.37
+"$sphere" sphere --size 24 --lights 24 --hemisphere
+expect_ok 'encode says so' 'glossy/dirs.lp: highlights move with the light: 6 lights left out are shown at [0-9.]* dB PSNR, faded ones at [0-9.]*' \
+    "$RELUME" encode glossy/dirs.lp -o moves.exr --highlights auto
+"$RELUME" encode glossy/dirs.lp -o fades.exr -q
+check 'info says so' has moves.exr true
+check 'and that there are none' has fades.exr false
+# 41.6 against 35.7 dB: a highlight that fades is two faint ones.
+above 'unseen lights are shown better' "$(psnr moves.exr unseen/dirs.lp)" "$(psnr fades.exr unseen/dirs.lp | awk '{ print $1 + 3 }')"
+# At a captured light the model adds and takes away the same, but for what 8 bits round.
+above 'captured ones as well' "$(psnr moves.exr glossy/dirs.lp)" "$(psnr fades.exr glossy/dirs.lp | awk '{ print $1 - 0.2 }')"
+"$RELUME" encode glossy/dirs.lp -o one.exr --highlights auto --threads 1 -q
+check 'equal bytes for any threads' cmp moves.exr one.exr
+expect_ok 'the file is whole' - "$RELUME" check moves.exr
+
+# ---- the same everywhere
+sun="dir 0.15 0.2 0.9"
+for f in moves fades; do "$RELUME" relight $f.exr -o $f.png --light "$sun" -q; done
+"$VIEWER" moves.exr --offscreen window.png --size 24x24 --light "$sun" >out.txt 2>err.txt || not_ok 'the viewer shows it' "$(cat err.txt)"
+above 'the viewer shows what relight shows' "$(alike moves.png window.png)" 50
+below 'which are other highlights' "$(alike moves.png fades.png)" 40
+
+# ---- where it cannot be, or does not help
+expect_ok 'a sphere and its hard shadow' 'sphere: highlights fade: 6 lights left out are shown at [0-9.]* dB PSNR, moving ones at' \
+    "$RELUME" encode sphere -o sphere.exr --highlights auto --shadows no
+check 'keeps none' has sphere.exr false
+expect_ok 'traced shadows' 'sphere: highlights fade; expected --shadows no, for them to move' \
+    "$RELUME" encode sphere -o sphere.exr --highlights auto --shadows yes
+expect_ok 'too little memory' 'sphere: highlights fade; moving them takes more than --max-memory allows' \
+    "$RELUME" encode sphere -o small.exr --highlights auto --shadows no --max-memory 110K
+check 'and the file is that without' has small.exr false
+expect_fail 'too little memory where they are asked for' 1 'takes 1 MB; expected at most 1 MB' e.exr \
+    "$RELUME" encode sphere -o e.exr --highlights yes --shadows no --max-memory 90K
+refused() { # name, what is expected, option...
+    case=$1 needs=$2
+    shift 2
+    expect_fail "$case" 1 "glossy/dirs.lp: highlights cannot move; expected $needs" e.exr \
+        "$RELUME" encode glossy/dirs.lp -o e.exr --highlights yes "$@"
+    expect_ok "$case, auto" "glossy/dirs.lp: highlights fade; expected $needs" \
+        "$RELUME" encode glossy/dirs.lp -o e.exr --highlights auto "$@"
+    rm -f e.exr
+}
+refused 'another basis' 'basis pca, eigen or table' --basis sh
+refused 'with loss' 'no --psnr' --psnr 36
+refused 'parts' 'no --psnr, no --bytes-per-pixel and no parts' --part 1/2
+expect_fail 'too few lights' 1 'unseen/dirs.lp: highlights cannot move; expected at least 16 lights' e.exr \
+    "$RELUME" encode unseen/dirs.lp -o e.exr --highlights yes
+
+# ---- damaged
+head -c $(($(wc -c <moves.exr) - 100)) moves.exr >cut.exr
+expect_fail 'cut off' 1 "cut.exr: truncated or damaged" e.png "$RELUME" relight cut.exr -o e.png --light "$sun"
+sed 's/trust/trusx/' moves.exr >other.exr
+expect_fail 'other channels' 1 'other.exr: view0000.gloss; expected eight half channels' e.png \
+    "$RELUME" relight other.exr -o e.png --light "$sun"
+sed 's/view0000\.gloss/view0000.other/' moves.exr >older.exr
+"$RELUME" relight older.exr -o older.png --light "$sun" -q
+check 'programs that do not know the part show what fades' cmp older.png fades.png
+finish

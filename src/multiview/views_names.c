@@ -44,22 +44,36 @@ static const char *number_end(double *out, const char *text, bool whole)
     return c;
 }
 
+// Past the field or character that the pattern begins with; false: the text does not begin so.
+static bool step(struct match *m, const char **pattern, const char **text)
+{
+    int f = 0;
+    while (f < FIELDS && strncmp(*pattern, fields[f], strlen(fields[f])))
+        f++;
+    if (f == FIELDS)
+        return **pattern && *(*pattern)++ == *(*text)++;
+    *pattern += strlen(fields[f]);
+    *text = number_end(&m->value[f], *text, f < U);
+    m->found |= 1u << f;
+    return *text;
+}
+
+// A star takes as little as it can, and only the last one is asked for more: what stands between
+// two stars ends no earlier for beginning later. Behind the pattern stands the extension.
 static bool matches(struct match *m, const char *pattern, const char *text)
 {
-    // The field that `pattern` begins with; FIELDS: none.
-    int f = 0;
-    while (f < FIELDS && strncmp(pattern, fields[f], strlen(fields[f])))
-        f++;
-    if (f < FIELDS) {
-        const char *end = number_end(&m->value[f], text, f < U);
-        m->found |= 1u << f;
-        return end && matches(m, pattern + strlen(fields[f]), end);
-    }
-    if (*pattern == '*')
-        return matches(m, pattern + 1, text) || (*text && matches(m, pattern, text + 1));
-    if (!*pattern)
-        return !*text || *text == '.';  // what follows is the extension
-    return *pattern == *text && matches(m, pattern + 1, text + 1);
+    const char *star = NULL, *taken = NULL;
+    while (*pattern || (*text && *text != '.'))
+        if (*pattern == '*') {
+            star = ++pattern;
+            taken = text;
+        } else if (!step(m, &pattern, &text)) {
+            if (!star || !*taken)
+                return false;
+            pattern = star;
+            text = ++taken;
+        }
+    return true;
 }
 
 static bool has(const struct match *m, enum field f)

@@ -146,6 +146,7 @@ static void test_names(void **state)
                  {name_own, "*x{column}.y{row}"},
                  {name_lytro, "input_Cam{n}"},
                  {name_archive, "out_*_{v}_{u}_"},
+                 {name_archive, "*u*_*_{v}_{u}_*"},
                  {name_exponent, "at {u}e4 {v}"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct photos p;

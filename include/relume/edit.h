@@ -47,7 +47,7 @@ enum { RELUME_EDIT_MOST = 256 };
 // One operation; of the parameters those of the operation count. "Width" is that of the sample or
 // the picture; materials are told by their labels, counted from 0. Thread-safety: plain data.
 struct relume_edit {
-    const struct relume_edit_operation *operation;
+    const struct relume_edit_operation *operation;  // what is done
     // emboss, engrave: grey, 0 (the ground) to 1 (the full height). Code values, not light.
     struct relume_image drawing;
     double height;  // ... of white, widths; (0, 1]; default 0.02

@@ -137,9 +137,10 @@ RELUME_RESULT relume_status relume_objects_save_reflections(const relume_objects
 // What a mirror of the objects shows of their reflections at a place that a ray from `eye` hits.
 struct relume_object_reflection {
     struct relume_reflection_place place;  // vertices are those of relume_objects_info
-    int object, part;
-    struct relume_vec3 normal;            // unit, towards the eye
-    struct relume_vec3 original, edited;  // unit
+    int object;                            // which one of the description, from 0
+    int part;                              // ... and which of its parts
+    struct relume_vec3 normal;             // unit, towards the eye
+    struct relume_vec3 original, edited;   // unit
 };
 // False where the ray (of any length but 0) hits nothing; any part reflects here, also if it is no
 // mirror.

@@ -34,6 +34,7 @@ struct relume_reflection_constraint {
     struct relume_vec3 eye;       // where it was made from; to return to
 };
 
+// What a region of an edit is.
 enum relume_reflection_shape {
     RELUME_REFLECTION_BALL = 0,  // all surface within `radius` of the centre, also of other pieces
     RELUME_REFLECTION_GEODESIC,  // `radius` along the surface, from its place nearest to the centre
@@ -42,12 +43,12 @@ enum relume_reflection_shape {
 
 // Where an edit is seen. Plain data; points are borrowed as said where it is used.
 struct relume_reflection_region {
-    enum relume_reflection_shape shape;
-    struct relume_vec3 centre;         // BALL, GEODESIC
-    double radius;                     // > 0: within it the edit is seen whole
-    double border;                     // >= 0: so much further out it has gone
-    const struct relume_vec3 *stroke;  // STROKES: `points` places, at least one; a line from each
-    int points;                        // to the next
+    enum relume_reflection_shape shape;  // BALL, GEODESIC or STROKES
+    struct relume_vec3 centre;           // BALL, GEODESIC
+    double radius;                       // > 0: within it the edit is seen whole
+    double border;                       // >= 0: so much further out it has gone
+    const struct relume_vec3 *stroke;    // STROKES: `points` places, at least one; a line from each
+    int points;                          // to the next
 };
 
 enum {
@@ -58,10 +59,10 @@ enum {
 // What is done to the reflections of an object. Plain data.
 struct relume_reflection_edit {
     const struct relume_reflection_constraint *constraint;  // [constraints]; none: all as it is
-    int constraints;
+    int constraints;                                // at most RELUME_REFLECTION_CONSTRAINTS_MOST
     const struct relume_reflection_region *region;  // [regions]; none: everywhere
-    int regions;
-    bool geodesic;           // d along the surface; else straight
+    int regions;                                    // at most RELUME_REFLECTION_REGIONS_MOST
+    bool geodesic;                                  // d along the surface; else straight
     bool frozen;             // reflections are those that `eye` sees, wherever one looks from
     struct relume_vec3 eye;  // of `frozen`
 };
@@ -81,6 +82,7 @@ struct relume_reflection_surface {
 // An edit that can be asked. Never changes. Thread-safety: safe.
 typedef struct relume_reflection relume_reflection;
 
+// How an edit is taken.
 struct relume_reflection_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -104,15 +106,15 @@ RELUME_API const struct relume_reflection_edit *relume_reflection_edit(
 // A place of the surface: of triangle (vertex[0], vertex[1], vertex[2]), weighted by weight[].
 // Vertices and weights count only for distances along the surface.
 struct relume_reflection_place {
-    struct relume_vec3 position;
-    uint32_t vertex[3];
-    double weight[3];
+    struct relume_vec3 position;  // world units
+    uint32_t vertex[3];           // of the surface that the edit was made with
+    double weight[3];             // of these; their sum is 1
 };
 // Constraints that count together: those of a region, or all where there are no regions. They
 // belong to the reflection.
 struct relume_reflection_set {
-    const int *member;  // numbers of constraints
-    int members;
+    const int *member;  // [members]: numbers of constraints
+    int members;        // how many
 };
 // One for each region, or a single one. `*least`, in world units: no distance to a constraint is
 // taken to be less. For whoever draws by themselves.

@@ -200,16 +200,11 @@ RELUME_RESULT relume_status relume_btf_fit(relume_btf_fitted **out, const relume
                                            const struct relume_btf_model *model,
                                            const struct relume_btf_fit_params *params);
 // A folder with model.json and one .npy file for each array (docs/btf.md), or, where `path` ends in
-// .exr, one file, which only g-BRDFs of one level have (docs/gbrdf.md). A file beside which edits
-// of an older one are kept (relume/edit.h) is RELUME_EINVAL with a sentence, also with `force`.
-// RELUME_EINVAL, RELUME_EIO; an input status.
+// .exr, one file, which only g-BRDFs of one level have (docs/gbrdf.md). RELUME_EINVAL, RELUME_EIO;
+// an input status.
 RELUME_RESULT relume_status relume_btf_fitted_save(const relume_btf_fitted *fitted,
                                                    const char *path,
                                                    const struct relume_btf_params *params);
-// What it would refuse of the place, for work that takes long: as relume_folder_check or
-// relume_file_check, and edits that are kept there.
-RELUME_RESULT relume_status relume_btf_fitted_check(const char *path, bool force,
-                                                    const struct relume_log *log);
 // The folder or file again, with the edits that are kept with a g-BRDF (relume/edit.h); the caller
 // destroys `*out`. An input status with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,

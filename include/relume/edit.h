@@ -95,20 +95,9 @@ RELUME_RESULT relume_status relume_edits_create(relume_edits **out, uint64_t fin
 // input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_edits_open(relume_edits **out, const char *path,
                                               uint64_t fingerprint, const struct relume_log *log);
-// Keep it with `path`, in place of the list that is there; of an empty one no file is kept.
-// RELUME_EIO, RELUME_ENOMEM.
+// Keep it with `path`, in place of the list that is there. RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_edits_save(const relume_edits *edits, const char *path,
                                               const struct relume_log *log);
-// The same in two steps, for what belongs to the list and is written between them: after the first
-// it is on the disk, without its name. `edits` and `path` are not needed any more, `log` is.
-typedef struct relume_edits_saving relume_edits_saving;
-RELUME_RESULT relume_status relume_edits_prepare(relume_edits_saving **out,
-                                                 const relume_edits *edits, const char *path,
-                                                 const struct relume_log *log);
-// Ends `*saving` in every case.
-RELUME_RESULT relume_status relume_edits_commit(relume_edits_saving **saving);
-// Leaves the list that was there; `*saving` becomes NULL, and may have been NULL.
-RELUME_API void relume_edits_abort(relume_edits_saving **saving);
 RELUME_API void relume_edits_destroy(relume_edits **edits);
 
 // Append a copy, with its drawing and mask reduced to 8 bits and RELUME_EDIT_MOST_SIDE; what was

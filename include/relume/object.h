@@ -129,7 +129,8 @@ RELUME_API const relume_reflection *relume_objects_reflections(const relume_obje
 // input status with a sentence, errors of relume_reflection_create.
 RELUME_RESULT relume_status relume_objects_load_reflections(
     relume_objects *objects, const char *path, const struct relume_reflection_params *params);
-// Write all edits to such a file. RELUME_ESYSTEM with a sentence, RELUME_ENOMEM.
+// Write all edits to such a file. What is there and is no such file stays, RELUME_EINVAL with a
+// sentence. RELUME_EIO with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_objects_save_reflections(const relume_objects *objects,
                                                             const char *path,
                                                             const struct relume_log *log);
@@ -147,6 +148,14 @@ struct relume_object_reflection {
 RELUME_API bool relume_objects_reflect(struct relume_object_reflection *out,
                                        const relume_objects *objects, struct relume_vec3 eye,
                                        struct relume_vec3 direction);
+// Where a ray from a mirror at `place` along the unit vector `direction` ends in a panorama, as
+// mirrors show it; `places`: the position that each pixel of the panorama shows, of three channels.
+// False where that is the far distance.
+RELUME_API bool relume_objects_reflected_place(struct relume_vec3 *out,
+                                               const struct relume_geometry *panorama,
+                                               const struct relume_image *places,
+                                               struct relume_vec3 place,
+                                               struct relume_vec3 direction);
 
 // ---------------------------------------------------------------- lights
 

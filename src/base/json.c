@@ -17,10 +17,9 @@ relume_status jvalue_load(jvalue **root, const char *path, const struct relume_l
 {
     json_error_t error;
     *root = NULL;
-    const bool folder = input_kind(path, log) == INPUT_FOLDER;
-    FILE *file = folder ? NULL : input_open(path, log);
+    FILE *file = input_open(path, log);
     if (!file)
-        return relume_input_fail(log, path, "cannot be opened", folder ? EISDIR : errno);
+        return relume_input_fail(log, path, "cannot be opened", errno);
     *root = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
     fclose(file);
     if (*root)

@@ -7,13 +7,11 @@
 #include "base/params.h"
 #include "btf_model/edited.h"
 #include "btf_model/gbrdf_file.h"
-#include "edit/edits.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 enum { VERSION = 1, MOST_LEVELS = 17 };
 
@@ -75,38 +73,13 @@ relume_status model_save_into(const relume_btf_fitted *m, const char *folder,
     return status;
 }
 
-// A list beside a file that is replaced would be for other values: the new file could not be
-// opened, and what people did would be lost with a list that is replaced too.
-static relume_status refuse_edits(const char *path, const struct relume_log *log)
-{
-    char *name = edits_name(path);
-    relume_status status = name ? RELUME_OK : RELUME_ENOMEM;
-    if (name && !access(name, F_OK))
-        status =
-            log_fail(log, RELUME_EINVAL,
-                     "%s: keeps edits of the %s that would be replaced; move both, or remove it",
-                     name, path);
-    mem_free(name);
-    return status;
-}
-
-relume_status relume_btf_fitted_check(const char *path, bool force, const struct relume_log *log)
-{
-    if (!gbrdf_file_named(path))
-        return relume_folder_check(path, force, log);
-    const relume_status status = relume_file_check(path, log);
-    return status ? status : refuse_edits(path, log);
-}
-
 relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *path,
                                      const struct relume_btf_params *params)
 {
     const struct relume_log *log = params ? params->log : NULL;
     outdir *dir;
-    if (gbrdf_file_named(path)) {
-        const relume_status status = refuse_edits(path, log);
-        return status ? status : gbrdf_file_save(m, path, log);
-    }
+    if (gbrdf_file_named(path))
+        return gbrdf_file_save(m, path, log);
     if (m->table)
         return log_fail(log, RELUME_EINVAL,
                         "%s: measured values cannot be saved as a model; fit one first", path);

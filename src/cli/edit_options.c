@@ -141,18 +141,11 @@ static void print_json(const relume_edits *edits)
 }
 
 relume_status edit_list_end(const relume_edits *edits, const struct args *args,
-                            const struct edit_options *o,
-                            relume_status (*write)(const void *context), const void *context)
+                            const struct edit_options *o)
 {
     const bool changed = edit_is_asked(args, o);
-    relume_edits_saving *saving = NULL;
-    relume_status status =
-        changed ? relume_edits_prepare(&saving, edits, args->input[0], args->log) : RELUME_OK;
-    if (!status)
-        status = write(context);
-    if (!status && changed)
-        status = relume_edits_commit(&saving);
-    relume_edits_abort(&saving);
+    const relume_status status =
+        changed ? relume_edits_save(edits, args->input[0], args->log) : RELUME_OK;
     if (status)
         return status;
     if (o->json)

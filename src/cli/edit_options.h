@@ -49,11 +49,8 @@ bool edit_is_asked(const struct args *args, const struct edit_options *o);
 // to it, in its order.
 relume_status edit_list_of_line(relume_edits **out, uint64_t fingerprint, const struct args *args,
                                 const struct edit_options *o);
-// Keep it where it was, when it was changed, and print it, when that is asked for. Between, with
-// the new list on the disk without its name, `write` writes the output: who fails leaves all as it
-// was.
+// Keep it where it was, when it was changed, and print it, when that is asked for.
 relume_status edit_list_end(const relume_edits *edits, const struct args *args,
-                            const struct edit_options *o,
-                            relume_status (*write)(const void *context), const void *context);
+                            const struct edit_options *o);
 
 #endif

@@ -9,16 +9,13 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
-#include "base/tree.h"
 #include "edit/drawing.h"
 #include "edit/operations.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 enum { VERSION = 1 };
 
@@ -90,11 +87,12 @@ static bool put_edit(FILE *f, const struct relume_edit *edit)
     return good;
 }
 
-// To be freed with mem_free_libc; NULL: no memory.
-static char *list_text(const relume_edits *edits, size_t *size)
+relume_status relume_edits_save(const relume_edits *edits, const char *path,
+                                const struct relume_log *log)
 {
-    char *text = NULL;
-    FILE *f = open_memstream(&text, size);
+    char *name = edits_name(path), *text = NULL;
+    size_t size = 0;
+    FILE *f = name ? open_memstream(&text, &size) : NULL;
     bool good = f != NULL;
     if (f) {
         fprintf(f,
@@ -108,89 +106,10 @@ static char *list_text(const relume_edits *edits, size_t *size)
         fputs("]}\n", f);
         good = !fclose(f) && good;
     }
-    if (!good)
-        mem_free_libc(text);
-    return good ? text : NULL;
-}
-
-struct relume_edits_saving {
-    char *name;
-    outfile *file;  // NULL: the list is empty, and none is kept
-    const struct relume_log *log;
-};
-
-static relume_status write_list(struct relume_edits_saving *s, const relume_edits *edits)
-{
-    size_t size = 0;
-    char *text = list_text(edits, &size);
-    relume_status status = text ? outfile_open(&s->file, s->name, NULL, s->log) : RELUME_ENOMEM;
-    if (!status)
-        status = outfile_write(s->file, text, size, 0);
+    const relume_status status = good ? outfile_save(name, text, size, log) : RELUME_ENOMEM;
     mem_free_libc(text);
+    mem_free(name);
     return status;
-}
-
-static relume_status no_removal(const struct relume_edits_saving *s)
-{
-    return log_fail(s->log, RELUME_EIO, "%s: cannot be removed; %s", s->name, strerror(errno));
-}
-
-static relume_status check_removal(const struct relume_edits_saving *s)
-{
-    char *folder = tree_parent(s->name);
-    relume_status status = folder ? outfile_check(s->name, s->name, s->log) : RELUME_ENOMEM;
-    if (!status && !access(s->name, F_OK) && access(folder, W_OK))
-        status = no_removal(s);
-    mem_free(folder);
-    return status;
-}
-
-static relume_status remove_list(const struct relume_edits_saving *s)
-{
-    return unlink(s->name) && errno != ENOENT ? no_removal(s) : RELUME_OK;
-}
-
-relume_status relume_edits_prepare(relume_edits_saving **out, const relume_edits *edits,
-                                   const char *path, const struct relume_log *log)
-{
-    struct relume_edits_saving *s = mem_zeroed(1, sizeof *s);
-    *out = s;
-    if (!s)
-        return RELUME_ENOMEM;
-    *s = (struct relume_edits_saving){.name = edits_name(path), .log = log};
-    const relume_status status = !s->name       ? RELUME_ENOMEM
-                                 : edits->count ? write_list(s, edits)
-                                                : check_removal(s);
-    if (status)
-        relume_edits_abort(out);
-    return status;
-}
-
-relume_status relume_edits_commit(relume_edits_saving **saving)
-{
-    struct relume_edits_saving *s = *saving;
-    const relume_status status = s->file ? outfile_commit(&s->file) : remove_list(s);
-    relume_edits_abort(saving);
-    return status;
-}
-
-void relume_edits_abort(relume_edits_saving **saving)
-{
-    struct relume_edits_saving *s = *saving;
-    *saving = NULL;
-    if (!s)
-        return;
-    outfile_abort(&s->file);
-    mem_free(s->name);
-    mem_free(s);
-}
-
-relume_status relume_edits_save(const relume_edits *edits, const char *path,
-                                const struct relume_log *log)
-{
-    relume_edits_saving *saving;
-    const relume_status status = relume_edits_prepare(&saving, edits, path, log);
-    return status ? status : relume_edits_commit(&saving);
 }
 
 // ---------------------------------------------------------------- reading
@@ -289,18 +208,13 @@ static bool read_fingerprint(uint64_t *out, const jvalue *root)
 
 static relume_status read_list(relume_edits *edits, const jvalue *root, const struct reader *r)
 {
-    static const char *const known[] = {"relumeEdits", "fingerprint", "undone", "operations", NULL};
     const jvalue *operations = jvalue_member(root, "operations");
-    const char *other = jvalue_unknown(root, known);
     int version = 0;
     if (!jvalue_whole(jvalue_member(root, "relumeEdits"), 1, 1000, &version))
         return wrong(r, "no list of edits", "\"relumeEdits\": 1");
     if (version != VERSION)
         return log_fail(r->log, RELUME_EUNSUPPORTED, "%s: expected version %d; found %d", r->path,
                         VERSION, version);
-    if (other)
-        return log_fail(r->log, RELUME_EFORMAT,
-                        "%s: a list of edits has no '%s'; made by a newer relume?", r->path, other);
     if (!read_fingerprint(&edits->fingerprint, root))
         return wrong(r, "fingerprint", "16 hexadecimal digits");
     if (!jvalue_is_array(operations) || jvalue_count(operations) > RELUME_EDIT_MOST)

@@ -87,6 +87,16 @@ static vec3 seen_along(const struct surround *s, vec3 place, vec3 along)
     return along;
 }
 
+bool relume_objects_reflected_place(vec3 *out, const struct relume_geometry *panorama,
+                                    const struct relume_image *places, vec3 place, vec3 direction)
+{
+    const struct surround s = {.geometry = panorama, .places = *places};
+    const vec3 seen = seen_along(&s, place, direction);
+    const double depth = depth_at(&s, seen);
+    *out = vec3_along(panorama->center, seen, depth);
+    return depth < INFINITY;
+}
+
 static void panorama_value(float rgb[3], const struct surround *s, vec3 place, vec3 direction)
 {
     const struct relume_view_params params = {.filter = s->filter};

@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { VERSION = 1 };
 static const char FORMAT[] = "relume-reflections";
@@ -310,6 +311,22 @@ static void put_edit(FILE *to, int object, const struct relume_reflection_edit *
     fputs("]}", to);
 }
 
+// What is there and is no list of reflections is kept.
+static relume_status check_replaced(const char *path, const struct relume_log *log)
+{
+    jvalue *root = NULL;
+    struct stat there;
+    if (stat(path, &there) || !S_ISREG(there.st_mode))
+        return RELUME_OK;
+    relume_status status = jvalue_load(&root, path, NULL);
+    if (status != RELUME_ENOMEM &&
+        (status || jvalue_check_format(root, path, FORMAT, VERSION, NULL)))
+        status = log_fail(log, RELUME_EINVAL,
+                          "%s: is no list of reflections, and is kept; choose another name", path);
+    jvalue_free(&root);
+    return status;
+}
+
 relume_status relume_objects_save_reflections(const relume_objects *o, const char *path,
                                               const struct relume_log *log)
 {
@@ -330,6 +347,8 @@ relume_status relume_objects_save_reflections(const relume_objects *o, const cha
     fputs("\n]}\n", to);
     const bool written = !ferror(to);
     relume_status status = fclose(to) || !written ? RELUME_ENOMEM : RELUME_OK;
+    if (!status)
+        status = check_replaced(path, log);
     if (!status)
         status = outfile_save(path, text, size, log);
     mem_free_libc(text);

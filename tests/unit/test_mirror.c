@@ -222,6 +222,37 @@ static vec3 look_ray(int i)
     return relume_pan_tilt_ray(look, WIDE, TALL, i % WIDE + 0.5, i / WIDE + 0.5);
 }
 
+// Rays from mirrors end on the wall of such a room, or nowhere where there is no depth.
+static void reflected_rays_end_on_the_wall(void **state)
+{
+    (void)state;
+    static const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
+    struct relume_image places;
+    CHECK_OK(relume_image_create(&places, ACROSS, HIGH, 3));
+    for (int i = 0; i < ACROSS * HIGH; i++) {
+        const vec3 d =
+            relume_panorama_ray(&sphere, ACROSS, HIGH, i % ACROSS + 0.5, i / ACROSS + 0.5);
+        const vec3 at = vec3_scale(d, ROOM);
+        for (int c = 0; c < 3; c++)
+            places.data[3 * i + c] = (float)(c == 0 ? at.x : c == 1 ? at.y : at.z);
+    }
+    const vec3 from = vec3_of(0.5, -1, 0.7);
+    for (int i = 0; i < 50; i++) {
+        const double y = 1 - (2 * i + 1) / 50.0, phi = 2.4 * i;
+        const vec3 along = vec3_of(sqrt(1 - y * y) * cos(phi), y, sqrt(1 - y * y) * sin(phi));
+        vec3 got, wall;
+        assert_true(relume_objects_reflected_place(&got, &sphere, &places, from, along));
+        assert_true(meet(&wall, from, along, vec3_of(0, 0, 0), ROOM, true));
+        // a texel of the panorama is 0.07 wide there
+        CHECK_NEAR(vec3_length(vec3_sub(got, wall)), 0.0, 0.07);
+    }
+    for (int i = 0; i < ACROSS * HIGH * 3; i++)
+        places.data[i] = INFINITY;
+    vec3 got;
+    assert_false(relume_objects_reflected_place(&got, &sphere, &places, from, vec3_of(0, 0, 1)));
+    relume_image_destroy(&places);
+}
+
 // A ball in the room shows the wall where its ray ends, not where it would end from the room's
 // middle.
 static void a_ball_shows_the_room(void **state)
@@ -334,6 +365,13 @@ static void edits_move_what_is_reflected(void **state)
     relume_image_destroy(&edited);
     // written and read again it is the same edit
     CHECK_OK(relume_objects_save_reflections(o, path_of("again.json"), &hearing));
+    CHECK_OK(relume_objects_save_reflections(o, path_of("again.json"), &hearing));
+    // what is no such list is kept
+    assert_int_equal(relume_objects_save_reflections(o, path_of("objects.json"), &hearing),
+                     RELUME_EINVAL);
+    assert_non_null(strstr(last, "is no list of reflections, and is kept"));
+    assert_int_equal(relume_objects_save_reflections(o, path_of("ball.obj"), &hearing),
+                     RELUME_EINVAL);
     const struct relume_reflection_constraint first =
         relume_reflection_edit(relume_objects_reflections(o, 0))->constraint[0];
     CHECK_OK(relume_objects_set_reflections(o, 0, NULL, NULL));
@@ -487,6 +525,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ball_shows_the_environment),
+        cmocka_unit_test(reflected_rays_end_on_the_wall),
         cmocka_unit_test(a_ball_shows_the_room),
         cmocka_unit_test(rays_pass_behind),
         cmocka_unit_test(edits_move_what_is_reflected),

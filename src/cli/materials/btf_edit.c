@@ -26,30 +26,16 @@ static const struct option edit_options[] = {
 };
 #undef OPTIONS
 
-struct edited {
-    const struct btf_edit_options *o;
-    relume_btf_fitted *model;
-};
-
-static relume_status write_edited(const void *context)
-{
-    const struct edited *e = context;
-    const struct btf_edit_options *o = e->o;
-    return o->output
-               ? relume_btf_fitted_save(e->model, o->output,
-                                        relume_btf_params(.log = o->args.log, .force = o->force))
-               : RELUME_OK;
-}
-
 static relume_status end_edit(const struct btf_edit_options *o, const relume_btf_fitted *model,
                               const relume_edits *edits)
 {
-    struct edited edited = {.o = o};
-    relume_status status = relume_btf_fitted_edit(&edited.model, model, edits, o->args.log);
-    if (!status)
-        status = edit_list_end(edits, &o->args, &o->edit, write_edited, &edited);
-    relume_btf_fitted_destroy(&edited.model);
-    return status;
+    relume_btf_fitted *edited;
+    relume_status status = relume_btf_fitted_edit(&edited, model, edits, o->args.log);
+    if (!status && o->output)
+        status = relume_btf_fitted_save(edited, o->output,
+                                        relume_btf_params(.log = o->args.log, .force = o->force));
+    relume_btf_fitted_destroy(&edited);
+    return status ? status : edit_list_end(edits, &o->args, &o->edit);
 }
 
 static relume_status run_edit(const struct args *args)
@@ -58,10 +44,12 @@ static relume_status run_edit(const struct args *args)
     relume_btf_fitted *model = NULL;
     relume_edits *edits = NULL;
     o.edit.list |= !o.output && !edit_is_asked(args, &o.edit);
-    relume_status status = relume_btf_fitted_open(
-        &model, args->input[0], relume_btf_params(.log = args->log, .unedited = true));
-    if (!status && o.output)
-        status = relume_btf_fitted_check(o.output, o.force, args->log);
+    relume_status status = o.output && !btf_is_model_file(o.output)
+                               ? relume_folder_check(o.output, o.force, args->log)
+                               : RELUME_OK;
+    if (!status)
+        status = relume_btf_fitted_open(&model, args->input[0],
+                                        relume_btf_params(.log = args->log, .unedited = true));
     if (!status)
         status = edit_list_of_line(&edits, relume_btf_fitted_fingerprint(model), args, &o.edit);
     if (!status)
@@ -139,7 +127,9 @@ static relume_status run_make(const struct args *args)
 {
     const struct make_options *o = (const void *)args;
     relume_btf_fitted *made = NULL;
-    relume_status status = relume_btf_fitted_check(o->output, o->force, args->log);
+    relume_status status = btf_is_model_file(o->output)
+                               ? RELUME_OK
+                               : relume_folder_check(o->output, o->force, args->log);
     if (!status)
         status = make(&made, o);
     if (!status)

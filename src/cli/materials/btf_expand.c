@@ -1,11 +1,18 @@
 // btf_expand.c - relume btf plant and expand: values out of models
 #include "materials/btf_inputs.h"
 
+relume_status btf_check_model_output(const struct btf_options *o)
+{
+    // a file appears whole or not at all without asking
+    return btf_is_model_file(o->output) ? RELUME_OK
+                                        : relume_folder_check(o->output, o->force, o->args.log);
+}
+
 relume_status btf_plant(const struct args *args)
 {
     const struct btf_options *o = (const void *)args;
     relume_btf_fitted *planted = NULL;
-    relume_status status = relume_btf_fitted_check(o->output, o->force, args->log);
+    relume_status status = btf_check_model_output(o);
     if (!status)
         status = relume_gbrdf_plant(&planted,
                                     relume_gbrdf_plant_params(.log = args->log, .size = o->size,

@@ -61,6 +61,9 @@ relume_status btf_plant(const struct args *args);
 relume_status btf_expand(const struct args *args);
 extern const struct command btf_task_edit, btf_task_make;
 
+// What may be written as a model: a folder as relume_folder_check has it, or an .exr file.
+relume_status btf_check_model_output(const struct btf_options *o);
+
 // Whether `btf render` is asked for objects: --mesh, or a description in JSON.
 bool btf_is_objects(const struct btf_options *o);
 // These, ray traced.

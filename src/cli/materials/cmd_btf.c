@@ -273,7 +273,7 @@ static relume_status check_fit(const struct btf_options *o)
                ? usage_error("%s: an .exr file holds a g-BRDF of one level of detail; expected "
                              "--model gbrdf without --levels, or a folder",
                              o->output)
-               : relume_btf_fitted_check(o->output, o->force, o->args.log);
+               : btf_check_model_output(o);
 }
 
 static relume_status fit(const struct args *args)

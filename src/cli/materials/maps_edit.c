@@ -25,40 +25,28 @@ static const struct option options[] = {
     {0},
 };
 
-struct edited {
-    const struct maps_edit_options *o;
-    struct relume_maps maps;
-};
-
-static relume_status write_edited(const void *context)
-{
-    const struct edited *e = context;
-    const struct maps_edit_options *o = e->o;
-    return o->output ? relume_maps_write(
-                           &e->maps, o->output,
-                           relume_maps_write_params(.log = o->args.log, .threads = o->args.threads,
-                                                    .force = o->force, .directx = o->directx,
-                                                    .mesh = o->mesh))
-                     : RELUME_OK;
-}
-
 static relume_status run(const struct args *args)
 {
     struct maps_edit_options o = *(const struct maps_edit_options *)(const void *)args;
-    struct edited edited = {.o = &o};
+    struct relume_maps maps = {0};
     relume_edits *edits = NULL;
     o.edit.list |= !o.output && !edit_is_asked(args, &o.edit);
     relume_status status = o.output ? relume_folder_check(o.output, o.force, args->log) : RELUME_OK;
     if (!status)
-        status = relume_maps_open(&edited.maps, args->input[0], args->log);
+        status = relume_maps_open(&maps, args->input[0], args->log);
     if (!status)
-        status = edit_list_of_line(&edits, relume_maps_fingerprint(&edited.maps), args, &o.edit);
+        status = edit_list_of_line(&edits, relume_maps_fingerprint(&maps), args, &o.edit);
     if (!status)
-        status = relume_maps_edit(&edited.maps, edits, args->threads, args->log);
+        status = relume_maps_edit(&maps, edits, args->threads, args->log);
+    if (!status && o.output)
+        status = relume_maps_write(
+            &maps, o.output,
+            relume_maps_write_params(.log = args->log, .threads = args->threads, .force = o.force,
+                                     .directx = o.directx, .mesh = o.mesh));
     if (!status)
-        status = edit_list_end(edits, args, &o.edit, write_edited, &edited);
+        status = edit_list_end(edits, args, &o.edit);
     relume_edits_destroy(&edits);
-    relume_maps_destroy(&edited.maps);
+    relume_maps_destroy(&maps);
     return status;
 }
 

@@ -33,7 +33,7 @@ static void take_ball(struct frame_request *q, const struct app *app)
     memcpy(q->ball_rgb, app->now.light[app->now.selected].rgb, sizeof q->ball_rgb);
 }
 
-relume_status frame_request_make(struct frame_request *q, const struct app *app)
+void frame_request_look(struct frame_request *q, const struct app *app)
 {
     const struct app_state *now = &app->now;
     *q = (struct frame_request){
@@ -60,8 +60,13 @@ relume_status frame_request_make(struct frame_request *q, const struct app *app)
         .timed = app->panel,
     };
     q->has_window = orbit_is(app) && app_window(app, &q->window);
+}
+
+relume_status frame_request_make(struct frame_request *q, const struct app *app)
+{
+    frame_request_look(q, app);
     take_ball(q, app);
-    return take_lights(q, now);
+    return take_lights(q, &app->now);
 }
 
 void frame_request_free(struct frame_request *q)

@@ -35,6 +35,8 @@ struct frame_request {
     float ball_rgb[3];
 };
 
+// All of the frame that `app` describes now but its lights.
+void frame_request_look(struct frame_request *request, const struct app *app);
 // The frame that `app` describes now; `request` is empty or was made before, and keeps its memory.
 // It holds until the app changes. RELUME_ENOMEM.
 relume_status frame_request_make(struct frame_request *request, const struct app *app);

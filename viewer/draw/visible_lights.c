@@ -1,6 +1,7 @@
 // visible_lights.c - the lights that are in view of the app's frame (viewport.h)
 #include "draw/visible_lights.h"
 
+#include "app/sight.h"
 #include "common/vec.h"
 
 void hiding_scene_forget(struct hiding_scene *s)
@@ -26,23 +27,6 @@ static int nearest_view(const struct frame_request *q, const struct hiding_scene
     return best;
 }
 
-// Of a captured picture; a slab's as it looks from `eye`.
-static struct relume_viewport viewport_of_picture(const struct app_file *file,
-                                                  struct relume_vec3 eye)
-{
-    const struct relume_geometry *g = &file->geometry;
-    struct relume_viewport s = {.width = file->width, .height = file->height, .geometry = *g};
-    if (g->projection == RELUME_SLAB) {
-        s.window = relume_slab_window(g, eye);
-    } else if (g->projection == RELUME_PLANAR) {
-        s.window = relume_planar_window(g);
-        s.kind = g->perspective ? RELUME_VIEWPORT_PERSPECTIVE : RELUME_VIEWPORT_PARALLEL;
-    } else {
-        s.kind = RELUME_VIEWPORT_UNFOLDED;
-    }
-    return s;
-}
-
 static struct relume_vec3 camera_of(const struct frame_request *q, const struct hiding_scene *s,
                                     int view)
 {
@@ -51,28 +35,11 @@ static struct relume_vec3 camera_of(const struct frame_request *q, const struct 
                 : (struct relume_vec3){0};
 }
 
-// False where the eye sees nothing.
 static bool viewport_of(struct relume_viewport *out, const struct frame_request *q,
                         const struct hiding_scene *s)
 {
-    const struct relume_camera *camera = &q->camera;
-    const struct app_rectangle r = q->picture;
-    const bool free = camera->framing == RELUME_FRAME_EYE;
-    *out = viewport_of_picture(q->file, free ? camera->eye : camera_of(q, s, camera->view));
-    if (q->file->around && !q->has_window)
-        return false;
-    if (q->has_window)
-        out->window = q->window;
-    if (camera->framing == RELUME_FRAME_LOOK)
-        out->kind = RELUME_VIEWPORT_PANORAMA;
-    out->look = camera->look;
-    out->width = q->width;
-    out->height = q->height;
-    out->left = r.left;
-    out->top = r.top;
-    out->wide = r.right - r.left;
-    out->high = r.bottom - r.top;
-    return true;
+    const bool free = q->camera.framing == RELUME_FRAME_EYE;
+    return sight_of_frame(out, q, free ? q->camera.eye : camera_of(q, s, q->camera.view));
 }
 
 // ---------------------------------------------------------------- what hides it
@@ -85,7 +52,7 @@ static bool find_view(int *view, double at[2], const struct frame_request *q,
     if (q->has_window)
         return relume_slab_set_nearest(view, at, f->around, eye, vec3_sub(p, eye));
     *view = nearest_view(q, s);
-    const struct relume_viewport picture = viewport_of_picture(f, camera_of(q, s, *view));
+    const struct relume_viewport picture = sight_of_picture(f, camera_of(q, s, *view));
     if (!relume_viewport_project(at, &picture, p))
         return false;
     at[0] /= f->width;
@@ -101,6 +68,11 @@ static bool need_surface(struct hiding_scene *s, int view)
     s->known = true;
     s->view = view;
     return s->source.surface && !s->source.surface(&s->surface, s->source.user, view);
+}
+
+const struct relume_image *visible_places(struct hiding_scene *scene, int view)
+{
+    return need_surface(scene, view) ? &scene->surface : NULL;
 }
 
 struct looking {

@@ -4,14 +4,30 @@
 #include "fuzz.h"
 
 #include "app/observer.h"
+#include "app/handles_say.h"
 #include "app/light_list.h"
 #include "app/script.h"
 
-static const char *const words[] = {
-    "press", "release", "move", "drag", "scroll", "key",  "left",      "right", "light",
-    "add",   "rig",     "open", "edit", "glare",  "dock", "hint",      "set",   "pass",
-    "wait",  "frame",   "shot", "quit", "size",   "Esc",  "dir 0 0 1", "1e308", "-1",
-    "nan",   "3600",    "\n",   "#",    "\t",     "on",   "off",       "pupil", NULL};
+static const char *const words[] = {"press",      "release",
+                                    "move",       "drag",
+                                    "scroll",     "key",
+                                    "left",       "right",
+                                    "light",      "add",
+                                    "rig",        "open",
+                                    "edit",       "glare",
+                                    "dock",       "hint",
+                                    "set",        "pass",
+                                    "wait",       "frame",
+                                    "shot",       "quit",
+                                    "size",       "Esc",
+                                    "dir 0 0 1",  "1e308",
+                                    "-1",         "nan",
+                                    "3600",       "\n",
+                                    "#",          "\t",
+                                    "on",         "off",
+                                    "pupil",      "reflection",
+                                    "tool brush", "choose region",
+                                    NULL};
 
 static void host_send(void *user, const struct app_event *event)
 {
@@ -62,6 +78,11 @@ static relume_status host_glare(void *user, const char *text, const char **expec
     return observer_say(&app->now.observer, text, expected) ? RELUME_OK : RELUME_EFORMAT;
 }
 
+static relume_status host_reflect(void *user, const char *text, const struct relume_log *log)
+{
+    return handles_say(user, text, log);
+}
+
 // The first byte chooses what is shown.
 static bool one(struct fuzz *f, struct bytes b)
 {
@@ -77,9 +98,9 @@ static bool one(struct fuzz *f, struct bytes b)
     fuzz_store(f->path, (struct bytes){b.data + 1, b.size - 1});
     if (app_start(&app, &file, &start, b.data[0] & 2, NULL))
         return false;
-    const struct script_host host = {&app,       &app,      host_send,  host_light,
-                                     host_file,  host_file, host_wait,  host_frame,
-                                     host_frame, NULL,      host_glare, host_file};
+    const struct script_host host = {&app,       &app,      host_send,   host_light, host_file,
+                                     host_file,  host_wait, host_frame,  host_frame, NULL,
+                                     host_glare, host_file, host_reflect};
     const relume_status status = script_play(f->path, &host);
     app_release(&app);
     return !status;
@@ -101,7 +122,9 @@ int main(int argc, char **argv)
     fuzz_add(&f,
              text("2light dir 0 1 1\nadd point 0 0 1 rgb 1 2 3\npress right 5 5\nmove 9 9\n"
                   "release right 9 9\nhold l\ndrag left 0 0 100 0\nlet l\nkey tab\nkey h\nquit\n"));
-    fuzz_add(&f, text("3glare on\nglare squint 0.3\nwait 0.2\nglare pause\ndock left\nhint\n"
-                      "open a.exr\nrig a.json\nedit undo\ntype abc\nkey right\nkey esc\n"));
+    fuzz_add(
+        &f,
+        text("3glare on\nglare squint 0.3\nwait 0.2\nglare pause\ndock left\nhint\n"
+             "open a.exr\nrig a.json\nedit undo\nreflection on\ntype abc\nkey right\nkey esc\n"));
     return fuzz_run(&f, argc, argv, one);
 }

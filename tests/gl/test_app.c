@@ -751,9 +751,9 @@ static relume_status host_glare(void *user, const char *words, const char **expe
 
 static struct script_host host_of(struct frames *frames)
 {
-    return (struct script_host){frames,     frames->app, host_send,  host_light,
-                                host_rig,   host_open,   host_wait,  host_frame,
-                                host_frame, &keep,       host_glare, host_open};
+    return (struct script_host){frames,     frames->app, host_send,  host_light, host_rig,
+                                host_open,  host_wait,   host_frame, host_frame, &keep,
+                                host_glare, host_open,   host_open};
 }
 
 static relume_status play(struct app *app, struct frames *frames, const char *text)

@@ -1,6 +1,7 @@
 // app.c - the state of the viewer: how it begins, ends, and answers
 #include "app/app.h"
 
+#include "app/handles.h"
 #include "app/light_list.h"
 #include "app/orbit.h"
 #include "program/say.h"
@@ -112,6 +113,7 @@ void app_release(struct app *app)
 {
     light_list_release(&app->start);
     light_list_release(&app->now);
+    handles_destroy(&app->handles);
 }
 
 const char *const app_dock_names[APP_DOCKS + 1] = {"over", "left", "right", NULL};

@@ -3,6 +3,7 @@
 
 #include "app/app.h"
 #include "app/gizmo.h"
+#include "app/handles_drag.h"
 #include "app/keys.h"
 #include "app/orbit.h"
 #include "common/vec.h"
@@ -132,6 +133,13 @@ static bool on_press(struct app *app, const struct app_event *e)
         return true;
     }
     const bool light = e->button == APP_RIGHT || app->light_key;
+    if (app->reflects && !light && handles_press(app, e->x, e->y)) {
+        app->drag = APP_DRAG_HANDLE;
+        app->cursor[0] = e->x;
+        app->cursor[1] = e->y;
+        app_stand_still(app);
+        return true;
+    }
     const int grabbed = app->gizmos && !light ? gizmo_hit(app, e->x, e->y) : -1;
     const bool ball = !light && grabbed < 0 && gizmo_on_ball(app, e->x, e->y);
     app->drag = light          ? APP_DRAG_LIGHT
@@ -158,8 +166,9 @@ static bool is_rough(const struct app *app)
 static bool on_release(struct app *app, const struct app_event *e)
 {
     (void)e;
+    const bool edited = app->drag == APP_DRAG_HANDLE && handles_release(app);
     app->drag = APP_DRAG_NONE;
-    return is_rough(app);
+    return edited || is_rough(app);
 }
 
 static bool on_move(struct app *app, const struct app_event *e)
@@ -170,6 +179,8 @@ static bool on_move(struct app *app, const struct app_event *e)
     app->cursor[1] = e->y;
     if (app->drag == APP_DRAG_NONE || (dx == 0 && dy == 0))
         return app->inspect;
+    if (app->drag == APP_DRAG_HANDLE)
+        return handles_move(app, e->x, e->y);
     if (app->drag == APP_DRAG_LIGHT) {
         // As if the front of a ball half as wide as the frame were dragged: right turns it about
         // the frame's up, down about its right.

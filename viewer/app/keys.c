@@ -2,6 +2,8 @@
 #include "app/keys.h"
 
 #include "app/app.h"
+#include "app/handles.h"
+#include "app/handles_say.h"
 #include "app/light_list.h"
 
 #include <relume/tone.h>
@@ -26,8 +28,8 @@ static bool press_quit(struct app *app, int key)
 // the app hears of the key.
 static bool press_escape(struct app *app, int key)
 {
-    bool *const open[] = {&app->asks,        &app->browse,  &app->help,
-                          &app->picks_focus, &app->inspect, &app->panel};
+    bool *const open[] = {&app->asks,    &app->browse,   &app->help, &app->picks_focus,
+                          &app->inspect, &app->reflects, &app->panel};
     (void)key;
     for (size_t i = 0; i < sizeof open / sizeof *open; i++)
         if (*open[i]) {
@@ -254,6 +256,18 @@ static bool press_split(struct app *app, int key)
     return true;
 }
 
+static bool press_reflections(struct app *app, int key)
+{
+    (void)key;
+    return handles_turn_on(app, !app->reflects);
+}
+
+static bool press_undo(struct app *app, int key)
+{
+    return app->reflects &&
+           (key == (APP_CONTROL | 'z') ? handles_undo : handles_redo)(app->handles);
+}
+
 // ---------------------------------------------------------------- lights
 
 static bool press_next_light(struct app *app, int key)
@@ -273,6 +287,8 @@ static bool press_add(struct app *app, int key)
 static bool press_remove(struct app *app, int key)
 {
     (void)key;
+    if (app->reflects && handles_remove(app->handles))
+        return true;
     return light_list_remove(&app->now, app->now.selected);
 }
 
@@ -406,6 +422,9 @@ const struct key_binding key_bindings[] = {
     {'c', "C", "objects: next material", press_material, false},
     {'q', "Q", "objects: compare with another material, show the difference", press_split, false},
     {'u', "U", "objects: the next material to compare with", press_other, false},
+    {APP_CONTROL | 'r', "Ctrl+R", "objects: edit what mirrors reflect", press_reflections, false},
+    {APP_CONTROL | 'z', "Ctrl+Z Ctrl+Y", "undo, redo an edited reflection", press_undo, true},
+    {APP_CONTROL | 'y', NULL, NULL, press_undo, true},
     {'b', "B", "show the light as a ball", press_ball, false},
     {'g', "G", "show handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},

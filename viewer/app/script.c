@@ -342,6 +342,14 @@ static relume_status play_edit(struct script *s)
     return with_file(s, s->host.edit, "edit OPERATION VALUE ..., edit undo or edit redo");
 }
 
+static relume_status play_reflection(struct script *s)
+{
+    return with_file(
+        s, s->host.reflect,
+        "reflection on, off, tool, choose, delete, undo, redo, freeze, unfreeze, view, "
+        "distance, radius, border or save");
+}
+
 static relume_status play_glare(struct script *s)
 {
     char copy[LINE];
@@ -426,15 +434,19 @@ static const struct word {
     relume_status (*play)(struct script *s);
     bool whole;  // takes the rest of the line
 } words[] = {
-    {"size", play_size, false},   {"drag", play_drag, false}, {"click", play_click, false},
-    {"press", play_press, false}, {"move", play_move, false}, {"release", play_release, false},
-    {"wheel", play_wheel, false}, {"key", play_key, false},   {"hold", play_hold, false},
-    {"let", play_let, false},     {"type", play_type, true},  {"light", play_light, true},
-    {"add", play_add, true},      {"rig", play_rig, true},    {"wait", play_wait, false},
-    {"frame", play_frame, true},  {"shot", play_shot, true},  {"open", play_open, true},
-    {"glare", play_glare, true},  {"hint", play_hint, false}, {"quit", play_quit, false},
-    {"dock", play_dock, false},   {"set", play_set, true},    {"pass", play_pass, true},
-    {"edit", play_edit, true},
+    {"size", play_size, false},   {"drag", play_drag, false},
+    {"click", play_click, false}, {"press", play_press, false},
+    {"move", play_move, false},   {"release", play_release, false},
+    {"wheel", play_wheel, false}, {"key", play_key, false},
+    {"hold", play_hold, false},   {"let", play_let, false},
+    {"type", play_type, true},    {"light", play_light, true},
+    {"add", play_add, true},      {"rig", play_rig, true},
+    {"wait", play_wait, false},   {"frame", play_frame, true},
+    {"shot", play_shot, true},    {"open", play_open, true},
+    {"glare", play_glare, true},  {"hint", play_hint, false},
+    {"quit", play_quit, false},   {"dock", play_dock, false},
+    {"set", play_set, true},      {"pass", play_pass, true},
+    {"edit", play_edit, true},    {"reflection", play_reflection, true},
 };
 
 static relume_status play_line(struct script *s)
@@ -449,9 +461,9 @@ static relume_status play_line(struct script *s)
         const relume_status status = words[i].play(s);
         return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
     }
-    return wrong(s,
-                 "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
-                 "add, rig, open, edit, glare, dock, hint, set, pass, wait, frame, shot or quit");
+    return wrong(s, "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
+                    "add, rig, open, edit, reflection, glare, dock, hint, set, pass, wait, frame, "
+                    "shot or quit");
 }
 
 relume_status script_open(struct script **out, const char *path, const struct script_host *host)

@@ -26,6 +26,8 @@ struct script_host {
     relume_status (*glare)(void *user, const char *words, const char **expected);
     // Edit the g-BRDF that is shown.
     relume_status (*edit)(void *user, const char *words, const struct relume_log *log);
+    // Edit what mirrors reflect.
+    relume_status (*reflect)(void *user, const char *words, const struct relume_log *log);
 };
 
 // An open script. Thread-safety: one thread at a time.

@@ -117,7 +117,14 @@ struct app_state {
     struct observer observer;  // how an eye sees the frame
 };
 
-enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO, APP_DRAG_BALL };
+enum app_drag {
+    APP_DRAG_NONE,
+    APP_DRAG_CAMERA,
+    APP_DRAG_LIGHT,
+    APP_DRAG_GIZMO,
+    APP_DRAG_BALL,
+    APP_DRAG_HANDLE
+};
 
 // What the app cannot do itself; whoever runs it does, and sets this back to NONE.
 enum app_wish {
@@ -133,11 +140,23 @@ enum app_wish {
     APP_WISH_FOLDER,       // a list of the folder app.spec; "": of the one that was listed last
     APP_WISH_FOCUS,        // on what the frame shows at app.cursor
     APP_WISH_EDIT,         // of the g-BRDF that is shown, in the words app.spec
+    APP_WISH_REFLECTION,   // an edit of what mirrors reflect, in the words app.spec
     APP_WISH_OPEN          // the file app.spec in place of this one
 };
 enum { APP_SPEC = 4096 };
 
-// Owns its lists of lights. Thread-safety: plain data.
+// What only drawing knows of the scene around objects. NULL: nothing.
+struct app_scene {
+    void *user;
+    // The place of the scene that the frame shows at (x, y); false where none is known.
+    bool (*surface)(void *user, struct relume_vec3 *out, double x, double y);
+    // Where a ray from a mirror ends in it (relume_objects_reflected_place); false: far away.
+    bool (*reflected)(void *user, struct relume_vec3 *out, struct relume_vec3 from,
+                      struct relume_vec3 direction);
+};
+struct handles;
+
+// Owns its lists of lights, and handles. Thread-safety: plain data.
 struct app {
     struct app_file file;
     struct app_state start, now;
@@ -153,7 +172,10 @@ struct app {
     bool browse;                        // for a file to open
     bool keep_lights;                   // for the next file
     bool picks_focus;                   // the next press does
-    bool recording;                     // every frame becomes a picture
+    bool reflects;                      // handles of edited reflections are shown ...
+    struct handles *handles;            // ... and kept; NULL: not asked for yet
+    struct app_scene scene;
+    bool recording;  // every frame becomes a picture
     double toast_s,
         hint_s;           // how long what was last said, and what the mouse does, stay to be seen
     double inspect_zoom;  // of the inspector's disc; 0 and 1: all of it

@@ -1,6 +1,7 @@
 // renderer_objects.c - frames with objects in them: the scene under each light alone, kept off
 // where an object stands between, then the objects where they stand before it. Twin:
 // relume_renderer_set_objects.
+#include "app/handles.h"
 #include "common/vec.h"
 #include "draw/renderer.h"
 #include "draw/renderer_parts.h"
@@ -178,21 +179,12 @@ static relume_status light_scene(struct renderer *r, const struct frame_request 
     return status;
 }
 
-static bool has_mirrors(const relume_objects *objects)
-{
-    const struct relume_objects_info *info = relume_objects_info(objects);
-    for (int i = 0; i < info->materials; i++)
-        if (info->material[i].mirror)
-            return true;
-    return false;
-}
-
 // The panorama that mirrors show, under all lights.
 static relume_status find_surround(struct renderer *r, const struct frame_request *q,
                                    const struct relume_light *lights, int count)
 {
     r->drawer.panorama = (struct mirror_panorama){.geometry = NULL};
-    if (r->geometry.projection < RELUME_CYLINDRICAL || !has_mirrors(r->drawer.objects))
+    if (r->geometry.projection < RELUME_CYLINDRICAL || !handles_mirror(r->drawer.objects))
         return RELUME_OK;
     const relume_status status = renderer_relight_views(r, q, lights, count);
     if (!status && r->relit[0] && r->place[0].texture)

@@ -24,6 +24,9 @@ void hiding_scene_forget(struct hiding_scene *scene);
 int visible_lights(struct relume_visible_light *out, const struct frame_request *request,
                    const struct relume_light *lights, int n, struct hiding_scene *scene);
 
+// The places that the pixels of a view show; NULL where they are not known.
+const struct relume_image *visible_places(struct hiding_scene *scene, int view);
+
 // The surface that the frame shows at (x, y), as the nearest view knows it; false where nothing is
 // known.
 bool visible_surface(struct relume_vec3 *out, const struct frame_request *request,

@@ -173,9 +173,9 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
 
 extern "C" bool panel_shown(const struct app *app)
 {
-    return app->panel || app->help || app->inspect || app->gizmos || app->asks || app->recording ||
-           app->browse || app->file.empty || app->picks_focus || app->toast_s > 0 ||
-           app->hint_s > 0;
+    return app->panel || app->help || app->inspect || app->gizmos || app->reflects || app->asks ||
+           app->recording || app->browse || app->file.empty || app->picks_focus ||
+           app->toast_s > 0 || app->hint_s > 0;
 }
 
 static void feed_imgui(const app_event &e)
@@ -243,6 +243,9 @@ static bool sections(panel *panel, app *app, const panel_facts *facts)
         changed |= panel_lights(panel, app, facts);
     if (app->file.objects && section("Objects", "the materials of the objects"))
         changed |= panel_objects(app, facts);
+    if (facts->reflections &&
+        section("Reflections", "edit what mirrors reflect, by hand", app->reflects))
+        panel_reflections(panel, app, facts);
     if (facts->edits && section("Edits", "change the material; the file stays as it is"))
         panel_edits(panel, app, facts);
     if (section("Picture", "exposure, tone, what is shown, saving and recording"))
@@ -290,6 +293,8 @@ static void one_frame(panel *panel, app *app, const panel_facts *facts)
     panel->histogram = false;
     if (app->gizmos)
         panel_handles(app, panel->scale);
+    if (app->reflects)
+        panel_reflection_handles(app, panel->scale);
     if (app->file.empty && !app->browse)
         panel_start(app, panel->scale);
     if (app->panel && !app->file.empty)

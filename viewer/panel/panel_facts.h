@@ -26,10 +26,11 @@ struct panel_facts {
     const size_t *material_bytes;
     int materials;
     const double *objects_ms;
-    const char *edits;     // of the g-BRDF that is shown, one a line; NULL: none can be ...
-    int edited_materials;  // ... and how many materials it has
-    const char *eye;       // what is known of the eye that looks, or NULL
-    float range[2];        // of false colour, as it was drawn last
+    const char *edits;        // of the g-BRDF that is shown, one a line; NULL: none can be ...
+    int edited_materials;     // ... and how many materials it has
+    const char *reflections;  // the file to save edited reflections to; NULL: there is no mirror
+    const char *eye;          // what is known of the eye that looks, or NULL
+    float range[2];           // of false colour, as it was drawn last
     const struct browser *browser;  // to choose a file from, or NULL
     const char *recording;          // where pictures go, or NULL ...
     double recorded_s, round_s;     // ... how many seconds of them there are, and will be

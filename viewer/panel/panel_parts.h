@@ -37,6 +37,7 @@ struct panel {
     float tint[3] = {1, 1, 1};
     int label;  // that it is for, counted from 1; 0: all
     char drawing[APP_SPEC];
+    char reflections[APP_SPEC];  // the file to save them to
 };
 
 // The letters of the panel, from a file (false: it is no font that can be read) or without one.
@@ -61,6 +62,7 @@ bool panel_enhancement(app *app, const panel_facts *facts);
 bool panel_camera(app *app);
 bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
+void panel_reflections(panel *panel, app *app, const panel_facts *facts);
 void panel_edits(panel *panel, app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);
 void panel_file(app *app, const panel_facts *facts);
@@ -74,6 +76,7 @@ void panel_browse(panel *panel, app *app, const browser *b);
 // The middle of the frame, in pixels of the window: across, down.
 ImVec2 panel_frame_point(const app *app, float across, float down);
 void panel_handles(const app *app, float scale);
+void panel_reflection_handles(const app *app, float scale);
 void panel_inspector(const app *app, const panel_facts *facts, float scale);
 
 // The colour of a light's mark on discs of directions.

@@ -111,6 +111,15 @@ static relume_status host_edit(void *user, const char *words, const struct relum
     return heard(s, session_edit(s, words, s->log));
 }
 
+static relume_status host_reflect(void *user, const char *words, const struct relume_log *log)
+{
+    struct session *s = user;
+    s->listener = log;
+    const relume_status status = heard(s, session_reflect(s, words, s->log));
+    session_hear_handles(s);
+    return status;
+}
+
 static relume_status host_glare(void *user, const char *words, const char **expected)
 {
     struct session *s = user;
@@ -151,9 +160,9 @@ static relume_status host_shot(void *user, const char *path)
 
 static struct script_host host_of(struct session *s)
 {
-    return (struct script_host){s,         &s->app,   host_send,  host_light,
-                                host_rig,  host_open, host_wait,  host_frame,
-                                host_shot, s->log,    host_glare, host_edit};
+    return (struct script_host){s,          &s->app,   host_send,   host_light, host_rig,
+                                host_open,  host_wait, host_frame,  host_shot,  s->log,
+                                host_glare, host_edit, host_reflect};
 }
 
 // With all that the options ask for beside it.

@@ -474,7 +474,9 @@ bool session_send(struct session *s, const struct app_event *event)
         return true;
     if ((shown || event->kind == APP_RELEASE) && panel_takes(s->panel, event))
         return true;
+    session_lend_scene(s);
     const bool changed = app_handle(&s->app, event);
+    session_hear_handles(s);
     if (!shown && panel_shown(&s->app) && session_build_panel(s, false))
         return true;  // what went wrong goes wrong again when it is drawn, and is reported there
     return changed || shown || s->app.wish;

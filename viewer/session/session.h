@@ -47,6 +47,8 @@ struct session {
     relume_objects *objects;        // or NULL
     struct session_objects wanted;  // that it was started with; its mesh may be shown otherwise
     char material[APP_SPEC];        // the file of the only one, "": there is none, or more
+    char described[APP_SPEC];       // the file that describes the objects, "": none
+    char reflections[APP_SPEC];     // of their edits, "": none yet
     char edits[1024];               // of it (session_can_edit), for the panel
     int edited_materials;           // that it has with them
     relume_slab_set *stage;         // what the eye goes around there
@@ -195,6 +197,15 @@ bool session_can_edit(const struct session *s);
 // around what holds blanks. It is kept beside the file, and shown. RELUME_EINVAL, RELUME_EUNFIT,
 // an input status with a sentence.
 relume_status session_edit(struct session *s, const char *words, const struct relume_log *log);
+// An edit of what mirrors reflect: words of handles_say, or "save [FILE]". Statuses of handles_say,
+// relume_objects_save_reflections.
+relume_status session_reflect(struct session *s, const char *words, const struct relume_log *log);
+// Before the mouse: the handles know the scene.
+void session_lend_scene(struct session *s);
+// After it: what they had to say is said in the panel.
+void session_hear_handles(struct session *s);
+// The file that edits are saved to when nobody names another.
+void session_name_reflections(char path[APP_SPEC], const struct session *s);
 // What the panel says of edits; for session_open_stage.
 void session_list_edits(struct session *s);
 

@@ -12,6 +12,10 @@ relume_status session_take_objects(struct session *s, const struct session_objec
     const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
     s->wanted = *wanted;
     s->material[0] = '\0';
+    snprintf(s->described, sizeof s->described, "%s",
+             wanted->description ? wanted->description : "");
+    snprintf(s->reflections, sizeof s->reflections, "%s",
+             wanted->reflections ? wanted->reflections : "");
     if (!wanted->description && wanted->materials == 1)
         snprintf(s->material, sizeof s->material, "%s", wanted->material[0]);
     if (wanted->description) {
@@ -68,6 +72,9 @@ relume_status session_open_objects(struct session *s, const char *path,
     if (status) {
         s->objects = was, was = objects;
         memcpy(s->material, material, sizeof material);
+    } else {
+        snprintf(s->described, sizeof s->described, "%s", session_is_material(path) ? "" : path);
+        s->reflections[0] = '\0';
     }
     relume_objects_destroy(&was);
     return status;

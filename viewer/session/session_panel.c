@@ -1,6 +1,8 @@
 // session_panel.c - what the panel shows: histogram, inspector, maps to choose from
 #include "session/session.h"
 
+#include "app/handles.h"
+
 #include <relume/tone.h>
 
 #include <limits.h>
@@ -106,8 +108,9 @@ static void warn_font(struct session *s)
 
 relume_status session_build_panel(struct session *s, bool histogram)
 {
-    char eye[160];
+    char eye[160], reflections[APP_SPEC];
     warn_font(s);
+    session_name_reflections(reflections, s);
     bool plot = false;
     relume_status status = s->app.inspect && s->pack ? inspect(s, &plot) : RELUME_OK;
     if (!status)
@@ -134,6 +137,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .recording = session_records(s) ? s->recording.path : NULL,
         .recorded_s = (double)s->recording.frame / RECORD_RATE,
         .round_s = (double)s->recording.frames / RECORD_RATE,
+        .reflections = s->objects && handles_mirror(s->objects) ? reflections : NULL,
         .edits = session_can_edit(s) ? s->edits : NULL,
         .edited_materials = s->edited_materials,
         .eye = describe_eye(eye, sizeof eye, &s->renderer.glare),

@@ -114,19 +114,35 @@ static relume_status wish_open(struct session *s)
     return session_drop(s, path);
 }
 
-static relume_status wish_edit(struct session *s)
+// What goes wrong is said in the panel.
+static relume_status wish_words(struct session *s,
+                                relume_status (*act)(struct session *, const char *,
+                                                     const struct relume_log *),
+                                const char *did, const char *did_not)
 {
     char words[SESSION_TEXT];
     snprintf(words, sizeof words, "%.200s", s->app.spec);
     s->notice[0] = '\0';
     s->listens = true;
-    const bool edited = !session_edit(s, s->app.spec, s->log);
+    const bool done = !act(s, s->app.spec, s->log);
     s->listens = false;
-    if (edited)
-        session_say(s, "edited: %s", words);
-    else
-        session_say(s, "not edited: %.200s", s->notice);
+    if (!done)
+        session_say(s, "%s: %.200s", did_not, s->notice);
+    else if (did)
+        session_say(s, "%s: %s", did, words);
     return RELUME_OK;
+}
+
+static relume_status wish_edit(struct session *s)
+{
+    return wish_words(s, session_edit, "edited", "not edited");
+}
+
+static relume_status wish_reflection(struct session *s)
+{
+    const relume_status status = wish_words(s, session_reflect, NULL, "not done");
+    session_hear_handles(s);
+    return status;
 }
 
 // For an eye that goes around, the plane in focus is given by its distance in front of the look-at
@@ -179,6 +195,7 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_FOLDER] = wish_folder,
         [APP_WISH_OPEN] = wish_open,
         [APP_WISH_EDIT] = wish_edit,
+        [APP_WISH_REFLECTION] = wish_reflection,
         [APP_WISH_FOCUS] = wish_focus,
     };
     const enum app_wish wish = s->app.wish;

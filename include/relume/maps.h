@@ -84,6 +84,9 @@ struct relume_maps_params {
     double gain;    // photographs are multiplied by it before all else; default 1, or what brings
                     // the brightest surface to 0.8 when most of it is above 1 or all below 0.03
     bool keep_normals;  // as photometric stereo finds them; default: improved by the highlights
+    bool gloss_alone;   // a quarter of the time: normals begin with those of a matte surface, kinds
+                        // of gloss are told apart by every fourth pixel, and no height, occlusion
+                        // and quality are found
 };
 #define relume_maps_params(...)                                                                    \
     (&(const struct relume_maps_params){RELUME_SIZED(relume_maps_params), __VA_ARGS__})

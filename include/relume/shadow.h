@@ -118,7 +118,8 @@ RELUME_RESULT relume_status relume_gloss_learn(struct relume_image *model,
                                                const relume_capture *capture, bool display,
                                                const struct relume_shadows_params *params);
 // As relume_shadows_judge, `traced_db` being that of wandering highlights; means of the lights'
-// decibels.
+// decibels. Of pictures more than 64 pixels wide or high 8 x 8 pieces of 8 pixels are judged,
+// spread evenly.
 RELUME_RESULT relume_status relume_gloss_judge(struct relume_shadows_gain *out,
                                                const relume_capture *capture, bool display,
                                                const struct relume_shadows_params *params);

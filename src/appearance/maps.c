@@ -128,9 +128,10 @@ static relume_status find_shape(struct work *w)
     relume_capture *some;
     relume_status status = relume_capture_select(&some, w->capture, w->light, w->fitted);
     if (!status)
-        status = relume_photometric_fit(
-            &w->shape, some, w->params.view,
-            relume_photometric_params(.log = w->params.log, .threads = w->params.threads));
+        status = relume_photometric_fit(&w->shape, some, w->params.view,
+                                        relume_photometric_params(.log = w->params.log,
+                                                                  .threads = w->params.threads,
+                                                                  .plain = w->params.gloss_alone));
     relume_capture_destroy(&some);
     return status;
 }
@@ -249,12 +250,19 @@ static float fit_pixel(float normal[3], float colour[3], const struct work *w, c
     return kept ? loss : gloss_straighten(normal, colour, k, g, start, TURNS);
 }
 
+// Losses are found of every such column and row.
+static int every_of(const struct work *w)
+{
+    return w->params.gloss_alone ? 2 : 1;
+}
+
 static void lose_row(void *context, size_t y, int worker)
 {
     const struct work *w = context;
     const size_t width = (size_t)w->photos.width;
     struct look k;
-    for (size_t x = 0; x < width; x++) {
+    const size_t every = (size_t)every_of(w);
+    for (size_t x = 0; y % every == 0 && x < width; x += every) {
         const size_t at = y * width + x;
         if (!is_known(w, at))
             continue;
@@ -270,14 +278,15 @@ static void lose_row(void *context, size_t y, int worker)
 // The loss of every material, meaned over neighbours of like colour.
 static void mean_losses(double loss[], const struct work *w, int x, int y)
 {
-    const int width = w->photos.width, height = w->photos.height;
+    const int width = w->photos.width, height = w->photos.height, every = every_of(w);
     const float *here = w->shape.albedo.data + 3 * ((size_t)y * (size_t)width + (size_t)x);
     double sum = 0.0;
     memset(loss, 0, (size_t)w->materials.count * sizeof *loss);
     for (int v = y - REACH; v <= y + REACH; v++)
         for (int u = x - REACH; u <= x + REACH; u++) {
             const size_t at = (size_t)v * (size_t)width + (size_t)u;
-            if (u < 0 || v < 0 || u >= width || v >= height || !is_known(w, at))
+            if (u < 0 || v < 0 || u >= width || v >= height || u % every || v % every ||
+                !is_known(w, at))
                 continue;
             float far = 0.0f;
             for (int c = 0; c < 3; c++) {
@@ -290,7 +299,7 @@ static void mean_losses(double loss[], const struct work *w, int x, int y)
             for (int i = 0; i < w->materials.count; i++)
                 loss[i] += weight * (double)w->loss[i].data[at];
         }
-    for (int i = 0; i < w->materials.count; i++)
+    for (int i = 0; sum > 0.0 && i < w->materials.count; i++)
         loss[i] /= sum;
 }
 
@@ -488,8 +497,10 @@ static relume_status fit(struct work *w)
         w->shape.confidence = (struct relume_image){0};
         relume_photometric_destroy(&w->shape);  // heights take as much room again
         relume_image_destroy(&w->f0);
-        status = find_relief(w);
     }
+    if (status || p->gloss_alone)
+        return status;
+    status = find_relief(w);
     return status ? status : judge(w);
 }
 

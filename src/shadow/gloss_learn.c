@@ -121,9 +121,10 @@ static void take_pixel(float *pixel, const struct relume_maps *maps, size_t at)
 static relume_status take_maps(struct learning *l)
 {
     struct relume_maps maps;
-    relume_status status = relume_maps_fit(
-        &maps, l->capture,
-        relume_maps_params(.log = l->p->log, .threads = l->p->threads, .held_out = -1));
+    relume_status status =
+        relume_maps_fit(&maps, l->capture,
+                        relume_maps_params(.log = l->p->log, .threads = l->p->threads,
+                                           .held_out = -1, .gloss_alone = true));
     if (!status)
         status = relume_image_create(l->model, maps.width, maps.height, RELUME_GLOSS_CHANNELS);
     for (size_t i = 0; !status && i < (size_t)maps.width * (size_t)maps.height; i++)

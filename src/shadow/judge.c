@@ -1,5 +1,7 @@
 // judge.c - whether shadows and highlights that wander are better than those that fade, by lights
 // left out
+#include "shadow/mosaic.h"
+
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -304,9 +306,18 @@ relume_status relume_gloss_judge(struct relume_shadows_gain *out, const relume_c
                                  bool display, const struct relume_shadows_params *params)
 {
     const struct relume_shadows_params p = PARAMS_WORK(relume_shadows_params, params);
-    struct judging j = {.capture = capture,
-                        .gloss = true,
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    struct mosaic mosaic = {0};
+    struct judging j = {.gloss = true,
                         .codes.domain = display ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
                         .p = &p};
-    return judge_lights(out, &j);
+    *out = (struct relume_shadows_gain){0};
+    if (m->views != 1 || m->geometry.projection != RELUME_PLANAR || m->positions)
+        return RELUME_EINVAL;
+    relume_status status = mosaic_open(&mosaic, capture, p.log);
+    j.capture = mosaic.capture;
+    if (!status)
+        status = judge_lights(out, &j);
+    mosaic_close(&mosaic);
+    return status;
 }

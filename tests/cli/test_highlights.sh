@@ -5,8 +5,8 @@
 psnr() { "$RELUME" eval "$1" "$2" -q --json | tr ',' '\n' | sed -n 's/.*"psnr_pooled_db": *//p' | head -1; }
 alike() { "$RELUME" compare "$1" "$2" | sed -n 's/^psnr_db *//p'; }
 has() { "$RELUME" info "$1" --json | grep -q "\"highlights\": $2"; }
-dome() { # folder, lights, a turn of them
-    mkdir "$1" && awk -v d="$1" -v n="$2" -v turn="$3" -v s=24 '
+dome() { # folder, lights, a turn of them, pixels
+    mkdir "$1" && awk -v d="$1" -v n="$2" -v turn="$3" -v s="${4:-24}" '
         function put(v) { v = v > 1 ? 1 : v; return int(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ^ (1 / 2.4) - 0.055) + 0.5) }
         BEGIN {
             print n >(d "/dirs.lp")
@@ -44,6 +44,15 @@ above 'captured ones as well' "$(psnr moves.exr glossy/dirs.lp)" "$(psnr fades.e
 check 'equal bytes for any threads' cmp moves.exr one.exr
 expect_ok 'the file is whole' - "$RELUME" check moves.exr
 
+# ---- nobody asks
+dome large 20 0 64
+expect_ok 'it is found out alone' 'large/dirs.lp: highlights move with the light: 5 lights left out are shown at' "$RELUME" encode large/dirs.lp -o large.exr
+check 'and kept' has large.exr true
+"$RELUME" encode large/dirs.lp -o large.exr --highlights no -q
+check 'unless it is not wanted' has large.exr false
+"$RELUME" encode large/dirs.lp -o large.exr --basis table -q
+check 'a basis that was asked for is as it was' has large.exr false
+
 # ---- the same everywhere
 sun="dir 0.15 0.2 0.9"
 for f in moves fades; do "$RELUME" relight $f.exr -o $f.png --light "$sun" -q; done
@@ -52,9 +61,11 @@ above 'the viewer shows what relight shows' "$(alike moves.png window.png)" 50
 below 'which are other highlights' "$(alike moves.png fades.png)" 40
 
 # ---- where it cannot be, or does not help
-expect_ok 'a sphere and its hard shadow' 'sphere: highlights fade: 6 lights left out are shown at [0-9.]* dB PSNR, moving ones at' \
-    "$RELUME" encode sphere -o sphere.exr --highlights auto --shadows no
-check 'keeps none' has sphere.exr false
+mkdir wrong && cp glossy/p*.ppm wrong && awk 'NR == 1 { print; next } { name[NR] = $1; place[NR] = $2 " " $3 " " $4 }
+    END { for (i = 2; i <= NR; i++) print name[2 + (i * 17) % (NR - 1)], place[i] }' glossy/dirs.lp >wrong/dirs.lp
+expect_ok 'photographs of other lamps' 'wrong/dirs.lp: highlights fade: 6 lights left out are shown at [0-9.]* dB PSNR, moving ones at' \
+    "$RELUME" encode wrong/dirs.lp -o wrong.exr --highlights auto
+check 'keep none' has wrong.exr false
 expect_ok 'traced shadows' 'sphere: highlights fade; expected --shadows no, for them to move' \
     "$RELUME" encode sphere -o sphere.exr --highlights auto --shadows yes
 expect_ok 'too little memory' 'sphere: highlights fade; moving them takes more than --max-memory allows' \

@@ -184,6 +184,46 @@ static void highlights_move_in_files(void **state)
     scene_close(&s);
 }
 
+// Only the pieces that are looked at show the dome: 8 pixels in the middle of each 16. The rest is
+// white under every light, as if shone from below.
+static void few_pieces_judge(void **state)
+{
+    (void)state;
+    enum { WIDE = 128, HIGH = 4, FEW = 16 };
+    static float small[FEW][HIGH][WIDE / 2][3], large[FEW][HIGH][WIDE][3];
+    struct relume_vec3 light[FEW];
+    struct relume_shadows_gain want, got;
+    for (int i = 0; i < FEW; i++) {
+        float rgb[3 * PIXELS];
+        light[i] = light_at(i, FEW);
+        show(rgb, light[i]);
+        for (int y = 0; y < HIGH; y++)
+            for (int x = 0; x < WIDE; x++)
+                for (int c = 0; c < 3; c++) {
+                    const int to = 8 * (x / 16) + x % 16 - 4;
+                    large[i][y][x][c] = 1.0f;
+                    if (x % 16 < 4 || x % 16 >= 12)
+                        continue;
+                    large[i][y][x][c] = rgb[3 * (SIDE * (4 * y + to / SIDE) + to % SIDE) + c];
+                    small[i][y][to][c] = large[i][y][x][c];
+                }
+    }
+    for (int k = 0; k < 2; k++) {
+        relume_capture *capture;
+        const struct relume_manifest m = {.lights = FEW, .directions = light};
+        const struct relume_pictures pictures = {.width = k ? WIDE : WIDE / 2,
+                                                 .height = HIGH,
+                                                 .channels = 3,
+                                                 .data = k ? (void *)large : (void *)small};
+        CHECK_OK(relume_capture_create(&capture, &m, &pictures, NULL));
+        CHECK_OK(relume_gloss_judge(k ? &got : &want, capture, true, NULL));
+        relume_capture_destroy(&capture);
+    }
+    assert_int_equal(got.lights, 4);
+    CHECK_NEAR(got.faded_db, want.faded_db, 0.0);
+    CHECK_NEAR(got.traced_db, want.traced_db, 0.0);
+}
+
 static void what_cannot_be_is_refused(void **state)
 {
     (void)state;
@@ -208,6 +248,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_show_what_maps_show),
         cmocka_unit_test(highlights_move_in_files),
+        cmocka_unit_test(few_pieces_judge),
         cmocka_unit_test(what_cannot_be_is_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

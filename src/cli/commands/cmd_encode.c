@@ -90,7 +90,7 @@ static const struct option options[] = {
     NAME("--highlights", highlights, "S",
          "auto, yes or no: fit normals, colour and gloss, by which highlights move with the light; "
          "auto: where they foresee photographs left out better; planar captures without traced "
-         "shadows; slower; default: no",
+         "shadows; default: auto with basis auto and at least 64 x 64 pixels, else no",
          WANDER_AUTO, "auto", "yes", "no"),
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
@@ -301,19 +301,30 @@ static const char *forbids_shadows(const struct request *r, const relume_capture
     return forbids_moving(r, capture);
 }
 
-static const double LEAST_GAIN_DB = 0.5;  // which is seen
+static const double LEAST_SHADOWS_DB = 0.5, LEAST_HIGHLIGHTS_DB = 0.3;
+// Half a microsecond to two a sample is a minute or two on two cores; what takes longer waits until
+// it is asked for.
+static const double MOST_SAMPLES = 100e6;
 
-// What decides is the middle view. One microsecond a sample (two
-// in panoramas) is a minute or two on two cores; what takes longer waits until it is asked for.
+static double samples_of(const relume_capture *capture)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    return (double)relume_capture_width(capture) * relume_capture_height(capture) * m->lights *
+           m->views;
+}
+
+static bool is_better(relume_status status, const struct relume_shadows_gain *gain, double least_db)
+{
+    return !status && gain->traced_db - gain->faded_db >= least_db;
+}
+
+// What decides is the middle view.
 static relume_status decide_shadows(const struct args *args, const relume_capture *capture,
                                     struct request *r)
 {
-    static const double MOST_SAMPLES = 100e6;
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const char *why = forbids_shadows(r, capture);
     const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
-    const double samples = (double)relume_capture_width(capture) * relume_capture_height(capture) *
-                           m->lights * m->views;
     struct relume_shadows_gain gain;
     if (r->shadows == WANDER_YES && why)
         return say(args->log, RELUME_EUNFIT, "%s: shadows cannot be traced; expected %s", r->input,
@@ -321,7 +332,7 @@ static relume_status decide_shadows(const struct args *args, const relume_captur
     r->pack.shadows = r->shadows == WANDER_YES;
     if (r->shadows != WANDER_AUTO || why || m->lights < 8)
         return RELUME_OK;
-    if (samples > MOST_SAMPLES) {
+    if (samples_of(capture) > MOST_SAMPLES) {
         announce(args, RELUME_NOTE,
                  "%s: between the lamps shadows fade; --shadows yes traces them through the depth, "
                  "which takes some minutes",
@@ -338,7 +349,7 @@ static relume_status decide_shadows(const struct args *args, const relume_captur
                  "%s: between the lamps shadows fade; tracing them takes more than --max-memory "
                  "allows",
                  r->input);
-    r->pack.shadows = !status && gain.traced_db - gain.faded_db >= LEAST_GAIN_DB;
+    r->pack.shadows = is_better(status, &gain, LEAST_SHADOWS_DB);
     r->unseen = r->pack.shadows ? gain.traced_db : 0.0;
     if (r->pack.shadows)
         announce(args, RELUME_NOTE,
@@ -362,7 +373,8 @@ static const char *forbids_highlights(const struct request *r, const relume_capt
     return forbids_moving(r, capture);
 }
 
-// What was found out when highlights move by themselves, or not.
+// What was found out when highlights move by themselves, or not. Where nobody asked, what leaves
+// the file as it was is not spoken of.
 static void say_highlights(const struct args *args, const struct request *r, relume_status status,
                            const struct relume_shadows_gain *gain)
 {
@@ -371,13 +383,18 @@ static void say_highlights(const struct args *args, const struct request *r, rel
                  "%s: highlights move with the light: %d lights left out are shown at %.1f dB "
                  "PSNR, faded ones at %.1f",
                  r->input, gain->lights, gain->traced_db, gain->faded_db);
+    else if (is_better(status, gain, LEAST_HIGHLIGHTS_DB))
+        announce(args, RELUME_NOTE,
+                 "%s: highlights fade; --highlights yes moves them, which takes some minutes and "
+                 "shows %d lights left out at %.1f dB PSNR in place of %.1f",
+                 r->input, gain->lights, gain->traced_db, gain->faded_db);
     else if (status == RELUME_ELIMIT)
         announce(args, RELUME_NOTE,
                  "%s: highlights fade; moving them takes more than --max-memory allows", r->input);
-    else if (status)
+    else if (status && r->highlights == WANDER_AUTO)
         announce(args, RELUME_NOTE, "%s: highlights fade; no surface could be fitted (%s)",
                  r->input, relume_status_text(status));
-    else
+    else if (r->highlights == WANDER_AUTO)
         announce(args, RELUME_NOTE,
                  "%s: highlights fade: %d lights left out are shown at %.1f dB PSNR, moving ones "
                  "at %.1f",
@@ -393,7 +410,7 @@ static relume_status try_highlights(const struct args *args, const relume_captur
         relume_shadows_params(.log = &quiet, .threads = args->threads);
     struct relume_shadows_gain gain;
     relume_status status = relume_gloss_judge(&gain, capture, display, p);
-    if (!status && gain.traced_db - gain.faded_db >= LEAST_GAIN_DB) {
+    if (is_better(status, &gain, LEAST_HIGHLIGHTS_DB) && samples_of(capture) <= MOST_SAMPLES) {
         status = relume_gloss_learn(model, capture, display, p);
         r->pack.gloss = status ? NULL : model;
     }
@@ -408,9 +425,14 @@ static relume_status try_highlights(const struct args *args, const relume_captur
 static relume_status decide_highlights(const struct args *args, const relume_capture *capture,
                                        struct request *r, struct relume_image *model)
 {
-    if (r->highlights != WANDER_YES && r->highlights != WANDER_AUTO)
+    enum { LEAST_SIDE = 64 };  // where nobody asked: less is no photograph
+    if (r->highlights == WANDER_NO)
         return RELUME_OK;
     const char *why = forbids_highlights(r, capture);
+    if (r->highlights == WANDER_DEFAULT &&
+        (!r->decide || why || relume_capture_width(capture) < LEAST_SIDE ||
+         relume_capture_height(capture) < LEAST_SIDE))
+        return RELUME_OK;
     const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
     if (r->highlights == WANDER_YES && why)
         return say(args->log, RELUME_EUNFIT, "%s: highlights cannot move; expected %s", r->input,
@@ -420,7 +442,7 @@ static relume_status decide_highlights(const struct args *args, const relume_cap
                  why);
         return RELUME_OK;
     }
-    if (r->highlights == WANDER_AUTO)
+    if (r->highlights != WANDER_YES)
         return try_highlights(args, capture, r, model, display);
     const relume_status status = relume_gloss_learn(
         model, capture, display, relume_shadows_params(.log = args->log, .threads = args->threads));

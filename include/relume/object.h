@@ -108,6 +108,7 @@ struct relume_objects_info {
     int materials;
     struct relume_vec3 min, max;  // of the vertices
     int objects;                  // of the description
+    unsigned reflections_set;     // how often: another number, other edits
 };
 // It belongs to the objects.
 RELUME_API const struct relume_objects_info *relume_objects_info(const relume_objects *objects);

@@ -122,6 +122,17 @@ RELUME_API struct relume_reflection_set relume_reflection_set_of(
     double *least, const relume_reflection *reflection, int region);
 // Whether a constraint does something: it lies in a region, or there are no regions.
 RELUME_API bool relume_reflection_acts(const relume_reflection *reflection, int constraint);
+// Distances along the surface that the edit has measured: of each vertex, in world units, infinite
+// on pieces that do not hang together with their origin. NULL: they are straight. They belong to
+// the reflection. Between vertices they are interpolated, but near their origin, where that is
+// wrong, straight distances count: up to 2 edges away, and less by a smooth step up to 4.
+RELUME_API const float *relume_reflection_from_constraint(const relume_reflection *reflection,
+                                                          int constraint);
+// The same from the centre of a region.
+RELUME_API const float *relume_reflection_from_region(const relume_reflection *reflection,
+                                                      int region);
+// Such an edge: the mean length of the triangles'; 0 where nothing is measured along the surface.
+RELUME_API double relume_reflection_edge(const relume_reflection *reflection);
 // a(q) of a region, in [0, 1].
 RELUME_API double relume_reflection_weight(const relume_reflection *reflection, int region,
                                            const struct relume_reflection_place *place);

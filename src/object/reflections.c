@@ -41,6 +41,7 @@ relume_status relume_objects_set_reflections(relume_objects *o, int object,
         return status;
     relume_reflection_destroy(&o->reflection[object]);
     o->reflection[object] = made;
+    o->info.reflections_set++;
     return RELUME_OK;
 }
 

@@ -58,6 +58,21 @@ bool relume_reflection_acts(const relume_reflection *f, int constraint)
     return false;
 }
 
+const float *relume_reflection_from_constraint(const relume_reflection *f, int constraint)
+{
+    return f->along ? f->along[constraint] : NULL;
+}
+
+const float *relume_reflection_from_region(const relume_reflection *f, int region)
+{
+    return f->region_along ? f->region_along[region] : NULL;
+}
+
+double relume_reflection_edge(const relume_reflection *f)
+{
+    return f->edge;
+}
+
 // ---------------------------------------------------------------- what is asked for
 
 struct asking {

@@ -25,14 +25,32 @@ enum {
     EDIT,
     EDIT_SETS,
     EDIT_LEAST,
+    TRIANGLE,
+    VERTICES,
+    TRIANGLES,
+    ALONG,
+    ALONG_VERTICES,
+    ALONG_EDGE,
     COUNT
 };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view",   "elevation", "disc",       "place",  "normal_s",
-    "places",    "has_places", "centre", "part",      "eye",        "frozen", "reflectance",
-    "turn",      "tint",       "edit",   "edit_sets", "edit_least",
+    "rectangle", "frame_size", "view",      "elevation",      "disc",
+    "place",     "normal_s",   "places",    "has_places",     "centre",
+    "part",      "eye",        "frozen",    "reflectance",    "turn",
+    "tint",      "edit",       "edit_sets", "edit_least",     "triangle",
+    "vertices",  "triangles",  "along",     "along_vertices", "along_edge",
 };
-enum { UNIT_VIEW, UNIT_PLACE, UNIT_NORMAL, UNIT_PLACES, UNIT_EDIT };
+enum {
+    UNIT_VIEW,
+    UNIT_PLACE,
+    UNIT_NORMAL,
+    UNIT_PLACES,
+    UNIT_EDIT,
+    UNIT_TRIANGLE,
+    UNIT_VERTICES,
+    UNIT_TRIANGLES,
+    UNIT_ALONG
+};
 
 void mirrors_forget(struct mirrors *m)
 {
@@ -44,6 +62,7 @@ void mirrors_forget(struct mirrors *m)
         m->gl->DeleteTextures(1, &m->sky[i].texture);
     m->gl->DeleteTextures(1, &m->edit);
     m->gl->DeleteBuffers(1, &m->edit_buffer);
+    mirror_distances_forget(&m->distances, m->gl);
     free(m->sky);
     *m = (struct mirrors){.gl = m->gl, .log = m->log};
 }
@@ -100,21 +119,31 @@ static size_t texels_of(const relume_reflection *reflection)
     return n;
 }
 
-// As reflection.glsl.
-static void fill(float (*to)[4], const relume_reflection *reflection)
+// What stands for the points of a stroke in a region that goes along the surface.
+static int points_of(const relume_reflection *reflection, int region, bool along)
+{
+    const struct relume_reflection_edit *e = relume_reflection_edit(reflection);
+    const int field = along && e->regions ? mirror_field_of_region(reflection, region) : -1;
+    return field >= 0 ? -2 - field : e->regions ? e->region[region].points : -1;
+}
+
+// As reflection.glsl; `along`: fields of distances are there.
+static void fill(float (*to)[4], const relume_reflection *reflection, bool along)
 {
     const struct relume_reflection_edit *e = relume_reflection_edit(reflection);
     int at = 2 * sets_of(e);
     double least;
     for (int i = 0; i < sets_of(e); i++) {
         const struct relume_reflection_set set = relume_reflection_set_of(&least, reflection, i);
-        const struct relume_reflection_region everywhere = {.points = -1};
+        const struct relume_reflection_region everywhere = {.points = 0};
         const struct relume_reflection_region *g = e->regions ? &e->region[i] : &everywhere;
         put(to[2 * i], g->centre, g->radius);
-        put(to[2 * i + 1], (struct relume_vec3){g->border, g->points, at}, set.members);
+        put(to[2 * i + 1], (struct relume_vec3){g->border, points_of(reflection, i, along), at},
+            set.members);
         for (int k = 0; k < set.members; k++) {
             const struct relume_reflection_constraint *c = &e->constraint[set.member[k]];
-            put(to[at++], c->position, 0.0);
+            put(to[at++], c->position,
+                along ? mirror_field_of_constraint(reflection, set.member[k]) : -1);
             put(to[at++], c->original, 0.0);
             put(to[at++], c->edited, 0.0);
         }
@@ -123,32 +152,58 @@ static void fill(float (*to)[4], const relume_reflection *reflection)
     }
 }
 
-// Said once: what GL does otherwise.
-static void say_straight(struct mirrors *m, const struct relume_reflection_edit *e)
+// Said once: what this machine does otherwise.
+static void say_straight(struct mirrors *m)
 {
-    bool along = e->geodesic;
-    for (int i = 0; i < e->regions; i++)
-        along |= e->region[i].shape == RELUME_REFLECTION_GEODESIC;
-    if (along && !m->said && m->log && m->log->message)
+    if (m->distances.too_large && !m->said && m->log && m->log->message)
         m->log->message(m->log->user, RELUME_WARNING,
-                        "reflections: the viewer takes distances along the surface as straight "
-                        "ones; 'relume relight' shows them as they are");
-    m->said |= along;
+                        "reflections: the mesh is too large for this graphics card; the viewer "
+                        "takes distances along the surface as straight ones, 'relume relight' "
+                        "shows them as they are");
+    m->said |= m->distances.too_large;
 }
 
-static relume_status use_edit(struct mirrors *m, const GLint *at,
-                              const relume_reflection *reflection)
+// The fields that the edit goes along, if this machine holds them.
+static relume_status use_distances(int *count, struct mirrors *m, const GLint *at,
+                                   const relume_objects *objects, int object,
+                                   const struct mirror_surface *surface)
 {
+    static const struct mirror_units units = {UNIT_ALONG, UNIT_VERTICES, UNIT_TRIANGLES};
+    const struct gl *gl = m->gl;
+    const struct relume_objects_info *info = relume_objects_info(objects);
+    const relume_reflection *r = relume_objects_reflections(objects, object);
+    const relume_status status =
+        mirror_distances_use(count, &m->distances, gl, objects, object, surface->vertices,
+                             surface->triangles, &units, m->log);
+    gl->Uniform1i(at[TRIANGLE], UNIT_TRIANGLE);
+    gl->Uniform1i(at[VERTICES], UNIT_VERTICES);
+    gl->Uniform1i(at[TRIANGLES], UNIT_TRIANGLES);
+    gl->Uniform1i(at[ALONG], UNIT_ALONG);
+    gl->Uniform1i(at[ALONG_VERTICES], *count ? (GLint)info->vertex_count : 0);
+    gl->Uniform1f(at[ALONG_EDGE], r ? (float)relume_reflection_edge(r) : 0.0f);
+    texture_use(gl, UNIT_TRIANGLE, GL_TEXTURE_2D, surface->triangle->texture);
+    say_straight(m);
+    return status;
+}
+
+static relume_status use_edit(struct mirrors *m, const GLint *at, const relume_objects *objects,
+                              int object, const struct mirror_surface *surface)
+{
+    const relume_reflection *reflection = relume_objects_reflections(objects, object);
     const struct gl *gl = m->gl;
     const struct relume_reflection_edit *e = reflection ? relume_reflection_edit(reflection) : NULL;
     const size_t texels = reflection ? texels_of(reflection) : 1;
     float(*data)[4] = calloc(texels, sizeof *data);
     double least = 1.0;
-    if (!data)
-        return RELUME_ENOMEM;
+    int fields;
+    relume_status status =
+        data ? use_distances(&fields, m, at, objects, object, surface) : RELUME_ENOMEM;
+    if (status) {
+        free(data);
+        return status;
+    }
     if (reflection) {
-        say_straight(m, e);
-        fill(data, reflection);
+        fill(data, reflection, fields > 0);
         (void)relume_reflection_set_of(&least, reflection, 0);
     }
     if (!m->edit) {
@@ -248,7 +303,7 @@ relume_status mirrors_draw(struct mirrors *m, const relume_objects *objects, int
         return status;
     m->gl->UseProgram(program->id);
     use_surface(m, program->at, surface, part, info->material[material].reflectance);
-    status = use_edit(m, program->at, relume_objects_reflections(objects, info->part[part].object));
+    status = use_edit(m, program->at, objects, info->part[part].object, surface);
     if (status)
         return status;
     if (!around)

@@ -3,6 +3,7 @@
 #define VIEWER_MIRRORS_H
 
 #include "draw/draw.h"
+#include "draw/mirror_distances.h"
 
 #include <relume/object.h>
 
@@ -27,13 +28,16 @@ struct mirrors {
     struct mirror_sky *sky;           // [skies]
     int skies;
     GLuint edit, edit_buffer;
+    struct mirror_distances distances;
     bool said;
 };
 
 // What a mirror shows where the surface is drawn: parts, places, normals.
 struct mirror_surface {
     const struct target *place, *normal;
-    const float *eye;  // as frame_projection
+    const struct target *triangle;  // x: its number
+    GLuint vertices, triangles;     // buffers: relume_objects_info's
+    const float *eye;               // as frame_projection
 };
 // Adds to the target in use what part `part` shows in the mirror `material`. RELUME_ESYSTEM,
 // RELUME_ENOMEM.

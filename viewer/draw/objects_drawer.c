@@ -49,8 +49,8 @@ static const char *const btf_uniforms[] = {
     LIGHT_NAMES,
     SHADOW_NAMES,
 };
-enum { SURFACE_CLIP, SURFACE_PART, SURFACE_COUNT };
-static const char *const surface_uniforms[] = {"clip", "part"};
+enum { SURFACE_CLIP, SURFACE_PART, SURFACE_FIRST, SURFACE_COUNT };
+static const char *const surface_uniforms[] = {"clip", "part", "first"};
 enum {
     OVER_PLACE = DRAW_OWN,
     OVER_SHADED,
@@ -327,7 +327,9 @@ void objects_drawer_draw_shadow(struct objects_drawer *t, int light_sample)
     t->gl->BindVertexArray((GLuint)before);
 }
 
-static void draw_surface(struct objects_drawer *t, const struct frame_projection *projection)
+// `only` as objects_drawer_shade.
+static void draw_surface(struct objects_drawer *t, const struct frame_projection *projection,
+                         int only)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
@@ -343,7 +345,9 @@ static void draw_surface(struct objects_drawer *t, const struct frame_projection
     gl->UniformMatrix4fv(t->surface.at[SURFACE_CLIP], 1, GL_FALSE, projection->clip);
     for (int i = 0; i < info->parts; i++) {
         const struct relume_object_part *part = &info->part[i];
+        const bool mirror = info->material[only >= 0 ? only : part->material].mirror;
         gl->Uniform1i(t->surface.at[SURFACE_PART], i);
+        gl->Uniform1i(t->surface.at[SURFACE_FIRST], mirror ? (GLint)part->first : -1);
         gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * part->count), GL_UNSIGNED_INT,
                          (const void *)(3 * part->first * sizeof(uint32_t)));
     }
@@ -515,7 +519,8 @@ static relume_status add_sample(struct objects_drawer *t, int light_sample, int 
 static relume_status add_mirrors(struct objects_drawer *t, int only)
 {
     const struct relume_objects_info *info = relume_objects_info(t->objects);
-    const struct mirror_surface surface = {&t->place, &t->normal, t->projection.eye};
+    const struct mirror_surface surface = {&t->place,   &t->normal, &t->footprint,
+                                           t->vertices, t->indices, t->projection.eye};
     relume_status status = RELUME_OK;
     for (int i = 0; i < info->parts && !status; i++) {
         const int material = only >= 0 ? only : info->part[i].material;
@@ -537,7 +542,7 @@ relume_status objects_drawer_shade(struct objects_drawer *t,
     if (status)
         return status;
     t->projection = *projection;
-    draw_surface(t, projection);
+    draw_surface(t, projection, only);
     target_begin(&t->shaded, gl);
     for (int i = 0; i < t->light_samples && !status; i++)
         if (!t->light_sample[i].is_sky)

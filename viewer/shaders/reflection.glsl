@@ -1,10 +1,19 @@
 // Edited reflections: the rotation of a reflected direction at a place. Twins: src/reflect/rotation.c
-// and turn.c, function by function, in single precision; distances along the surface are straight
-// here.
+// and turn.c, function by function, in single precision.
 uniform samplerBuffer edit;  // of each set of constraints two texels, then what they point to:
-                             // centre, radius; border, strokes' points (-1: everywhere), first, members
+                             // centre, radius; border, strokes' points (-1: everywhere; from -2
+                             // down: along field 0 and on), first, members; of a constraint its
+                             // place and field (-1: straight), original, edited
 uniform int edit_sets;
 uniform float edit_least;
+uniform samplerBuffer along;  // distances along the surface: of each field, of each vertex
+uniform int along_vertices;   // how many; 0: there are no fields
+uniform float along_edge;     // mean length
+
+const float NEVER = 1e14;  // distances from here on are infinite
+
+ivec3 corner;        // of the triangle that the place lies on; set where there are fields
+vec3 corner_weight;
 
 // Turns that are smaller than this part of the first singular value are rounding.
 const float OPEN = 1e-5;
@@ -87,16 +96,31 @@ float to_stroke(int first, int points, vec3 place)
     return least;
 }
 
+float falling(float d, float radius, float border)
+{
+    float t = border > 0.0 ? clamp((radius + border - d) / border, 0.0, 1.0)
+                           : (d <= radius ? 1.0 : 0.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+float along_surface(int field, vec3 from, vec3 place)
+{
+    float sum = 0.0;
+    for (int k = 0; k < 3; k++)
+        if (corner_weight[k] > 0.0)
+            sum += corner_weight[k] * texelFetch(along, field * along_vertices + corner[k]).x;
+    return mix(sum, distance(from, place), falling(sum, 2.0 * along_edge, 2.0 * along_edge));
+}
+
 float edit_weight(vec4 region, vec4 set, vec3 place)
 {
     int points = int(set.y);
-    if (points < 0)
+    if (points == -1)
         return 1.0;
-    float d = points > 0 ? to_stroke(int(set.z) + 3 * int(set.w), points, place)
-                         : distance(region.xyz, place);
-    float t = set.x > 0.0 ? clamp((region.w + set.x - d) / set.x, 0.0, 1.0)
-                          : (d <= region.w ? 1.0 : 0.0);
-    return t * t * (3.0 - 2.0 * t);
+    float d = points > 0   ? to_stroke(int(set.z) + 3 * int(set.w), points, place)
+              : points < 0 ? along_surface(-2 - points, region.xyz, place)
+                           : distance(region.xyz, place);
+    return falling(d, region.w, set.x);
 }
 
 mat3 edit_rotation(int first, int members, vec3 place)
@@ -106,13 +130,16 @@ mat3 edit_rotation(int first, int members, vec3 place)
     mat3 sum = mat3(0.0);
     float total = 0.0;
     for (int i = 0; i < members; i++) {
-        float d = max(distance(texelFetch(edit, first + 3 * i).xyz, place), edit_least) / edit_least;
-        float weight = 1.0 / (d * d);
+        vec4 from = texelFetch(edit, first + 3 * i);
+        float far = from.w < 0.0 ? distance(from.xyz, place)
+                                 : along_surface(int(from.w), from.xyz, place);
+        float d = max(far, edit_least) / edit_least;
+        float weight = far < NEVER ? 1.0 / (d * d) : 0.0;
         sum += weight * outerProduct(texelFetch(edit, first + 3 * i + 2).xyz,
                                      texelFetch(edit, first + 3 * i + 1).xyz);
         total += weight;
     }
-    return rotation_nearest(sum / total);
+    return total > 0.0 ? rotation_nearest(sum / total) : mat3(1.0);
 }
 
 vec3 edited(vec3 place, vec3 r)

@@ -6,10 +6,12 @@ in vec3 at_position, at_normal;
 in vec4 at_tangent;
 in vec2 at_texture;
 uniform int part;
+uniform int first;  // of the part's triangles, where it is a mirror; else -1
 layout(location = 0) out vec4 place;      // position; part + 1, its sign the handedness
 layout(location = 1) out vec4 normal_s;   // normal, s
 layout(location = 2) out vec4 tangent_t;  // tangent, t
-layout(location = 3) out vec4 footprint;  // (s, t) to the right, and down
+layout(location = 3) out vec4 footprint;  // (s, t) to the right, and down; of a mirror the
+                                          // triangle's number
 
 void main()
 {
@@ -19,5 +21,6 @@ void main()
     place = vec4(at_position, side * sign(at_tangent.w) * float(part + 1));
     normal_s = vec4(normal, at_texture.x);
     tangent_t = vec4(normalize(tangent), at_texture.y);
-    footprint = vec4(dFdx(at_texture), dFdy(at_texture));
+    footprint = first < 0 ? vec4(dFdx(at_texture), dFdy(at_texture))
+                          : vec4(float(first + gl_PrimitiveID), 0.0, 0.0, 0.0);
 }

@@ -41,9 +41,9 @@ struct rate {
     double step_db;    // what a step of the quantiser is worth
     const relume_capture *capture;
     const struct relume_encode_params *p;
-    const struct rate_team *by;  // or NULL
-    struct rate_target target;   // bytes of all views
-    struct trial trial[AV1_COARSEST + 1];
+    const struct rate_team *by;            // or NULL
+    struct rate_target target;             // bytes of all views
+    struct trial trial[AV1_COARSEST + 1];  // at that speed, some of them of fewer groups
 };
 
 static int views_of(const struct view_groups *g)
@@ -55,8 +55,9 @@ static int views_of(const struct view_groups *g)
 
 struct job {
     const struct rate *rate;
-    int quantiser, each;  // threads for each
-    int first;            // of the groups that are tried
+    int quantiser, each;        // threads for each
+    int first;                  // of the groups that are tried
+    const struct trial *known;  // whose groups are not coded again
     struct trial *trial;
     relume_status *status;  // [groups that are coded]
 };
@@ -76,16 +77,26 @@ static const int *views_at(const struct rate *r, int i, int *count)
     return g->view + g->begin[group];
 }
 
+// The same, none of a group that a trial of fewer groups has coded.
+static const int *views_left(const struct trial *known, const struct rate *r, int i, int *count)
+{
+    const int *view = views_at(r, i, count);
+    *count = known->words[*view].word ? 0 : *count;
+    return view;
+}
+
 static void code_group(void *context, size_t item, int worker)
 {
     struct job *j = context;
     const struct rate *r = j->rate;
     int n;
-    const int *view = views_at(r, j->first + (int)item, &n);
+    const int *view = views_left(j->known, r, j->first + (int)item, &n);
     const struct av1_effort effort = {j->quantiser, r->speed};
     relume_coefficients *from[AV1_MOST_MEMBERS] = {0};
     struct lossy_words words[AV1_MOST_MEMBERS];
     (void)worker;
+    if (!n)
+        return;
     for (int i = 0; i < n; i++)
         from[i] = r->coefficients[view[i]];
     j->status[item] = lossy_encode(words, from, n, &effort, j->each, r->p->log);
@@ -94,11 +105,17 @@ static void code_group(void *context, size_t item, int worker)
 }
 
 // The groups `first` .. `end` of those that are tried.
-static relume_status code_groups(struct trial *t, const struct rate *r, int first, int end,
-                                 int quantiser)
+static relume_status code_groups(struct trial *t, const struct trial *known, const struct rate *r,
+                                 int first, int end, int quantiser)
 {
     const int threads = thread_count(r->p->threads), n = end - first;
-    struct job j = {r, quantiser, n < threads ? threads / (n ? n : 1) : 1, first, t, NULL};
+    int left = 0, views;
+    for (int i = first; i < end; i++) {
+        views_left(known, r, i, &views);
+        left += views > 0;
+    }
+    struct job j = {r, quantiser, left && left < threads ? threads / left : 1, first, known,
+                    t, NULL};
     j.status = mem_zeroed((size_t)n + 1, sizeof *j.status);
     if (!j.status)
         return RELUME_ENOMEM;
@@ -152,12 +169,13 @@ static relume_status judge_view(double *square, const struct rate *r, int view,
     return status;
 }
 
-static relume_status judge_groups(struct trial *t, const struct rate *r, int first, int end)
+static relume_status judge_groups(struct trial *t, const struct trial *known, const struct rate *r,
+                                  int first, int end)
 {
     relume_status status = RELUME_OK;
     int n;
     for (int i = first; !status && i < end; i++) {
-        const int *view = views_at(r, i, &n);
+        const int *view = views_left(known, r, i, &n);
         for (int k = 0; !status && k < n; k++)
             status = judge_view(&t->square[view[k]], r, view[k], &t->words[view[k]],
                                 k ? &t->words[view[0]] : NULL);
@@ -225,15 +243,15 @@ struct put_view {
     uint64_t words;
 };
 
-static bool put_views(const struct trial *t, const struct rate *r, int first, int end,
-                      struct relume_buffer *out)
+static bool put_views(const struct trial *t, const struct trial *known, const struct rate *r,
+                      int first, int end, struct relume_buffer *out)
 {
     const struct relume_writer writer = relume_buffer_writer(out);
     uint64_t at = 1;
     int n;
     bool good = writer.write(writer.user, "w", 1, 0);  // a piece is never empty
     for (int i = first; good && i < end; i++) {
-        const int *view = views_at(r, i, &n);
+        const int *view = views_left(known, r, i, &n);
         for (int k = 0; good && k < n; k++) {
             const struct lossy_words *w = &t->words[view[k]];
             const struct put_view head = {t->square[view[k]], w->count};
@@ -249,20 +267,21 @@ static relume_status make_trial(void *context, int member, struct relume_buffer 
 {
     const struct trying *try = context;
     struct rate *r = try->rate;
+    const struct trial *known = try->trial;
     struct trial own = {0};
     int first, end;
     share_of(r, member, &first, &end);
     relume_status status = trial_create(&own, r);
     for (int i = first, n; !status && r->by && i < end; i++) {
-        const int *view = views_at(r, i, &n);
+        const int *view = views_left(known, r, i, &n);
         for (int k = 0; !status && k < n; k++)
             status = r->by->load(r->by->user, view[k]);
     }
     if (!status)
-        status = code_groups(&own, r, first, end, try->quantiser);
+        status = code_groups(&own, known, r, first, end, try->quantiser);
     if (!status)
-        status = judge_groups(&own, r, first, end);
-    if (!status && !put_views(&own, r, first, end, out))
+        status = judge_groups(&own, known, r, first, end);
+    if (!status && !put_views(&own, known, r, first, end, out))
         status = RELUME_ENOMEM;
     trial_destroy(&own, views_of(r->groups));
     return status;
@@ -296,7 +315,7 @@ static relume_status take_trial(void *context, int member, const struct relume_b
     relume_status status = piece->size < at ? RELUME_EDAMAGED : RELUME_OK;
     share_of(try->rate, member, &first, &end);
     for (int i = first; !status && i < end; i++) {
-        const int *view = views_at(try->rate, i, &n);
+        const int *view = views_left(try->trial, try->rate, i, &n);
         for (int k = 0; !status && k < n; k++)
             status = take_view(try->trial, view[k], piece, &at);
     }
@@ -310,7 +329,7 @@ static relume_status try_one(struct rate *r, int quantiser)
     struct trying try = {r, &r->trial[quantiser], quantiser};
     char what[32];
     snprintf(what, sizeof what, "words.%d.%d.%d", r->tried, r->speed, quantiser);
-    relume_status status = trial_create(try.trial, r);
+    relume_status status = try.trial->words ? RELUME_OK : trial_create(try.trial, r);
     if (!status)
         status =
             team_gather(r->by ? r->by->team : NULL, what, make_trial, take_trial, &try, r->p->log);
@@ -390,11 +409,12 @@ static void learn_step(struct rate *r, int a, int b)
 }
 
 // From *quantiser on to the one that meets the target best, on `tried` groups; or, roughly, to
-// where it is to be sought.
+// where it is to be sought. What was coded at that speed is not coded again.
 static relume_status search(struct rate *r, int tried, int speed, int *quantiser)
 {
     int fine = AV1_FINEST - 1, coarse = AV1_COARSEST + 1;  // not tried
-    forget(r);
+    if (r->speed != speed)
+        forget(r);
     r->tried = tried;
     r->speed = speed;
     for (int q = *quantiser, last = 0, trials = 1;; trials++) {

@@ -168,6 +168,13 @@ with_loss 'rows of a fixed basis' flat 2 --basis sh --coefficients 4 --bits half
 check 'join copies them' grep -q relume.part.stored 1.part
 : >said.txt
 with_loss 'bytes, masks, a part without views' masked 2 --basis sh --coefficients 4 --bytes-per-pixel 4
+# of seven groups of views two are tried first: what they took at that step is not coded again
+"$sphere" seven --size 24 --lights 5 --views 7 --format png
+: >said.txt
+with_loss 'some groups first, then all' seven 7 --basis pca --coefficients 4 --psnr 36
+first=$(cd learnt && for f in words.2.3.*.2of7; do [ -e "words.7${f#words.2}" ] && echo "words.7${f#words.2}"; done | head -n 1)
+check 'a group that was tried is not in the trial of all' grep -aq '^1 [0-9a-f]*$' "learnt/$first"
+check 'one that was not is' test "$(wc -c <"learnt/${first%.2of7}.1of7")" -gt 1000
 rm -rf learnt ./*.part
 for i in 1 2; do
     "$RELUME" encode large --basis pca --coefficients 6 --bytes-per-pixel 1 --pyramid yes --part $i/2 --learnt learnt -o $i.part 2>said.$i &

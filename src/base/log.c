@@ -41,6 +41,33 @@ bool log_progress(const struct relume_log *log, const char *what, double done)
     return !log || !log->progress || log->progress(log->user, what, done);
 }
 
+static void say_place(void *user, enum relume_level level, const char *text)
+{
+    const struct log_place *p = user;
+    log_line(p->to, level, "%s%s", p->place, text);
+}
+
+static bool go_on(void *user, const char *what, double done)
+{
+    const struct log_place *p = user;
+    return log_progress(p->to, what, done);
+}
+
+const struct relume_log *log_at(struct log_place *out, const struct relume_log *to,
+                                const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(out->place, sizeof out->place, format, args);
+    va_end(args);
+    out->to = to;
+    out->log = to ? *to : (struct relume_log){0};
+    out->log.message = say_place;
+    out->log.progress = go_on;
+    out->log.user = out;
+    return &out->log;
+}
+
 int relume_version(void)
 {
     return RELUME_VERSION_NUMBER;

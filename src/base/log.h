@@ -15,4 +15,15 @@ __attribute__((format(printf, 3, 4))) relume_status log_fail(const struct relume
 // False when the caller asked to stop.
 bool log_progress(const struct relume_log *log, const char *what, double done);
 
+// A log that is `to`, but for its sentences, which begin with a place, as "FILE: region 3: ".
+struct log_place {
+    struct relume_log log;
+    const struct relume_log *to;
+    char place[2048];  // as long as a line may be
+};
+// In `out`, which must live as long as what it returns.
+__attribute__((format(printf, 3, 4))) const struct relume_log *log_at(struct log_place *out,
+                                                                      const struct relume_log *to,
+                                                                      const char *format, ...);
+
 #endif

@@ -63,23 +63,12 @@ static bool copy_parts(relume_btf *b, const struct relume_btf_info *info)
     return true;
 }
 
-struct named_log {
-    const struct relume_log *log;
-    const char *path, *what;
-};
-
-static void say_with_name(void *user, enum relume_level level, const char *text)
-{
-    const struct named_log *n = user;
-    log_line(n->log, level, "%s: %s %s", n->path, n->what, text);
-}
-
 relume_status btf_make_mesh(relume_direction_mesh **out, const vec3 *directions, int n,
                             const char *path, const char *what, const struct relume_log *log)
 {
-    struct named_log named = {log, path, what};
-    const struct relume_log own = {.message = say_with_name, .user = &named};
-    return relume_direction_mesh_create(out, directions, n, path ? &own : log);
+    struct log_place place;
+    return relume_direction_mesh_create(out, directions, n,
+                                        path ? log_at(&place, log, "%s: %s ", path, what) : log);
 }
 
 relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, const char *path,

@@ -32,7 +32,7 @@ __attribute__((format(printf, 3, 4))) static void fail(struct ubo *u, relume_sta
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    u->status = log_fail(&u->log, status, "%s", text);
+    u->status = log_fail(u->log, status, "%s", text);
 }
 
 // The next `n` bytes; NULL when the file ends before.
@@ -192,7 +192,7 @@ static void check_lights(struct ubo *u)
     if (u->status || u->odd_view < 0)
         return;
     if (u->params && u->params->fill)
-        log_line(&u->log, RELUME_WARNING,
+        log_line(u->log, RELUME_WARNING,
                  "light %d of view %d is not that of view 0; the lights of view 0 are used for "
                  "all",
                  u->odd_light, u->odd_view);
@@ -231,7 +231,7 @@ static void choose_crop(struct ubo *u)
         return;
     if (c[0] < 0 || c[1] < 0 || c[2] < 1 || c[3] < 1 || c[2] > u->width - c[0] ||
         c[3] > u->height - c[1])
-        u->status = log_fail(&u->log, RELUME_EINVAL,
+        u->status = log_fail(u->log, RELUME_EINVAL,
                              "a part of %d x %d texels at %d, %d; expected one of %d x %d", c[2],
                              c[3], c[0], c[1], u->width, u->height);
     memcpy(u->crop, c, sizeof u->crop);
@@ -364,7 +364,7 @@ static relume_status read_all(struct ubo *u)
 
 static relume_status map_file(struct ubo *u)
 {
-    const int fd = input_descriptor(u->path, &u->log);
+    const int fd = input_descriptor(u->path, u->log);
     struct stat info;
     if (fd < 0 || fstat(fd, &info)) {
         const int error = errno;
@@ -377,7 +377,7 @@ static relume_status map_file(struct ubo *u)
     void *map = u->size ? mmap(NULL, u->size, PROT_READ, MAP_SHARED, fd, 0) : MAP_FAILED;
     close(fd);
     if (map == MAP_FAILED)
-        return log_fail(&u->log, RELUME_EFORMAT, "cannot be read; expected a BTF of Bonn; found %s",
+        return log_fail(u->log, RELUME_EFORMAT, "cannot be read; expected a BTF of Bonn; found %s",
                         u->size ? "it cannot be mapped into memory" : "an empty file");
     u->bytes = map;
     return RELUME_OK;
@@ -413,21 +413,9 @@ static relume_status make_btf(relume_btf **out, const struct ubo *u)
     if (status || (u->params && u->params->outline))
         return status;
     struct relume_btf_params params = u->params ? *u->params : (struct relume_btf_params){0};
-    params.log = &u->log;
+    params.log = u->log;
     status = btf_make_room(*out, &params);
     return status ? status : ubo_store(u, *out);
-}
-
-static void say(void *user, enum relume_level level, const char *text)
-{
-    const struct ubo *u = user;
-    log_line(u->params ? u->params->log : NULL, level, "%s: %s", u->path, text);
-}
-
-static bool go_on(void *user, const char *what, double done)
-{
-    const struct ubo *u = user;
-    return log_progress(u->params ? u->params->log : NULL, what, done);
 }
 
 relume_status btf_open_ubo(relume_btf **out, const char *path,
@@ -435,11 +423,13 @@ relume_status btf_open_ubo(relume_btf **out, const char *path,
 {
     const struct relume_log *log = params ? params->log : NULL;
     struct relume_context context = context_like(log);
+    struct relume_log own = log ? *log : (struct relume_log){0};
+    own.context = &context;
+    struct log_place place;
     struct ubo u = {.path = path,
                     .params = params,
                     .limits = limits_or_default(limits_of(params ? params->limits : NULL, log)),
-                    .log = {.message = say, .progress = go_on, .context = &context}};
-    u.log.user = &u;
+                    .log = log_at(&place, &own, "%s: ", path)};
     context.limits = &u.limits;
     *out = NULL;
     relume_status status = map_file(&u);

@@ -19,7 +19,7 @@ struct ubo_plane {
 
 struct ubo {
     const char *path;
-    struct relume_log log;  // names the file in what others say
+    const struct relume_log *log;  // names the file in what others say
     const struct relume_btf_params *params;
     struct relume_limits limits;
     const uint8_t *bytes;

@@ -258,7 +258,7 @@ static relume_status check_batch(const struct storing *s, size_t n)
     const struct ubo *u = s->ubo;
     for (size_t i = 0; i < n; i++)
         if (s->bad[i] != SIZE_MAX)
-            return log_fail(&u->log, RELUME_EDAMAGED,
+            return log_fail(u->log, RELUME_EDAMAGED,
                             "view %zu, light %zu: NaN or infinity; expected finite values",
                             s->bad[i] / (size_t)u->lights, s->bad[i] % (size_t)u->lights);
     return RELUME_OK;
@@ -275,7 +275,7 @@ static relume_status store_batches(struct storing *s, int threads)
         thread_for(threads, n, store_item, s);
         status = check_batch(s, n);
         if (!status &&
-            !log_progress(&s->ubo->log, "reading", (double)(s->first + n) / (double)items))
+            !log_progress(s->ubo->log, "reading", (double)(s->first + n) / (double)items))
             status = RELUME_ECANCEL;
     }
     return status;

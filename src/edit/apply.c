@@ -12,7 +12,7 @@ relume_status edit_gbrdf(struct gbrdf_maps *maps, const relume_edits *edits,
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < relume_edits_count(edits) - relume_edits_undone(edits); i++) {
         const struct relume_edit *e = relume_edits_get(edits, i);
-        struct edit_log own;
+        struct log_place own;
         g.log = edit_log(&own, edits, i, log);
         status = e->operation->gbrdf(&g, e);
     }
@@ -42,7 +42,7 @@ relume_status relume_maps_edit(struct relume_maps *maps, const relume_edits *edi
     relume_status status = edits_check(edits, relume_maps_fingerprint(maps), NULL, log);
     for (int i = 0; !status && i < edits->count - edits->undone; i++) {
         const struct relume_edit *e = &edits->edit[i];
-        struct edit_log own;
+        struct log_place own;
         const struct relume_log *to = edit_log(&own, edits, i, log);
         status = e->operation->maps
                      ? e->operation->maps(maps, e, threads, to)

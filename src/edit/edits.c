@@ -1,7 +1,6 @@
 // edits.c - a list of edits, of which the last may be undone
 #include "edit/edits.h"
 
-#include "base/log.h"
 #include "base/memory.h"
 #include "edit/drawing.h"
 #include "edit/operations.h"
@@ -114,21 +113,9 @@ const struct relume_edit *relume_edits_get(const relume_edits *edits, int i)
     return &edits->edit[i];
 }
 
-// ---------------------------------------------------------------- who speaks
-
-static void say_of_edit(void *user, enum relume_level level, const char *text)
-{
-    const struct edit_log *l = user;
-    const char *file = l->edits->file;
-    log_line(l->to, level, "%s%sedit %d, %s: %s", file ? file : "", file ? ": " : "", l->number + 1,
-             l->edits->edit[l->number].operation->name, text);
-}
-
-const struct relume_log *edit_log(struct edit_log *out, const relume_edits *edits, int number,
+const struct relume_log *edit_log(struct log_place *out, const relume_edits *edits, int number,
                                   const struct relume_log *to)
 {
-    *out = (struct edit_log){{.message = say_of_edit}, to, edits, number};
-    out->log.user = out;
-    out->log.context = to ? to->context : NULL;
-    return &out->log;
+    return log_at(out, to, "%s%sedit %d, %s: ", edits->file ? edits->file : "",
+                  edits->file ? ": " : "", number + 1, edits->edit[number].operation->name);
 }

@@ -2,6 +2,8 @@
 #ifndef EDIT_EDITS_H
 #define EDIT_EDITS_H
 
+#include "base/log.h"
+
 #include <relume/edit.h>
 
 struct relume_edits {
@@ -25,13 +27,7 @@ relume_status edits_check(const relume_edits *edits, uint64_t fingerprint, const
                           const struct relume_log *log);
 
 // A log whose sentences begin with the file, the number and the name of an edit.
-struct edit_log {
-    struct relume_log log;
-    const struct relume_log *to;
-    const relume_edits *edits;
-    int number;
-};
-const struct relume_log *edit_log(struct edit_log *out, const relume_edits *edits, int number,
+const struct relume_log *edit_log(struct log_place *out, const relume_edits *edits, int number,
                                   const struct relume_log *to);
 
 #endif

@@ -6,8 +6,6 @@
 #include "mesh/mesh_read.h"
 #include "object/object.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -229,20 +227,8 @@ struct reader {
     relume_objects *o;
     const char *path;
     const struct relume_objects_params *params;
-    const struct relume_log *log;
-    size_t object;  // that is being read
+    const struct relume_log *log;  // of an object: it names it
 };
-
-__attribute__((format(printf, 2, 3))) static relume_status wrong(const struct reader *r,
-                                                                 const char *format, ...)
-{
-    char text[512];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    return log_fail(r->log, RELUME_EFORMAT, "%s: object %zu: %s", r->path, r->object, text);
-}
 
 static relume_status know(const struct reader *r, const jvalue *object, const char *const *known)
 {
@@ -250,8 +236,8 @@ static relume_status know(const struct reader *r, const jvalue *object, const ch
     if (!stranger)
         return RELUME_OK;
     const char *near = relume_name_nearest(stranger, known);
-    return wrong(r, "unknown member '%s'%s%s%s", stranger, near ? "; did you mean '" : "",
-                 near ? near : "", near ? "'?" : "");
+    return log_fail(r->log, RELUME_EFORMAT, "unknown member '%s'%s%s%s", stranger,
+                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 // One number for all, or one for each: what a mirror reflects.
@@ -266,12 +252,13 @@ static relume_status read_mirror(const struct reader *r, const jvalue *value, in
         return status;
     if (!jvalue_numbers(m, f, 3)) {
         if (!jvalue_number(m, &f[0]))
-            return wrong(r, "mirror: expected the part of light that it reflects, or [r, g, b]");
+            return log_fail(r->log, RELUME_EFORMAT,
+                            "mirror: expected the part of light that it reflects, or [r, g, b]");
         f[1] = f[2] = f[0];
     }
     for (int c = 0; c < 3; c++) {
         if (!(f[c] >= 0.0 && f[c] <= 1.0))
-            return wrong(r, "mirror: expected 0 to 1; found %g", f[c]);
+            return log_fail(r->log, RELUME_EFORMAT, "mirror: expected 0 to 1; found %g", f[c]);
         reflectance[c] = (float)f[c];
     }
     return objects_mirror(r->o, reflectance, number, r->params);
@@ -283,7 +270,8 @@ static relume_status read_folder(const struct reader *r, const jvalue *text, int
     if (jvalue_is_object(text))
         return read_mirror(r, text, number);
     if (!name || !*name)
-        return wrong(r, "material: expected the folder of a BTF or of a model, {\"mirror\": 1}, or "
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "material: expected the folder of a BTF or of a model, {\"mirror\": 1}, or "
                         "a list of them");
     char *folder = mesh_beside(r->path, name);
     const relume_status status =
@@ -297,8 +285,9 @@ static relume_status read_material(const struct reader *r, const jvalue *value, 
 {
     if (!jvalue_is_array(value))
         return read_folder(r, value, number);
-    relume_status status =
-        jvalue_count(value) ? RELUME_OK : wrong(r, "material: expected at least one folder");
+    relume_status status = jvalue_count(value) ? RELUME_OK
+                                               : log_fail(r->log, RELUME_EFORMAT,
+                                                          "material: expected at least one folder");
     for (size_t i = 0; i < jvalue_count(value) && !status; i++) {
         int other;
         status = read_folder(r, jvalue_item(value, i), i ? &other : number);
@@ -321,7 +310,7 @@ static relume_status read_covering(const struct reader *r, const jvalue *value, 
     static const char *const known[] = {"part", "material", "repeat", "offset", "filter", NULL};
     *c = (struct covering){.repeat = {1, 1}};
     if (!jvalue_is_object(value))
-        return wrong(r, "parts: expected objects with a material");
+        return log_fail(r->log, RELUME_EFORMAT, "parts: expected objects with a material");
     relume_status status = know(r, value, known);
     if (status)
         return status;
@@ -329,14 +318,14 @@ static relume_status read_covering(const struct reader *r, const jvalue *value, 
     const char *filter = jvalue_text(jvalue_member(value, "filter"));
     c->nearest = filter && !strcmp(filter, "nearest");
     if (jvalue_member(value, "part") && !c->part)
-        return wrong(r, "part: expected the name of a part of the mesh");
+        return log_fail(r->log, RELUME_EFORMAT, "part: expected the name of a part of the mesh");
     if (jvalue_member(value, "filter") && !c->nearest && (!filter || strcmp(filter, "bilinear")))
-        return wrong(r, "filter: expected \"bilinear\" or \"nearest\"");
+        return log_fail(r->log, RELUME_EFORMAT, "filter: expected \"bilinear\" or \"nearest\"");
     if (!read_pair(jvalue_member(value, "repeat"), c->repeat) || c->repeat[0] == 0.0 ||
         c->repeat[1] == 0.0)
-        return wrong(r, "repeat: expected a number or two, not 0");
+        return log_fail(r->log, RELUME_EFORMAT, "repeat: expected a number or two, not 0");
     if (!read_pair(jvalue_member(value, "offset"), c->offset))
-        return wrong(r, "offset: expected a number or two");
+        return log_fail(r->log, RELUME_EFORMAT, "offset: expected a number or two");
     return read_material(r, jvalue_member(value, "material"), &c->material);
 }
 
@@ -363,18 +352,19 @@ static relume_status read_pose(const struct reader *r, const jvalue *value, stru
     if (!value)
         return RELUME_OK;
     if (!jvalue_is_object(value))
-        return wrong(r, "pose: expected translate, rotate, scale");
+        return log_fail(r->log, RELUME_EFORMAT, "pose: expected translate, rotate, scale");
     relume_status status = know(r, value, known);
     const jvalue *m = jvalue_member(value, "translate");
     if (!status && m && !jvalue_numbers(m, move, 3))
-        status = wrong(r, "translate: expected [x, y, z]");
+        status = log_fail(r->log, RELUME_EFORMAT, "translate: expected [x, y, z]");
     m = jvalue_member(value, "rotate");
     if (!status && m &&
         (!jvalue_numbers(m, axis, 4) || !(vec3_length(vec3_of(axis[0], axis[1], axis[2])) > 0.0)))
-        status = wrong(r, "rotate: expected [x, y, z, degrees], an axis that has a length");
+        status = log_fail(r->log, RELUME_EFORMAT,
+                          "rotate: expected [x, y, z, degrees], an axis that has a length");
     m = jvalue_member(value, "scale");
     if (!status && m && (!jvalue_number(m, &scale) || !(scale > 0.0)))
-        status = wrong(r, "scale: expected a number above 0");
+        status = log_fail(r->log, RELUME_EFORMAT, "scale: expected a number above 0");
     *out = frame_compose(frame_compose(frame_move(move[0], move[1], move[2]), turn(axis)),
                          frame_scale(scale, scale, scale));
     return status;
@@ -386,7 +376,8 @@ static relume_status read_coverings(const struct reader *r, const jvalue *object
     const jvalue *parts = jvalue_member(object, "parts");
     const size_t n = jvalue_is_array(parts) ? jvalue_count(parts) : 0;
     if (n < 1 || n > MOST_COVERINGS)
-        return wrong(r, "parts: expected a list of 1 to %d", MOST_COVERINGS);
+        return log_fail(r->log, RELUME_EFORMAT, "parts: expected a list of 1 to %d",
+                        MOST_COVERINGS);
     s->covering = mem_zeroed(n, sizeof *s->covering);
     s->coverings = s->covering ? (int)n : 0;
     relume_status status = s->covering ? RELUME_OK : RELUME_ENOMEM;
@@ -401,7 +392,7 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
     struct standing s = {.frame = frame_world};
     const char *mesh = jvalue_text(jvalue_member(object, "mesh"));
     if (!jvalue_is_object(object) || !mesh || !*mesh)
-        return wrong(r, "mesh: expected the name of a file");
+        return log_fail(r->log, RELUME_EFORMAT, "mesh: expected the name of a file");
     char *path = mesh_beside(r->path, mesh);
     relume_status status = path ? know(r, object, known) : RELUME_ENOMEM;
     if (!status)
@@ -415,7 +406,7 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
     return status;
 }
 
-static relume_status read_all(struct reader *r, const jvalue *root)
+static relume_status read_all(const struct reader *r, const jvalue *root)
 {
     static const char *const known[] = {"format", "version", "objects", NULL};
     const char *format = jvalue_text(jvalue_member(root, "format"));
@@ -434,8 +425,12 @@ static relume_status read_all(struct reader *r, const jvalue *root)
         return log_fail(r->log, RELUME_EFORMAT, "%s: objects: expected a list of 1 to %d", r->path,
                         MOST_OBJECTS);
     relume_status status = RELUME_OK;
-    for (r->object = 0; r->object < n && !status; r->object++)
-        status = read_object(r, jvalue_item(list, r->object));
+    for (size_t i = 0; i < n && !status; i++) {
+        struct log_place place;
+        struct reader one = *r;
+        one.log = log_at(&place, r->log, "%s: object %zu: ", r->path, i);
+        status = read_object(&one, jvalue_item(list, i));
+    }
     return status ? status : objects_finish(r->o, r->params);
 }
 
@@ -459,7 +454,7 @@ relume_status relume_objects_open(relume_objects **out, const char *path,
 {
     const struct relume_objects_params own = PARAMS_WORK(relume_objects_params, params);
     relume_objects *o = mem_zeroed(1, sizeof *o);
-    struct reader r = {o, path, &own, own.log, 0};
+    struct reader r = {o, path, &own, own.log};
     jvalue *root = NULL;
     *out = NULL;
     relume_status status = o ? jvalue_load(&root, path, own.log) : RELUME_ENOMEM;

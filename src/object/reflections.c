@@ -5,7 +5,6 @@
 #include "base/params.h"
 #include "object/object.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -54,23 +53,11 @@ const relume_reflection *relume_objects_reflections(const relume_objects *o, int
 
 struct reading {
     const relume_objects *o;
-    const struct relume_log *log;
-    const char *name;  // of the file and the object
+    const struct relume_log *log;  // of a constraint or region: it names it
+    const char *name;              // of the file and the object
     struct relume_reflection_constraint *constraint;
     struct relume_reflection_region *region;
 };
-
-__attribute__((format(printf, 4, 5))) static relume_status wrong(const struct reading *r,
-                                                                 const char *what, size_t number,
-                                                                 const char *format, ...)
-{
-    char text[256];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    return log_fail(r->log, RELUME_EFORMAT, "%s: %s %zu: %s", r->name, what, number, text);
-}
 
 static bool read_vector(const jvalue *value, vec3 *out)
 {
@@ -82,8 +69,7 @@ static bool read_vector(const jvalue *value, vec3 *out)
 }
 
 // What the eye sees reflected at the place, which moves onto the surface that it sees.
-static relume_status find_original(const struct reading *r, size_t number,
-                                   struct relume_reflection_constraint *c)
+static relume_status find_original(const struct reading *r, struct relume_reflection_constraint *c)
 {
     const double BESIDE = 0.1;  // of the objects' size
     const double size = vec3_length(vec3_sub(r->o->info.max, r->o->info.min));
@@ -91,9 +77,9 @@ static relume_status find_original(const struct reading *r, size_t number,
     struct relume_object_reflection seen;
     if (!(vec3_length(way) > 0.0) || !relume_objects_reflect(&seen, r->o, c->eye, way) ||
         vec3_length(vec3_sub(seen.place.position, c->position)) > BESIDE * size)
-        return wrong(r, "constraint", number,
-                     "its eye does not see the object at its position; move one of them, or give "
-                     "the direction 'original'");
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "its eye does not see the object at its position; move one of them, or "
+                        "give the direction 'original'");
     c->position = seen.place.position;
     c->original = relume_reflection_original(NULL, c->position, seen.normal, c->eye);
     return RELUME_OK;
@@ -107,31 +93,31 @@ static relume_status read_constraint(const struct reading *r, size_t number, con
     const jvalue *direction = jvalue_member(value, "direction");
     const jvalue *target = jvalue_member(value, "target");
     if (!jvalue_is_object(value) || jvalue_unknown(value, known))
-        return wrong(r, "constraint", number,
-                     "expected position, eye, direction or target, and perhaps original%s%s",
-                     jvalue_unknown(value, known) ? "; found " : "",
-                     jvalue_unknown(value, known) ? jvalue_unknown(value, known) : "");
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "expected position, eye, direction or target, and perhaps original%s%s",
+                        jvalue_unknown(value, known) ? "; found " : "",
+                        jvalue_unknown(value, known) ? jvalue_unknown(value, known) : "");
     if (!read_vector(jvalue_member(value, "position"), &c->position) ||
         !read_vector(jvalue_member(value, "eye"), &c->eye))
-        return wrong(r, "constraint", number, "position and eye: expected [x, y, z]");
+        return log_fail(r->log, RELUME_EFORMAT, "position and eye: expected [x, y, z]");
     if (!direction == !target || !read_vector(direction ? direction : target, &c->edited))
-        return wrong(r, "constraint", number,
-                     "expected what it shall reflect, as direction or as target: [x, y, z]");
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "expected what it shall reflect, as direction or as target: [x, y, z]");
     if (original && !read_vector(original, &c->original))
-        return wrong(r, "constraint", number, "original: expected [x, y, z]");
-    const relume_status status = original ? RELUME_OK : find_original(r, number, c);
+        return log_fail(r->log, RELUME_EFORMAT, "original: expected [x, y, z]");
+    const relume_status status = original ? RELUME_OK : find_original(r, c);
     if (target)
         c->edited = vec3_sub(c->edited, c->position);
     return status;
 }
 
-static relume_status read_stroke(const struct reading *r, size_t number, const jvalue *value,
+static relume_status read_stroke(const struct reading *r, const jvalue *value,
                                  struct relume_reflection_region *g)
 {
     enum { MOST = 4096 };
     const size_t n = jvalue_is_array(value) ? jvalue_count(value) : 0;
     if (n < 1 || n > MOST)
-        return wrong(r, "region", number, "stroke: expected 1 to %d points", MOST);
+        return log_fail(r->log, RELUME_EFORMAT, "stroke: expected 1 to %d points", MOST);
     vec3 *point = mem_array(n, sizeof *point);
     if (!point)
         return RELUME_ENOMEM;
@@ -140,7 +126,7 @@ static relume_status read_stroke(const struct reading *r, size_t number, const j
     g->points = (int)n;
     for (size_t i = 0; i < n; i++)
         if (!read_vector(jvalue_item(value, i), &point[i]))
-            return wrong(r, "region", number, "stroke: expected points [x, y, z]");
+            return log_fail(r->log, RELUME_EFORMAT, "stroke: expected points [x, y, z]");
     return RELUME_OK;
 }
 
@@ -152,25 +138,28 @@ static relume_status read_region(const struct reading *r, size_t number, const j
     const jvalue *stroke = jvalue_member(value, "stroke"), *border = jvalue_member(value, "border");
     const char *stranger = jvalue_unknown(value, known);
     if (!jvalue_is_object(value) || stranger || !!ball + !!along + !!stroke != 1)
-        return wrong(r, "region", number,
-                     "expected one of ball, geodesic and stroke, radius, and perhaps border%s%s",
-                     stranger ? "; found " : "", stranger ? stranger : "");
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "expected one of ball, geodesic and stroke, radius, and perhaps border%s%s",
+                        stranger ? "; found " : "", stranger ? stranger : "");
     if (!jvalue_number(jvalue_member(value, "radius"), &g->radius) ||
         (border && !jvalue_number(border, &g->border)))
-        return wrong(r, "region", number, "radius and border: expected numbers");
+        return log_fail(r->log, RELUME_EFORMAT, "radius and border: expected numbers");
     if (stroke)
-        return read_stroke(r, number, stroke, g);
+        return read_stroke(r, stroke, g);
     g->shape = ball ? RELUME_REFLECTION_BALL : RELUME_REFLECTION_GEODESIC;
     return read_vector(ball ? ball : along, &g->centre)
                ? RELUME_OK
-               : wrong(r, "region", number, "centre: expected [x, y, z]");
+               : log_fail(r->log, RELUME_EFORMAT, "centre: expected [x, y, z]");
 }
 
-static relume_status read_list(struct reading *r, const jvalue *edit, const char *member, int most,
-                               int *count,
+// `noun` names one of the list, whose name has an s.
+static relume_status read_list(const struct reading *r, const jvalue *edit, const char *noun,
+                               int most, int *count,
                                relume_status (*read)(const struct reading *, size_t,
                                                      const jvalue *))
 {
+    char member[32];
+    snprintf(member, sizeof member, "%ss", noun);
     const jvalue *list = jvalue_member(edit, member);
     const size_t n = jvalue_count(list);
     relume_status status = RELUME_OK;
@@ -178,7 +167,10 @@ static relume_status read_list(struct reading *r, const jvalue *edit, const char
         return log_fail(r->log, RELUME_EFORMAT, "%s: %s: expected a list of at most %d", r->name,
                         member, most);
     for (size_t i = 0; i < n && !status; i++) {
-        status = read(r, i, jvalue_item(list, i));
+        struct log_place place;
+        struct reading one = *r;
+        one.log = log_at(&place, r->log, "%s: %s %zu: ", r->name, noun, i);
+        status = read(&one, i, jvalue_item(list, i));
         *count = (int)i + 1;
     }
     return status;
@@ -205,11 +197,11 @@ static relume_status read_edit(struct reading *r, struct relume_reflection_edit 
     e->frozen = frozen;
     if (frozen && !read_vector(frozen, &e->eye))
         return log_fail(r->log, RELUME_EFORMAT, "%s: frozen: expected the eye [x, y, z]", r->name);
-    relume_status status = read_list(r, value, "constraints", RELUME_REFLECTION_CONSTRAINTS_MOST,
+    relume_status status = read_list(r, value, "constraint", RELUME_REFLECTION_CONSTRAINTS_MOST,
                                      &e->constraints, read_constraint);
     if (!status)
-        status = read_list(r, value, "regions", RELUME_REFLECTION_REGIONS_MOST, &e->regions,
-                           read_region);
+        status =
+            read_list(r, value, "region", RELUME_REFLECTION_REGIONS_MOST, &e->regions, read_region);
     return status;
 }
 

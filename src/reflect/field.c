@@ -8,8 +8,6 @@
 #include "base/thread.h"
 #include "reflect/geodesic.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 // Of the size of the surface: no distance to a constraint is taken to be less.
@@ -80,18 +78,6 @@ struct asking {
     const char *name;
 };
 
-__attribute__((format(printf, 4, 5))) static relume_status wrong(const struct asking *a,
-                                                                 const char *what, int number,
-                                                                 const char *format, ...)
-{
-    char text[256];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    return log_fail(a->log, RELUME_EINVAL, "%s: %s %d: %s", a->name, what, number, text);
-}
-
 static bool is_finite(vec3 v)
 {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
@@ -102,36 +88,38 @@ static bool has_direction(vec3 v)
     return is_finite(v) && vec3_length(v) > 0.0 && isfinite(vec3_length(v));
 }
 
-static relume_status check_constraint(const struct asking *a, int number,
+static relume_status check_constraint(const struct relume_log *log,
                                       const struct relume_reflection_constraint *c)
 {
     if (!is_finite(c->position) || !is_finite(c->eye))
-        return wrong(a, "constraint", number, "position and eye: expected finite numbers");
+        return log_fail(log, RELUME_EINVAL, "position and eye: expected finite numbers");
     if (!has_direction(c->original) || !has_direction(c->edited))
-        return wrong(a, "constraint", number,
-                     "original and edited direction: expected finite numbers, not all 0");
+        return log_fail(log, RELUME_EINVAL,
+                        "original and edited direction: expected finite numbers, not all 0");
     return RELUME_OK;
 }
 
-static relume_status check_region(const struct asking *a, int number,
+static relume_status check_region(const struct relume_log *log,
                                   const struct relume_reflection_region *r)
 {
     if (!(r->radius > 0.0) || !isfinite(r->radius))
-        return wrong(a, "region", number, "radius: expected a number above 0; found %g", r->radius);
+        return log_fail(log, RELUME_EINVAL, "radius: expected a number above 0; found %g",
+                        r->radius);
     if (!(r->border >= 0.0) || !isfinite(r->border))
-        return wrong(a, "region", number, "border: expected 0 or more; found %g", r->border);
+        return log_fail(log, RELUME_EINVAL, "border: expected 0 or more; found %g", r->border);
     if (!is_finite(r->centre))
-        return wrong(a, "region", number, "centre: expected finite numbers");
+        return log_fail(log, RELUME_EINVAL, "centre: expected finite numbers");
     if (r->shape == RELUME_REFLECTION_STROKES && r->points < 1)
-        return wrong(a, "region", number, "stroke: expected at least one point");
+        return log_fail(log, RELUME_EINVAL, "stroke: expected at least one point");
     for (int i = 0; r->shape == RELUME_REFLECTION_STROKES && i < r->points; i++)
         if (!is_finite(r->stroke[i]))
-            return wrong(a, "region", number, "stroke: expected finite numbers");
+            return log_fail(log, RELUME_EINVAL, "stroke: expected finite numbers");
     return RELUME_OK;
 }
 
 static relume_status check(const struct asking *a, const struct relume_reflection_edit *e)
 {
+    struct log_place place;
     relume_status status = RELUME_OK;
     if (e->constraints < 0 || e->constraints > RELUME_REFLECTION_CONSTRAINTS_MOST)
         return log_fail(a->log, RELUME_EINVAL, "%s: expected at most %d constraints; found %d",
@@ -143,9 +131,10 @@ static relume_status check(const struct asking *a, const struct relume_reflectio
         return log_fail(a->log, RELUME_EINVAL, "%s: frozen: expected an eye of finite numbers",
                         a->name);
     for (int i = 0; i < e->constraints && !status; i++)
-        status = check_constraint(a, i, &e->constraint[i]);
+        status = check_constraint(log_at(&place, a->log, "%s: constraint %d: ", a->name, i),
+                                  &e->constraint[i]);
     for (int i = 0; i < e->regions && !status; i++)
-        status = check_region(a, i, &e->region[i]);
+        status = check_region(log_at(&place, a->log, "%s: region %d: ", a->name, i), &e->region[i]);
     return status;
 }
 

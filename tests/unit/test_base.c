@@ -2,6 +2,7 @@
 // obey
 #include "test.h"
 
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
 
@@ -121,12 +122,47 @@ static void test_growing_array(void **state)
     relume_free(items);
 }
 
+static bool stops(void *user, const char *what, double done)
+{
+    (void)what, (void)done;
+    return user == NULL;
+}
+
+// A place stands before what is said there, and all else is that of the log behind.
+static void test_places(void **state)
+{
+    (void)state;
+    struct test_log log;
+    struct log_place file, region, nowhere;
+    relume_context *const context = (void *)&log;
+    char name[3000];
+    test_log_init(&log);
+    log.log.progress = stops;
+    log.log.context = context;
+    log.log.leave_unnoted = true;
+    const struct relume_log *at =
+        log_at(&region, log_at(&file, &log.log, "%s: ", "a file"), "region %d: ", 3);
+    assert_int_equal(log_fail(at, RELUME_EUNFIT, "expected %s", "more"), RELUME_EUNFIT);
+    assert_string_equal(log.text, "a file: region 3: expected more");
+    assert_false(log_progress(at, "", 0.5));
+    assert_ptr_equal(at->context, context);
+    assert_true(at->leave_unnoted);
+    at = log_at(&nowhere, NULL, "nowhere");
+    assert_int_equal(log_fail(at, RELUME_EIO, "nobody hears it"), RELUME_EIO);
+    assert_true(log_progress(at, "", 0.5));
+    // a name longer than a line leaves a line
+    memset(name, 'n', sizeof name - 1);
+    name[sizeof name - 1] = '\0';
+    assert_int_equal(log_fail(log_at(&file, &log.log, "%s: ", name), RELUME_EIO, "it"), RELUME_EIO);
+    assert_int_equal(log.lines, 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_growing_array),       cmocka_unit_test(one_version),
         cmocka_unit_test(params_of_other_versions), cmocka_unit_test(test_whole),
-        cmocka_unit_test(test_printable),
+        cmocka_unit_test(test_printable),           cmocka_unit_test(test_places),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

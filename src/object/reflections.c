@@ -53,6 +53,7 @@ const relume_reflection *relume_objects_reflections(const relume_objects *o, int
 
 struct reading {
     const relume_objects *o;
+    int object;
     const struct relume_log *log;  // of a constraint or region: it names it
     const char *name;              // of the file and the object
     struct relume_reflection_constraint *constraint;
@@ -80,6 +81,11 @@ static relume_status find_original(const struct reading *r, struct relume_reflec
         return log_fail(r->log, RELUME_EFORMAT,
                         "its eye does not see the object at its position; move one of them, or "
                         "give the direction 'original'");
+    if (seen.object != r->object)
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "its eye sees object %d there; move position or eye, or give the direction "
+                        "'original'",
+                        seen.object);
     c->position = seen.place.position;
     c->original = relume_reflection_original(NULL, c->position, seen.normal, c->eye);
     return RELUME_OK;
@@ -212,6 +218,7 @@ relume_status objects_read_reflections(relume_objects *o, int object, const jval
     char *name = mem_format("%s: object %d: reflections", path, object);
     struct reading r = {
         .o = o,
+        .object = object,
         .log = params->log,
         .name = name,
         .constraint = mem_zeroed(RELUME_REFLECTION_CONSTRAINTS_MOST, sizeof *r.constraint),
@@ -235,6 +242,26 @@ relume_status objects_read_reflections(relume_objects *o, int object, const jval
     return status;
 }
 
+// The next would take the place of one that the same file asks for, without a word.
+static relume_status read_edit_of_file(relume_objects *o, bool *named, size_t i, const jvalue *edit,
+                                       const char *path,
+                                       const struct relume_reflection_params *params)
+{
+    const jvalue *number = jvalue_member(edit, "object");
+    int object = 0;
+    if (number && !jvalue_whole(number, 0, o->info.objects - 1, &object))
+        return log_fail(params->log, RELUME_EFORMAT,
+                        "%s: edit %zu: object: expected a whole number from 0 to %d", path, i,
+                        o->info.objects - 1);
+    if (named[object])
+        return log_fail(params->log, RELUME_EFORMAT,
+                        "%s: edit %zu: object %d has an edit already; expected one with all its "
+                        "constraints and regions",
+                        path, i, object);
+    named[object] = true;
+    return objects_read_reflections(o, object, edit, path, params);
+}
+
 relume_status relume_objects_load_reflections(relume_objects *o, const char *path,
                                               const struct relume_reflection_params *params)
 {
@@ -248,16 +275,12 @@ relume_status relume_objects_load_reflections(relume_objects *o, const char *pat
     if (!status && (!jvalue_is_array(list) || jvalue_unknown(root, known)))
         status =
             log_fail(own.log, RELUME_EFORMAT, "%s: expected a list 'edits' and nothing else", path);
-    for (size_t i = 0; i < jvalue_count(list) && !status; i++) {
-        const jvalue *edit = jvalue_item(list, i), *number = jvalue_member(edit, "object");
-        int object = 0;
-        if (number && !jvalue_whole(number, 0, o->info.objects - 1, &object))
-            status = log_fail(own.log, RELUME_EFORMAT,
-                              "%s: edit %zu: object: expected a whole number from 0 to %d", path, i,
-                              o->info.objects - 1);
-        else
-            status = objects_read_reflections(o, object, edit, path, &own);
-    }
+    bool *named = mem_zeroed((size_t)o->info.objects, sizeof *named);
+    if (!status && !named)
+        status = RELUME_ENOMEM;
+    for (size_t i = 0; i < jvalue_count(list) && !status; i++)
+        status = read_edit_of_file(o, named, i, jvalue_item(list, i), path, &own);
+    mem_free(named);
     jvalue_free(&root);
     return status;
 }

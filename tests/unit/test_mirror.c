@@ -479,6 +479,17 @@ static void bad_edits_are_told(void **state)
             fail_msg("%.200s: '%s' does not say '%s'", list[i].text, last, list[i].sentence);
         assert_null(relume_objects_reflections(o, 0));
     }
+    // the eye sees a ball that stands before the one that is edited
+    write_text("hidden.json", EDITS "{\"object\":0,\"constraints\":[" GOOD "]},{\"object\":1,"
+                                    "\"constraints\":[" GOOD "]}]}");
+    relume_objects *two =
+        open_objects(OBJECTS BALL("{}", "1") "," BALL("{\"scale\":0.99}", "1") "]}");
+    last[0] = '\0';
+    assert_int_equal(relume_objects_load_reflections(two, path_of("hidden.json"),
+                                                     relume_reflection_params(.log = &hearing)),
+                     RELUME_EFORMAT);
+    assert_non_null(strstr(last, "object 1: reflections: constraint 0: its eye sees object 0"));
+    relume_objects_destroy(&two);
     // constraints that do nothing are said, and no mistake
     write_text("idle.json", EDITS "{\"constraints\":[" GOOD
                                   "],\"regions\":[{\"ball\":[0,0,-1],\"radius\":1}]}]}");

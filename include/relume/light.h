@@ -175,6 +175,9 @@ RELUME_API void relume_environment_destroy(relume_environment **environment);
 
 // The cleaned map at no more than 1024 x 512 pixels, for showing it.
 RELUME_API const struct relume_image *relume_environment_map(const relume_environment *environment);
+// Of that map: maps of other sizes or values have another number. For whoever keeps what was made
+// of an environment longer than the environment, whose address may be used again.
+RELUME_API uint64_t relume_environment_fingerprint(const relume_environment *environment);
 
 // The map as light by light: a cell's energy-weighted direction and E dw / pi, without rotation. At
 // most 256 x 128 cells with exact solid angles; black ones are left out.

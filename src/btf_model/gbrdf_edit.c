@@ -7,6 +7,7 @@
 #include "edit/edits.h"
 #include "edit/apply.h"
 #include "gbrdf/fit.h"
+#include "math/fnv.h"
 
 #include <string.h>
 

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "edit/edits.h"
 #include "edit/operations.h"
+#include "math/fnv.h"
 
 relume_status edit_gbrdf(struct gbrdf_maps *maps, const relume_edits *edits,
                          const struct relume_log *log)

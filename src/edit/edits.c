@@ -7,14 +7,6 @@
 
 #include <string.h>
 
-uint64_t fnv_of(uint64_t hash, const void *bytes, size_t size)
-{
-    const uint8_t *b = bytes;
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ b[i]) * 0x100000001b3u;
-    return hash;
-}
-
 relume_status relume_edits_create(relume_edits **out, uint64_t fingerprint)
 {
     *out = mem_zeroed(1, sizeof **out);

@@ -13,11 +13,6 @@ struct relume_edits {
     char *file;                // that it was read from, or NULL
 };
 
-// Begin with FNV_START; the next bytes of what a fingerprint is of (FNV-1a of 64 bits, Fowler, Noll
-// and Vo 1991).
-#define FNV_START 0xcbf29ce484222325u
-uint64_t fnv_of(uint64_t hash, const void *bytes, size_t size);
-
 // The name of the list of `path`, to be freed; NULL: no memory.
 char *edits_name(const char *path);
 

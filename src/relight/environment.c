@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "math/fnv.h"
 #include "math/luminance.h"
 #include "math/random.h"
 #include "math/vec.h"
@@ -17,6 +18,7 @@ enum { CELL_COLUMNS = 256, CELL_ROWS = 128, SHOWN_COLUMNS = 1024, SHOWN_ROWS = 5
 
 struct relume_environment {
     struct relume_image map;
+    uint64_t fingerprint;
     int count, rows;
     int end[CELL_ROWS];  // of each row, in `cell`
     struct relume_environment_cell *cell;
@@ -167,6 +169,13 @@ static relume_status make_cells(relume_environment *e)
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
+static uint64_t fingerprint_of(const struct relume_image *map)
+{
+    const int size[2] = {map->width, map->height};
+    const uint64_t hash = fnv_of(FNV_START, size, sizeof size);
+    return fnv_of(hash, map->data, 3 * sizeof(float) * (size_t)map->width * (size_t)map->height);
+}
+
 relume_status relume_environment_create(relume_environment **out, const struct relume_image *map,
                                         const struct relume_environment_params *params)
 {
@@ -184,6 +193,8 @@ relume_status relume_environment_create(relume_environment **out, const struct r
         status = shrink(&e->map);
     if (status)
         relume_environment_destroy(&e);
+    else
+        e->fingerprint = fingerprint_of(&e->map);
     *out = e;
     return status;
 }
@@ -209,6 +220,11 @@ void relume_environment_destroy(relume_environment **environment)
     mem_free((*environment)->cell);
     mem_free(*environment);
     *environment = NULL;
+}
+
+uint64_t relume_environment_fingerprint(const relume_environment *environment)
+{
+    return environment->fingerprint;
 }
 
 const struct relume_image *relume_environment_map(const relume_environment *environment)

@@ -183,6 +183,37 @@ static void environments_are_reflected_as_by_the_library(void **state)
     relume_environment_destroy(&e);
 }
 
+// An environment that stands where one of another map was is not taken for it.
+static void another_environment_in_its_place_is_shown(void **state)
+{
+    (void)state;
+    relume_objects *o = open_objects(MIRROR);
+    struct relume_image map, shown[2];
+    struct objects_drawer t;
+    struct relume_window w;
+    assert_int_equal(relume_image_create(&map, 8, 4, 3), RELUME_OK);
+    assert_true(relume_objects_window(&w, o, (struct relume_vec3){0.4, 0.5, 4}, NULL, SIDE, SIDE));
+    assert_int_equal(objects_drawer_create(&t, &fixture_gl, o, &fixture_log), RELUME_OK);
+    for (int k = 0; k < 2; k++) {
+        relume_environment *e;
+        for (int i = 0; i < 8 * 4 * 3; i++)
+            map.data[i] = k ? 0.25f : 1.0f;
+        assert_int_equal(relume_environment_create(&e, &map, NULL), RELUME_OK);
+        const struct relume_light light = {
+            .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
+        shown[k] = draw(&t, &w, &light);
+        relume_environment_destroy(&e);
+    }
+    for (int i = 0; i < SIDE * SIDE * 3; i++)
+        assert_true(fabsf(0.25f * shown[0].data[i] - shown[1].data[i]) < 1e-5f);
+    assert_true(shown[0].data[3 * (SIDE * SIDE / 2 + SIDE / 3)] > 0.5f);
+    relume_image_destroy(&shown[0]);
+    relume_image_destroy(&shown[1]);
+    relume_image_destroy(&map);
+    objects_drawer_destroy(&t);
+    relume_objects_destroy(&o);
+}
+
 // ---------------------------------------------------------------- panoramas
 
 // Walls at other distances in each direction, of the colour of the direction.
@@ -294,6 +325,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(environments_are_reflected_as_by_the_library),
+        cmocka_unit_test(another_environment_in_its_place_is_shown),
         cmocka_unit_test(panoramas_are_reflected_as_by_the_library),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);

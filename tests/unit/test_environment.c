@@ -364,16 +364,31 @@ static void test_a_small_sun_is_one_light(void **state)
     relume_image_destroy(&map);
 }
 
+// Equal maps have equal numbers wherever they lie; another value or shape has another.
+static void test_fingerprints(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{8, 4}, {8, 4}, {4, 8}, {8, 4}};
+    uint64_t got[4];
+    for (int i = 0; i < 4; i++) {
+        struct relume_image map = map_of(sizes[i][0], sizes[i][1], 0.5f);
+        map.data[95] += i == 3 ? 0.01f : 0;
+        relume_environment *e = create(&map);
+        got[i] = relume_environment_fingerprint(e);
+        relume_environment_destroy(&e);
+        relume_image_destroy(&map);
+    }
+    assert_true(got[0] == got[1]);
+    assert_true(got[0] != got[2] && got[0] != got[3] && got[2] != got[3]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_solid_angles),
-        cmocka_unit_test(test_directions),
-        cmocka_unit_test(test_oddities),
-        cmocka_unit_test(test_weights),
-        cmocka_unit_test(test_uniform_sky),
-        cmocka_unit_test(test_sampling),
-        cmocka_unit_test(test_a_small_sun_is_one_light),
+        cmocka_unit_test(test_solid_angles), cmocka_unit_test(test_directions),
+        cmocka_unit_test(test_oddities),     cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_uniform_sky),  cmocka_unit_test(test_sampling),
+        cmocka_unit_test(test_fingerprints), cmocka_unit_test(test_a_small_sun_is_one_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

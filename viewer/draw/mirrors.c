@@ -77,8 +77,9 @@ static relume_status need_program(struct program *program, const struct mirrors 
 
 static relume_status find_sky(GLuint *out, struct mirrors *m, const relume_environment *e)
 {
+    const uint64_t of = relume_environment_fingerprint(e);
     for (int i = 0; i < m->skies; i++)
-        if (m->sky[i].of == e) {
+        if (m->sky[i].of == of) {
             *out = m->sky[i].texture;
             return RELUME_OK;
         }
@@ -87,7 +88,7 @@ static relume_status find_sky(GLuint *out, struct mirrors *m, const relume_envir
         return RELUME_ENOMEM;
     const struct relume_image *map = relume_environment_map(e);
     m->sky = more;
-    more[m->skies].of = e;
+    more[m->skies].of = of;
     m->gl->GenTextures(1, &more[m->skies].texture);
     *out = more[m->skies].texture;
     light_uniforms_upload(m->gl, UNIT_VIEW, *out, GL_RGB32F, GL_RGB, map->width, map->height,

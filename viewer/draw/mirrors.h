@@ -16,7 +16,7 @@ struct mirror_panorama {
 
 // An environment map as a texture.
 struct mirror_sky {
-    const relume_environment *of;
+    uint64_t of;  // fingerprint of the environment
     GLuint texture;
 };
 

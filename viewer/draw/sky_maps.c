@@ -35,8 +35,9 @@ static void destroy(struct sky_map *map, const struct gl *gl)
 relume_status sky_maps_find(const struct sky_map **out, struct sky_maps *maps,
                             const struct relume_light *light, double rim)
 {
+    const uint64_t of = relume_environment_fingerprint(light->environment);
     for (*out = maps->map; *out; *out = (*out)->next)
-        if ((*out)->of == light->environment && (*out)->rim == rim)
+        if ((*out)->of == of && (*out)->rim == rim)
             return RELUME_OK;
     struct sky_map *map = calloc(1, sizeof *map);
     if (!map)
@@ -44,7 +45,7 @@ relume_status sky_maps_find(const struct sky_map **out, struct sky_maps *maps,
     const struct relume_light plain = {.kind = RELUME_LIGHT_ENVIRONMENT,
                                        .environment = light->environment,
                                        .rgb = {1.0f, 1.0f, 1.0f}};
-    map->of = light->environment;
+    map->of = of;
     map->rim = rim;
     relume_status status = relume_prefiltered_maps_create(
         &map->prefiltered, &plain, relume_prefiltered_maps_params(.log = maps->log, .rim = rim));

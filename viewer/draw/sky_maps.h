@@ -8,7 +8,7 @@
 #include <relume/btf_environment.h>
 
 struct sky_map {
-    const relume_environment *of;
+    uint64_t of;  // fingerprint of the environment
     double rim;
     relume_prefiltered_maps *prefiltered;
     GLuint texture;  // sky.glsl

@@ -252,46 +252,74 @@ static void every_control_says_what_it_is_for(void **state)
     panel_destroy(&panel);
 }
 
-// The list of lights is closed: "Edits" is the second row. Buttons wish for what the session does,
-// in words.
+// The list of lights is closed: "Edits" is the second row; below it one chooses an operation, each
+// with rows of its own. Buttons wish for what the session does, in words.
+static void check_wish(struct panel *panel, struct app *app, const struct panel_facts *facts,
+                       double x, double y, const char *words)
+{
+    (void)tell(panel, APP_MOVE, x, y);
+    assert_true(tell(panel, APP_PRESS, x, y));
+    assert_true(tell(panel, APP_RELEASE, x, y));
+    panel_build(panel, app, facts);
+    panel_build(panel, app, facts);
+    assert_int_equal(app->wish, words ? APP_WISH_EDIT : APP_WISH_NONE);
+    if (words)
+        assert_string_equal(app->spec, words);
+    app->wish = APP_WISH_NONE;
+}
+
+static void type_text(struct panel *panel, struct app *app, const struct panel_facts *facts,
+                      const char *text)
+{
+    for (; *text; text++) {
+        const struct app_event e = {.kind = APP_TEXT, .key = *text};
+        assert_true(panel_takes(panel, &e));
+    }
+    panel_build(panel, app, facts);
+}
+
 static void edits_are_wished_for(void **state)
 {
     (void)state;
     static const struct {
-        double x, y;
         const char *words;
-    } buttons[] = {
-        {108, 118, "roughness 1"},
-        {190, 118, "tint 1,1,1"},
-        {46, 187, "emboss \"a b.png\" height 0.02"},
-        {116, 187, "engrave \"a b.png\" height 0.02"},
-        {173, 187, "undo"},
-        {216, 187, "redo"},
+        int rows;
+        bool maps;
+    } edits[] = {
+        {"emboss \"a b.png\" height 0.02 at 0.5,0.5 size 1", 5, true},
+        {"engrave \"a b.png\" height 0.02 at 0.5,0.5 size 1", 5, true},
+        {"roughness 1", 3, true},
+        {"tint 1,1,1", 3, true},
+        {"channels GBR", 3, true},
+        {"swap 0,1", 3, false},
+        {"turn 90", 3, false},
+        {"add-material 0.5 r0 0.04 highlight 1,1,1", 5, true},
     };
-    const struct panel_facts facts = {.edits = "no edits", .edited_materials = 3};
-    OWNED_APP app = make_app();
-    struct panel *panel = make_panel(&app);
-    (void)click(panel, &app, 100, 26);
-    panel_build(panel, &app, &facts);
-    panel_build(panel, &app, &facts);
-    assert_true(walk(panel, &app, &facts, 306, 200) > 100);
-    for (int i = -1; i < (int)(sizeof buttons / sizeof *buttons); i++) {
-        const double x = i < 0 ? 60 : buttons[i].x, y = i < 0 ? 141 : buttons[i].y;
-        (void)tell(panel, APP_MOVE, x, y);
-        assert_true(tell(panel, APP_PRESS, x, y));
-        assert_true(tell(panel, APP_RELEASE, x, y));
+    for (int maps = 0; maps < 2; maps++) {
+        const struct panel_facts facts = {
+            .edits = "no edits", .edits_maps = maps, .edited_materials = maps ? 0 : 3};
+        OWNED_APP app = make_app();
+        struct panel *panel = make_panel(&app);
+        (void)click(panel, &app, 100, 26);
         panel_build(panel, &app, &facts);
-        for (const char *c = i < 0 ? "a b.png" : ""; *c; c++) {
-            const struct app_event e = {.kind = APP_TEXT, .key = *c};
-            assert_true(panel_takes(panel, &e));
+        panel_build(panel, &app, &facts);
+        check_wish(panel, &app, &facts, 60, 95, NULL);
+        type_text(panel, &app, &facts, "a b.png");
+        for (int i = 0, shown = 0; i < (int)(sizeof edits / sizeof *edits); i++) {
+            if (maps && !edits[i].maps)
+                continue;
+            // maps have no labels to choose
+            const bool labelled = !strstr(edits[i].words, "size") && i < 7 && i != 5;
+            const double buttons = 95 + 23 * (edits[i].rows - (maps && labelled));
+            check_wish(panel, &app, &facts, 100, 72, NULL);
+            check_wish(panel, &app, &facts, 60, 96 + 17 * shown++, NULL);
+            assert_true(walk(panel, &app, &facts, 306, 240) > 100);
+            check_wish(panel, &app, &facts, 36, buttons, edits[i].words);
+            check_wish(panel, &app, &facts, 88, buttons, "undo");
+            check_wish(panel, &app, &facts, 134, buttons, "redo");
         }
-        panel_build(panel, &app, &facts);
-        assert_int_equal(app.wish, i < 0 ? APP_WISH_NONE : APP_WISH_EDIT);
-        if (i >= 0)
-            assert_string_equal(app.spec, buttons[i].words);
-        app.wish = APP_WISH_NONE;
+        panel_destroy(&panel);
     }
-    panel_destroy(&panel);
 }
 
 static void every_window_says_what_it_is_for(void **state)

@@ -26,8 +26,9 @@ struct panel_facts {
     const size_t *material_bytes;
     int materials;
     const double *objects_ms;
-    const char *edits;        // of the g-BRDF that is shown, one a line; NULL: none can be ...
-    int edited_materials;     // ... and how many materials it has
+    const char *edits;        // of the g-BRDF or maps shown, one a line; NULL: none can be ...
+    bool edits_maps;          // ... of maps ...
+    int edited_materials;     // ... and how many materials a g-BRDF has
     const char *reflections;  // the file to save edited reflections to; NULL: there is no mirror
     const char *eye;          // what is known of the eye that looks, or NULL
     float range[2];           // of false colour, as it was drawn last

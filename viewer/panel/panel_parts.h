@@ -16,6 +16,18 @@ extern "C" {
 #include <string>
 #include <vector>
 
+// The next edit of a material, as it is being chosen. Labels are counted from 1; 0: all.
+struct panel_edit {
+    int operation;  // among those that can be done
+    char drawing[1024], mask[1024];
+    double height = 0.02, at[2] = {0.5, 0.5}, size = 1;
+    double factor = 1, degrees = 90, roughness = 0.5, r0 = 0.04;
+    float factors[3] = {1, 1, 1}, highlight[3] = {1, 1, 1}, colour[3] = {0.5f, 0.5f, 0.5f};
+    bool coloured;  // by `colour`
+    int order;      // of channels
+    int label, labels[2] = {1, 2};
+};
+
 struct panel {
     ImGuiContext *context;
     float scale;
@@ -30,13 +42,10 @@ struct panel {
     char spec[APP_SPEC];
     char environment[APP_SPEC];
     std::vector<panel_run> runs;
-    char path[APP_SPEC];                  // of a file to open
-    std::string browsed;                  // the folder that it is in
-    int listed;                           // the light that the list has scrolled to
-    double roughness = 1, relief = 0.02;  // of the next edit
-    float tint[3] = {1, 1, 1};
-    int label;  // that it is for, counted from 1; 0: all
-    char drawing[APP_SPEC];
+    char path[APP_SPEC];  // of a file to open
+    std::string browsed;  // the folder that it is in
+    int listed;           // the light that the list has scrolled to
+    panel_edit edit;
     char reflections[APP_SPEC];  // the file to save them to
 };
 

@@ -85,7 +85,7 @@ static relume_status look(double merit[2], const struct choice *c)
     const struct rate_target target = target_of_view(c->capture, c->p);
     const int views = relume_capture_manifest(c->capture)->views;
     const double header[2] = {header_bytes(c->coder[0], views), header_bytes(c->coder[1], views)};
-    return look_compare(merit, c->coder, c->capture, &target, header, c->encode);
+    return look_compare(merit, c->coder, c->capture, &target, header, CLEARLY_DB, c->encode);
 }
 
 // A number for each, which is 0 where it is another's to say.

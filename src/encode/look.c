@@ -14,7 +14,7 @@
 // windows across or down there are two that way.
 enum { WINDOW = 256, MANY_PLANES = 320, ONE_WINDOW = 3 };
 
-enum { STEPS = 2 };
+enum { FINE, COARSE, STEPS };
 static const int step[STEPS] = {20 * AV1_STEPS, 40 * AV1_STEPS};
 
 // What half the bytes cost: measured, within these bounds.
@@ -107,64 +107,113 @@ static relume_status judge(double *square, const struct look *l, const struct lo
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
+// Of a step by both coders.
 static relume_status add_window(struct points points[2], const relume_coder *const coder[2],
-                                const relume_capture *capture, const struct relume_rect *at,
+                                const relume_capture *capture, const struct relume_rect *at, int s,
                                 const struct relume_encode_params *encode)
 {
+    const struct av1_effort effort = {step[s], AV1_FAST};
     struct look look[2] = {{0}, {0}};
     relume_status status = look_at(&look[1], coder[1], capture, at, encode);
     if (!status)
         status = look_at(&look[0], coder[0], capture, at, encode);
-    for (int i = 1; i >= 0; i--)  // the pictures first, which the other is compared with
-        for (int s = 0; !status && s < STEPS; s++) {
-            const struct av1_effort effort = {step[s], AV1_FAST};
-            size_t bytes;
-            double square = 0.0;
-            status = lossy_try(look[i].before, look[i].after, &bytes, look[i].coefficients, at,
-                               &effort, encode->threads, encode->log);
-            if (!status)
-                status = judge(&square, &look[i], &look[1], at);
-            points[i].bytes[s] += (double)bytes;
-            points[i].square[s] += square;
-        }
+    for (int i = 1; !status && i >= 0;
+         i--) {  // the pictures first, which the other is compared with
+        size_t bytes;
+        double square = 0.0;
+        status = lossy_try(look[i].before, look[i].after, &bytes, look[i].coefficients, at, &effort,
+                           encode->threads, encode->log);
+        if (!status)
+            status = judge(&square, &look[i], &look[1], at);
+        points[i].bytes[s] += (double)bytes;
+        points[i].square[s] += square;
+    }
     look_away(&look[0]);
     look_away(&look[1]);
     return status;
 }
 
-// On the line through both points, in dB over the logarithm of the bytes.
-static double merit_of(const struct points *p, double windows, double scale,
+// The windows of the middle view.
+struct windows {
+    int width, height, across, down;
+    double scale;  // pixels of the view for each of theirs
+};
+
+static struct windows windows_of(const relume_coder *pictures, const relume_capture *capture)
+{
+    const int width = relume_capture_width(capture), height = relume_capture_height(capture);
+    const int side = relume_coder_info(pictures)->planes > MANY_PLANES ? WINDOW / 2 : WINDOW;
+    struct windows w = {smaller_of(side, width), smaller_of(side, height),
+                        windows_along(width, side), windows_along(height, side), 0.0};
+    w.scale = (double)width * height / ((double)w.width * w.height * w.across * w.down);
+    return w;
+}
+
+static relume_status add_windows(struct points points[2], const struct windows *w,
+                                 const relume_coder *const coder[2], const relume_capture *capture,
+                                 int s, const struct relume_encode_params *encode)
+{
+    const int width = relume_capture_width(capture), height = relume_capture_height(capture);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < w->across * w->down; i++) {
+        struct relume_rect at = {.width = w->width, .height = w->height};
+        at.left = begin_of(i % w->across, w->across, width, w->width);
+        at.top = begin_of(i / w->across, w->down, height, w->height) / BAND_ROWS * BAND_ROWS;
+        status = add_window(points, coder, capture, &at, s, encode);
+    }
+    return status;
+}
+
+// On a line through the coarse point, of so many dB for twice the bytes.
+static double merit_of(const struct points *p, const struct windows *w, double slope,
                        const struct rate_target *target, double header)
 {
-    const double fine = decibels(p->square[0] / windows), coarse = decibels(p->square[1] / windows);
-    const double bytes = scale * p->bytes[1], left = fmax(target->bytes - header, 1.0);
-    const double each = (fine - coarse) / fmax(log2(p->bytes[0] / p->bytes[1]), 1e-3);
-    const double slope = fmin(fmax(each, LEAST_SLOPE), MOST_SLOPE);
+    const double coarse = decibels(p->square[COARSE] / (w->across * w->down));
+    const double bytes = w->scale * p->bytes[COARSE], left = fmax(target->bytes - header, 1.0);
     return target->psnr_db > 0.0
                ? rate_merit_of(target->psnr_db, bytes * exp2((target->psnr_db - coarse) / slope),
                                target, header)
                : coarse + slope * log2(left / bytes);
 }
 
+// Of the line through both points.
+static double slope_of(const struct points *p)
+{
+    const double dB = decibels(p->square[FINE]) - decibels(p->square[COARSE]);
+    const double each = dB / fmax(log2(p->bytes[FINE] / p->bytes[COARSE]), 1e-3);
+    return fmin(fmax(each, LEAST_SLOPE), MOST_SLOPE);
+}
+
+// Whether one is better than the other by more than `clearly` whatever the slopes are; then the
+// least of its merit and the most of the other's.
+static bool is_clear(double merit[2], const struct points points[2], const struct windows *w,
+                     const struct rate_target *target, const double header[2], double clearly)
+{
+    double least[2], most[2];
+    for (int i = 0; i < 2; i++) {
+        const double flat = merit_of(&points[i], w, LEAST_SLOPE, target, header[i]);
+        const double steep = merit_of(&points[i], w, MOST_SLOPE, target, header[i]);
+        least[i] = fmin(flat, steep);
+        most[i] = fmax(flat, steep);
+    }
+    const int better = least[1] > least[0];
+    merit[better] = least[better];
+    merit[!better] = most[!better];
+    return merit[better] > merit[!better] + clearly;
+}
+
 relume_status look_compare(double merit[2], const relume_coder *const coder[2],
                            const relume_capture *capture, const struct rate_target *target,
-                           const double header[2], const struct relume_encode_params *encode)
+                           const double header[2], double clearly,
+                           const struct relume_encode_params *encode)
 {
-    const int width = relume_capture_width(capture), height = relume_capture_height(capture);
-    const int side = relume_coder_info(coder[1])->planes > MANY_PLANES ? WINDOW / 2 : WINDOW;
-    const int across = windows_along(width, side), down = windows_along(height, side);
+    const struct windows w = windows_of(coder[1], capture);
     struct points points[2] = {{{0.0}, {0.0}}, {{0.0}, {0.0}}};
-    relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < across * down; i++) {
-        struct relume_rect at = {.width = smaller_of(side, width),
-                                 .height = smaller_of(side, height)};
-        at.left = begin_of(i % across, across, width, at.width);
-        at.top = begin_of(i / across, down, height, at.height) / BAND_ROWS * BAND_ROWS;
-        status = add_window(points, coder, capture, &at, encode);
-    }
-    const double pixels = (double)smaller_of(side, width) * smaller_of(side, height);
-    const double scale = (double)width * height / (pixels * across * down);
+    relume_status status = add_windows(points, &w, coder, capture, COARSE, encode);
+    if (status || is_clear(merit, points, &w, target, header, clearly))
+        return status;
+    status = add_windows(points, &w, coder, capture, FINE, encode);
     for (int i = 0; i < 2; i++)
-        merit[i] = merit_of(&points[i], across * down, scale, target, header[i]);
+        merit[i] = merit_of(&points[i], &w, slope_of(&points[i]), target, header[i]);
     return status;
 }

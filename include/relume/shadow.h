@@ -124,17 +124,15 @@ RELUME_RESULT relume_status relume_gloss_judge(struct relume_shadows_gain *out,
                                                const relume_capture *capture, bool display,
                                                const struct relume_shadows_params *params);
 
-// Lights whose shadows are traced: directional ones, and near ones but areas.
-RELUME_API bool relume_shadows_count(enum relume_light_kind kind);
-// Add the last two terms for each of these to a picture of linear light, which becomes black where
-// it would be less. The picture is the rectangle of the view at `left`, `top` of its
-// size, relit from codes of `coder` and `domain` (`display`: its curve). Highlights wander under
-// directional lights only. RELUME_ENOMEM.
+// Add the last two terms to a picture of one light, which is linear and becomes black where it
+// would be less. The picture is the rectangle of the view at `left`, `top` of its size, relit from
+// codes of `coder` and `domain` (`display`: its curve). Area lights are 4 x 4 patches; of
+// environments those of 64 lamps that are more than an even share are traced: suns and windows.
+// Highlights do not wander under near lights. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
                                                relume_shadows *shadows,
                                                const struct relume_codes *codes,
-                                               const struct relume_light *lights, int n,
-                                               int threads);
+                                               const struct relume_light *light, int threads);
 
 #ifdef __cplusplus
 }

@@ -425,11 +425,8 @@ relume_status renderer_need_disparity(relume_renderer *r, int view)
 relume_status renderer_shadows(relume_shadows **out, relume_renderer *r, int view)
 {
     struct kept *k = &r->kept[view];
-    bool some = false;
-    for (int i = 0; i < r->light_count; i++)
-        some |= relume_shadows_count(r->lights[i].kind);
     *out = NULL;
-    if (!some || !(r->info->has_shadow || r->info->has_gloss))
+    if (!(r->info->has_shadow || r->info->has_gloss))
         return RELUME_OK;
     const relume_status status =
         k->shadows ? RELUME_OK : relume_pack_shadows(&k->shadows, r->pack, view);

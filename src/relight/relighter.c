@@ -166,17 +166,37 @@ static relume_status prepare(struct relume_relight_params *p, relume_relighter *
     return status;
 }
 
+// What is added to a light's picture ends where that is black: lights are shown one by one.
+static relume_status relight_each(struct relume_image *out, relume_relighter *r,
+                                  const struct relume_relit *relit)
+{
+    struct relume_relit one = *relit;
+    one.count = 1;
+    relume_status status = relume_relighter_relight(out, r, &one);
+    while (!status && ++one.lights < relit->lights + relit->count) {
+        struct relume_image image = {0};
+        status = relume_relighter_relight(&image, r, &one);
+        const size_t n = 3 * (size_t)out->width * (size_t)out->height;
+        for (size_t i = 0; !status && i < n; i++)
+            out->data[i] += image.data[i];
+        relume_image_destroy(&image);
+    }
+    return status;
+}
+
 relume_status relume_relighter_relight(struct relume_image *out, relume_relighter *r,
                                        const struct relume_relit *relit)
 {
     struct relume_relight_params p;
+    if (relit->shadows && relit->count > 1)
+        return relight_each(out, r, relit);
     relume_status status = prepare(&p, r, relit);
     if (!status)
         status = relume_relight(out, relit->codes, relit->lights, relit->count, &p);
-    return status || !relit->shadows
+    return status || !relit->shadows || !relit->count
                ? status
                : relume_shadows_add(out, relit->left, relit->top, relit->shadows, relit->codes,
-                                    relit->lights, relit->count, r->params.threads);
+                                    relit->lights, r->params.threads);
 }
 
 static relume_status code_shadows(uint8_t *out, relume_relighter *r,

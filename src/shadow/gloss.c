@@ -48,7 +48,7 @@ void gloss_wanders(float rgb[3], const float *pixel, const struct gloss_light *l
 }
 
 struct adding {
-    struct relume_image *picture;
+    struct relume_image *more;
     int left, top;
     const struct relume_image *model;
     struct gloss_light light;
@@ -59,11 +59,11 @@ static void add_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct adding *a = context;
-    const size_t width = (size_t)a->picture->width;
+    const size_t width = (size_t)a->more->width;
     const float *pixel =
         a->model->data + RELUME_GLOSS_CHANNELS *
                              (((size_t)a->top + row) * (size_t)a->model->width + (size_t)a->left);
-    float *out = a->picture->data + 3 * row * width;
+    float *out = a->more->data + 3 * row * width;
     for (size_t x = 0; x < width; x++, out += 3, pixel += RELUME_GLOSS_CHANNELS) {
         const float share = pixel[RELUME_GLOSS_SHARE];
         float more[3];
@@ -71,7 +71,7 @@ static void add_row(void *context, size_t row, int worker)
             continue;
         gloss_wanders(more, pixel, &a->light);
         for (int c = 0; c < 3; c++)
-            out[c] = fmaxf(out[c] + a->rgb[c] * share * more[c], fminf(out[c], 0.0f));
+            out[c] += a->rgb[c] * share * more[c];
     }
 }
 
@@ -86,26 +86,27 @@ static relume_status know(relume_coder **out, const struct relume_coder_info *in
     return relume_coder_create(out, relume_basis_find("table"), info->directions, info->lights, &p);
 }
 
-relume_status gloss_add(struct relume_image *picture, int left, int top,
-                        const struct relume_image *model, const struct relume_codes *codes,
-                        const struct relume_light *light, int threads)
+relume_status gloss_add(struct relume_image *more, int left, int top,
+                        const struct relume_image *model, const relume_coder *coder,
+                        const struct relume_transfer *display, const struct relume_light *light,
+                        int threads)
 {
-    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    const struct relume_coder_info *info = relume_coder_info(coder);
     relume_coder *between = NULL;
     float *weights = mem_array(3 * (size_t)info->lights, sizeof *weights), constant[3];
-    struct adding a = {.picture = picture, .left = left, .top = top, .model = model};
+    struct adding a = {.more = more, .left = left, .top = top, .model = model};
     const float share =
-        (float)relume_coder_clamp(&a.light.light, codes->coder, vec3_unit(light->direction));
+        (float)relume_coder_clamp(&a.light.light, coder, vec3_unit(light->direction));
     relume_status status = weights ? know(&between, info) : RELUME_ENOMEM;
     if (!status) {
         relume_coder_weights(between, a.light.light, weights, constant);
         a.light.captured = info->lights;
         a.light.from = info->directions;
         a.light.weight = weights;
-        a.light.display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL;
+        a.light.display = display;
         for (int c = 0; c < 3; c++)
             a.rgb[c] = share * light->rgb[c];
-        thread_for(threads, (size_t)picture->height, add_row, &a);
+        thread_for(threads, (size_t)more->height, add_row, &a);
     }
     relume_coder_destroy(&between);
     mem_free(weights);

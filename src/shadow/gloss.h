@@ -27,9 +27,10 @@ struct gloss_light {
 };
 void gloss_wanders(float rgb[3], const float *pixel, const struct gloss_light *l);
 
-// What relume_shadows_add does for one directional light.
-relume_status gloss_add(struct relume_image *picture, int left, int top,
-                        const struct relume_image *model, const struct relume_codes *codes,
-                        const struct relume_light *light, int threads);
+// What relume_shadows_add adds for a directional light.
+relume_status gloss_add(struct relume_image *more, int left, int top,
+                        const struct relume_image *model, const relume_coder *coder,
+                        const struct relume_transfer *display, const struct relume_light *light,
+                        int threads);
 
 #endif

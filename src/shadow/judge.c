@@ -183,7 +183,7 @@ static relume_status compare(struct judging *j, struct met *m)
     }
     struct relume_image *guess = &m->guess[j->gloss ? CHORD : DELAUNAY];
     const relume_status status =
-        relume_shadows_add(guess, 0, 0, j->shadows, &j->codes, &m->lamp, 1, j->p->threads);
+        relume_shadows_add(guess, 0, 0, j->shadows, &j->codes, &m->lamp, j->p->threads);
     if (!status)
         take_error(j, COMPARED, guess, &m->truth);
     return status;

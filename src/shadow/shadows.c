@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/luminance.h"
 
 #include <math.h>
 #include <string.h>
@@ -186,7 +187,7 @@ static const float SHARE = 1.0f / RELUME_SHADOW_REACHED;
 
 struct adding {
     const relume_shadows *s;
-    struct relume_image *picture;
+    struct relume_image *more;  // what is added, of the rectangle
     struct relume_rect rect;
     vec3 light;
     uint8_t *arrives;  // of the light, in the rectangle
@@ -199,7 +200,7 @@ struct adding {
 };
 
 // `lit` and `known` are what the matte surface shows under the light and under those around it.
-static void add_pixel(float *out, const struct adding *a, const float *colour, float lit,
+static void add_pixel(float *more, const struct adding *a, const float *colour, float lit,
                       const float known[AROUND])
 {
     for (int c = 0; c < 3; c++) {
@@ -210,8 +211,7 @@ static void add_pixel(float *out, const struct adding *a, const float *colour, f
                                    : colour[c] * known[i]);
         if (a->display)
             between = relume_transfer_decode(*a->display, between);
-        const float sum = out[c] + a->rgb[c] * (colour[c] * lit - between);
-        out[c] = fmaxf(sum, fminf(out[c], 0.0f));
+        more[c] += a->rgb[c] * (colour[c] * lit - between);
     }
 }
 
@@ -231,15 +231,15 @@ static void add_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct adding *a = context;
-    float *out = a->picture->data + 3 * row * (size_t)a->picture->width, known[AROUND];
-    for (int i = 0; i < a->rect.width; i++, out += 3) {
+    float *more = a->more->data + 3 * row * (size_t)a->more->width, known[AROUND];
+    for (int i = 0; i < a->rect.width; i++, more += 3) {
         const size_t pixel = pixel_at(a, row, i);
         const float *matte = a->s->matte + MATTE * pixel;
         if (!is_seen(a->s, pixel))
             continue;
         for (int k = 0; k < a->around; k++)
             known[k] = SHARE * (float)a->reached[k][pixel] * shadows_matte(matte, a->captured[k]);
-        add_pixel(out, a, matte,
+        add_pixel(more, a, matte,
                   SHARE * (float)a->arrives[row * (size_t)a->rect.width + (size_t)i] *
                       shadows_matte(matte, a->light),
                   known);
@@ -311,12 +311,25 @@ static relume_status add_distant(struct adding *a, relume_shadows *s, int thread
 
 // ---------------------------------------------------------------- near lights
 
+enum { MOST_SIDE = 4 };  // of an area light's patches
+
 // Every pixel has a direction of its own, and captured lights of its own around it.
 struct nearing {
     struct adding all;
     const struct relume_light *light;
+    struct relume_light_patch patch[MOST_SIDE * MOST_SIDE];
+    int patches;                // 0: the light shines from its position
     const relume_coder *coder;  // of the codes
-    float *weights;             // [workers][3][lights]
+    int lights;                 // that were captured
+    float *room;                // [workers][4][lights]: weights of three colours, what is known
+};
+
+// One pixel, and one direction that light comes from.
+struct near_pixel {
+    int x, y;
+    size_t pixel;
+    vec3 point, towards;  // world
+    double distance;
 };
 
 static float quarter_share(const struct stage *s, int x, int y, vec3 direction, double distance)
@@ -324,103 +337,183 @@ static float quarter_share(const struct stage *s, int x, int y, vec3 direction, 
     return 0.25f * (float)quarters_reached(s, x, y, stage_turn(s, direction), distance);
 }
 
-// What the captured lights around a->light show; into `a` and known[AROUND].
-static void know_around(struct adding *a, float known[AROUND], float *weights, size_t pixel)
+// What captured lights show of a pixel, each of which is asked once: NAN, not yet.
+static float know(const struct adding *a, const struct near_pixel *p, int light, float *known)
 {
-    const struct stage *s = &a->s->stage;
-    const struct relume_coder_info *info = relume_coder_info(a->s->between);
-    const int x = (int)(pixel % (size_t)s->width), y = (int)(pixel / (size_t)s->width);
-    float constant[3];
-    relume_coder_weights(a->s->between, a->light, weights, constant);
+    const vec3 from = relume_coder_info(a->s->between)->directions[light];
+    if (isnan(known[light]))
+        known[light] = quarter_share(&a->s->stage, p->x, p->y, from, INFINITY) *
+                       shadows_matte(a->s->matte + MATTE * p->pixel, from);
+    return known[light];
+}
+
+// What the captured lights around a->light show; into `a` and around[AROUND].
+static void know_around(struct adding *a, float around[AROUND], const struct nearing *n,
+                        const struct near_pixel *p, float *room)
+{
+    float constant[3], *known = room + 3 * (size_t)n->lights;
+    relume_coder_weights(a->s->between, a->light, room, constant);
     a->around = 0;
-    for (int i = 0; i < info->lights && a->around < AROUND; i++)
-        if (weights[i] != 0.0f) {
-            known[a->around] = quarter_share(s, x, y, info->directions[i], INFINITY) *
-                               shadows_matte(a->s->matte + MATTE * pixel, info->directions[i]);
-            a->weight[a->around++] = weights[i];
+    for (int i = 0; i < n->lights && a->around < AROUND; i++)
+        if (room[i] != 0.0f) {
+            around[a->around] = know(a, p, i, known);
+            a->weight[a->around++] = room[i];
         }
+}
+
+// Patches are many: a ray each, from another quarter of the pixel than those beside it.
+static float near_share(const struct nearing *n, const struct near_pixel *p, int patch)
+{
+    const struct stage *s = &n->all.s->stage;
+    vec3 from;
+    if (!n->patches)
+        return quarter_share(s, p->x, p->y, p->towards, p->distance);
+    const int quarter = (patch + patch / MOST_SIDE) & 3;
+    return !stage_point(&from, s, p->x + (quarter & 1 ? 0.75 : 0.25),
+                        p->y + (quarter & 2 ? 0.75 : 0.25)) ||
+                   stage_reaches(s, from, stage_turn(s, p->towards), p->distance)
+               ? 1.0f
+               : 0.0f;
+}
+
+static void add_near_pixel(float *more, struct adding *a, const struct nearing *n,
+                           struct near_pixel *p, float *room)
+{
+    const float *matte = a->s->matte + MATTE * p->pixel;
+    float around[AROUND];
+    for (int i = 0; i < n->lights; i++)
+        room[3 * n->lights + i] = NAN;
+    for (int k = 0; k < (n->patches ? n->patches : 1); k++) {
+        if (!(n->patches ? relume_light_patch_at(&p->towards, a->rgb, &n->patch[k], p->point)
+                         : relume_light_at(&p->towards, a->rgb, n->light, p->point)))
+            continue;
+        const float share = (float)relume_coder_clamp(&a->light, n->coder, p->towards);
+        for (int c = 0; c < 3; c++)
+            a->rgb[c] *= share;
+        know_around(a, around, n, p, room);
+        p->distance =
+            vec3_length(vec3_sub(n->patches ? n->patch[k].position : n->light->position, p->point));
+        add_pixel(more, a, matte, near_share(n, p, k) * shadows_matte(matte, a->light), around);
+    }
 }
 
 static void add_near_row(void *context, size_t row, int worker)
 {
     const struct nearing *n = context;
-    const struct stage *s = &n->all.s->stage;
     struct adding a = n->all;
-    float *weights =
-        n->weights + 3 * (size_t)worker * (size_t)relume_coder_info(a.s->between)->lights;
-    float *out = a.picture->data + 3 * row * (size_t)a.picture->width, known[AROUND];
-    for (int i = 0; i < a.rect.width; i++, out += 3) {
-        const size_t pixel = pixel_at(&a, row, i);
-        const float *matte = a.s->matte + MATTE * pixel;
-        const int x = a.rect.left + i, y = a.rect.top + (int)row;
-        vec3 point, towards;
-        if (!is_seen(a.s, pixel) || !stage_point(&point, s, x + 0.5, y + 0.5))
+    float *room = n->room + 4 * (size_t)worker * (size_t)n->lights;
+    float *more = a.more->data + 3 * row * (size_t)a.more->width;
+    for (int i = 0; i < a.rect.width; i++, more += 3) {
+        struct near_pixel p = {
+            .x = a.rect.left + i, .y = a.rect.top + (int)row, .pixel = pixel_at(&a, row, i)};
+        vec3 point;
+        if (!is_seen(a.s, p.pixel) || !stage_point(&point, &a.s->stage, p.x + 0.5, p.y + 0.5))
             continue;
-        point = stage_world(s, point);
-        if (!relume_light_at(&towards, a.rgb, n->light, point))
-            continue;
-        const float share = (float)relume_coder_clamp(&a.light, n->coder, towards);
-        for (int c = 0; c < 3; c++)
-            a.rgb[c] *= share;
-        know_around(&a, known, weights, pixel);
-        const double distance = vec3_length(vec3_sub(n->light->position, point));
-        add_pixel(out, &a, matte,
-                  quarter_share(s, x, y, towards, distance) * shadows_matte(matte, a.light), known);
+        p.point = stage_world(&a.s->stage, point);
+        add_near_pixel(more, &a, n, &p, room);
     }
 }
 
 static relume_status add_near(const struct adding *a, const struct relume_light *light,
                               const relume_coder *coder, int threads)
 {
-    struct nearing n = {.all = *a, .light = light, .coder = coder};
-    const size_t lights = (size_t)relume_coder_info(a->s->between)->lights;
-    n.weights = mem_array((size_t)thread_count(threads) * 3, lights * sizeof *n.weights);
-    if (!n.weights)
+    struct nearing n = {.all = *a,
+                        .light = light,
+                        .coder = coder,
+                        .lights = relume_coder_info(a->s->between)->lights};
+    if (light->kind == RELUME_LIGHT_AREA) {
+        relume_light_patches(n.patch, light, MOST_SIDE);
+        n.patches = MOST_SIDE * MOST_SIDE;
+    }
+    n.room = mem_array((size_t)thread_count(threads) * 4, (size_t)n.lights * sizeof *n.room);
+    if (!n.room)
         return RELUME_ENOMEM;
     thread_for(threads, (size_t)a->rect.height, add_near_row, &n);
-    mem_free(n.weights);
+    mem_free(n.room);
     return RELUME_OK;
 }
 
-static relume_status add_gloss(struct relume_image *picture, int left, int top,
-                               const relume_shadows *s, const struct relume_codes *codes,
-                               const struct relume_light *lights, int n, int threads)
+// ---------------------------------------------------------------- a light
+
+static const float MORE = 1.01f;  // than an even share, rounding aside
+enum { LAMPS = 64 };  // that an environment is taken for
+
+static float luminance_of(const struct relume_light *light)
 {
-    relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < n; i++)
-        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL)
-            status = gloss_add(picture, left, top, &s->gloss, codes, &lights[i], threads);
+    return luminance_709f(light->rgb);
+}
+
+// Of an environment's lamps those that are more than an even share come first: suns and windows,
+// whose shadows have edges. How many they are.
+static relume_status find_suns(struct relume_light lamp[LAMPS], int *suns,
+                               const struct relume_light *environment,
+                               const struct relume_coder_info *info)
+{
+    const relume_status status = relume_environment_sample(lamp, LAMPS, environment, 0);
+    float total = 0.0f;
+    *suns = 0;
+    for (int i = 0; !status && i < LAMPS; i++)
+        total += luminance_of(&lamp[i]);
+    for (int i = 0; !status && i < LAMPS; i++)
+        if (luminance_of(&lamp[i]) > MORE * total / LAMPS &&
+            !(info->hemispherical && pole_from_world(lamp[i].direction, info->pole_y).z < 0.0))
+            lamp[(*suns)++] = lamp[i];
     return status;
 }
 
-bool relume_shadows_count(enum relume_light_kind kind)
+static relume_status add_lamp(struct adding *a, relume_shadows *s, const relume_coder *coder,
+                              const struct relume_light *lamp, int threads)
 {
-    return kind == RELUME_LIGHT_DIRECTIONAL ||
-           (relume_light_is_near(kind) && kind != RELUME_LIGHT_AREA);
+    if (s->gloss.data)
+        return gloss_add(a->more, a->rect.left, a->rect.top, &s->gloss, coder, a->display, lamp,
+                         threads);
+    const float share = (float)relume_coder_clamp(&a->light, coder, vec3_unit(lamp->direction));
+    for (int c = 0; c < 3; c++)
+        a->rgb[c] = share * lamp->rgb[c];
+    a->around = 0;
+    return add_distant(a, s, threads);
+}
+
+// An environment is relit as a sum of the captured lights, whatever the domain of the codes.
+static relume_status add_environment(struct adding *a, relume_shadows *s, const relume_coder *coder,
+                                     const struct relume_light *light, int threads)
+{
+    struct relume_light lamp[LAMPS];
+    int suns = 0;
+    relume_status status = find_suns(lamp, &suns, light, relume_coder_info(coder));
+    a->display = NULL;
+    for (int i = 0; !status && i < suns; i++)
+        status = add_lamp(a, s, coder, &lamp[i], threads);
+    return status;
+}
+
+static relume_status add_light(struct adding *a, relume_shadows *s, const relume_coder *coder,
+                               const struct relume_light *light, int threads)
+{
+    if (light->kind == RELUME_LIGHT_DIRECTIONAL)
+        return add_lamp(a, s, coder, light, threads);
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        return add_environment(a, s, coder, light, threads);
+    return s->gloss.data ? RELUME_OK : add_near(a, light, coder, threads);
 }
 
 relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
                                  relume_shadows *shadows, const struct relume_codes *codes,
-                                 const struct relume_light *lights, int n, int threads)
+                                 const struct relume_light *light, int threads)
 {
-    if (shadows->gloss.data)
-        return add_gloss(picture, left, top, shadows, codes, lights, n, threads);
-    relume_status status = need_between(shadows, relume_coder_info(codes->coder));
-    for (int i = 0; !status && i < n; i++) {
-        struct adding a = {
-            .s = shadows, .picture = picture, .rect = {left, top, picture->width, picture->height}};
-        a.display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL;
-        if (!relume_shadows_count(lights[i].kind))
-            continue;
-        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL) {
-            status = add_near(&a, &lights[i], codes->coder, threads);
-            continue;
-        }
-        const float share =
-            (float)relume_coder_clamp(&a.light, codes->coder, vec3_unit(lights[i].direction));
-        for (int c = 0; c < 3; c++)
-            a.rgb[c] = share * lights[i].rgb[c];
-        status = add_distant(&a, shadows, threads);
-    }
+    const size_t n = 3 * (size_t)picture->width * (size_t)picture->height;
+    struct relume_image more;
+    relume_status status = relume_image_create(&more, picture->width, picture->height, 3);
+    struct adding a = {.s = shadows,
+                       .more = &more,
+                       .rect = {left, top, picture->width, picture->height},
+                       .display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL};
+    if (!status && !shadows->gloss.data)
+        status = need_between(shadows, relume_coder_info(codes->coder));
+    if (!status)
+        status = add_light(&a, shadows, codes->coder, light, threads);
+    for (size_t i = 0; !status && i < n; i++)
+        picture->data[i] = fmaxf(picture->data[i] + more.data[i], fminf(picture->data[i], 0.0f));
+    relume_image_destroy(&more);
     return status;
 }

@@ -410,6 +410,125 @@ static void near_lights_throw_shadows(void **state)
     scene_close(&s);
 }
 
+// With traced shadows a file shows what is wanted better, by so many dB, than without.
+static void compare_files(const struct relume_light *light, const float *want, double least)
+{
+    struct scene s;
+    struct relume_image got[2];
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
+    scene_open(&s);
+    for (int k = 0; k < 2; k++) {
+        struct file file;
+        encode(&s, "soft.exr", !k);
+        file_open(&file, "soft.exr");
+        CHECK_OK(relume_renderer_set_lights(file.renderer, light, 1));
+        CHECK_OK(relume_renderer_frame(&got[k], file.renderer, &camera));
+        file_close(&file);
+    }
+    assert_true(psnr_of(&got[0], want) > psnr_of(&got[1], want) + least);
+    for (int k = 0; k < 2; k++)
+        relume_image_destroy(&got[k]);
+    scene_close(&s);
+}
+
+// An area is what many lamps all over it are. 3 dB is half of the error's energy.
+static void areas_throw_soft_shadows(void **state)
+{
+    (void)state;
+    enum { EVERY = 16 };
+    static const float floor_colour[3] = {0.6f, 0.5f, 0.4f}, disc_colour[3] = {0.2f, 0.4f, 0.8f};
+    static float want[3 * PIXELS];
+    const struct relume_light area = {.kind = RELUME_LIGHT_AREA,
+                                      .position = {0.5, -0.3, 1.7},
+                                      .u = {0.1, 0.0, 0.0},
+                                      .v = {0.0, -0.1, 0.0},
+                                      .rgb = {150.0f, 150.0f, 150.0f}};
+    struct relume_light_patch patch[EVERY * EVERY];
+    relume_light_patches(patch, &area, EVERY);
+    for (int i = 0; i < PIXELS; i++) {
+        const double x = across(i % SIDE), y = -across(i / SIDE);
+        const bool disc = is_disc(x, y);
+        const vec3 p = vec3_of(x, y, disc ? HEIGHT : 0.0);
+        double sum = 0.0;
+        for (int k = 0; k < EVERY * EVERY; k++) {
+            vec3 to;
+            float rgb[3];
+            if (relume_light_patch_at(&to, rgb, &patch[k], p) &&
+                (disc || !is_disc(x + HEIGHT * to.x / to.z, y + HEIGHT * to.y / to.z)))
+                sum += (double)rgb[0] * to.z;
+        }
+        for (int c = 0; c < 3; c++)
+            want[3 * i + c] = (float)sum * (disc ? disc_colour : floor_colour)[c];
+    }
+    compare_files(&area, want, 3.0);
+}
+
+// A sun in a black sky is some distant lights beside each other.
+static void suns_throw_shadows(void **state)
+{
+    (void)state;
+    enum { WIDE = 64, HIGH = 32, SUN = 20 * WIDE + 11 };
+    static float want[3 * PIXELS], map[3 * WIDE * HIGH];
+    const struct relume_image image = {WIDE, HIGH, 3, .data = map};
+    for (int c = 0; c < 3; c++)
+        map[3 * SUN + c] = 400.0f;
+    relume_environment *environment;
+    CHECK_OK(relume_environment_create(&environment, &image, NULL));
+    int cells;
+    const struct relume_environment_cell *cell = relume_environment_cells(&cells, environment);
+    const struct relume_light light = {.kind = RELUME_LIGHT_ENVIRONMENT,
+                                       .environment = environment,
+                                       .rotate_deg = -30.0,
+                                       .rgb = {1.0f, 1.0f, 1.0f}};
+    for (int k = 0; k < cells; k++) {
+        static float shown[3 * PIXELS];
+        const vec3 from = relume_environment_turn(cell[k].direction, light.rotate_deg);
+        assert_true(from.z > 0.3);
+        show(shown, from);
+        for (int i = 0; i < 3 * PIXELS; i++)
+            want[i] += cell[k].rgb[0] * shown[i];
+    }
+    compare_files(&light, want, 3.0);
+    relume_environment_destroy(&environment);
+}
+
+// What is added to one light's picture ends where that is black: it takes nothing from another's.
+static void lights_are_the_sum_of_their_pictures(void **state)
+{
+    (void)state;
+    enum { N = 3 };
+    struct scene s;
+    struct file file;
+    struct relume_image all, one;
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
+    const struct relume_light light[N] = {
+        {.direction = light_at(2, MEET), .rgb = {1.0f, 0.5f, 0.2f}},
+        {.direction = light_at(7, MEET), .rgb = {0.3f, 0.9f, 1.0f}},
+        {.kind = RELUME_LIGHT_POINT,
+         .position = {0.5, -0.3, 1.7},
+         .nofall = true,
+         .rgb = {1.0f, 1.0f, 1.0f}}};
+    scene_open(&s);
+    encode(&s, "sum.exr", true);
+    file_open(&file, "sum.exr");
+    CHECK_OK(relume_renderer_set_lights(file.renderer, light, N));
+    CHECK_OK(relume_renderer_frame(&all, file.renderer, &camera));
+    for (int k = 0; k < N; k++) {
+        CHECK_OK(relume_renderer_set_lights(file.renderer, &light[k], 1));
+        CHECK_OK(relume_renderer_frame(&one, file.renderer, &camera));
+        for (int i = 0; i < 3 * PIXELS; i++) {
+            assert_true(one.data[i] >= -1e-6f);
+            all.data[i] -= one.data[i];
+        }
+        relume_image_destroy(&one);
+    }
+    for (int i = 0; i < 3 * PIXELS; i++)
+        CHECK_NEAR(all.data[i], 0.0, 1e-6);
+    relume_image_destroy(&all);
+    file_close(&file);
+    scene_close(&s);
+}
+
 // A rectangle is what the whole picture shows there, any number of threads makes the same.
 static void parts_and_threads_agree(void **state)
 {
@@ -435,8 +554,8 @@ static void parts_and_threads_agree(void **state)
         whole.data[i] = 1.0f;
     for (int i = 0; i < 3 * WIDE * HIGH; i++)
         part.data[i] = 1.0f;
-    CHECK_OK(relume_shadows_add(&whole, 0, 0, shadows, &codes, &light, 1, 3));
-    CHECK_OK(relume_shadows_add(&part, LEFT, TOP, shadows, &codes, &light, 1, 1));
+    CHECK_OK(relume_shadows_add(&whole, 0, 0, shadows, &codes, &light, 3));
+    CHECK_OK(relume_shadows_add(&part, LEFT, TOP, shadows, &codes, &light, 1));
     for (int y = 0; y < HIGH; y++)
         assert_memory_equal(part.data + 3 * y * WIDE, whole.data + 3 * ((TOP + y) * SIDE + LEFT),
                             3 * WIDE * sizeof *part.data);
@@ -702,6 +821,9 @@ int main(void)
         cmocka_unit_test(rays_go_through_slabs),
         cmocka_unit_test(a_file_shows_shadows_that_move),
         cmocka_unit_test(near_lights_throw_shadows),
+        cmocka_unit_test(areas_throw_soft_shadows),
+        cmocka_unit_test(suns_throw_shadows),
+        cmocka_unit_test(lights_are_the_sum_of_their_pictures),
         cmocka_unit_test(parts_and_threads_agree),
         cmocka_unit_test(lights_left_out_decide),
         cmocka_unit_test(far_background_is_background),

@@ -77,8 +77,9 @@ static relume_status set(struct pending *p, const struct given *g)
     if (!p->edit.operation)
         return usage_error("%s: comes after the operation that it is for", name);
     if (!takes(p->edit.operation, name + 2))
-        return usage_error("%s: --%s has no such thing; it is for the operation before it", name,
-                           relume_edit_operation_name(p->edit.operation));
+        return usage_error(
+            "%s: stands behind --%s, which takes none; give it behind what it is for", name,
+            relume_edit_operation_name(p->edit.operation));
     return relume_edit_set(&p->edit, name + 2, g->text, p->log);
 }
 

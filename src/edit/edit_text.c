@@ -65,8 +65,7 @@ relume_status relume_edit_set(struct relume_edit *edit, const char *parameter, c
     struct relume_edit tried = *edit;
     const bool read = read_value(p, parameter_of(p, &tried), text);
     if (!read || !parameter_is_good(p, &tried))
-        return log_fail(log, RELUME_EINVAL, "%s: %s: expected %s; found '%s'", o->name, parameter,
-                        p->form, text);
+        return edit_refuse(o, p, text, log);
     *edit = tried;
     return RELUME_OK;
 }

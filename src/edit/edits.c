@@ -52,8 +52,7 @@ relume_status relume_edits_add(relume_edits *edits, const struct relume_edit *ed
     const struct edit_parameter *fault = edit_fault(edit);
     struct relume_edit own = *edit;
     if (fault)
-        return log_fail(log, RELUME_EINVAL, "%s: %s; expected %s", edit->operation->name,
-                        fault->name, fault->form);
+        return edit_refuse(edit->operation, fault, NULL, log);
     if (edits->count - edits->undone == RELUME_EDIT_MOST)
         return log_fail(log, RELUME_EINVAL,
                         "a list holds at most %d edits; write a file with them "

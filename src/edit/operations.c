@@ -1,6 +1,7 @@
 // operations.c - what can be done to a material, and what it takes
 #include "edit/operations.h"
 
+#include "base/log.h"
 #include "edit/on_maps.h"
 
 #include <math.h>
@@ -45,7 +46,7 @@ static const struct edit_parameter
               .kind = PARAMETER_LABELS,
               .count = 2,
               .offset = offsetof(struct relume_edit, labels),
-              .form = "two labels, as 0,2"},
+              .form = "two different labels, as 0,2"},
     label = {.name = "label",
              .kind = PARAMETER_LABELS,
              .count = 1,
@@ -182,7 +183,7 @@ static bool labels_are_good(const struct edit_parameter *p, const int *v)
     for (int i = 0; i < p->count; i++)
         if (v[i] < 0 || v[i] >= GBRDF_MOST_MATERIALS)
             return false;
-    return true;
+    return p->count < 2 || v[0] != v[1];
 }
 
 static bool picture_is_good(const struct relume_image *image)
@@ -216,4 +217,13 @@ const struct edit_parameter *edit_fault(const struct relume_edit *edit)
             return p;
     }
     return NULL;
+}
+
+relume_status edit_refuse(const struct relume_edit_operation *o, const struct edit_parameter *p,
+                          const char *found, const struct relume_log *log)
+{
+    const bool other = strcmp(o->name, p->name) != 0;  // than what is named already
+    return log_fail(log, RELUME_EINVAL, "%s%s%s: expected %s%s%s%s", o->name, other ? ": " : "",
+                    other ? p->name : "", p->form, found ? "; found '" : "", found ? found : "",
+                    found ? "'" : "");
 }

@@ -44,6 +44,9 @@ static inline void *parameter_of(const struct edit_parameter *p, const struct re
 }
 // NULL, or the parameter whose value is missing or out of range.
 const struct edit_parameter *edit_fault(const struct relume_edit *edit);
+// RELUME_EINVAL with a sentence: what was expected of a parameter, and `found` unless that is NULL.
+relume_status edit_refuse(const struct relume_edit_operation *o, const struct edit_parameter *p,
+                          const char *found, const struct relume_log *log);
 bool parameter_is_good(const struct edit_parameter *p, const struct relume_edit *edit);
 // Whether an optional parameter has been set.
 bool parameter_given(const struct edit_parameter *p, const struct relume_edit *edit);

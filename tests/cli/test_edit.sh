@@ -56,11 +56,12 @@ refused() { # name, pattern, options...
     [ "$list" = "$(cat found.edits.json)" ] || not_ok "$name" 'the list has changed'
 }
 refused 'a parameter without an operation' 'height: comes after the operation' --height 0.1
-refused 'a parameter of another operation' 'height: --tint has no such thing' --tint 1,1,1 --height 0.1
+refused 'a parameter of another operation' 'height: stands behind --tint, which takes none' --tint 1,1,1 --height 0.1
 refused 'a number out of range' 'roughness: factor; expected|roughness: factor: expected 0.1 to 10; found .1e9.' --roughness 1e9
 refused 'no number' "tint: factors: expected R,G,B, each 0 to 16; found '1,red,1'" --tint 1,red,1
-refused 'channels' "channels: channels: expected three of R, G and B, as GBR; found 'RGBA'" --channels RGBA
-refused 'labels' "swap: labels: expected two labels" --swap 1
+refused 'channels' "^relume: channels: expected three of R, G and B, as GBR; found 'RGBA'" --channels RGBA
+refused 'labels' "swap: labels: expected two different labels" --swap 1
+refused 'a label for itself' "swap: labels: expected two different labels, as 0,2; found '0,0'" --swap 0,0
 expect_fail 'a label that is not there' 1 'edit 3, tint: there is no material 9; expected a label from 0 to 2' - "$RELUME" btf edit found.exr --tint 1,1,1 --label 9
 expect_fail 'no drawing' 1 'nothing.png: no such file' - "$RELUME" btf edit found.exr --emboss nothing.png
 expect_fail 'a relief too high' 1 'engrave: the relief becomes higher than one width' - "$RELUME" btf edit found.exr --engrave logo.png --height 1 --engrave logo.png --height 1

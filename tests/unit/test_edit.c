@@ -178,9 +178,8 @@ static void test_same(void **state)
         int times;
     } same[] = {
         {"roughness", "factor", "1", 1},    {"tint", "factors", "1,1,1", 1},
-        {"swap", "labels", "0,2", 2},       {"swap", "labels", "1,1", 1},
-        {"turn", "degrees", "360", 1},      {"channels", "channels", "RGB", 1},
-        {"channels", "channels", "GBR", 3},
+        {"swap", "labels", "0,2", 2},       {"turn", "degrees", "360", 1},
+        {"channels", "channels", "RGB", 1}, {"channels", "channels", "GBR", 3},
     };
     relume_btf_fitted *m = planted(SIDE);
     for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
@@ -234,7 +233,7 @@ static void test_mask(void **state)
 // What a texel of a plane sends back of light from `l`, by the midpoint rule over the hemisphere.
 static double sent_back(const struct gbrdf *g, double x, double y, vec3 l, int channel)
 {
-    enum { RINGS = TEST_SANITIZED ? 12 : 40, AROUND = 2 * RINGS };
+    enum { RINGS = 40, AROUND = 2 * RINGS };
     double sum = 0.0;
     for (int r = 0; r < RINGS; r++)
         for (int i = 0; i < AROUND; i++) {
@@ -267,15 +266,15 @@ static void test_energy(void **state)
     memset(maps.depth, 0, 16 * sizeof *maps.depth);
     for (size_t k = 0; k < sizeof extreme / sizeof *extreme; k++) {
         relume_btf_fitted *e = edited_times(m, &extreme[k], 1);
-        for (int i = 0; i < 8; i++) {
+        for (int i = 0; i < 8; i += TEST_SANITIZED ? 3 : 1) {
             const double theta = 0.18 * i;
             const vec3 l =
                 vec3_of(sin(theta) * cos(2.0 * i), sin(theta) * sin(2.0 * i), cos(theta));
             const vec3 v = vec3_unit(vec3_of(0.3, 0.2 - 0.1 * i, 0.8));
             float there[3], back[3];
-            // the sum over a coarse hemisphere of lobes as wide as one of its cells
+            // the midpoint rule, of lobes that may be as narrow as six of its cells
             const double sent = sent_back(e->prepared, i % 4 + 0.5, i / 4 + 0.5, l, i % 3);
-            assert_true(sent <= (TEST_SANITIZED ? 1.1 : 1.02));
+            assert_true(sent <= 1.02);
             gbrdf_evaluate(e->prepared, i % 4 + 0.5, i / 4 + 0.5, v, l, there);
             gbrdf_evaluate(e->prepared, i % 4 + 0.5, i / 4 + 0.5, l, v, back);
             for (int c = 0; c < 3; c++)
@@ -558,6 +557,8 @@ static void test_unfit(void **state)
     struct relume_edit odd = edit_of("tint", "factors", "1,1,1");
     relume_edits *edits = list_for(m);
     assert_int_equal(relume_edit_set(&odd, "factors", "1,2", NULL), RELUME_EINVAL);
+    struct relume_edit idle = edit_of("swap", "labels", "1,2");
+    assert_int_equal(relume_edit_set(&idle, "labels", "1,1", NULL), RELUME_EINVAL);
     assert_int_equal(relume_edit_set(&odd, "factors", "1,2,nan", NULL), RELUME_EINVAL);
     assert_int_equal(relume_edit_set(&odd, "height", "1", NULL), RELUME_EINVAL);
     CHECK_NEAR(odd.factors[1], 1.0, 0.0);

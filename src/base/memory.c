@@ -6,6 +6,7 @@
 #include "base/params.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -235,17 +236,25 @@ relume_status limits_picture(const struct relume_limits *limits, const char *pat
                           (unsigned long long)l.max_pixels);
 }
 
-uint64_t megabytes(uint64_t bytes)
+static uint64_t megabytes(uint64_t bytes)
 {
     return (bytes >> 20) + (bytes & ((1 << 20) - 1) ? 1 : 0);
+}
+
+struct memory_size memory_text(uint64_t bytes, uint64_t beside)
+{
+    struct memory_size size;
+    const bool alike = megabytes(bytes) == megabytes(beside);
+    snprintf(size.text, sizeof size.text, "%" PRIu64 " %s", alike ? bytes : megabytes(bytes),
+             alike ? "bytes" : "MB");
+    return size;
 }
 
 relume_status limits_memory(uint64_t bytes, const char *what, const struct relume_log *log)
 {
     const uint64_t most = limits_or_default(limits_of(NULL, log)).max_memory;
-    return bytes <= most ? RELUME_OK
-                         : log_fail(log, RELUME_ELIMIT,
-                                    "%s takes %llu MB; expected at most %llu MB (--max-memory)",
-                                    what, (unsigned long long)megabytes(bytes),
-                                    (unsigned long long)megabytes(most));
+    return bytes <= most
+               ? RELUME_OK
+               : log_fail(log, RELUME_ELIMIT, "%s takes %s; expected at most %s (--max-memory)",
+                          what, memory_text(bytes, most).text, memory_text(most, bytes).text);
 }

@@ -48,7 +48,10 @@ relume_status limits_picture(const struct relume_limits *limits, const char *pat
 // RELUME_ELIMIT with a sentence when `what` takes more bytes than one picture, view or model may by
 // the limits of the log's context.
 relume_status limits_memory(uint64_t bytes, const char *what, const struct relume_log *log);
-// MB of 2^20 bytes, rounded up.
-uint64_t megabytes(uint64_t bytes);
+// For people, in MB of 2^20 bytes, rounded up, unless `beside` would look the same: "12 MB".
+struct memory_size {
+    char text[32];
+};
+struct memory_size memory_text(uint64_t bytes, uint64_t beside);
 
 #endif

@@ -537,11 +537,10 @@ static relume_status check_bytes(const exr_file *file, const struct relume_limit
                             (unsigned long long)size);
         if (bytes > most && !part.tile)  // of tiles no more is read than what is asked for
             return log_fail(log, RELUME_ELIMIT,
-                            "%s: part %d of %d x %d pixels and %d channels takes %llu MB; expected "
-                            "at most %llu MB (--max-memory)",
+                            "%s: part %d of %d x %d pixels and %d channels takes %s; expected at "
+                            "most %s (--max-memory)",
                             file->path, i, part.width, part.height, part.channels,
-                            (unsigned long long)megabytes(bytes),
-                            (unsigned long long)megabytes(most));
+                            memory_text(bytes, most).text, memory_text(most, bytes).text);
     }
     return RELUME_OK;
 }

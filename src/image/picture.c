@@ -140,11 +140,11 @@ static relume_status check_size(const picture_reader *reader, const struct openi
             s->path, i->width, i->height, i->channels, (unsigned long long)s->look.bytes);
     if (bytes > most.max_memory)
         return log_fail(log, RELUME_ELIMIT,
-                        "%s: %d x %d pixels of %d channels are %llu MB; expected at most %llu MB "
+                        "%s: %d x %d pixels of %d channels are %s; expected at most %s "
                         "(--max-memory)",
                         s->path, i->width, i->height, i->channels,
-                        (unsigned long long)megabytes(bytes),
-                        (unsigned long long)megabytes(most.max_memory));
+                        memory_text(bytes, most.max_memory).text,
+                        memory_text(most.max_memory, bytes).text);
     return RELUME_OK;
 }
 

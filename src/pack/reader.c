@@ -115,11 +115,11 @@ static relume_status check_bytes(const relume_pack *p, const struct relume_rect 
     if (bytes <= p->limits.max_memory)
         return RELUME_OK;
     return log_fail(p->log, RELUME_ELIMIT,
-                    "%s: %d x %d pixels of %d planes take %llu MB; expected at most %llu MB "
+                    "%s: %d x %d pixels of %d planes take %s; expected at most %s "
                     "(--max-memory): ask for less of it (--size, --crop)",
                     p->path, rect->width, rect->height, (int)planes,
-                    (unsigned long long)megabytes(bytes),
-                    (unsigned long long)megabytes(p->limits.max_memory));
+                    memory_text(bytes, p->limits.max_memory).text,
+                    memory_text(p->limits.max_memory, bytes).text);
 }
 
 // From the file.

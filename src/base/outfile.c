@@ -171,6 +171,9 @@ static relume_status open_file(outfile *f, const char *path)
     f->dir = tree_parent(f->target);
     if (!f->dir)
         return RELUME_ENOMEM;
+    errno = EISDIR;
+    if (path_ends(path, "/"))
+        return fail(f, "cannot be written");
     const int descriptor = descriptor_of(path);
     if (descriptor >= 0 || tree_is_device(path))
         return open_device(f, descriptor);

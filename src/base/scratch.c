@@ -77,11 +77,13 @@ int scratch_open(const char *near)
 {
     if (!near || is_nowhere(near))
         return open_unnamed(scratch_folder());
-    char *folder = tree_parent(near);
+    char *target = tree_resolve(near);  // without slashes at its end
+    char *folder = target ? tree_parent(target) : NULL;
     const int fd = folder ? open_unnamed(folder) : -1;
-    if (!folder)
+    if (target && !folder)
         errno = ENOMEM;
     mem_free(folder);
+    mem_free(target);
     return fd;
 }
 

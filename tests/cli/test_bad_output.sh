@@ -53,6 +53,8 @@ expect_fail 'encode over the size limit at its end' 3 'l.exr: writing failed; Fi
 expect_fail 'synth over the size limit' 3 'File too large|cannot be written' stage \
     sh -c "ulimit -f 2; exec \"$RELUME\" synth box -o stage --size 64 --lights 2 --samples 1"
 echo kept >old.png
+expect_fail 'a folder for a file' 2 "expected the name of a file, as FILE.exr; found 'new/'" new "$RELUME" encode large -o new/
+expect_ok 'a folder with a slash at its end' - "$RELUME" export large.exr -o web/
 expect_fail 'a failing relight' 3 'old.png' - sh -c "ulimit -f 2; exec \"$RELUME\" relight large.exr -o old.png"
 if [ "$(cat old.png)" = kept ]; then ok 'keeps the file that was there'; else not_ok 'keeps the file that was there' 'it changed'; fi
 

@@ -33,6 +33,11 @@ expect_ok 'too little memory' 'box: between the lamps shadows fade; tracing them
 mkdir flat && sed 's/"depth": "[^"]*", //' box/capture.json >flat/capture.json && ln -s ../box/view00 flat/view00
 expect_fail 'no depth' 1 'flat: shadows cannot be traced; expected depth in every view' e.exr \
     "$RELUME" encode flat -o e.exr --shadows yes --allow-outside
+expect_ok 'highlights that are asked for come before shadows that are not' - "$RELUME" encode box -o shiny.exr --highlights yes
+check 'and no shadows are traced' has shiny.exr false
+"$RELUME" synth box -o few --size 32 --lights 12 --samples 1 -q
+expect_fail 'highlights are refused before shadows are traced' 1 'few: highlights cannot move; expected at least 16 lights' e.exr \
+    "$RELUME" encode few -o e.exr --highlights yes --shadows auto
 expect_fail 'left out' 1 'box: shadows cannot be traced; expected depth in every view' e.exr \
     "$RELUME" encode box -o e.exr --shadows yes --no-depth
 expect_fail 'another basis' 1 'box: shadows cannot be traced; expected basis pca, eigen or table' e.exr \

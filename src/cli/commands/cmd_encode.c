@@ -422,21 +422,31 @@ static relume_status try_highlights(const struct args *args, const relume_captur
     return RELUME_OK;
 }
 
+// Where they are asked for and cannot move.
+static relume_status refuse_highlights(const struct args *args, const relume_capture *capture,
+                                       const struct request *r)
+{
+    const char *why = r->highlights == WANDER_YES ? forbids_highlights(r, capture) : NULL;
+    return why ? say(args->log, RELUME_EUNFIT, "%s: highlights cannot move; expected %s", r->input,
+                     why)
+               : RELUME_OK;
+}
+
 static relume_status decide_highlights(const struct args *args, const relume_capture *capture,
                                        struct request *r, struct relume_image *model)
 {
     enum { LEAST_SIDE = 64 };  // where nobody asked: less is no photograph
     if (r->highlights == WANDER_NO)
         return RELUME_OK;
+    const relume_status refused = refuse_highlights(args, capture, r);
+    if (refused)
+        return refused;
     const char *why = forbids_highlights(r, capture);
     if (r->highlights == WANDER_DEFAULT &&
         (!r->decide || why || relume_capture_width(capture) < LEAST_SIDE ||
          relume_capture_height(capture) < LEAST_SIDE))
         return RELUME_OK;
     const bool display = relume_encode_domain(capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
-    if (r->highlights == WANDER_YES && why)
-        return say(args->log, RELUME_EUNFIT, "%s: highlights cannot move; expected %s", r->input,
-                   why);
     if (why) {
         announce(args, RELUME_NOTE, "%s: highlights fade; expected %s, for them to move", r->input,
                  why);
@@ -632,7 +642,9 @@ static relume_status encode_team(const struct args *args, struct request *r,
     relume_coder *coder = NULL;
     struct relume_encode_report report;
     struct relume_image gloss = {0};
-    relume_status status = decide_shadows(args, capture, r);
+    relume_status status = refuse_highlights(args, capture, r);
+    if (!status)  // which may take minutes
+        status = decide_shadows(args, capture, r);
     if (r->pack.shadows && !r->coder.interpolant) {  // what traced shadows are added to
         r->coder.interpolant = relume_interpolant_find("delaunay");
         r->coder.choose = false;
@@ -716,6 +728,9 @@ static relume_status check_parts(const struct encode_options *o, const struct re
         return usage_error("--learnt is what parts share; expected --part or --commands with it");
     if (!o->part.parts && !o->commands && !o->args.team)
         return RELUME_OK;
+    if (o->commands && (o->shadows == WANDER_YES || o->highlights == WANDER_YES))
+        return usage_error("--commands: its parts could move neither shadows nor highlights; "
+                           "expected without --shadows yes and --highlights yes");
     if (o->part.parts && o->commands)
         return usage_error("--commands prints the lines with --part; expected one of the two");
     if (o->learnt && strchr(r->options.text, '\n'))
@@ -735,6 +750,9 @@ static relume_status run(const struct args *args)
     const struct encode_options *o = (const void *)args;
     const bool books = o->books.codes > 0;
     const bool choose = given(o, &o->interpolant) ? !o->interpolant : !o->basis;
+    const size_t length = strlen(o->output);
+    if (length && o->output[length - 1] == '/')
+        return usage_error("-o: expected the name of a file, as FILE.exr; found '%s'", o->output);
     struct request r = {
         .input = args->input[0],
         .output = o->output,
@@ -777,7 +795,10 @@ static relume_status run(const struct args *args)
         .learnt = o->learnt,
         .learn_only = o->learn_only,
     };
-    r.shadows = o->shadows ? o->shadows : r.decide ? WANDER_AUTO : WANDER_NO;
+    // shadows and highlights do not move together: who asks for highlights has chosen
+    r.shadows = o->shadows                                ? o->shadows
+                : r.decide && o->highlights != WANDER_YES ? WANDER_AUTO
+                                                          : WANDER_NO;
     if (r.quality > 0.0 && (!r.decide || o->coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
                            "--basis, --coefficients, --codebook and --robust");

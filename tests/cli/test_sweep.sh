@@ -13,9 +13,9 @@ grid="--basis pca,sh,table --coefficients 4,9 --bits 8,half"
 expect_ok 'domains' - $sweep --basis eigen --coefficients 4 --domain linear,log:0.05 --tone-map --json
 check 'a row of each' sh -c 'grep -c "\"basis\": \"eigen\"" out.txt >/dev/null && grep -o "\"domain\": \"[a-z:0-9.]*\"" out.txt | tr "\n" " " | grep -q "linear.*linear.*log:0.05"'
 check 'and it is said' grep -q '"tone_mapped": true' out.txt
-$sweep --basis eigen --coefficients 4 --domain linear,log,log:0.05 --tone-map --csv -q | awk -F, 'NR > 1 { print $1, $16 }' >names.txt
+$sweep --basis eigen --coefficients 4 --domain linear,log,log:0.01,linear,log:0.05 --tone-map --csv -q | awk -F, 'NR > 1 { print $1, $16 }' >names.txt
 printf 'eigen linear linear\neigen log log\neigen log:0.05 log:0.05\n' >want.txt
-same 'rows are told apart' names.txt want.txt
+same 'rows are told apart, and none comes twice' names.txt want.txt
 
 # ---- outputs
 expect_ok 'sweep' - $sweep $grid -o out --json

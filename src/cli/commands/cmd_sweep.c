@@ -150,6 +150,21 @@ static bool add_sizes(struct sweep *sweep, const struct relume_basis *asked)
     return possible;
 }
 
+static bool same_domain(const struct domain_choice *a, const struct domain_choice *b)
+{
+    return a->domain == b->domain && a->display.curve == b->display.curve &&
+           a->display.gamma == b->display.gamma;
+}
+
+// "log" and "log:0.01" are one domain, and so are "auto" and what it turns out to be.
+static bool is_again(const struct sweep *sweep)
+{
+    for (int i = 0; i < sweep->rows; i++)
+        if (same_domain(&sweep->row[i].domain, &sweep->domain))
+            return true;
+    return false;
+}
+
 static relume_status make_rows(struct sweep *sweep, const relume_capture *capture)
 {
     struct entries bases = sweep->options->basis;
@@ -162,7 +177,8 @@ static relume_status make_rows(struct sweep *sweep, const relume_capture *captur
     for (int d = 0; d < sweep->options->domains.count; d++) {
         sweep->domain = sweep->options->domains.item[d];
         sweep->domain.domain = relume_encode_domain(capture, sweep->domain.domain);
-        for (int b = 0; b < bases.count; b++)
+        const bool again = is_again(sweep);
+        for (int b = 0; !again && b < bases.count; b++)
             possible |= add_sizes(sweep, bases.item[b]);
     }
     if (sweep->rows == MOST_ROWS)
@@ -171,12 +187,6 @@ static relume_status make_rows(struct sweep *sweep, const relume_capture *captur
 }
 
 // ---------------------------------------------------------------- one group of rows
-
-static bool same_domain(const struct domain_choice *a, const struct domain_choice *b)
-{
-    return a->domain == b->domain && a->display.curve == b->display.curve &&
-           a->display.gamma == b->display.gamma;
-}
 
 // Rows that differ only in how they are stored share their coefficients.
 static int group_end(const struct sweep *sweep, int first)

@@ -45,14 +45,18 @@ static relume_status check_scene(struct acquisition *s)
     double *all = mem_array((size_t)s->shots, sizeof *all);
     if (!all)
         return RELUME_ENOMEM;
-    for (int i = 0; i < s->shots; i++)
-        all[i] = (double)(s->shot[i].similarity = similarity(s, i));
-    const double usual = median(all, s->shots);
+    int known = 0;  // of others nothing can be said: pictures without edges, numbers too large
+    for (int i = 0; i < s->shots; i++) {
+        s->shot[i].similarity = similarity(s, i);
+        if (isfinite(s->shot[i].similarity))
+            all[known++] = (double)s->shot[i].similarity;
+    }
+    const double usual = median(all, known);
     mem_free(all);
     relume_status status = RELUME_OK;
     for (int i = 0; !status && usual > SIMILAR && i < s->shots;) {
         const double like = (double)s->shot[i].similarity;
-        if (like >= UNLIKE * usual) {
+        if (!(like < UNLIKE * usual)) {
             i++;
             continue;
         }

@@ -32,6 +32,12 @@ above 'the normal points at the viewer' "$normal" 0.98
 high() { "$mkimage" read h.exr "$1" "$2" | cut -d' ' -f1; }
 above 'the sphere rises over the floor' "$(high 48 48)" 0.2
 before=$(high 48 48)
+"$sphere" blinding --size 48 --lights 8 --hemisphere --shade lambert --format exr
+"$mkimage" poke blinding/view00/light0000.exr bright.exr 24 24 1e38 && mv bright.exr blinding/view00/light0000.exr
+"$RELUME" capture blinding/view00 --lights blinding/dirs.lp -o shining 2>err.txt
+check 'a number that is too large is like nothing, and said without NaN' sh -c 'grep -q "^relume: " err.txt && ! grep -q "similarity" err.txt'
+cp lights.txt light_positions.txt
+expect_ok 'a list of positions' 'light_positions.txt: is read as light directions; add --near' "$RELUME" capture photos --lights light_positions.txt -o positions
 expect_ok 'the same in millimetres' - "$RELUME" capture photos --lights lights.txt -o known --force --height h.exr --width 50
 below 'a picture 50 mm wide has 25 in a unit' "$(echo "$(high 48 48) $before" | awk '{ print ($1 - 25 * $2) ^ 2 }')" 1e-6
 

@@ -163,14 +163,28 @@ static void find_likely_lights(struct job *job)
     (void)find_lights_in(job, first, (int)(slash - first));
 }
 
+// Positions look like directions that are not of unit length.
+static void mention_near(const struct capture_options *o, const char *lights)
+{
+    const char *name = strrchr(lights, '/');
+    if (!o->near && strcasestr(name ? name : lights, "position"))
+        announce(&o->args, RELUME_NOTE,
+                 "%s: is read as light directions; add --near where it holds "
+                 "the positions of lamps",
+                 lights);
+}
+
 // --lights, or the file of lights that lies with the photographs unless a ball shows the lights.
 static const char *lights_file(const struct capture_options *o, const struct job *job)
 {
     const char *beside = job->photos.lights;
     const char *dot = beside ? strrchr(beside, '.') : NULL;
     if (o->lights || o->ball.count || o->ball_photos.count || given(o, &o->balls) || o->ball_mask ||
-        o->matte)
+        o->matte) {
+        if (o->lights)
+            mention_near(o, o->lights);
         return o->lights;
+    }
     if (!beside)
         return NULL;
     if (!strcasecmp(dot, ".txt") && !fits(beside, job)) {
@@ -186,6 +200,7 @@ static const char *lights_file(const struct capture_options *o, const struct job
         "%s: light directions are taken from this file; --ball or --ball-photos take them from a "
         "mirror ball instead",
         beside);
+    mention_near(o, beside);
     return beside;
 }
 

@@ -343,7 +343,7 @@ static relume_status check(const struct relume_coder_info *coder,
     if (coder->joint && p->split == RELUME_SPLIT_LUMA)
         return log_fail(p->log, RELUME_EINVAL,
                         "basis %s has no planes per colour to split into luminance and "
-                        "chrominance; expected another split",
+                        "chrominance; expected split none or product:G",
                         coder->basis->name);
     if (coder->luminance && stages * parts > 1)
         return log_fail(p->log, RELUME_EINVAL,

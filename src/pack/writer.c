@@ -40,8 +40,9 @@ struct exr_part *writer_part(struct writer *w, const char *name, int width, int 
 
 static void add(struct exr_part *part, struct exr_attribute attribute)
 {
-    if (part->attribute)
-        ((struct exr_attribute *)(uintptr_t)part->attribute)[part->attributes++] = attribute;
+    if (part->attribute && part->attributes < MOST_ATTRIBUTES)
+        ((struct exr_attribute *)(uintptr_t)part->attribute)[part->attributes] = attribute;
+    part->attributes++;
 }
 
 void writer_int(struct exr_part *part, const char *name, int value)
@@ -135,6 +136,15 @@ static void add_parts(struct writer *w)
         writer_add_learnt(w, i);
 }
 
+// Whether a part was given more attributes than it has room for: rather no file than half of one.
+static bool is_crowded(const struct writer *w)
+{
+    for (int i = 0; i < w->count; i++)
+        if (w->parts[i].attributes > MOST_ATTRIBUTES)
+            return true;
+    return false;
+}
+
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,
                                 const struct relume_pack_params *params)
 {
@@ -155,7 +165,8 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
     else
         w.failed = true;
     const relume_status status =
-        w.failed ? RELUME_ENOMEM : exr_write(path, p.writer, w.parts, w.count, p.threads, p.log);
+        w.failed || is_crowded(&w) ? RELUME_ENOMEM
+                                   : exr_write(path, p.writer, w.parts, w.count, p.threads, p.log);
     arena_free(&w.arena);
     return status;
 }

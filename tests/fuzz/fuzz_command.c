@@ -3,11 +3,6 @@
 // nothing unfinished stays, and what is asked to end ends.
 #include "cli/main.c"
 
-static int tool_main(int argc, char **argv)
-{
-    return tool_exit(tool_run(argc, argv, NULL, 0));
-}
-
 #include "fuzz.h"
 
 #include <dirent.h>

@@ -162,6 +162,11 @@ bool app_moves(const struct app *app)
     return app->drag != APP_DRAG_NONE || app->speed_deg_s[0] != 0 || app->speed_deg_s[1] != 0;
 }
 
+int app_passes(const struct app *app)
+{
+    return app->file.only_colour ? 1 : app->compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE;
+}
+
 double app_exposure_ev(const struct app *app)
 {
     return app->now.exposure_ev + (app->now.auto_exposure ? app->adapted_ev : 0);

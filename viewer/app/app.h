@@ -27,6 +27,9 @@ void app_stand_still(struct app *app);
 // Under the hand, or gliding on: pictures that take long may be rougher.
 bool app_moves(const struct app *app);
 
+// How many passes there are to choose from; the first is the colour.
+int app_passes(const struct app *app);
+
 // The exposure to draw with, EV.
 double app_exposure_ev(const struct app *app);
 // The frame drawn with that exposure would be a mid grey with `ev` more. The first frame of a file

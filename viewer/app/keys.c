@@ -209,8 +209,7 @@ static bool press_glare(struct app *app, int key)
 static bool press_next_pass(struct app *app, int key)
 {
     (void)key;
-    const int passes = app->compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE;
-    app->now.pass = (enum relume_pass)((app->now.pass + 1) % passes);
+    app->now.pass = (enum relume_pass)((app->now.pass + 1) % app_passes(app));
     return true;
 }
 

@@ -2,6 +2,7 @@
 #include "app/script.h"
 
 #include "app/adjust.h"
+#include "app/app.h"
 #include "program/say.h"
 
 #include <errno.h>
@@ -388,10 +389,10 @@ static relume_status play_pass(struct script *s)
     const char *name = take_rest(s, copy);
     const enum relume_pass was = s->host.app->now.pass;
     if (!name || relume_pass_parse(&s->host.app->now.pass, name) ||
-        (s->host.app->now.pass == RELUME_PASS_DIFFERENCE && !s->host.app->compared)) {
+        (int)s->host.app->now.pass >= app_passes(s->host.app)) {
         s->host.app->now.pass = was;
         return wrong(s, "pass colour, normals, specular, diffuse-gain, unsharp, luminance, "
-                        "false-colour, or difference beside --capture");
+                        "false-colour, or difference beside --capture; of maps colour alone");
     }
     return RELUME_OK;
 }

@@ -69,6 +69,7 @@ struct app_file {
     relume_objects *objects;        // in the scene, or all that there is; NULL: none
     const struct relume_captured_region *zone;  // where its light was captured; NULL: not known
     bool empty;                                 // no file is open yet
+    bool only_colour;                           // nothing else can be shown of it
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.

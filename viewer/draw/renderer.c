@@ -127,6 +127,8 @@ void renderer_destroy(struct renderer *r)
     glare_end(&r->glare);
     hiding_scene_forget(&r->backdrop);
     target_destroy(&r->frame, r->gl);
+    target_destroy(&r->painted, r->gl);
+    free(r->painted_light);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
     target_destroy(&r->beside, r->gl);
@@ -442,9 +444,44 @@ static relume_status relight_parts(struct renderer *r, const struct frame_reques
     return status;
 }
 
+// Anew when the lights have changed.
+static relume_status paint_view(struct renderer *r, const struct relume_light *lights, int count)
+{
+    const size_t bytes = (size_t)count * sizeof *lights;
+    struct relume_image image;
+    relume_status status = RELUME_OK;
+    r->relit[0] = &r->painted;
+    if (r->is_painted && count == r->painted_lights && !memcmp(lights, r->painted_light, bytes))
+        return RELUME_OK;
+    struct relume_light *kept = realloc(r->painted_light, bytes + sizeof *kept);
+    if (!kept)
+        return RELUME_ENOMEM;
+    memcpy(kept, lights, bytes);
+    r->painted_light = kept;
+    r->painted_lights = count;
+    status = r->painter.paint(&image, r->painter.user, lights, count);
+    if (status)
+        return status;
+    if (!r->painted.texture)
+        status = target_create(&r->painted, r->gl, image.width, image.height, r->log);
+    if (!status)
+        target_write(&r->painted, r->gl, &image);
+    r->is_painted = !status;
+    relume_image_destroy(&image);
+    return status;
+}
+
+void renderer_use_painter(struct renderer *r, const struct view_painter *painter)
+{
+    r->painter = *painter;
+    r->is_painted = false;
+}
+
 relume_status renderer_relight_views(struct renderer *r, const struct frame_request *q,
                                      const struct relume_light *lights, int count)
 {
+    if (r->painter.paint)
+        return paint_view(r, lights, count);
     r->enhancer.params = q->enhance;
     relume_status status = relighter_begin(&r->relighter, lights, count);
     r->by_parts = takes_parts(r, q);

@@ -29,6 +29,9 @@ void renderer_use_parts(struct renderer *renderer, const struct part_source *par
 relume_status renderer_use_tiles(struct renderer *renderer, const struct code_source *source,
                                  const struct tile_map *map);
 
+// A painter in place of codes, of a planar file; once more when it would paint otherwise.
+void renderer_use_painter(struct renderer *renderer, const struct view_painter *painter);
+
 // A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.
 void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
 

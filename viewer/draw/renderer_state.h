@@ -11,6 +11,13 @@
 #include "relit/relighter.h"
 #include "relit/tile_map.h"
 
+// Who shows a planar view under lights in place of codes.
+struct view_painter {
+    void *user;
+    relume_status (*paint)(struct relume_image *out, void *user, const struct relume_light *lights,
+                           int n);
+};
+
 struct renderer {
     const struct gl *gl;
     const struct relume_log *log;
@@ -47,6 +54,11 @@ struct renderer {
     struct objects_drawer drawer;  // objects; empty: none
     bool stage;                    // there is nothing but objects
     bool empty;                    // there is nothing at all
+    struct view_painter painter;   // none: codes
+    struct target painted;         // by it, under
+    struct relume_light *painted_light;
+    int painted_lights;
+    bool is_painted;
     // Of a scene with objects: where it is, what one light shows of it, and of each view what its
     // pixels see; made when first needed.
     struct depth_source place_source;

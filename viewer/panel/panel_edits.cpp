@@ -229,4 +229,11 @@ void panel_edits(panel *panel, app *app, const panel_facts *facts)
     if (panel_button("redo##edit", "redo the last edit that was undone"))
         wish_edit(app, "redo");
     ImGui::TextWrapped("%s", facts->edits);
+    if (!facts->edits_maps)
+        return;
+    ImGui::InputTextWithHint("##folder", "new folder", edit->folder, sizeof edit->folder);
+    panel_tip("the folder that the edited maps are written to, with glTF and MaterialX");
+    ImGui::SameLine();
+    if (panel_button("write", "write the edited maps; those that are shown stay as they are"))
+        wish_edit(app, "write \"" + std::string(edit->folder) + "\"");
 }

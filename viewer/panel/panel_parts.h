@@ -19,7 +19,7 @@ extern "C" {
 // The next edit of a material, as it is being chosen. Labels are counted from 1; 0: all.
 struct panel_edit {
     int operation;  // among those that can be done
-    char drawing[1024], mask[1024];
+    char drawing[1024], mask[1024], folder[1024];
     double height = 0.02, at[2] = {0.5, 0.5}, size = 1;
     double factor = 1, degrees = 90, roughness = 0.5, r0 = 0.04;
     float factors[3] = {1, 1, 1}, highlight[3] = {1, 1, 1}, colour[3] = {0.5f, 0.5f, 0.5f};

@@ -12,8 +12,7 @@ static bool choose_pass(app *app)
 {
     int pass = app->now.pass;
     const bool changed = panel_choice(
-        "pass", &pass, app->compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE,
-        [](int i) { return relume_pass_name((relume_pass)i); },
+        "pass", &pass, app_passes(app), [](int i) { return relume_pass_name((relume_pass)i); },
         "what is shown (rendering mode): colours, normals, enhanced detail, ...; also by V");
     app->now.pass = (relume_pass)pass;
     return changed;

@@ -59,7 +59,7 @@ static relume_status find_slabs(relume_slab_set **around, const relume_pack *pac
     return status;
 }
 
-static void set_name(struct session *s, const char *path)
+void session_set_name(struct session *s, const char *path)
 {
     const char *slash = strrchr(path, '/');
     snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
@@ -152,6 +152,7 @@ void session_close_file(struct session *s)
     relume_pack_destroy(&s->pack);
     relume_slab_set_destroy(&s->around);
     relume_slab_set_destroy(&s->stage);
+    relume_maps_destroy(&s->found);
     s->beside_warned = false;
 }
 
@@ -163,6 +164,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
     struct app app;
     if (!path)
         return s->objects ? session_open_stage(s, start) : session_open_nothing(s, start);
+    if (session_is_maps(path))
+        return session_open_maps(s, path, start);
     if (session_is_objects(path))
         return session_open_objects(s, path, start);
     relume_status status =
@@ -192,7 +195,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     s->app = app;
     s->app.compared = s->capture != NULL;
     s->app.near_lights = has_surface(pack);
-    set_name(s, path);
+    session_set_name(s, path);
     describe_lines(s);
     warn_below_horizon(s);
     return RELUME_OK;
@@ -208,7 +211,7 @@ relume_status session_open_nothing(struct session *s, const struct app_state *st
         .empty = true,
     };
     const relume_status status = app_start(&s->app, &file, start, true, s->log);
-    set_name(s, "no file");
+    session_set_name(s, "no file");
     return status;
 }
 
@@ -223,6 +226,8 @@ static relume_status make_renderer(struct session *s)
         s->renderer.empty = true;
         return status;
     }
+    if (s->found.width)
+        return session_make_maps(s);
     if (!s->pack)
         return session_make_stage(s);
     const struct relume_pack_info *info = relume_pack_info(s->pack);

@@ -11,6 +11,8 @@
 #include "session/record.h"
 #include "window/context.h"
 
+#include <relume/edit.h>
+#include <relume/maps.h>
 #include <relume/object.h>
 #include <relume/pack.h>
 #include <relume/rig.h>
@@ -49,7 +51,9 @@ struct session {
     char material[APP_SPEC];        // the file of the only one, "": there is none, or more
     char described[APP_SPEC];       // the file that describes the objects, "": none
     char reflections[APP_SPEC];     // of their edits, "": none yet
-    char edits[1024];               // of it (session_can_edit), for the panel
+    struct relume_maps found;       // a folder of maps as edited; empty: none is shown
+    char found_path[APP_SPEC];      // it
+    char edits[1024];               // of material or maps (session_can_edit), for the panel
     int edited_materials;           // that it has with them
     relume_slab_set *stage;         // what the eye goes around there
     relume_slab_set *around;        // of it, where there are several
@@ -119,6 +123,14 @@ void session_close_file(struct session *s);
 relume_status session_open_nothing(struct session *s, const struct app_state *start);
 // For session_open: the app of a stage.
 relume_status session_open_stage(struct session *s, const struct app_state *start);
+// For session_open: a folder of maps (docs/maps.md), as the edits that are kept with it make them.
+// Errors of relume_maps_open, relume_edits_open, relume_maps_edit; RELUME_EUNFIT.
+bool session_is_maps(const char *path);
+relume_status session_open_maps(struct session *s, const char *path, const struct app_state *start);
+// The renderer of one. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status session_make_maps(struct session *s);
+// The name of what is shown, for the title.
+void session_set_name(struct session *s, const char *path);
 // The renderer of a stage, and objects in the renderer of a file. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status session_make_stage(struct session *s);
 relume_status session_add_objects(struct session *s);
@@ -191,12 +203,18 @@ relume_status session_light(struct session *s, const char *spec, bool replace);
 relume_status session_map(struct session *s, const char *path);
 // The file of the selected environment, else NULL.
 const char *session_map_in_use(const struct session *s);
-// Whether a g-BRDF is shown alone, which can be edited.
+// Whether a g-BRDF is shown alone, or a folder of maps, which can be edited.
 bool session_can_edit(const struct session *s);
 // "undo", "redo" or an operation of relume/edit.h: "OPERATION VALUE [PARAMETER VALUE ...]", quotes
 // around what holds blanks. It is kept beside the file, and shown. RELUME_EINVAL, RELUME_EUNFIT,
 // an input status with a sentence.
 relume_status session_edit(struct session *s, const char *words, const struct relume_log *log);
+// The same of maps; "write DIR" writes them as they are now (relume_maps_write).
+relume_status session_edit_maps(struct session *s, const char *words, const struct relume_log *log);
+// Change a list as words say; cuts them up. RELUME_EINVAL with a sentence, an input status.
+relume_status session_change_edits(relume_edits *edits, char *words, const struct relume_log *log);
+// What the panel shows of a list.
+void session_describe_edits(struct session *s, const relume_edits *edits);
 // An edit of what mirrors reflect: words of handles_say, or "save [FILE]". Statuses of handles_say,
 // relume_objects_save_reflections.
 relume_status session_reflect(struct session *s, const char *words, const struct relume_log *log);

@@ -9,7 +9,9 @@
 
 bool session_can_edit(const struct session *s)
 {
-    return !s->pack && s->objects && s->material[0] &&
+    if (s->found.width)
+        return true;
+    return !s->pack && s->app.file.objects && s->material[0] &&
            !strcmp(relume_objects_info(s->objects)->material[0].model, "gbrdf");
 }
 
@@ -51,7 +53,7 @@ static relume_status add_words(relume_edits *edits, char *words, const struct re
     return status;
 }
 
-static relume_status change(relume_edits *edits, char *words, const struct relume_log *log)
+relume_status session_change_edits(relume_edits *edits, char *words, const struct relume_log *log)
 {
     const bool undo = !strcmp(words, "undo"), redo = !strcmp(words, "redo");
     if ((undo && !relume_edits_undo(edits)) || (redo && !relume_edits_redo(edits)))
@@ -59,13 +61,10 @@ static relume_status change(relume_edits *edits, char *words, const struct relum
     return undo || redo ? RELUME_OK : add_words(edits, words, log);
 }
 
-// What the panel shows of a list, and of the g-BRDF as it makes it.
-static void describe_edits(struct session *s, const relume_edits *edits,
-                           const relume_btf_fitted *edited)
+void session_describe_edits(struct session *s, const relume_edits *edits)
 {
     const int count = relume_edits_count(edits), apply = count - relume_edits_undone(edits);
     size_t at = 0;
-    s->edited_materials = relume_btf_fitted_info(edited)->clusters;
     snprintf(s->edits, sizeof s->edits, "no edits");
     for (int i = 0; i < count && at < sizeof s->edits; i++) {
         char text[160];
@@ -87,13 +86,15 @@ static relume_status change_list(struct session *s, const char *words, const str
     if (!status)
         status = relume_edits_open(&edits, s->material, relume_btf_fitted_fingerprint(model), log);
     if (!status && words)
-        status = change(edits, copy, log);
+        status = session_change_edits(edits, copy, log);
     if (!status)
         status = relume_btf_fitted_edit(&edited, model, edits, log);
     if (!status && words)
         status = relume_edits_save(edits, s->material, log);
-    if (!status)
-        describe_edits(s, edits, edited);
+    if (!status) {
+        session_describe_edits(s, edits);
+        s->edited_materials = relume_btf_fitted_info(edited)->clusters;
+    }
     relume_btf_fitted_destroy(&edited);
     relume_edits_destroy(&edits);
     relume_btf_fitted_destroy(&model);
@@ -119,7 +120,10 @@ static relume_status show_again(struct session *s, const struct relume_log *log)
 relume_status session_edit(struct session *s, const char *words, const struct relume_log *log)
 {
     if (!session_can_edit(s))
-        return say(log, RELUME_EUNFIT, "edit: expected a g-BRDF to be shown alone");
+        return say(log, RELUME_EUNFIT,
+                   "edit: expected a g-BRDF to be shown alone, or a folder of maps");
+    if (s->found.width)
+        return session_edit_maps(s, words, log);
     const relume_status status = change_list(s, words, log);
     return status ? status : show_again(s, log);
 }
@@ -127,6 +131,6 @@ relume_status session_edit(struct session *s, const char *words, const struct re
 void session_list_edits(struct session *s)
 {
     s->edits[0] = '\0';
-    if (session_can_edit(s))
+    if (session_can_edit(s) && !s->found.width)
         (void)!change_list(s, NULL, NULL);
 }

@@ -137,7 +137,9 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .recording = session_records(s) ? s->recording.path : NULL,
         .recorded_s = (double)s->recording.frame / RECORD_RATE,
         .round_s = (double)s->recording.frames / RECORD_RATE,
-        .reflections = s->objects && handles_mirror(s->objects) ? reflections : NULL,
+        .reflections =
+            s->app.file.objects && handles_mirror(s->app.file.objects) ? reflections : NULL,
+        .edits_maps = s->found.width > 0,
         .edits = session_can_edit(s) ? s->edits : NULL,
         .edited_materials = s->edited_materials,
         .eye = describe_eye(eye, sizeof eye, &s->renderer.glare),

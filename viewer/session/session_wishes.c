@@ -135,7 +135,9 @@ static relume_status wish_words(struct session *s,
 
 static relume_status wish_edit(struct session *s)
 {
-    return wish_words(s, session_edit, "edited", "not edited");
+    const bool writes = !strncmp(s->app.spec, "write ", 6);
+    return wish_words(s, session_edit, writes ? "done" : "edited",
+                      writes ? "not written" : "not edited");
 }
 
 static relume_status wish_reflection(struct session *s)

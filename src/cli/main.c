@@ -237,6 +237,32 @@ static relume_status check_needed(const struct parsed *p)
     return RELUME_OK;
 }
 
+// The name of the group that an option of the command stands in; NULL: it is of all commands.
+static const char *group_of(const struct command *c, const struct option *wanted)
+{
+    const char *group = "";
+    for (const struct option *o = c->options; o && o->name; o++) {
+        group = o->kind == OPTION_GROUP ? o->name : group;
+        if (o == wanted)
+            return group;
+    }
+    return NULL;
+}
+
+// Tasks share a table of options; what only others use would do nothing.
+static relume_status check_groups(const struct parsed *p)
+{
+    const struct command *c = p->command;
+    for (int i = 0; c->groups && i < p->line.given_count; i++) {
+        const struct option *o = p->line.given[i].option;
+        const char *group = group_of(c, o);
+        if (group && !strstr(c->groups, group))
+            return usage_error("%s: %s does nothing here; leave it out (relume help %s)", c->name,
+                               o->name, c->name);
+    }
+    return RELUME_OK;
+}
+
 // An option that capture no longer has by itself; NULL: none.
 static const char *moved_option(const struct command **to, int argc, char **argv)
 {
@@ -308,6 +334,8 @@ static relume_status run_command(struct parsed *p, int argc, char **argv)
         return usage_error("%s: expected 'relume %s %s'; found %d input%s", c->name, c->name,
                            c->usage, p->args->inputs, relume_plural(p->args->inputs));
     status = check_needed(p);
+    if (!status)
+        status = check_groups(p);
     if (!status)
         status = note_inputs(p);
     return status ? status : c->run(p->args);

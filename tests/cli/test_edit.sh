@@ -87,6 +87,8 @@ expect_fail 'another model' 1 'model lit cannot be edited; expected gbrdf' - "$R
 expect_fail 'levels of detail' 1 '2 levels of detail' - "$RELUME" btf edit levels --tint 1,1,1
 expect_fail 'a picture' 1 "logo.png.*model.json|logo.png" - "$RELUME" btf edit logo.png --tint 1,1,1
 
+expect_fail 'an option of another task' 2 'btf expand: --directions does nothing here' x "$RELUME" btf expand baked.exr -o x --directions coarse
+
 # ---- in the viewer: edits by a script are those of the tool, kept, seen and undone
 "$RELUME" btf plant -o seen.exr --size 12 --directions coarse -q && cp logo.png 'a name.png'
 cat >edits.txt <<'SCRIPT'

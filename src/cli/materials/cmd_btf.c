@@ -405,7 +405,7 @@ static const struct btf_options defaults = {.model = -1,
                                             .size = 64,
                                             .matrix = {16, 16}};
 
-// Options of the other tasks are taken and change nothing; help shows `what` these groups are.
+// Help shows the options of the groups in `what`; those of others are refused.
 #define TASK(task, function, asks, does, shows, count, what)                                       \
     static const struct command task_##task = {                                                    \
         .name = "btf " #task,                                                                      \

@@ -117,6 +117,8 @@ struct relume_export_params {
     int threads;             // default: all cores
     const struct relume_writer *writer;  // PTM, LPTM, RTI: write here in place of the file; `path`
                                          // is only a name then, or NULL
+    int level;  // of a view with reduced levels (relume_pack_info): 1 is half its size, of which no
+                // more is read; default: 0, the view itself
 };
 #define relume_export_params(...)                                                                  \
     (&(const struct relume_export_params){RELUME_SIZED(relume_export_params), __VA_ARGS__})

@@ -92,7 +92,7 @@ struct relume_open_params { size_t struct_size; void *log; void *limits; bool al
     int threads; void *reader; bool keep_going; };
 struct relume_export_params { size_t struct_size; void *log; int view; int type; bool ycc;
     int coefficients; int resolution; double bytes_per_pixel; double psnr_db; int quality; bool force;
-    int threads; void *writer; };
+    int threads; void *writer; int level; };
 struct relume_evaluate_params { size_t struct_size; void *log; char *file; char *capture; int threads;
     bool no_ssim, no_delta_e; };
 struct relume_evaluation_light { double rms; double psnr_db; };

@@ -73,6 +73,12 @@ static relume_status check(const relume_pack *pack, const char *path, enum relum
     if (p->view < 0 || p->view >= info->views)
         return log_fail(p->log, RELUME_EINVAL, "view %d; expected 0 to %d", p->view,
                         info->views - 1);
+    if (p->level < 0 || p->level > info->levels)
+        return log_fail(p->log, RELUME_EINVAL,
+                        info->levels ? "level %d; expected 0 to %d"
+                                     : "level %d; the file has no pyramid (encode --pyramid yes), "
+                                       "expected %d",
+                        p->level, info->levels);
     if (p->writer && is_folder(format))
         return log_fail(p->log, RELUME_EINVAL, "this format is a folder; expected no writer");
     if ((p->bytes_per_pixel > 0.0) + (p->psnr_db > 0.0) + (p->quality > 0) > 1)
@@ -81,18 +87,31 @@ static relume_status check(const relume_pack *pack, const char *path, enum relum
     return RELUME_OK;
 }
 
+// Of the view, or of a level of it, which is the caller's then.
+static relume_status read_codes(const struct relume_codes **out, struct relume_codes_part *level,
+                                relume_pack *pack, const struct relume_export_params *p)
+{
+    struct relume_rect all = {0};
+    if (!p->level)
+        return relume_pack_codes(out, pack, p->view);
+    relume_pack_level_size(&all.width, &all.height, pack, p->level);
+    *out = &level->codes;
+    return relume_pack_codes_level(level, pack, p->view, p->level, &all);
+}
+
 relume_status relume_export(relume_pack *pack, const char *path, enum relume_exchange format,
                             struct relume_export_report *report,
                             const struct relume_export_params *params)
 {
     const struct relume_export_params p = PARAMS_WORK(relume_export_params, params);
     const struct relume_codes *codes;
+    struct relume_codes_part level = {0};
     struct relume_export_report found = {0};
     struct source source = {0};
     path = infile_name(path);
     relume_status status = check(pack, path, format, &p);
     if (!status)
-        status = relume_pack_codes(&codes, pack, p.view);
+        status = read_codes(&codes, &level, pack, &p);
     if (!status)
         status = source_open(&source, codes, p.log);
     const struct export e = {&source, &p, p.log, format == RELUME_EXCHANGE_DEEPZOOM};
@@ -101,6 +120,7 @@ relume_status relume_export(relume_pack *pack, const char *path, enum relume_exc
                  : is_folder(format) ? export_web(&e, path, &found)
                                      : export_legacy(&e, path, format, &found);
     source_close(&source);
+    relume_codes_part_destroy(&level);
     if (report)
         *report = found;
     return status;

@@ -38,6 +38,22 @@ relume encode dome -o lptm.exr --basis ptm --coefficients 6 --colour luminance
 relume encode dome -o hsh.exr --basis hsh --coefficients 9
 relume encode dome -o hsh16.exr --basis hsh --coefficients 16
 
+# ---- a level of a pyramid: what relight shows at that size, by another way
+"$sphere" large --size 150 --lights 9 --hemisphere --format jpg
+relume encode large -o large.exr --basis ptm --pyramid yes
+relume export large.exr -o half.ptm --level 1
+relume import half.ptm -o half.exr
+relume relight half.exr -o a.png --light 'dir 0.3 0.4 0.8'
+relume relight large.exr -o b.png --size 75 --light 'dir 0.3 0.4 0.8'
+"$RELUME" compare a.png b.png --json >c.json
+above 'a level of a pyramid' "$(field psnr_db c.json)" 50 # .ptm has 8 bits; here 61 dB
+relume export large.exr -o half.web --level 1
+relume import half.web -o half.web.exr
+"$RELUME" info half.web.exr >info.txt
+check 'a folder of a level has its size' grep -q '75 x 75' info.txt
+expect_fail 'a level that is not there' 2 'level 2; expected 0 to 1' x.ptm "$RELUME" export large.exr -o x.ptm --level 2
+expect_fail 'a level of no pyramid' 2 'level 1; the file has no pyramid' x.ptm "$RELUME" export ptm.exr -o x.ptm --level 1
+
 # ---- .ptm and .rti: a fit once, then the same codes for ever
 for kind in ptm lptm rti rti16; do
     source=$kind.exr extension=ptm terms=

@@ -10,7 +10,7 @@ struct export_options {
     enum relume_exchange to;
     enum relume_web_type type;
     enum { RGB, YCC, MYCC } colorspace;
-    int coefficients, quality, resolution, view;
+    int coefficients, quality, resolution, view, level;
     double bytes_per_pixel, psnr;
     bool force, allow_outside, keep_going;
 };
@@ -46,6 +46,10 @@ static const struct option options[] = {
         "bilinear: side of the grid of lights; default: 15 to 33, by the lights", 3, 33),
     GROUP("input"),
     INT("--view", view, "N", "which view of a slab; default: 0", 0, 65535),
+    INT("--level", level, "N",
+        "which level of a file with a pyramid, 1: half the size; no more than it is read; default: "
+        "0, the view itself",
+        0, 32),
     ALLOW_OUTSIDE_OPTION,
     KEEP_GOING_OPTION,
     {0},
@@ -158,6 +162,7 @@ static relume_status run(const struct args *args)
         .quality = o->quality,
         .force = o->force,
         .threads = o->args.threads,
+        .level = o->level,
     };
     relume_status status = choose_format(&to, o);
     if (!status)

@@ -21,6 +21,8 @@ static const float LEAST_COSINE = 0.06f;
 static const double DARK = 0.2;
 // Cells of less than this share of the usual support are filled from those around.
 static const double WELL_KNOWN = 0.1;
+// Cells share samples, so that a step of 1 falls short; below 2 none goes too far.
+static const double STEP = 1.5;
 enum { SWEEPS = 60 };
 
 static void put(struct als_samples *out, const struct als_form *form, vec3 k1, vec3 k2,
@@ -37,6 +39,9 @@ static void put(struct als_samples *out, const struct als_form *form, vec3 k1, v
     b->cosine[i] = (float)k1.z;
     b->share[i] = (float)(k1.z / brdf_masking(k1.z, k2.z));
     b->grazing[i] = (float)brdf_grazing(vec3_dot(k1, h));
+    // a normal that is slightly off matters most under low light; from the side few pixels tell a
+    // texel
+    b->trust[i] = (float)(k1.z * k1.z * k2.z);
     ndf_place(h, side, at);
     // a place beyond the middles of the outermost cells is theirs
     const double x = fmin(fmax(at[0] - 0.5, 0.0), side - 1.0),
@@ -124,7 +129,8 @@ static void add_block(float sum[SUMS][ALS_LANES], const struct als_block *b, int
     const float diffuse = (float)t->diffuse[channel], r0 = (float)t->r0, rest = 1.0f - r0;
     for (int i = 0; i < ALS_LANES; i++) {
         const float v = value[i], c = b->cosine[i] * (float)(1.0 / M_PI), a = scale * shine[i];
-        const float g = b->grazing[i], w = weight_of(v, c * diffuse + a * (r0 + rest * g), least);
+        const float g = b->grazing[i],
+                    w = weight_of(v, c * diffuse + a * (r0 + rest * g), least) * b->trust[i];
         const float wc = w * c, wa = w * a, wb = wa * g;
         sum[CC][i] += wc * c;
         sum[CA][i] += wc * a;
@@ -234,7 +240,7 @@ void als_add(struct als_sums *sums, const struct als_texel *t, float scale,
                 const float fresnel = r0 + rest * b->grazing[i], lambda = b->share[i] * fresnel;
                 const float value = b->value[c][i];
                 const float model = b->cosine[i] * diffuse + scale * b->shine[c][i] * fresnel;
-                const float w = weight_of(value, model, least) * lambda;
+                const float w = weight_of(value, model, least) * b->trust[i] * lambda;
                 above[i] = w * (value - model);
                 below[i] = w * lambda;
             }
@@ -256,31 +262,89 @@ static double solid_of(int cell, int side)
                : 0.0;
 }
 
-void als_solve(float *q, const struct als_sums *sums, const struct als_form *form,
+// q = cs p: one distribution, and its share in each colour, of which the largest is 1.
+struct tinted {
+    double share[3];
+    float p[NDF_SIDE * NDF_SIDE];
+};
+
+static void part(struct tinted *out, const float *q, const struct als_form *form)
+{
+    const int cells = form->side * form->side, channels = form->channels;
+    int brightest = 0;
+    for (int c = 0; c < channels; c++) {
+        out->share[c] = 0.0;
+        for (int i = 0; i < cells; i++)
+            out->share[c] += (double)q[channels * i + c];
+        brightest = out->share[c] > out->share[brightest] ? c : brightest;
+    }
+    const double most = out->share[brightest];
+    for (int c = 0; c < channels; c++)
+        out->share[c] = most > 0.0 ? out->share[c] / most : 1.0;
+    for (int i = 0; i < cells; i++)
+        out->p[i] = q[channels * i + brightest];
+}
+
+// The better p, with how well each cell is known, and what is left to explain then.
+static void move_cells(struct tinted *t, float *weight, struct als_sums *sums,
+                       const struct als_form *form)
+{
+    const int side = form->side, cells = side * side;
+    double support[NDF_SIDE * NDF_SIDE], usual = 1e-12;
+    for (int i = 0; i < cells; i++) {
+        support[i] = 0.0;
+        for (int c = 0; c < form->channels; c++)
+            support[i] += t->share[c] * t->share[c] * sums->below[i][c];
+        usual += support[i] / cells;
+    }
+    for (int i = 0; i < cells; i++) {
+        double rest = 0.0;
+        for (int c = 0; c < form->channels; c++)
+            rest += t->share[c] * sums->above[i][c];
+        const double change = support[i] > 1e-9 * usual ? STEP * rest / support[i] : 0.0,
+                     p = fmin(fmax((double)t->p[i] + change, 0.0), 6e4);
+        for (int c = 0; c < form->channels; c++)
+            sums->above[i][c] -= sums->below[i][c] * t->share[c] * (p - (double)t->p[i]);
+        weight[i] = (float)fmin(support[i] / (WELL_KNOWN * usual), 1.0);
+        t->p[i] = (float)p;
+    }
+}
+
+static void move_shares(struct tinted *t, const struct als_sums *sums, const struct als_form *form)
+{
+    const int cells = form->side * form->side;
+    for (int c = 0; c < form->channels; c++) {
+        double above = 0.0, below = 0.0;
+        for (int i = 0; i < cells; i++) {
+            above += (double)t->p[i] * sums->above[i][c];
+            below += (double)t->p[i] * (double)t->p[i] * sums->below[i][c];
+        }
+        if (below > 0.0)
+            t->share[c] = fmax(t->share[c] + above / below, 0.0);
+    }
+}
+
+void als_solve(float *q, struct als_sums *sums, const struct als_form *form,
                const double diffuse[3])
 {
     const int side = form->side, cells = side * side, channels = form->channels;
-    float value[NDF_SIDE * NDF_SIDE], weight[NDF_SIDE * NDF_SIDE];
+    struct tinted t;
+    float weight[NDF_SIDE * NDF_SIDE] = {0.0f};
+    double integral = 0.0;
+    part(&t, q, form);
+    move_cells(&t, weight, sums, form);
+    move_shares(&t, sums, form);
+    ndf_fill(t.p, weight, side);
+    for (int i = 0; i < cells; i++)
+        integral += solid_of(i, side) * (double)t.p[i];
     for (int c = 0; c < channels; c++) {
-        double integral = 0.0;
-        double usual = 1e-12;
-        for (int i = 0; i < cells; i++)
-            usual += sums->below[i][c] / cells;
-        for (int i = 0; i < cells; i++) {
-            const double support = sums->below[i][c],
-                         change = support > 1e-9 * usual ? sums->above[i][c] / support : 0.0;
-            weight[i] = (float)fmin(support / (WELL_KNOWN * usual), 1.0);
-            value[i] = (float)fmin(fmax((double)q[channels * i + c] + change, 0.0), 6e4);
-        }
-        ndf_fill(value, weight, side);
+        const double most = fmax(1.0 - diffuse[c], 0.0),
+                     share = fmin(t.share[c], integral > 0.0 ? most / integral : INFINITY);
         for (int i = 0; i < cells; i++) {
             const double solid = solid_of(i, side);
-            value[i] = (float)fmin((double)value[i], solid > 0.0 ? 1.0 / solid : 6e4);
-            integral += solid * (double)value[i];
+            q[channels * i + c] =
+                (float)fmin(share * (double)t.p[i], solid > 0.0 ? 1.0 / solid : 6e4);
         }
-        const double most = fmax(1.0 - diffuse[c], 0.0);
-        for (int i = 0; i < cells; i++)
-            q[channels * i + c] = value[i] * (float)(integral > most ? most / integral : 1.0);
     }
 }
 

@@ -11,6 +11,7 @@ struct als_block {
     float value[3][ALS_LANES];   // Lr / Li, of a white matte surface n.l / pi
     float cosine[ALS_LANES];     // k1.n
     float share[ALS_LANES];      // k1.n / D
+    float trust[ALS_LANES];      // how much its squared error counts
     float grazing[ALS_LANES];    // (1 - k1.h)^5
     float corner[4][ALS_LANES];  // shares of the cells around h
     float shine[3][ALS_LANES];   // als_look: q there, times the share
@@ -55,8 +56,9 @@ struct als_sums {
 };
 void als_add(struct als_sums *sums, const struct als_texel *t, float scale,
              const struct als_form *form, const struct als_samples *samples);
-// q by them; cells without samples are filled. Kept below what energy allows beside `diffuse`.
-void als_solve(float *q, const struct als_sums *sums, const struct als_form *form,
+// q by them, which it uses up: one distribution times a share of each colour; cells without samples
+// are filled. Kept below what energy allows beside `diffuse`.
+void als_solve(float *q, struct als_sums *sums, const struct als_form *form,
                const double diffuse[3]);
 
 // Both in turn for a single texel, from a start of their own.

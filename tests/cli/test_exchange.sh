@@ -186,6 +186,8 @@ for side in 300 509 60; do # two levels; a half of 254.5 pixels; a picture below
     missing=
     while read -r f; do [ -s zoom/$f ] || missing="$missing $f"; done <asked.txt
     if [ -s asked.txt ] && [ -z "$missing" ]; then ok "deep zoom of $side: every tile that OpenLIME asks for"; else not_ok "deep zoom of $side: every tile that OpenLIME asks for" "missing:$missing"; fi
+    tiles=$(find zoom/plane_0_files -type f | wc -l)
+    if [ "$tiles" -eq "$(wc -l <asked.txt)" ]; then ok "deep zoom of $side: no other tile"; else not_ok "deep zoom of $side: no other tile" "$tiles of $(wc -l <asked.txt)"; fi
     if [ "$(ls zoom/plane_0_files | wc -l)" -eq "$(cat levels.txt)" ]; then ok "deep zoom of $side: no other level"; else not_ok "deep zoom of $side: no other level" "$(ls zoom/plane_0_files)"; fi
     relume import zoom -o zoom.exr
     above "deep zoom of $side is read back, as good as was promised" "$(psnr big.exr zoom.exr)" "$(awk -v p="$(promised)" 'BEGIN { print p - 4 }')"

@@ -65,7 +65,7 @@ echo "  $pictures/btf-models.png"
 # g-BRDFs in the viewer: planted, the same found from what it shows, and a weave, measured and found.
 [ -d "$out/planted" ] || { "$relume" btf plant -o "$out/planted.exr" && "$relume" btf expand "$out/planted.exr" -o "$out/planted"; }
 sample threads weave --size 128 --directions coarse --samples 1
-[ -f "$out/found.exr" ] || "$relume" btf fit "$out/planted" --model gbrdf --clusters 3 -o "$out/found.exr" -q
+[ -f "$out/found.exr" ] || "$relume" btf fit "$out/planted" --model gbrdf -o "$out/found.exr" -q
 [ -f "$out/threads.exr" ] || "$relume" btf fit "$out/threads" --model gbrdf -o "$out/threads.exr" -q
 list=
 for m in planted.exr found.exr threads threads.exr; do

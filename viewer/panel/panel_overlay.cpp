@@ -3,6 +3,7 @@
 
 extern "C" {
 #include "app/events.h"
+#include "app/handles.h"
 }
 
 #include <algorithm>
@@ -90,6 +91,8 @@ void panel_question(app *app, float scale)
     ImGui::SetNextWindowPos(panel_frame_point(app, 0.5f, 0.5f), ImGuiCond_Always,
                             ImVec2(0.5f, 0.5f));
     ImGui::Begin("quit", nullptr, fixed);
+    if (app->handles && app->handles->unsaved)
+        ImGui::TextUnformatted("Edits of reflections have not been saved.");
     ImGui::TextUnformatted("Quit the viewer?");
     if (panel_button("quit (Enter)", "close the window"))
         app->quit = true;

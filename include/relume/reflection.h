@@ -86,8 +86,10 @@ typedef struct relume_reflection relume_reflection;
 struct relume_reflection_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
-    const char *name;  // how sentences call the edit; default: "reflections"
-    int threads;       // default: all cores
+    const char *name;               // how sentences call the edit; default: "reflections"
+    int threads;                    // default: all cores
+    const relume_reflection *like;  // of the same surface: what it has measured is not measured
+                                    // again, while an edit is being changed; NULL: all is
 };
 #define relume_reflection_params(...)                                                              \
     (&(const struct relume_reflection_params){RELUME_SIZED(relume_reflection_params), __VA_ARGS__})

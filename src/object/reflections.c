@@ -16,7 +16,7 @@ relume_status relume_objects_set_reflections(relume_objects *o, int object,
                                              const struct relume_reflection_edit *edit,
                                              const struct relume_reflection_params *params)
 {
-    const struct relume_reflection_params own = PARAMS_WORK(relume_reflection_params, params);
+    struct relume_reflection_params own = PARAMS_WORK(relume_reflection_params, params);
     relume_reflection *made = NULL;
     size_t first = SIZE_MAX, end = 0;
     if (object < 0 || object >= o->info.objects)
@@ -34,6 +34,7 @@ relume_status relume_objects_set_reflections(relume_objects *o, int object,
         .triangle = first < end ? o->info.triangles + first : NULL,
         .triangles = first < end ? end - first : 0,
     };
+    own.like = o->reflection[object];
     const relume_status status =
         edit ? relume_reflection_create(&made, edit, &surface, &own) : RELUME_OK;
     if (status)

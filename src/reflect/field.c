@@ -195,8 +195,37 @@ static double size_of(const relume_reflection *f, const struct relume_reflection
 struct measuring {
     relume_reflection *f;
     const struct geodesic_mesh *mesh;
-    relume_status *status;  // [items]
+    relume_status *status;          // [items]
+    const relume_reflection *like;  // relume_reflection_params
 };
+
+static bool same_place(vec3 a, vec3 b)
+{
+    return !memcmp(&a, &b, sizeof a);
+}
+
+// Distances from there that are known already, else NULL.
+static const float *find_measured(const relume_reflection *like, size_t vertices, vec3 origin)
+{
+    if (!like || like->vertices != vertices)
+        return NULL;
+    for (int i = 0; i < like->edit.constraints; i++)
+        if (like->along[i] && same_place(like->constraint[i].position, origin))
+            return like->along[i];
+    for (int i = 0; i < like->edit.regions; i++)
+        if (like->region_along[i] && same_place(like->region[i].centre, origin))
+            return like->region_along[i];
+    return NULL;
+}
+
+static relume_status measure_from(float *distance, const struct measuring *m, vec3 origin)
+{
+    const float *known = find_measured(m->like, m->mesh->given, origin);
+    if (!known)
+        return geodesic_distances(distance, m->mesh, origin);
+    memcpy(distance, known, m->mesh->given * sizeof *distance);
+    return RELUME_OK;
+}
 
 // Item i is a constraint or, after these, a region.
 static void measure(void *context, size_t item, int worker)
@@ -212,8 +241,7 @@ static void measure(void *context, size_t item, int worker)
         return;
     float *distance = mem_array(m->mesh->given, sizeof *distance);
     m->status[item] =
-        distance ? geodesic_distances(distance, m->mesh,
-                                      region ? region->centre : f->constraint[item].position)
+        distance ? measure_from(distance, m, region ? region->centre : f->constraint[item].position)
                  : RELUME_ENOMEM;
     *(region ? &f->region_along[item - constraints] : &f->along[item]) = distance;
 }
@@ -227,14 +255,15 @@ static bool needs_surface(const relume_reflection *f)
 }
 
 static relume_status measure_all(relume_reflection *f, const struct geodesic_mesh *mesh,
-                                 int threads)
+                                 const relume_reflection *like, int threads)
 {
     const size_t items = (size_t)f->edit.constraints + (size_t)f->edit.regions;
-    struct measuring m = {f, mesh, mem_zeroed(items, sizeof *m.status)};
+    struct measuring m = {f, mesh, mem_zeroed(items, sizeof *m.status), like};
     f->along = mem_zeroed((size_t)f->edit.constraints, sizeof *f->along);
     f->region_along = mem_zeroed((size_t)f->edit.regions, sizeof *f->region_along);
     relume_status status = m.status && f->along && f->region_along ? RELUME_OK : RELUME_ENOMEM;
     f->edge = mesh->edge;
+    f->vertices = mesh->given;
     if (!status)
         thread_for(threads, items, measure, &m);
     for (size_t i = 0; i < items && !status; i++)
@@ -329,7 +358,7 @@ relume_status relume_reflection_create(relume_reflection **out,
                      : log_fail(own.log, RELUME_EINVAL,
                                 "%s: distances along the surface need a mesh", asking.name);
         if (!status)
-            status = measure_all(f, &mesh, own.threads);
+            status = measure_all(f, &mesh, own.like, own.threads);
     }
     if (!status) {
         f->least = LEAST * size_of(f, surface);

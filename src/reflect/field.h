@@ -20,6 +20,7 @@ struct relume_reflection {
     struct gathered *gathered;  // [regions], or one
     float **along;              // [constraints]: distances of the vertices; NULL: straight
     float **region_along;       // [regions]: likewise, of geodesic ones
+    size_t vertices;            // of each
     double edge;                // of the surface's triangles, mean; 0: no surface
     double least;               // of all distances to constraints
 };

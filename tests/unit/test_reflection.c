@@ -563,6 +563,43 @@ static void regions_go_along_the_surface(void **state)
     }
 }
 
+// What another edit of the surface has measured is taken over, and nothing else.
+static void measured_distances_are_taken_over(void **state)
+{
+    (void)state;
+    static struct sheet s;
+    make_sheet(&s, 5.5);
+    const struct relume_reflection_surface surface = surface_of(&s);
+    struct relume_reflection_constraint c[3];
+    for (int i = 0; i < 3; i++) {
+        const float *p = s.at[7 * SIDE + 3 + 5 * i];
+        c[i] = (struct relume_reflection_constraint){
+            vec3_of((double)p[0], (double)p[1], (double)p[2]), {0, 0, 1}, {1, 0, 0}, {0, 0, 5}};
+    }
+    const struct relume_reflection_region g = {
+        .shape = RELUME_REFLECTION_GEODESIC, .centre = c[1].position, .radius = 9};
+    const struct relume_reflection_edit before = {
+        .constraint = c + 1, .constraints = 2, .region = &g, .regions = 1, .geodesic = true};
+    const struct relume_reflection_edit after = {
+        .constraint = c, .constraints = 3, .geodesic = true};
+    relume_reflection *like = create(&before, &surface), *alone = create(&after, &surface), *made;
+    assert_int_equal(
+        relume_reflection_create(&made, &after, &surface,
+                                 relume_reflection_params(.log = &hearing, .like = like)),
+        RELUME_OK);
+    const size_t bytes = surface.vertices * sizeof(float);
+    for (int i = 0; i < 3; i++)
+        assert_memory_equal(relume_reflection_from_constraint(made, i),
+                            relume_reflection_from_constraint(alone, i), bytes);
+    assert_memory_not_equal(relume_reflection_from_constraint(made, 0),
+                            relume_reflection_from_constraint(made, 1), bytes);
+    assert_memory_equal(relume_reflection_from_region(like, 0),
+                        relume_reflection_from_constraint(like, 0), bytes);
+    relume_reflection_destroy(&made);
+    relume_reflection_destroy(&alone);
+    relume_reflection_destroy(&like);
+}
+
 // Pieces that do not hang together: infinitely far along the surface.
 static void other_pieces_are_out_of_reach(void **state)
 {
@@ -607,6 +644,7 @@ int main(void)
         cmocka_unit_test(many_survive_what_is_degenerate),
         cmocka_unit_test(distances_go_along_the_surface),
         cmocka_unit_test(regions_go_along_the_surface),
+        cmocka_unit_test(measured_distances_are_taken_over),
         cmocka_unit_test(other_pieces_are_out_of_reach),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
 // open.c - a folder of maps read back (docs/maps.md)
+#include "base/infile.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -123,7 +124,12 @@ relume_status relume_maps_open(struct relume_maps *out, const char *path,
     const struct reader r = {json, log};
     jvalue *root = NULL;
     *out = (struct relume_maps){.fitted = unknown, .held_out = unknown};
-    relume_status status = json ? jvalue_load(&root, json, log) : RELUME_ENOMEM;
+    relume_status status = json ? RELUME_OK : RELUME_ENOMEM;
+    if (json && !input_exists(json, log))
+        status = log_fail(log, RELUME_ENOTFOUND,
+                          "%s: no such file; expected a folder as relume maps makes it", json);
+    if (!status)
+        status = jvalue_load(&root, json, log);
     if (!status)
         status = read_description(out, &r, root);
     if (!status)

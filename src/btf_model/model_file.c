@@ -1,4 +1,5 @@
 // model_file.c - a fitted model on disk: model.json and one .npy file for each of its arrays
+#include "base/infile.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -239,7 +240,13 @@ static relume_status open_level(relume_btf_fitted **out, const char *folder, int
     relume_btf_fitted *m = mem_zeroed(1, sizeof *m);
     jvalue *root = NULL;
     *out = NULL;
-    relume_status status = r.json && m ? jvalue_load(&root, r.json, r.log) : RELUME_ENOMEM;
+    relume_status status = r.json && m ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && !input_exists(r.json, r.log))
+        status = log_fail(r.log, RELUME_ENOTFOUND,
+                          "%s: no such file; expected a fitted model: a folder, or an .exr file",
+                          r.json);
+    if (!status)
+        status = jvalue_load(&root, r.json, r.log);
     if (!status)
         status = read_all(m, root, &r);
     const jvalue *count = jvalue_member(root, "levels");

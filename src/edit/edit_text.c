@@ -101,7 +101,9 @@ void relume_edit_text(const struct relume_edit *edit, char *text, size_t size)
     fputs(o->name, to);
     for (int k = 0; k < MOST_PARAMETERS && o->parameter[k]; k++)
         if (parameter_given(o->parameter[k], edit)) {
-            fprintf(to, " %s ", o->parameter[k]->name);
+            const char *name = o->parameter[k]->name;
+            fprintf(to, " %s%s", strcmp(name, o->name) ? name : "",
+                    strcmp(name, o->name) ? " " : "");
             put_value(to, o->parameter[k], edit);
         }
     fclose(to);

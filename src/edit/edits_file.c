@@ -114,18 +114,13 @@ relume_status relume_edits_save(const relume_edits *edits, const char *path,
 
 // ---------------------------------------------------------------- reading
 
-struct reader {
-    const char *path;
-    const struct relume_log *log;
-};
-
-static relume_status wrong(const struct reader *r, const char *what, const char *expected)
+static relume_status wrong(const struct relume_log *log, const char *what, const char *expected)
 {
-    return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %s", r->path, what, expected);
+    return log_fail(log, RELUME_EFORMAT, "%s; expected %s", what, expected);
 }
 
 static relume_status read_picture(struct relume_image *out, const jvalue *value,
-                                  const struct edit_parameter *p, const struct reader *r)
+                                  const struct edit_parameter *p, const struct relume_log *log)
 {
     const char *text = jvalue_text(jvalue_member(value, "packed"));
     int width = 0, height = 0;
@@ -133,7 +128,7 @@ static relume_status read_picture(struct relume_image *out, const jvalue *value,
     if (!text || !jvalue_whole(jvalue_member(value, "width"), 1, RELUME_EDIT_MOST_SIDE, &width) ||
         !jvalue_whole(jvalue_member(value, "height"), 1, RELUME_EDIT_MOST_SIDE, &height) ||
         !drawing_from_text(out, width, height, text, &status))
-        return wrong(r, p->name, "width and height up to 1024, and so many packed pixels");
+        return wrong(log, p->name, "width and height up to 1024, and so many packed pixels");
     return status;
 }
 
@@ -147,7 +142,7 @@ static bool read_labels(int *out, const jvalue *value, int count)
 }
 
 static relume_status read_value(struct relume_edit *edit, const jvalue *value,
-                                const struct edit_parameter *p, const struct reader *r)
+                                const struct edit_parameter *p, const struct relume_log *log)
 {
     void *out = parameter_of(p, edit);
     const char *text = jvalue_text(value);
@@ -159,38 +154,41 @@ static relume_status read_value(struct relume_edit *edit, const jvalue *value,
         break;
     case PARAMETER_LABELS: good = read_labels(out, value, p->count); break;
     case PARAMETER_CHANNELS: good = text && snprintf(out, 4, "%s", text) == 3; break;
-    case PARAMETER_PICTURE: return read_picture(out, value, p, r);
+    case PARAMETER_PICTURE: return read_picture(out, value, p, log);
     }
-    return good && parameter_is_good(p, edit) ? RELUME_OK : wrong(r, p->name, p->form);
+    return good && parameter_is_good(p, edit) ? RELUME_OK : wrong(log, p->name, p->form);
 }
 
 // What is not known would be lost, or mean something else.
 static relume_status check_members(const jvalue *value, const struct relume_edit_operation *o,
-                                   const struct reader *r)
+                                   const struct relume_log *log)
 {
     const char *known[MOST_PARAMETERS + 2] = {"operation"};
     for (int k = 0; k < MOST_PARAMETERS && o->parameter[k]; k++)
         known[k + 1] = o->parameter[k]->name;
     const char *other = jvalue_unknown(value, known);
-    return other ? log_fail(r->log, RELUME_EFORMAT, "%s: %s has no '%s'; made by a newer relume?",
-                            r->path, o->name, other)
+    return other ? log_fail(log, RELUME_EFORMAT, "has no '%s'; made by a newer relume?", other)
                  : RELUME_OK;
 }
 
-static relume_status read_edit(struct relume_edit *edit, const jvalue *value,
-                               const struct reader *r)
+static relume_status read_edit(struct relume_edit *edit, size_t number, const jvalue *value,
+                               const struct relume_log *log)
 {
     const char *name = jvalue_text(jvalue_member(value, "operation"));
     const struct relume_edit_operation *o = name ? relume_edit_operation_find(name) : NULL;
     if (!o)
-        return wrong(r, "operation", "the name of one that this relume has");
+        return log_fail(log, RELUME_EFORMAT,
+                        "edit %zu: operation; expected the name of one that this relume has%s%s%s",
+                        number, name ? "; found '" : "", name ? name : "", name ? "'" : "");
+    struct log_place place;
+    const struct relume_log *at = log_at(&place, log, "edit %zu, %s: ", number, name);
     *edit = relume_edit_of(o);
-    relume_status status = check_members(value, o, r);
+    relume_status status = check_members(value, o, at);
     for (int k = 0; !status && k < MOST_PARAMETERS && o->parameter[k]; k++) {
         const struct edit_parameter *p = o->parameter[k];
         const jvalue *member = jvalue_member(value, p->name);
         if (member || !p->optional)
-            status = read_value(edit, member, p, r);
+            status = read_value(edit, member, p, at);
     }
     return status;
 }
@@ -206,29 +204,30 @@ static bool read_fingerprint(uint64_t *out, const jvalue *root)
     return true;
 }
 
-static relume_status read_list(relume_edits *edits, const jvalue *root, const struct reader *r)
+static relume_status read_list(relume_edits *edits, const jvalue *root,
+                               const struct relume_log *log)
 {
     const jvalue *operations = jvalue_member(root, "operations");
     int version = 0;
     if (!jvalue_whole(jvalue_member(root, "relumeEdits"), 1, 1000, &version))
-        return wrong(r, "no list of edits", "\"relumeEdits\": 1");
+        return wrong(log, "no list of edits", "\"relumeEdits\": 1");
     if (version != VERSION)
-        return log_fail(r->log, RELUME_EUNSUPPORTED, "%s: expected version %d; found %d", r->path,
-                        VERSION, version);
+        return log_fail(log, RELUME_EUNSUPPORTED, "expected version %d; found %d", VERSION,
+                        version);
     if (!read_fingerprint(&edits->fingerprint, root))
-        return wrong(r, "fingerprint", "16 hexadecimal digits");
+        return wrong(log, "fingerprint", "16 hexadecimal digits");
     if (!jvalue_is_array(operations) || jvalue_count(operations) > RELUME_EDIT_MOST)
-        return wrong(r, "operations", "a list of at most 256");
+        return wrong(log, "operations", "a list of at most 256");
     if (!jvalue_whole(jvalue_member(root, "undone"), 0, (long long)jvalue_count(operations),
                       &edits->undone))
-        return wrong(r, "undone", "at most as many as there are operations");
+        return wrong(log, "undone", "at most as many as there are operations");
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < jvalue_count(operations); i++) {
         if (!mem_grow(&edits->edit, i, sizeof *edits->edit))
             return RELUME_ENOMEM;
         edits->edit[i] = (struct relume_edit){.operation = NULL};
         edits->count++;
-        status = read_edit(&edits->edit[i], jvalue_item(operations, i), r);
+        status = read_edit(&edits->edit[i], i + 1, jvalue_item(operations, i), log);
     }
     return status;
 }
@@ -241,7 +240,7 @@ relume_status relume_edits_open(relume_edits **out, const char *path, uint64_t f
     if (status)
         return status;
     char *name = (*out)->file = edits_name(path);
-    const struct reader r = {name, log};
+    struct log_place place;
     struct relume_log quiet = log ? *log : (struct relume_log){0};
     quiet.leave_unnoted = true;  // the next list takes its place
     if (!name)
@@ -249,7 +248,7 @@ relume_status relume_edits_open(relume_edits **out, const char *path, uint64_t f
     else if (input_exists(name, log)) {
         status = jvalue_load(&root, name, &quiet);
         if (!status)
-            status = read_list(*out, root, &r);
+            status = read_list(*out, root, log_at(&place, log, "%s: ", name));
         if (!status)
             status = edits_check(*out, fingerprint, path, log);
     }

@@ -46,6 +46,7 @@ differ 'and shows it' one.exr two.exr
 cp -r folder other && "$RELUME" btf edit other --undo --undo --undo --undo --undo -q
 show other one.exr
 same 'and loses it' one.exr two.exr
+check 'lists name a parameter once' sh -c "'$RELUME' btf edit other | grep -q '^3   channels GBR (undone)'"
 
 # ---- what is refused
 list=$(cat found.edits.json)
@@ -164,6 +165,7 @@ expect_fail 'maps have no labels' 2 'label' - "$RELUME" maps edit maps --tint 1,
 expect_fail 'maps that are made again lose no list' 2 'maps.*edits.json' - "$RELUME" maps photos -o maps --force
 mv maps/edits.json list.json && "$RELUME" maps photos -o maps --force --gain 0.5 -q && mv list.json maps/edits.json
 expect_fail 'maps: edits of another version' 1 'maps/edits.json: these edits are for another version' x "$RELUME" maps edit maps -o x
-expect_fail 'no maps' 1 'photos/maps.json' x "$RELUME" maps edit photos -o x
+expect_fail 'maps: what only -o shows' 2 'directx and --mesh are about what is written' - "$RELUME" maps edit maps --mesh 10
+expect_fail 'no maps' 1 'photos/maps.json: no such file; expected a folder as relume maps makes it' x "$RELUME" maps edit photos -o x
 expect_ok 'maps behind its options' - "$RELUME" maps -o named photos
 finish

@@ -491,10 +491,10 @@ static void test_refused(void **state)
          "operation", RELUME_EFORMAT},
         {"{\"relumeEdits\": 1, \"fingerprint\": \"0000000000000001\", \"undone\": 0, "
          "\"operations\": [{\"operation\": \"roughness\", \"factor\": 1e9}]}",
-         "factor; expected 0.1 to 10", RELUME_EFORMAT},
+         "edit 1, roughness: factor; expected 0.1 to 10", RELUME_EFORMAT},
         {"{\"relumeEdits\": 1, \"fingerprint\": \"0000000000000001\", \"undone\": 0, "
          "\"operations\": [{\"operation\": \"roughness\", \"factor\": 2, \"colour\": 1}]}",
-         "roughness has no 'colour'", RELUME_EFORMAT},
+         "edit 1, roughness: has no 'colour'", RELUME_EFORMAT},
         {"{\"relumeEdits\": 1, \"fingerprint\": \"0000000000000001\", \"undone\": 0, "
          "\"operations\": [{\"operation\": \"emboss\", \"height\": 0.1, \"at\": [0, 0], \"size\": "
          "1, \"drawing\": {\"width\": 1000000, \"height\": 1, \"packed\": \"\"}}]}",

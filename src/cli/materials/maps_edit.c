@@ -31,6 +31,8 @@ static relume_status run(const struct args *args)
     struct relume_maps maps = {0};
     relume_edits *edits = NULL;
     o.edit.list |= !o.output && !edit_is_asked(args, &o.edit);
+    if (!o.output && (o.directx || o.mesh))
+        return usage_error("--directx and --mesh are about what is written; expected -o DIR");
     relume_status status = o.output ? relume_folder_check(o.output, o.force, args->log) : RELUME_OK;
     if (!status)
         status = relume_maps_open(&maps, args->input[0], args->log);

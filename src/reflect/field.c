@@ -274,16 +274,22 @@ static relume_status measure_all(relume_reflection *f, const struct geodesic_mes
 
 // ---------------------------------------------------------------- what counts where
 
-static bool counts_in(const relume_reflection *f, const struct geodesic_mesh *mesh, int constraint,
-                      int region)
+// A constraint counts where its place, and along the surface the nearest one on that, has a weight.
+static void count_in(relume_reflection *f, const struct geodesic_mesh *mesh, int constraint)
 {
-    struct relume_reflection_place place = {.position = f->constraint[constraint].position};
-    if (!f->edit.regions)
-        return true;
-    if (f->region[region].shape == RELUME_REFLECTION_GEODESIC &&
-        !geodesic_locate(&place, mesh, place.position))
-        return false;
-    return relume_reflection_weight(f, region, &place) > 0.0;
+    const struct relume_reflection_place at = {.position = f->constraint[constraint].position};
+    struct relume_reflection_place on;
+    bool located = false, tried = false;
+    for (int i = 0; i < gathered_count(f); i++) {
+        struct gathered *g = &f->gathered[i];
+        const bool along = f->edit.regions && f->region[i].shape == RELUME_REFLECTION_GEODESIC;
+        if (along && !tried)
+            located = geodesic_locate(&on, mesh, at.position);
+        tried |= along;
+        if (!f->edit.regions ||
+            ((!along || located) && relume_reflection_weight(f, i, along ? &on : &at) > 0.0))
+            g->member[g->members++] = constraint;
+    }
 }
 
 static relume_status gather(relume_reflection *f, const struct geodesic_mesh *mesh)
@@ -292,13 +298,14 @@ static relume_status gather(relume_reflection *f, const struct geodesic_mesh *me
     if (!f->gathered)
         return RELUME_ENOMEM;
     for (int i = 0; i < gathered_count(f); i++) {
-        struct gathered *g = &f->gathered[i];
-        g->member = mem_array((size_t)f->edit.constraints, sizeof *g->member);
-        if (!g->member)
+        f->gathered[i].member = mem_array((size_t)f->edit.constraints, sizeof(int));
+        if (!f->gathered[i].member)
             return RELUME_ENOMEM;
-        for (int k = 0; k < f->edit.constraints; k++)
-            if (counts_in(f, mesh, k, i))
-                g->member[g->members++] = k;
+    }
+    for (int k = 0; k < f->edit.constraints; k++)
+        count_in(f, mesh, k);
+    for (int i = 0; i < gathered_count(f); i++) {
+        struct gathered *g = &f->gathered[i];
         if (g->members == 1)
             g->only = rotation_least(f->constraint[g->member[0]].original,
                                      f->constraint[g->member[0]].edited);

@@ -375,7 +375,9 @@ static void wrong_words_are_refused(void **state)
     fails("radius 0", "above 0");
     fails("radius nan", "above 0");
     fails("radius 1 2", "above 0");
-    fails("border -1", "0 or more");
+    fails("radius 1e300", "up to 1000 sizes");
+    fails("border -1", "0 to 1000");
+    fails("border inf", "0 to 1000");
     fails("distance far", "straight or geodesic");
     fails("freeze now", "freeze");
     assert_null(edit_now());
@@ -396,7 +398,7 @@ static void wrong_words_are_refused(void **state)
             {0, 0, 1}, {0, 0, 1}, {0, 0.01 * i, 1}, {0, 0, 4}};
         assert_int_equal(handles_add_constraint(app.handles, e, &c),
                          i < RELUME_REFLECTION_CONSTRAINTS_MOST);
-        handles_end(app.handles, NULL);
+        assert_true(handles_end(app.handles, NULL));
     }
     assert_non_null(strstr(app.handles->said, "at most 256"));
     // a number that is none is refused by the library; then all is as before
@@ -405,6 +407,55 @@ static void wrong_words_are_refused(void **state)
     e->constraint[0].position.x = NAN;
     assert_false(handles_show(app.handles));
     assert_true(isfinite(app.handles->now[0].constraint[0].position.x));
+}
+
+// Whatever a hand does, it can be undone to the beginning and redone to the end.
+static void anything_is_undone(void **state)
+{
+    (void)state;
+    static const char *const words[] = {"tool move",
+                                        "tool ball",
+                                        "tool brush",
+                                        "tool along",
+                                        "undo",
+                                        "redo",
+                                        "delete",
+                                        "freeze",
+                                        "unfreeze",
+                                        "choose region 0",
+                                        "choose region 1",
+                                        "radius 0.3",
+                                        "border 0.1",
+                                        "choose constraint 0"};
+    uint64_t seed = 7;
+    for (int i = 0; i < 50; i++) {
+        double u[5];
+        for (int k = 0; k < 5; k++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            u[k] = (double)(seed >> 11) * 0x1p-53;
+        }
+        if (u[4] < 0.5)
+            (void)!handles_say(&app, words[(int)(u[0] * (sizeof words / sizeof *words))], NULL);
+        else
+            drag(SIDE * (0.3 + 0.4 * u[0]), SIDE * (0.3 + 0.4 * u[1]), SIDE * u[2], SIDE * u[3]);
+        assert_false(app.handles->changes);
+    }
+    const struct relume_reflection_edit *e = edit_now();
+    assert_non_null(e);
+    const int constraints = e->constraints, regions = e->regions;
+    assert_true(constraints > 1 && regions > 1);
+    const struct relume_vec3 shown = shown_at(101, 97);
+    int undone = 0;
+    while (handles_undo(app.handles))
+        undone++;
+    assert_true(undone > 10);
+    assert_null(edit_now());
+    for (; undone; undone--)
+        assert_true(handles_redo(app.handles));
+    const struct relume_vec3 again = shown_at(101, 97);
+    assert_int_equal(edit_now()->constraints, constraints);
+    assert_int_equal(edit_now()->regions, regions);
+    assert_memory_equal(&again, &shown, sizeof shown);
 }
 
 // Edits of a file have handles too; the red one by a search among the vertices.
@@ -436,7 +487,8 @@ int main(void)
         CASE(what_was_seen_follows_the_pointer), CASE(changes_are_undone),
         CASE(regions_bound_the_effect),          CASE(strokes_are_painted),
         CASE(an_edit_is_frozen_and_seen_again),  CASE(places_of_a_scene_are_shown),
-        CASE(wrong_words_are_refused),           CASE(edits_that_are_there_get_handles),
+        CASE(wrong_words_are_refused),           CASE(anything_is_undone),
+        CASE(edits_that_are_there_get_handles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

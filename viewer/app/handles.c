@@ -270,15 +270,15 @@ static void drop_oldest(struct handles *h)
     h->steps--;
 }
 
-void handles_end(struct handles *h, const char *merges)
+bool handles_end(struct handles *h, const char *merges)
 {
     const int object = h->chosen.object;
     struct handles_step step = {.object = object, .merges = merges};
     if (!h->changes)
-        return;
+        return false;
     if (!apply(h, object, true) || !edit_clone(&step.after, &h->now[object])) {
         handles_drop(h);
-        return;
+        return false;
     }
     drop_undone(h);
     struct handles_step *last = h->steps ? &h->step[h->steps - 1] : NULL;
@@ -294,6 +294,7 @@ void handles_end(struct handles *h, const char *merges)
     h->before = (struct handles_edit){0};
     h->changes = false;
     h->unsaved = true;
+    return true;
 }
 
 // ---------------------------------------------------------------- back and forth
@@ -416,8 +417,7 @@ bool handles_remove(struct handles *h)
         memmove(e->region + c.number, e->region + c.number + 1, after * sizeof *e->region);
     }
     h->chosen.kind = HANDLES_NOTHING;
-    handles_end(h, NULL);
-    return true;
+    return handles_end(h, NULL);
 }
 
 const struct relume_reflection_constraint *handles_constraint(const struct handles *h)

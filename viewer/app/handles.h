@@ -86,8 +86,9 @@ struct handles_edit *handles_begin(struct handles *h, int object);
 // Show it as it is now. False when the library does not take it, which is said; then the change is
 // over, and all is as before.
 bool handles_show(struct handles *h);
-// What there was to be said is said, and the change can be undone; `merges` as handles_step.
-void handles_end(struct handles *h, const char *merges);
+// What there was to be said is said, and the change can be undone; `merges` as handles_step. False
+// when the library does not take it: all is as before.
+bool handles_end(struct handles *h, const char *merges);
 
 // The change is over, and all is as before it.
 void handles_drop(struct handles *h);

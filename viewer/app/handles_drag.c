@@ -359,7 +359,7 @@ bool handles_release(struct app *app)
     struct handles *h = app->handles;
     const bool changes = h->changes;
     if (h->shown)
-        handles_end(h, NULL);
+        (void)handles_end(h, NULL);
     else
         handles_drop(h);
     return changes;

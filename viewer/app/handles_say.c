@@ -74,8 +74,7 @@ static bool freeze(struct app *app, bool frozen)
         return false;
     e->edit.frozen = frozen;
     e->edit.eye = relume_viewport_eye(&sight);
-    handles_end(h, NULL);
-    return true;
+    return handles_end(h, NULL);
 }
 
 static bool say_freeze(struct app *app, const char *rest)
@@ -113,14 +112,15 @@ static bool say_distance(struct app *app, const char *rest)
     if (!e)
         return false;
     e->edit.geodesic = geodesic;
-    handles_end(h, NULL);
-    return true;
+    return handles_end(h, NULL);
 }
 
-static bool take_number(double *out, const char *rest)
+static const double MOST = 1e3;  // radius of a region, sizes of the objects; border, radii
+
+static bool take_number(double *out, const char *rest, double most)
 {
     char more;
-    return sscanf(rest, "%lf %c", out, &more) == 1 && isfinite(*out);
+    return sscanf(rest, "%lf %c", out, &more) == 1 && *out <= most;
 }
 
 // Of the chosen region, and of the next one.
@@ -128,7 +128,7 @@ static bool say_radius(struct app *app, const char *rest)
 {
     struct handles *h = app->handles;
     double radius;
-    if (!take_number(&radius, rest) || !(radius > 0))
+    if (!take_number(&radius, rest, MOST * h->size) || !(radius > 0))
         return false;
     h->radius = radius;
     struct handles_edit *e = handles_region(h) ? handles_begin(h, h->chosen.object) : NULL;
@@ -137,23 +137,21 @@ static bool say_radius(struct app *app, const char *rest)
     struct relume_reflection_region *r = &e->region[h->chosen.number];
     r->border *= radius / r->radius;
     r->radius = radius;
-    handles_end(h, "radius");
-    return true;
+    return handles_end(h, "radius");
 }
 
 static bool say_border(struct app *app, const char *rest)
 {
     struct handles *h = app->handles;
     double border;
-    if (!take_number(&border, rest) || !(border >= 0))
+    if (!take_number(&border, rest, MOST) || !(border >= 0))
         return false;
     h->border = border;
     struct handles_edit *e = handles_region(h) ? handles_begin(h, h->chosen.object) : NULL;
     if (!e)
         return true;
     e->region[h->chosen.number].border = border * e->region[h->chosen.number].radius;
-    handles_end(h, "border");
-    return true;
+    return handles_end(h, "border");
 }
 
 // ---------------------------------------------------------------- table
@@ -173,8 +171,8 @@ static const struct word {
     {"unfreeze", say_unfreeze, "unfreeze"},
     {"view", say_view, "view, with a constraint chosen and an eye that can move"},
     {"distance", say_distance, "distance straight or geodesic"},
-    {"radius", say_radius, "radius R, above 0"},
-    {"border", say_border, "border PART of the radius, 0 or more"},
+    {"radius", say_radius, "radius R, above 0, up to 1000 sizes of the objects"},
+    {"border", say_border, "border PART of the radius, 0 to 1000"},
 };
 
 static const struct word *find_word(const char *words, const char **rest)

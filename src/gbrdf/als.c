@@ -272,13 +272,14 @@ static void part(struct tinted *out, const float *q, const struct als_form *form
 {
     const int cells = form->side * form->side, channels = form->channels;
     int brightest = 0;
+    double most = 0.0;
     for (int c = 0; c < channels; c++) {
         out->share[c] = 0.0;
         for (int i = 0; i < cells; i++)
             out->share[c] += (double)q[channels * i + c];
-        brightest = out->share[c] > out->share[brightest] ? c : brightest;
+        brightest = out->share[c] > most ? c : brightest;
+        most = fmax(most, out->share[c]);
     }
-    const double most = out->share[brightest];
     for (int c = 0; c < channels; c++)
         out->share[c] = most > 0.0 ? out->share[c] / most : 1.0;
     for (int i = 0; i < cells; i++)

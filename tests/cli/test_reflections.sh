@@ -71,6 +71,14 @@ script_fails() { # name, pattern
 echo "reflection save ball.json" >hands.txt
 script_fails 'a file of something else is kept' 'ball.json: is no list of reflections, and is kept' ball.json
 check 'and is whole' test "$objects" = "$(cat ball.json)"
+echo "reflection save nowhere/edit.json" >hands.txt
+"$VIEWER" room.exr --objects ball.json --size 96x64 --script hands.txt --offscreen x.png 2>err.txt
+check 'a folder that is not there' test $? -eq 3
+check 'is told with its place in the script' grep -q '^relume-view: hands.txt: line 1, .*nowhere/edit.json: cannot be written' err.txt
+echo 'reflection save "a name.json"' >hands.txt
+"$VIEWER" room.exr --objects ball.json --size 96x64 --script hands.txt --offscreen x.png
+check 'a name with blanks' test -s 'a name.json'
+rm -f x.png
 echo "reflection tool hammer" >hands.txt
 script_fails 'wrong words' 'tool move, ball, along or brush' ball.json
 echo "reflection" >hands.txt

@@ -213,6 +213,8 @@ relume_status session_edit(struct session *s, const char *words, const struct re
 relume_status session_edit_maps(struct session *s, const char *words, const struct relume_log *log);
 // Change a list as words say; cuts them up. RELUME_EINVAL with a sentence, an input status.
 relume_status session_change_edits(relume_edits *edits, char *words, const struct relume_log *log);
+// A name without the quotes around it, which are cut off in place.
+const char *session_unquote(char *name);
 // What the panel shows of a list.
 void session_describe_edits(struct session *s, const relume_edits *edits);
 // An edit of what mirrors reflect: words of handles_say, or "save [FILE]". Statuses of handles_say,

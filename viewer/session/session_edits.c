@@ -15,6 +15,15 @@ bool session_can_edit(const struct session *s)
            !strcmp(relume_objects_info(s->objects)->material[0].model, "gbrdf");
 }
 
+const char *session_unquote(char *name)
+{
+    const size_t n = strlen(name);
+    if (n < 2 || name[0] != '"' || name[n - 1] != '"')
+        return name;
+    name[n - 1] = '\0';
+    return name + 1;
+}
+
 // The next word, which quotes may hold together; NULL at the end.
 static char *next_word(char **at)
 {

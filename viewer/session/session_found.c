@@ -96,15 +96,6 @@ static relume_status open_edited(struct relume_maps *out, relume_edits **edits,
     return status;
 }
 
-static const char *without_quotes(char *name)
-{
-    const size_t n = strlen(name);
-    if (n < 2 || name[0] != '"' || name[n - 1] != '"')
-        return name;
-    name[n - 1] = '\0';
-    return name + 1;
-}
-
 relume_status session_edit_maps(struct session *s, const char *words, const struct relume_log *log)
 {
     char copy[APP_SPEC];
@@ -112,7 +103,7 @@ relume_status session_edit_maps(struct session *s, const char *words, const stru
     relume_edits *edits;
     snprintf(copy, sizeof copy, "%s", words);
     if (!strncmp(copy, "write ", 6))
-        return relume_maps_write(&s->found, without_quotes(copy + 6),
+        return relume_maps_write(&s->found, session_unquote(copy + 6),
                                  relume_maps_write_params(.log = log, .threads = s->threads,
                                                           .directx = s->found.directx));
     relume_status status = open_edited(&maps, &edits, s, s->found_path, copy, log);

@@ -75,7 +75,9 @@ relume_status session_reflect(struct session *s, const char *words, const struct
         return handles_say(&s->app, words, log);
     if (!handles_turn_on(&s->app, true))
         return handles_say(&s->app, "on", log);
-    return save(s, words + 4 + strspn(words + 4, " "), log);
+    char name[APP_SPEC];
+    snprintf(name, sizeof name, "%s", words + 4 + strspn(words + 4, " "));
+    return save(s, session_unquote(name), log);
 }
 
 void session_hear_handles(struct session *s)

@@ -125,6 +125,6 @@ int main(int argc, char **argv)
     fuzz_add(
         &f,
         text("3glare on\nglare squint 0.3\nwait 0.2\nglare pause\ndock left\nhint\n"
-             "open a.exr\nrig a.json\nedit undo\nreflection on\ntype abc\nkey right\nkey esc\n"));
+             "open a.exr\nrig a.json\nedit undo\ntype abc\nkey right\nkey esc\n"));
     return fuzz_run(&f, argc, argv, one);
 }

@@ -11,6 +11,7 @@
 struct fixture {
     int width, height, lights, views;  // views > 1: a slab of views x 1
     bool hemisphere, depth, mask;
+    bool near;  // lamps stand 3 units away, and light does not fall off
     int slabs;  // views are of so many slabs around the y axis in turn; 0: of one
 };
 
@@ -36,12 +37,16 @@ static inline void fixture_must(relume_status status, const char *what)
 static inline void fixture_write(const struct fixture *f, const char *folder)
 {
     struct relume_vec3 *directions = calloc((size_t)f->lights, sizeof *directions);
+    struct relume_vec3 *position = calloc((size_t)f->lights, sizeof *position);
     struct relume_manifest_view *view = calloc((size_t)f->views, sizeof *view);
     char path[512];
     struct relume_image image, plane;
     fixture_must(relume_directions_make(directions, f->lights, relume_pattern_find("hammersley"),
                                         relume_directions_params(.hemisphere = f->hemisphere)),
                  "lights");
+    for (int i = 0; i < f->lights; i++)
+        position[i] =
+            (struct relume_vec3){3 * directions[i].x, 3 * directions[i].y, 3 * directions[i].z};
     fixture_must(relume_image_create(&image, f->width, f->height, 3), "image");
     fixture_must(relume_image_create(&plane, f->width, f->height, 1), "plane");
     for (int v = 0; v < f->views; v++) {
@@ -88,6 +93,8 @@ static inline void fixture_write(const struct fixture *f, const char *folder)
                                             f->height),
         .lights = f->lights,
         .directions = directions,
+        .positions = f->near ? position : NULL,
+        .no_falloff = f->near,
         .views = f->views,
         .view = view,
     };
@@ -99,6 +106,7 @@ static inline void fixture_write(const struct fixture *f, const char *folder)
         free(view[v].images);
     }
     free(view);
+    free(position);
     free(directions);
     relume_image_destroy(&image);
     relume_image_destroy(&plane);

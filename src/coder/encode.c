@@ -167,13 +167,19 @@ static size_t pieces_of(const struct encoding *e)
     return ((size_t)e->width + PIECE - 1) / PIECE;
 }
 
+// What a worker measures with.
+static float *piece_work(const struct encoding *e, int worker)
+{
+    return e->piece + (size_t)worker * 4 * (size_t)e->lights * PIECE;
+}
+
 // What the basis cannot express, on a piece of a row.
-static void measure_fit(const struct encoding *e, int row, size_t first, size_t n, float *work,
+static void measure_fit(const struct encoding *e, int row, size_t first, size_t n, int worker,
                         struct measured *m, double *shown)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const size_t at = (size_t)row * width + first, size = (size_t)e->lights * n;
-    float *again = work, *seen = work + size;
+    float *again = piece_work(e, worker), *seen = again + size;
     for (size_t i = 0; i < (size_t)e->lights; i++)
         relume_table_planes(e->table, (int)i, at, n, seen + i * n, size);
     for (int c = 0; c < 3; c++) {
@@ -189,15 +195,16 @@ static void measure_fit(const struct encoding *e, int row, size_t first, size_t 
 }
 
 // The same of near lights: a pixel in 8.
-static void measure_near(const struct encoding *e, int row, size_t first, size_t n, float *again,
+static void measure_near(const struct encoding *e, int row, size_t first, size_t n, int worker,
                          struct measured *m, double *shown)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    float *again = piece_work(e, worker);
     for (size_t x = first; x < first + n; x += 8) {
         const size_t at = (size_t)row * width + x;
         if (!is_inside(&e->mask, (size_t)e->row * width + at))
             continue;
-        near_fit_predict(e->near, (int)x, e->row + row, e->values + at, pixels, again);
+        near_fit_predict(e->near, worker, (int)x, e->row + row, e->values + at, pixels, again);
         for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
             const float sample = e->own[(i / 3 * pixels + at) * 3 + i % 3];
             add_sample(m, (double)sample, (double)sample - (double)again[i]);
@@ -213,11 +220,10 @@ static void measure_piece(void *context, size_t item, int worker)
     const size_t first = item % pieces * PIECE, left = (size_t)e->width - first;
     const size_t n = left < PIECE ? left : PIECE;
     const int row = e->measured[item / pieces];
-    float *work = e->piece + (size_t)worker * 4 * lights * PIECE;
     double *shown = e->shown + item * lights;
     e->sums[item] = (struct measured){0};
     memset(shown, 0, lights * sizeof *shown);
-    (e->near ? measure_near : measure_fit)(e, row, first, n, work, &e->sums[item], shown);
+    (e->near ? measure_near : measure_fit)(e, row, first, n, worker, &e->sums[item], shown);
 }
 
 // On those rows of the band that the report looks at, or on all of them.

@@ -293,12 +293,13 @@ relume_status near_fit_apply(struct near_fit *fit, int row, int rows, const floa
     return RELUME_OK;
 }
 
-void near_fit_predict(struct near_fit *fit, int x, int y, const float *planes, size_t plane_stride,
-                      float *out)
+void near_fit_predict(struct near_fit *fit, int worker, int x, int y, const float *planes,
+                      size_t plane_stride, float *out)
 {
     const struct design *d = &fit->design;
     const struct relume_coder_info *info = &fit->coder->info;
-    struct relume_vec3 *direction = (struct relume_vec3 *)(void *)fit->work;
+    double *work = fit->work + (size_t)worker * fit->work_size;
+    struct relume_vec3 *direction = (struct relume_vec3 *)(void *)work;
     float *weights = (float *)(void *)(direction + d->lights), constant[3];
     relume_table_directions(fit->table, x + 0.5, y + 0.5, 1, direction);
     for (int i = 0; i < d->lights; i++) {

@@ -26,8 +26,9 @@ void near_fit_destroy(struct near_fit **fit);
 // that relume_table_read_near gives: `own` as fit, `guess` carried over. RELUME_ENOMEM.
 relume_status near_fit_apply(struct near_fit *fit, int row, int rows, const float *own,
                              const float *guess, float *planes);
-// What the coefficients of one pixel say of its own samples: out[light][rgb].
-void near_fit_predict(struct near_fit *fit, int x, int y, const float *planes, size_t plane_stride,
-                      float *out);
+// What the coefficients of one pixel say of its own samples: out[light][rgb]. `worker` is the
+// caller's among the threads of `fit`; each has working memory of its own.
+void near_fit_predict(struct near_fit *fit, int worker, int x, int y, const float *planes,
+                      size_t plane_stride, float *out);
 
 #endif

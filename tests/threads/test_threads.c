@@ -6,7 +6,7 @@
 
 #include <stdatomic.h>
 
-static char folder[64];
+static char folder[64], near_folder[64];
 
 static int setup(void **state)
 {
@@ -16,6 +16,10 @@ static int setup(void **state)
         &(struct fixture){
             .width = 67, .height = 50, .lights = 12, .views = 2, .depth = true, .mask = true},
         folder);
+    test_folder(near_folder);
+    fixture_write(
+        &(struct fixture){.width = 67, .height = 50, .lights = 12, .views = 2, .near = true},
+        near_folder);
     return 0;
 }
 
@@ -23,6 +27,7 @@ static int teardown(void **state)
 {
     (void)state;
     test_folder_remove(folder);
+    test_folder_remove(near_folder);
     return 0;
 }
 
@@ -37,6 +42,7 @@ static void test_encode(void **state)
         enum relume_storage storage;
         enum relume_compression compression;
         enum relume_step step;
+        bool near;
     } kinds[] = {
         {&relume_basis_sh, {.coefficients = 9}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
         {&relume_basis_sh, {.coefficients = 4}, RELUME_STORE_16, RELUME_COMPRESS_ZIP, 0},
@@ -45,6 +51,12 @@ static void test_encode(void **state)
         {&relume_basis_pca, {.choose = true}, RELUME_STORE_12, RELUME_COMPRESS_ZIP, 0},
         {&relume_basis_dct, {.luminance = true}, RELUME_STORE_10, RELUME_COMPRESS_RLE, 0},
         {&relume_basis_dct_resampled, {0}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
+        {&relume_basis_sh,
+         {.coefficients = 4},
+         RELUME_STORE_8,
+         RELUME_COMPRESS_PIZ,
+         0,
+         .near = true},
     };
     char path[96];
     snprintf(path, sizeof path, "%s/pack.exr", folder);
@@ -54,7 +66,7 @@ static void test_encode(void **state)
         for (size_t t = 0; t < 3; t++) {
             size_t size;
             CHECK_OK(fixture_encode_with(
-                folder, path, kinds[k].basis, &kinds[k].coder,
+                kinds[k].near ? near_folder : folder, path, kinds[k].basis, &kinds[k].coder,
                 relume_pack_encode_params(.threads = threads[t], .storage = kinds[k].storage,
                                           .compression = kinds[k].compression,
                                           .step = kinds[k].step)));

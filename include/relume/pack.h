@@ -67,9 +67,10 @@ struct relume_pack_view {
     bool predicted;      // coded planes: from those of another view, which is not predicted itself
     int anchor;          // that view
     float depth_step;    // depth is written in steps of its inverse, of that size; 0: as it is
-    const struct relume_image *shadow;  // as relume_shadows_learn gives it, or NULL
-    const struct relume_image *gloss;   // as relume_gloss_learn gives it, of files of one view
-                                        // without `shadow`, or NULL
+    const struct relume_image *shadow;  // as relume_shadows_learn gives it, or NULL; it is coded
+                                        // with a little loss
+    const struct relume_image *gloss;   // likewise, as relume_gloss_learn gives it, of files of one
+                                        // view without `shadow`
 };
 // Which part of a file is written, where several machines share the work; relume_pack_join makes
 // one file of all parts. Borrowed.
@@ -144,8 +145,9 @@ struct relume_pack_params {
 #define relume_pack_params(...)                                                                    \
     (&(const struct relume_pack_params){RELUME_SIZED(relume_pack_params), __VA_ARGS__})
 
-// Write `path` whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL or what
-// `preview` returned.
+// Write `path` whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL,
+// RELUME_ESYSTEM, RELUME_EINVAL for a `shadow` or `gloss` whose numbers are not finite (a thickness
+// may be infinite), or what `preview` returned.
 RELUME_RESULT relume_status relume_pack_write(const struct relume_pack_contents *contents,
                                               const char *path,
                                               const struct relume_pack_params *params);
@@ -184,7 +186,7 @@ struct relume_pack_encode_params {
     bool learn_only;                 // share what the team needs for its steps, and write nothing
     struct relume_transfer display;  // as relume_encode_params
     bool shadows;  // learn what shadows are traced with (shadow.h). Of captures with depth and
-                   // distant lights; not with loss, in parts or with reduced levels
+                   // distant lights; not in parts or with reduced levels
     const struct relume_image *gloss;  // what highlights wander by (relume_gloss_learn), of the
                                        // only view; likewise, and without `shadows`. Default: none
 };
@@ -299,7 +301,7 @@ RELUME_RESULT relume_status relume_pack_depth_level(struct relume_image *out, re
 // Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 
-// What shadows of a view are traced with (shadow.h); empty when the file has none.
+// What shadows of a view are traced with (shadow.h), as it was coded; empty when the file has none.
 RELUME_RESULT relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack,
                                                int view);
 // What highlights of a view wander by (shadow.h); empty when the file has none.

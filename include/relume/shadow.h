@@ -73,9 +73,8 @@ struct relume_shadows_params {
     (&(const struct relume_shadows_params){RELUME_SIZED(relume_shadows_params), __VA_ARGS__})
 
 // Learn a view of a capture with distant lights: `*model` is created with RELUME_SHADOW_CHANNELS
-// channels, each number of 8 significant bits. All photographs of the view are held at two bytes a
-// pixel. RELUME_EINVAL where there is no depth or the geometry does not suit, an input status,
-// RELUME_ENOMEM.
+// channels. All photographs of the view are held at two bytes a pixel. RELUME_EINVAL where there is
+// no depth or the geometry does not suit, an input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_shadows_learn(struct relume_image *model,
                                                  const relume_capture *capture, int view,
                                                  const struct relume_shadows_params *params);
@@ -111,10 +110,8 @@ RELUME_RESULT relume_status relume_gloss_create(relume_shadows **out,
                                                 const struct relume_image *model);
 
 // Learn the view of a planar orthographic capture with distant lights; `display`: codes will be of
-// the display domain. `*model` is created with RELUME_GLOSS_CHANNELS channels, in steps that half
-// floats hold: 1/256 (normals), 1/128 (roughness), 1/32 (shares), 6 significant bits (the others).
-// `skip` must be NULL. RELUME_EINVAL for other captures, errors of relume_maps_fit and
-// relume_coder_learn.
+// the display domain. `*model` is created with RELUME_GLOSS_CHANNELS channels. `skip` must be NULL.
+// RELUME_EINVAL for other captures, errors of relume_maps_fit and relume_coder_learn.
 RELUME_RESULT relume_status relume_gloss_learn(struct relume_image *model,
                                                const relume_capture *capture, bool display,
                                                const struct relume_shadows_params *params);

@@ -170,7 +170,8 @@ static void repeat_edges(uint16_t *plane, const struct tile *t)
 
 struct encoding {
     struct tiles tiles;
-    relume_coefficients *const *from;  // [views]
+    relume_coefficients *const *from;  // [views], or ...
+    const uint16_t *codes;             // [planes][height][width] of one
     int views, each;                   // threads for each tile
     const struct av1_effort *effort;
     const struct relume_log *log;
@@ -199,6 +200,30 @@ static relume_status gather(uint16_t *samples, const relume_coefficients *from,
     return status;
 }
 
+// The same of codes in memory, without an order of their own.
+static void cut(uint16_t *samples, const uint16_t *codes, const struct lossy_shape *s,
+                const struct tile *t)
+{
+    const size_t width = (size_t)s->width, stride = (size_t)t->video.width;
+    for (int p = 0; p < s->planes; p++) {
+        uint16_t *to = samples + (size_t)p * stride * (size_t)t->video.height;
+        const uint16_t *from =
+            codes + ((size_t)p * (size_t)s->height + (size_t)t->y) * width + (size_t)t->x;
+        for (size_t y = 0; y < (size_t)t->height; y++)
+            memcpy(to + y * stride, from + y * width, (size_t)t->width * sizeof *to);
+        repeat_edges(to, t);
+    }
+}
+
+static relume_status take_view(uint16_t *samples, const struct encoding *e, int view,
+                               const struct tile *t)
+{
+    if (!e->codes)
+        return gather(samples, e->from[view], &e->tiles.shape, t);
+    cut(samples, e->codes, &e->tiles.shape, t);
+    return RELUME_OK;
+}
+
 static void encode_tile(void *context, size_t item, int worker)
 {
     struct encoding *e = context;
@@ -208,7 +233,7 @@ static void encode_tile(void *context, size_t item, int worker)
     (void)worker;
     for (int v = 0; !status && v < e->views; v++) {
         samples[v] = tile_samples(&t);
-        status = samples[v] ? gather(samples[v], e->from[v], &e->tiles.shape, &t) : RELUME_ENOMEM;
+        status = samples[v] ? take_view(samples[v], e, v, &t) : RELUME_ENOMEM;
         if (!status)
             convert(samples[v], &t.video, to_luma);
     }
@@ -276,6 +301,27 @@ static int tile_side(const struct lossy_shape *shape, int views)
     return side;
 }
 
+static relume_status encode_all(struct lossy_words *out, struct encoding *e, int threads)
+{
+    const size_t n = (size_t)e->tiles.count, sequences = n * (size_t)e->views;
+    e->status = mem_zeroed(n, sizeof *e->status);
+    e->bytes = mem_zeroed(sequences, sizeof *e->bytes);
+    e->each = thread_count(threads) / e->tiles.count;
+    relume_status status = e->status && e->bytes ? RELUME_OK : RELUME_ENOMEM;
+    memset(out, 0, (size_t)e->views * sizeof *out);
+    if (!status)
+        thread_for(threads, n, encode_tile, e);
+    for (size_t i = 0; !status && i < n; i++)
+        status = e->status[i];
+    for (int v = 0; !status && v < e->views; v++)
+        status = join(&out[v], e, v);
+    for (size_t i = 0; e->bytes && i < sequences; i++)
+        mem_free(e->bytes[i].byte);
+    mem_free(e->bytes);
+    mem_free(e->status);
+    return status;
+}
+
 relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *from, int views,
                            const struct av1_effort *effort, int threads,
                            const struct relume_log *log)
@@ -289,24 +335,21 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                          .views = views,
                          .effort = effort,
                          .log = log};
-    const size_t n = (size_t)e.tiles.count, sequences = n * (size_t)views;
-    e.status = mem_zeroed(n, sizeof *e.status);
-    e.bytes = mem_zeroed(sequences, sizeof *e.bytes);
-    e.each = thread_count(threads) / e.tiles.count;
-    relume_status status = e.status && e.bytes ? RELUME_OK : RELUME_ENOMEM;
-    memset(out, 0, (size_t)views * sizeof *out);
-    if (!status)
-        thread_for(threads, n, encode_tile, &e);
-    for (size_t i = 0; !status && i < n; i++)
-        status = e.status[i];
-    for (int v = 0; !status && v < views; v++)
-        status = join(&out[v], &e, v);
-    for (size_t i = 0; e.bytes && i < sequences; i++)
-        mem_free(e.bytes[i].byte);
-    mem_free(e.bytes);
-    mem_free(e.status);
+    const relume_status status = encode_all(out, &e, threads);
     mem_free(order);
     return status;
+}
+
+relume_status lossy_encode_codes(struct lossy_words *out, const uint16_t *codes,
+                                 const struct lossy_shape *shape, const struct av1_effort *effort,
+                                 int threads, const struct relume_log *log)
+{
+    struct encoding e = {.tiles = tiles_of(shape, tile_side(shape, 1)),
+                         .codes = codes,
+                         .views = 1,
+                         .effort = effort,
+                         .log = log};
+    return encode_all(out, &e, threads);
 }
 
 // ---------------------------------------------------------------- decoding

@@ -42,6 +42,12 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                            const struct av1_effort *effort, int threads,
                            const struct relume_log *log);
 
+// Codes[planes][height][width] as the words of a view that is an anchor. `order` of the shape is
+// NULL. Errors as above, without RELUME_EIO.
+relume_status lossy_encode_codes(struct lossy_words *out, const uint16_t *codes,
+                                 const struct lossy_shape *shape, const struct av1_effort *effort,
+                                 int threads, const struct relume_log *log);
+
 // A rectangle of a view coded by itself: its codes before[planes][height][width], those after it
 // was decoded again, and the bytes it took. Errors as above.
 relume_status lossy_try(uint16_t *before, uint16_t *after, size_t *bytes, relume_coefficients *from,

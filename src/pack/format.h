@@ -15,18 +15,6 @@ enum { FORMAT_VERSION = 4, FORMAT_CODED = 4, FORMAT_DISCS = 3, FORMAT_SLABS = 2,
 enum { FORMAT_TILE = 128 };
 
 // Attributes of the first part
-// Of what shadows are traced with (shadow.h): colour, a and b of the matte surface, thickness.
-#define FORMAT_SHADOW_CHANNELS                                                                     \
-    {                                                                                              \
-        "B", "G", "R", "a", "bx", "by", "bz", "thickness"                                          \
-    }
-
-// Of what highlights wander by: colour, normal, roughness, reflectance, share.
-#define FORMAT_GLOSS_CHANNELS                                                                      \
-    {                                                                                              \
-        "B", "G", "R", "nx", "ny", "roughness", "shine", "trust"                                   \
-    }
-
 #define ATTR_FORMAT        "relume.format"
 #define ATTR_VERSION       "relume.version"
 #define ATTR_CREATOR       "relume.creator"

@@ -292,3 +292,25 @@ relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, 
         relume_image_destroy(out);
     return status;
 }
+
+// ---------------------------------------------------------------- what was learnt
+
+relume_status reader_load_learnt(struct relume_image *out, relume_pack *p, int part,
+                                 enum learnt_kind kind)
+{
+    const struct exr_part_info info = exr_part_info(p->file, part);
+    const struct word_range all = {0, (size_t)info.width * (size_t)info.height};
+    struct lossy_words words = {0};
+    struct learnt_steps steps;
+    memcpy(steps.scale, reader_floats(p, part, ATTR_SCALE, LEARNT), sizeof steps.scale);
+    memcpy(steps.offset, reader_floats(p, part, ATTR_OFFSET, LEARNT), sizeof steps.offset);
+    relume_status status = relume_image_create(out, p->info.width, p->info.height, LEARNT);
+    if (!status)
+        status = read_words(&words, p, part, all);
+    if (!status)
+        status = learnt_decode(out, &words, &steps, kind, p->threads);
+    if (status == RELUME_EDAMAGED)
+        status = reader_bad(p, info.name, "tiles of sound AV1 data");
+    mem_free(words.word);
+    return status;
+}

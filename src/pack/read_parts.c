@@ -1,9 +1,8 @@
 // read_parts.c - which parts of a relume file belong to which view
 #include "coder/codes.h"
 #include "pack/format.h"
+#include "pack/learnt.h"
 #include "pack/reader.h"
-
-#include <relume/shadow.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -127,27 +126,25 @@ static relume_status find_view(relume_pack *p, int view, int *part)
     return status || p->coded ? status : check_shares(p, view);
 }
 
-static bool is_learnt(const relume_pack *p, int part, const char *const *channel)
+// Words of a model of eight channels (learnt.h).
+static bool is_learnt(const relume_pack *p, int part)
 {
     const struct exr_part_info i = exr_part_info(p->file, part);
-    bool good = i.width == p->info.width && i.height == p->info.height && i.uniform &&
-                i.sample == EXR_SAMPLE_HALF && i.channels == RELUME_SHADOW_CHANNELS &&
-                !p->info.levels;
-    for (int c = 0; good && c < i.channels; c++)
-        good = !strcmp(exr_channel_name(p->file, part, c), channel[c]);
-    return good;
+    return i.channels == 1 && i.uniform && i.sample == EXR_SAMPLE_UINT && !i.tile &&
+           !p->info.levels && reader_floats(p, part, ATTR_SCALE, LEARNT) &&
+           reader_floats(p, part, ATTR_OFFSET, LEARNT);
 }
 
 // Behind all else: programs that do not know them do not see them.
 static relume_status find_shadow(relume_pack *p, int view, int *part)
 {
-    static const char *const channel[] = FORMAT_SHADOW_CHANNELS;
     char name[48];
-    if (!is_next(p, *part, name, view, ".shadow"))
+    if (!is_next(p, *part, name, view, ".shadows"))
         return RELUME_OK;
-    if (p->parts[view].depth < 0 || !is_learnt(p, *part, channel))
+    if (p->parts[view].depth < 0 || !is_learnt(p, *part))
         return reader_bad(p, name,
-                          "eight half channels of the views' size, depth and no reduced levels");
+                          "rows of words, eight finite scales and offsets, depth and no reduced "
+                          "levels");
     p->parts[view].shadow = (*part)++;
     p->info.has_shadow = true;
     return RELUME_OK;
@@ -155,15 +152,14 @@ static relume_status find_shadow(relume_pack *p, int view, int *part)
 
 static relume_status find_gloss(relume_pack *p, int *part)
 {
-    static const char *const channel[] = FORMAT_GLOSS_CHANNELS;
     char name[48];
-    if (p->info.has_shadow || !is_next(p, *part, name, 0, ".gloss"))
+    if (p->info.has_shadow || !is_next(p, *part, name, 0, ".highlights"))
         return RELUME_OK;
     if (p->info.views != 1 || p->info.geometry.projection != RELUME_PLANAR ||
-        p->info.geometry.perspective || !is_learnt(p, *part, channel))
+        p->info.geometry.perspective || !is_learnt(p, *part))
         return reader_bad(p, name,
-                          "eight half channels of the view's size, one planar orthographic view "
-                          "and no reduced levels");
+                          "rows of words, eight finite scales and offsets, one planar "
+                          "orthographic view and no reduced levels");
     p->gloss = (*part)++;
     p->info.has_gloss = true;
     return RELUME_OK;

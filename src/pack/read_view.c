@@ -153,36 +153,6 @@ relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int
     return reader_load_plane(out, pack, pack->parts[view].depth, &all);
 }
 
-// What was learnt of a view, its channels in the order in which EXR sorts their names.
-struct learnt {
-    struct relume_image *image;
-    const int *order;
-};
-
-static void learnt_block(void *context, const struct relume_rect *at, const void *samples)
-{
-    const struct learnt *l = context;
-    const int channels = l->image->channels;
-    for (int y = at->top; y < at->top + at->height; y++)
-        for (int c = 0; c < channels; c++) {
-            const uint16_t *from = exr_samples(samples, at, at, y, channels, c, 2);
-            float *out = l->image->data + ((size_t)y * (size_t)l->image->width + (size_t)at->left) *
-                                              (size_t)channels;
-            for (int x = 0; x < at->width; x++)
-                out[x * channels + l->order[c]] = float_from_half(from[x]);
-        }
-}
-
-static relume_status read_learnt(struct relume_image *out, relume_pack *pack, int part,
-                                 const int order[RELUME_SHADOW_CHANNELS])
-{
-    struct learnt l = {out, order};
-    const relume_status status =
-        relume_image_create(out, pack->info.width, pack->info.height, RELUME_SHADOW_CHANNELS);
-    return status ? status
-                  : exr_read(pack->file, part, NULL, pack->threads, learnt_block, &l, pack->log);
-}
-
 // Colours and thicknesses of 0 or more, the rest finite.
 static bool is_sound_shadow(const struct relume_image *image)
 {
@@ -214,13 +184,12 @@ static bool is_sound_gloss(const struct relume_image *image)
 
 relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, int view)
 {
-    static const int order[RELUME_SHADOW_CHANNELS] = {3, 2, 1, 4, 5, 6, 7, 0};
     *out = (struct relume_image){0};
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
     if (pack->parts[view].shadow < 0)
         return RELUME_OK;
-    relume_status status = read_learnt(out, pack, pack->parts[view].shadow, order);
+    relume_status status = reader_load_learnt(out, pack, pack->parts[view].shadow, LEARNT_SHADOW);
     if (!status && !is_sound_shadow(out))
         status = reader_bad(pack, "shadow", "finite colours and a thickness, of 0 or more");
     if (status)
@@ -230,13 +199,12 @@ relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, in
 
 relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack, int view)
 {
-    static const int order[RELUME_GLOSS_CHANNELS] = {2, 1, 0, 3, 4, 5, 6, 7};
     *out = (struct relume_image){0};
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
     if (!pack->info.has_gloss)
         return RELUME_OK;
-    relume_status status = read_learnt(out, pack, pack->gloss, order);
+    relume_status status = reader_load_learnt(out, pack, pack->gloss, LEARNT_GLOSS);
     if (!status && !is_sound_gloss(out))
         status =
             reader_bad(pack, "gloss", "finite numbers; colours, roughness and share 0 or more");

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "image/exr.h"
+#include "pack/learnt.h"
 
 #include <relume/codebook.h>
 #include <relume/pack.h>
@@ -91,6 +92,9 @@ relume_status reader_load_halved(relume_pack *p, int view, const struct relume_r
 // The side of their tiles, 0 where it cannot be read.
 int reader_coded_tile(const relume_pack *p);
 relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, int view);
+// A model of the pixels of a view, into a new image of the views' size.
+relume_status reader_load_learnt(struct relume_image *out, relume_pack *p, int part,
+                                 enum learnt_kind kind);
 
 // What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
 // mean, 1 inside and 0 outside, of a reduced level what of each pixel is inside (in the display

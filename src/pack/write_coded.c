@@ -1,7 +1,9 @@
-// write_coded.c - the parts of a file whose planes are coded with loss: one for each group of views
+// write_coded.c - what is coded with loss: planes, in a part for each group of views, and what was
+// learnt of the pixels of a view
 #include "base/memory.h"
 #include "lossy/disparity.h"
 #include "pack/format.h"
+#include "pack/learnt.h"
 #include "pack/writer.h"
 
 #include <string.h>
@@ -38,15 +40,26 @@ static relume_status words_rows(void *context, int row, int rows, void *samples)
     return RELUME_OK;
 }
 
+// Words become the writer's.
+static struct lossy_words keep(struct writer *w, struct lossy_words *made)
+{
+    struct lossy_words kept = {arena_array(&w->arena, made->count, sizeof *kept.word), made->count};
+    w->failed |= !kept.word;
+    if (kept.word)
+        memcpy(kept.word, made->word, made->count * sizeof *kept.word);
+    mem_free(made->word);
+    return kept.word ? kept : (struct lossy_words){0};
+}
+
 // Depth that is coded; the words are the writer's.
 static struct lossy_words depth_words(struct writer *w, const struct relume_pack_view *view,
                                       float *step)
 {
     const struct relume_pack_contents *c = w->contents;
-    struct lossy_words made = {0}, kept = {0};
+    struct lossy_words made = {0};
     struct relume_image depth = {0};
     if (!view->depth || !(view->depth_step > 0.0f))
-        return kept;
+        return made;
     *step = view->depth_step;
     relume_status status = relume_image_create(&depth, view->depth->width, view->depth->height, 1);
     if (!status) {
@@ -55,16 +68,9 @@ static struct lossy_words depth_words(struct writer *w, const struct relume_pack
         format_turn_depth(&depth, c->slabs ? &c->slab[view->slab] : &c->geometry, view->uv, true);
         status = disparity_encode(&made, step, &depth);
     }
-    if (!status)
-        kept.word = arena_array(&w->arena, made.count, sizeof *kept.word);
     relume_image_destroy(&depth);
-    w->failed |= !kept.word;
-    if (kept.word) {
-        kept.count = made.count;
-        memcpy(kept.word, made.word, made.count * sizeof *kept.word);
-    }
-    mem_free(made.word);
-    return kept;
+    w->failed |= status != RELUME_OK;
+    return status ? made : keep(w, &made);
 }
 
 static void add_view(struct writer *w, struct words *to, const char **members, float *step,
@@ -139,4 +145,31 @@ void writer_add_groups(struct writer *w)
     for (int v = 0; v < w->contents->views; v++)
         if (!w->contents->view[v].predicted && w->contents->view[v].coded)
             add_group(w, groups++, v);
+}
+
+static relume_status add_learnt(struct writer *w, const char *name, int view,
+                                const struct relume_image *model, enum learnt_kind kind,
+                                const struct relume_pack_params *p)
+{
+    struct learnt_steps *steps = model ? arena_array(&w->arena, 1, sizeof *steps) : NULL;
+    struct lossy_words words;
+    if (!steps)
+        return model ? RELUME_ENOMEM : RELUME_OK;
+    const relume_status status = learnt_encode(&words, steps, model, kind, p->threads, p->log);
+    if (status)
+        return status;
+    words = keep(w, &words);
+    struct exr_part *part =
+        writer_part(w, arena_format(&w->arena, "view%04d.%s", view, name), 1, 1);
+    writer_fill_words(w, part, words.word, words.count);
+    writer_floats(w, part, ATTR_SCALE, steps->scale, LEARNT);
+    writer_floats(w, part, ATTR_OFFSET, steps->offset, LEARNT);
+    return RELUME_OK;
+}
+
+relume_status writer_add_learnt(struct writer *w, int index, const struct relume_pack_params *p)
+{
+    const struct relume_pack_view *view = &w->contents->view[index];
+    const relume_status status = add_learnt(w, "shadows", index, view->shadow, LEARNT_SHADOW, p);
+    return status ? status : add_learnt(w, "highlights", index, view->gloss, LEARNT_GLOSS, p);
 }

@@ -8,8 +8,6 @@
 #include "pack/format.h"
 #include "pack/writer.h"
 
-#include <relume/shadow.h>
-
 #include <stdio.h>
 #include <string.h>
 
@@ -234,47 +232,6 @@ void writer_add_levels(struct writer *w, int index)
         add_plane(w, name, index, levels->share[i].data ? &levels->share[i] : NULL, channel,
                   EXR_SAMPLE_HALF, share_rows);
     }
-}
-
-enum { LEARNT = 8 };
-_Static_assert(LEARNT == (int)RELUME_SHADOW_CHANNELS && LEARNT == (int)RELUME_GLOSS_CHANNELS,
-               "both parts are written by one function");
-
-static void learnt_rows(const struct relume_image *image, int row, int rows, const int *order,
-                        uint16_t *halves)
-{
-    const size_t width = (size_t)image->width;
-    const float *from = image->data + (size_t)row * width * LEARNT;
-    for (int y = 0; y < rows; y++, from += width * LEARNT)
-        for (int c = 0; c < LEARNT; c++)
-            for (size_t x = 0; x < width; x++)
-                *halves++ = half_from_float(from[x * LEARNT + (size_t)order[c]]);
-}
-
-// The channels of relume_shadows_learn in the order in which EXR sorts their names.
-static relume_status shadow_rows(void *context, int row, int rows, void *samples)
-{
-    static const int order[LEARNT] = {3, 2, 1, 4, 5, 6, 7, 0};
-    learnt_rows(context, row, rows, order, samples);
-    return RELUME_OK;
-}
-
-static relume_status gloss_rows(void *context, int row, int rows, void *samples)
-{
-    static const int order[LEARNT] = {2, 1, 0, 3, 4, 5, 6, 7};
-    learnt_rows(context, row, rows, order, samples);
-    return RELUME_OK;
-}
-
-void writer_add_learnt(struct writer *w, int index)
-{
-    static const char *const shadow[] = FORMAT_SHADOW_CHANNELS, *const gloss[] =
-                                                                    FORMAT_GLOSS_CHANNELS;
-    const struct relume_pack_view *view = &w->contents->view[index];
-    add_plane(w, "shadow", index, view->shadow, shadow, EXR_SAMPLE_HALF, shadow_rows);
-    add_plane(w, "gloss", index, view->gloss, gloss, EXR_SAMPLE_HALF, gloss_rows);
-    if (view->shadow || view->gloss)
-        w->parts[w->count - 1].channels = LEARNT;
 }
 
 void writer_add_view(struct writer *w, int index, bool shared)

@@ -118,7 +118,7 @@ static void add_coded(struct writer *w)
             writer_add_levels(w, i);
 }
 
-static void add_parts(struct writer *w)
+static relume_status add_parts(struct writer *w, const struct relume_pack_params *p)
 {
     const struct relume_pack_contents *c = w->contents;
     const int first = c->share ? c->share->first : 0;
@@ -126,14 +126,16 @@ static void add_parts(struct writer *w)
     writer_add_header(w);
     if (writer_is_coded(c)) {
         add_coded(w);
-        return;
+    } else {
+        if (shared)
+            writer_add_books(w, c->view[first].books, -1);
+        for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
+            writer_add_view(w, i, shared);
     }
-    if (shared)
-        writer_add_books(w, c->view[first].books, -1);
-    for (int i = first; i < first + (c->share ? c->share->views : c->views); i++)
-        writer_add_view(w, i, shared);
-    for (int i = 0; !c->share && i < c->views; i++)
-        writer_add_learnt(w, i);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && !c->share && i < c->views; i++)
+        status = writer_add_learnt(w, i, p);
+    return status;
 }
 
 // Whether a part was given more attributes than it has room for: rather no file than half of one.
@@ -160,13 +162,12 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
         return RELUME_EINVAL;
     w.parts = arena_array(&w.arena, most_parts, sizeof *w.parts);
     w.channels = channel_names(&w);
-    if (w.parts && w.channels)
-        add_parts(&w);
-    else
-        w.failed = true;
-    const relume_status status =
-        w.failed || is_crowded(&w) ? RELUME_ENOMEM
-                                   : exr_write(path, p.writer, w.parts, w.count, p.threads, p.log);
+    w.failed = !w.parts || !w.channels;
+    relume_status status = w.failed ? RELUME_ENOMEM : add_parts(&w, &p);
+    if (!status)
+        status = w.failed || is_crowded(&w)
+                     ? RELUME_ENOMEM
+                     : exr_write(path, p.writer, w.parts, w.count, p.threads, p.log);
     arena_free(&w.arena);
     return status;
 }

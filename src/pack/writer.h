@@ -44,8 +44,8 @@ void writer_add_levels(struct writer *w, int view);
 const char *writer_measured(struct writer *w, const struct relume_encode_report *report);
 // What the first part shows of a view: its coefficients, or those of a reduced level.
 const struct relume_coefficients_info *writer_shown(const struct relume_pack_view *view);
-// What its shadows are traced with, or its highlights wander by.
-void writer_add_learnt(struct writer *w, int index);
+// What its shadows are traced with, or its highlights wander by. Errors of learnt_encode.
+relume_status writer_add_learnt(struct writer *w, int index, const struct relume_pack_params *p);
 // The parts of all views whose planes are coded, and of their depth (write_coded.c).
 void writer_add_groups(struct writer *w);
 // Words as the rows of a part; they must live as long as the writer.

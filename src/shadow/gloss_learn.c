@@ -69,23 +69,6 @@ static float find_share(const struct learning *l, const float *pixel, size_t at,
     return fminf(fmaxf(both / ((1.0f + RIDGE) * own + LEAST), 0.0f), MOST_SHARE);
 }
 
-// Steps that hardly change a picture, so that files are small: of normals, roughness and shares so
-// many of one, of colours and reflectances so many of the power of two above them.
-static float rounded(float value, int channel)
-{
-    static const float most = 65504.0f;  // of half floats
-    const bool relative = channel < RELUME_GLOSS_NORMAL || channel == RELUME_GLOSS_SHINE;
-    const float parts = channel == RELUME_GLOSS_SHARE       ? 32.0f
-                        : channel == RELUME_GLOSS_ROUGHNESS ? 128.0f
-                        : relative                          ? 64.0f
-                                                            : 256.0f;
-    int exponent = 0;
-    if (relative)
-        (void)frexpf(value, &exponent);
-    value = ldexpf(roundf(ldexpf(value, -exponent) * parts) / parts, exponent);
-    return fminf(fmaxf(value, -most), most);
-}
-
 static void share_row(void *context, size_t row, int worker)
 {
     const struct learning *l = context;
@@ -93,8 +76,7 @@ static void share_row(void *context, size_t row, int worker)
     float *scratch = l->scratch + (size_t)worker * 6 * (size_t)l->lights;
     float *pixel = l->model->data + RELUME_GLOSS_CHANNELS * ((size_t)l->top + row) * width;
     for (size_t x = 0; x < width; x++, pixel += RELUME_GLOSS_CHANNELS)
-        pixel[RELUME_GLOSS_SHARE] =
-            rounded(find_share(l, pixel, row * width + x, scratch), RELUME_GLOSS_SHARE);
+        pixel[RELUME_GLOSS_SHARE] = find_share(l, pixel, row * width + x, scratch);
 }
 
 static relume_status find_shares(struct learning *l)
@@ -130,8 +112,6 @@ static void take_pixel(float *pixel, const struct relume_maps *maps, size_t at)
         pixel[RELUME_GLOSS_NORMAL + c] = maps->normal.data[3 * at + c];
     pixel[RELUME_GLOSS_ROUGHNESS] = maps->roughness.data[at];
     pixel[RELUME_GLOSS_SHINE] = metal ? -1.0f : gain * shine;
-    for (int c = 0; c < RELUME_GLOSS_SHARE; c++)
-        pixel[c] = rounded(pixel[c], c);
 }
 
 static relume_status take_maps(struct learning *l)

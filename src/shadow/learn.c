@@ -187,11 +187,6 @@ static bool carve(struct looked *l, const struct relume_log *log)
 
 // ---------------------------------------------------------------- matte
 
-static float coarse(float value)
-{
-    return float_from_half(half_coarse(value));
-}
-
 // a + b.L by least squares over the lights that arrive; where these leave it open it stays small.
 static void fit_pixel(const struct looked *l, size_t pixel, vec3 p, float matte[4])
 {
@@ -210,7 +205,7 @@ static void fit_pixel(const struct looked *l, size_t pixel, vec3 p, float matte[
     }
     const bool solved = lsq_solve(a, 4, x, 1);
     for (int i = 0; solved && i < 4; i++)
-        matte[i] = coarse((float)x[i]);
+        matte[i] = (float)x[i];
 }
 
 static void fit_row(void *context, size_t y, int worker)
@@ -225,11 +220,11 @@ static void fit_row(void *context, size_t y, int worker)
         const float *colour = l->colour + 3 * pixel, grey = luminance_709f(colour);
         vec3 p;
         memset(model, 0, RELUME_SHADOW_CHANNELS * sizeof *model);
-        model[RELUME_SHADOW_THICK] = coarse(l->stage.thick[pixel]);
+        model[RELUME_SHADOW_THICK] = l->stage.thick[pixel];
         if (!stage_point(&p, &l->stage, (double)x + 0.5, (double)y + 0.5) || !(grey > 0.0f))
             continue;
         for (int c = 0; c < 3; c++)
-            model[RELUME_SHADOW_COLOUR + c] = coarse(colour[c] / grey);
+            model[RELUME_SHADOW_COLOUR + c] = colour[c] / grey;
         fit_pixel(l, pixel, p, model + RELUME_SHADOW_MATTE);
     }
 }
@@ -245,8 +240,6 @@ static relume_status learn(struct relume_image *model, struct looked *l,
         return status;
     if (!carve(l, p->log))
         return RELUME_ECANCEL;
-    for (size_t i = 0; i < l->pixels; i++)
-        l->stage.thick[i] = coarse(l->stage.thick[i]);  // as it will be read
     status = relume_image_create(model, l->stage.width, l->stage.height, RELUME_SHADOW_CHANNELS);
     l->model = model->data;
     if (!status && !by_bands(l, p->threads, fit_row, 0.6, p->log))

@@ -436,7 +436,7 @@ static relume_status add_near(const struct adding *a, const struct relume_light 
 // ---------------------------------------------------------------- a light
 
 static const float MORE = 1.01f;  // than an even share, rounding aside
-enum { LAMPS = 64 };  // that an environment is taken for
+enum { LAMPS = 64 };              // that an environment is taken for
 
 static float luminance_of(const struct relume_light *light)
 {

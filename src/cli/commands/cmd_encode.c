@@ -85,12 +85,15 @@ static const struct option options[] = {
          "leave depth out: smaller file, but no near lights and no views corrected by depth"),
     NAME("--shadows", shadows, "S",
          "auto, yes or no: trace shadows through the depth, so that they move with the light; "
-         "default: auto with basis auto, where they foresee photographs left out better; else no",
+         "default: auto with basis auto, where they foresee photographs left out better, but not "
+         "with --psnr or less than --bytes-per-pixel 1; else no",
          WANDER_AUTO, "auto", "yes", "no"),
     NAME("--highlights", highlights, "S",
          "auto, yes or no: fit normals, colour and gloss, by which highlights move with the light; "
          "auto: where they foresee photographs left out better; planar captures without traced "
-         "shadows; default: auto with basis auto and at least 64 x 64 pixels, else no",
+         "shadows; default: auto with basis auto and at least 64 x 64 pixels, but not with --psnr "
+         "or "
+         "less than --bytes-per-pixel 0.5; else no",
          WANDER_AUTO, "auto", "yes", "no"),
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
@@ -257,8 +260,6 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
                                                 .threads = r->pack.threads,
                                                 .team = r->pack.team};
     struct relume_decision decision;
-    if (is_coded(r) && r->pack.domain == RELUME_DOMAIN_AUTO)
-        r->pack.domain = RELUME_DOMAIN_DISPLAY;
     if (is_coded(r) && r->decide)
         return relume_pack_decide(coder, capture, &r->coder, &r->pack);
     if (!r->decide)
@@ -282,8 +283,8 @@ static const char *forbids_moving(const struct request *r, const relume_capture 
         return "distant lights";
     if (!r->decide && !r->basis->learned && r->basis != relume_basis_find("table"))
         return "basis pca, eigen or table";
-    if (is_coded(r) || r->pack.parts)
-        return "no --psnr, no --bytes-per-pixel and no parts";
+    if (r->pack.parts)
+        return "no parts";
     return r->pack.pyramid == RELUME_PYRAMID_YES ||
                    (double)relume_capture_width(capture) * relume_capture_height(capture) > 16e6
                ? "views without reduced levels"
@@ -717,6 +718,14 @@ static relume_status encode(const struct args *args, struct request *r)
     return status;
 }
 
+// About four times what shadows take of a pixel, or highlights.
+static const double LEAST_SHADOW_BYTES = 1.0, LEAST_HIGHLIGHT_BYTES = 0.5;
+
+static bool has_bytes_for(const struct request *r, double least)
+{
+    return !is_coded(r) || r->pack.bytes_per_pixel >= least;
+}
+
 static relume_status check_parts(const struct encode_options *o, const struct request *r)
 {
     if (o->args.team && (o->part.parts || o->commands || o->learnt || o->learn_only))
@@ -795,10 +804,16 @@ static relume_status run(const struct args *args)
         .learnt = o->learnt,
         .learn_only = o->learn_only,
     };
-    // shadows and highlights do not move together: who asks for highlights has chosen
-    r.shadows = o->shadows                                ? o->shadows
-                : r.decide && o->highlights != WANDER_YES ? WANDER_AUTO
-                                                          : WANDER_NO;
+    // Shadows and highlights do not move together: who asks for highlights has chosen. And without
+    // being asked for they take no more than some of the bytes.
+    const bool shadows = r.decide && o->highlights != WANDER_YES;
+    r.shadows = o->shadows                                         ? o->shadows
+                : shadows && has_bytes_for(&r, LEAST_SHADOW_BYTES) ? WANDER_AUTO
+                                                                   : WANDER_NO;
+    if (!o->highlights && !has_bytes_for(&r, LEAST_HIGHLIGHT_BYTES))
+        r.highlights = WANDER_NO;
+    if (is_coded(&r) && r.pack.domain == RELUME_DOMAIN_AUTO)
+        r.pack.domain = RELUME_DOMAIN_DISPLAY;
     if (r.quality > 0.0 && (!r.decide || o->coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
                            "--basis, --coefficients, --codebook and --robust");

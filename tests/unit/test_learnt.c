@@ -1,0 +1,157 @@
+// test_learnt.c - models of pixels as coded bytes: what comes back, and what cannot be one
+#include "test.h"
+
+#include "base/memory.h"
+#include "pack/learnt.h"
+
+#include <math.h>
+
+enum { WIDTH = 70, HEIGHT = 53, PIXELS = WIDTH * HEIGHT };
+
+// Smooth, as learnt models are for the most part, with an edge in the middle.
+static float number(int x, int y, int channel)
+{
+    const double slope = 0.5 + 0.4 * sin(0.05 * x + 0.3 * channel) * cos(0.04 * y);
+    return (float)(x < WIDTH / 2 ? slope : 1.0 - slope);
+}
+
+static void make(struct relume_image *out, enum learnt_kind kind)
+{
+    CHECK_OK(relume_image_create(out, WIDTH, HEIGHT, LEARNT));
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < LEARNT; c++)
+            out->data[i * LEARNT + c] = number(i % WIDTH, i / WIDTH, c);
+    for (int i = 0; i < PIXELS; i++) {
+        float *pixel = out->data + i * LEARNT;
+        if (kind == LEARNT_GLOSS && i % WIDTH < WIDTH / 2)
+            pixel[RELUME_GLOSS_SHINE] = -1.0f;  // a metal
+        else if (kind == LEARNT_GLOSS)
+            pixel[RELUME_GLOSS_SHINE] *= 1e-3f;
+        if (kind == LEARNT_SHADOW && i / WIDTH < 20)
+            pixel[RELUME_SHADOW_THICK] = INFINITY;
+    }
+}
+
+static void code(struct relume_image *back, struct lossy_words *words, struct learnt_steps *steps,
+                 const struct relume_image *model, enum learnt_kind kind)
+{
+    CHECK_OK(learnt_encode(words, steps, model, kind, 2, NULL));
+    CHECK_OK(relume_image_create(back, WIDTH, HEIGHT, LEARNT));
+    CHECK_OK(learnt_decode(back, words, steps, kind, 2));
+}
+
+// Root mean square over the finite numbers of a channel.
+static double missed(const struct relume_image *a, const struct relume_image *b, int channel)
+{
+    double sum = 0.0;
+    for (int i = 0; i < PIXELS; i++) {
+        const float x = a->data[i * LEARNT + channel], y = b->data[i * LEARNT + channel];
+        sum += isfinite(x) ? (double)(x - y) * (double)(x - y) : 0.0;
+    }
+    return sqrt(sum / PIXELS);
+}
+
+// The quantiser errs by ten codes; a root of 0.1 to 0.9 has 600, so its square is off by 0.02.
+static void numbers_come_back(void **state)
+{
+    (void)state;
+    for (int kind = LEARNT_SHADOW; kind <= LEARNT_GLOSS; kind++) {
+        struct relume_image model, back;
+        struct learnt_steps steps;
+        struct lossy_words words;
+        make(&model, (enum learnt_kind)kind);
+        code(&back, &words, &steps, &model, (enum learnt_kind)kind);
+        for (int c = 0; c < LEARNT; c++)
+            assert_true(missed(&model, &back, c) < 0.02);
+        assert_true(4 * words.count < PIXELS * LEARNT * sizeof(uint16_t) / 8);
+        mem_free(words.word);
+        relume_image_destroy(&model);
+        relume_image_destroy(&back);
+    }
+}
+
+static void infinity_stays(void **state)
+{
+    (void)state;
+    struct relume_image model, back;
+    struct learnt_steps steps;
+    struct lossy_words words;
+    make(&model, LEARNT_SHADOW);
+    code(&back, &words, &steps, &model, LEARNT_SHADOW);
+    for (int i = 0; i < PIXELS; i++) {
+        const int from_edge = abs(i / WIDTH - 20);
+        if (from_edge > 1)  // at the edge coding may err by more
+            assert_int_equal(isinf(back.data[i * LEARNT + RELUME_SHADOW_THICK]) != 0,
+                             isinf(model.data[i * LEARNT + RELUME_SHADOW_THICK]) != 0);
+    }
+    mem_free(words.word);
+    relume_image_destroy(&model);
+    relume_image_destroy(&back);
+}
+
+// What shines a little must not become a metal, whose highlights have its colour.
+static void metals_stay_metals(void **state)
+{
+    (void)state;
+    struct relume_image model, back;
+    struct learnt_steps steps;
+    struct lossy_words words;
+    make(&model, LEARNT_GLOSS);
+    code(&back, &words, &steps, &model, LEARNT_GLOSS);
+    for (int i = 0; i < PIXELS; i++)
+        if (abs(i % WIDTH - WIDTH / 2) > 1)
+            assert_int_equal(back.data[i * LEARNT + RELUME_GLOSS_SHINE] < 0.0f,
+                             i % WIDTH < WIDTH / 2);
+    mem_free(words.word);
+    relume_image_destroy(&model);
+    relume_image_destroy(&back);
+}
+
+// One number everywhere is the offset and codes of 0, which the quantiser makes ten at most: a two
+// hundredth of a root, twice that of the number.
+static void even_models_come_back(void **state)
+{
+    (void)state;
+    static const float values[] = {0.0f, 1e-30f, 0.25f, 65536.0f};
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+        struct relume_image model, back;
+        struct learnt_steps steps;
+        struct lossy_words words;
+        CHECK_OK(relume_image_create(&model, WIDTH, HEIGHT, LEARNT));
+        for (int i = 0; i < PIXELS * LEARNT; i++)
+            model.data[i] = values[k];
+        code(&back, &words, &steps, &model, LEARNT_GLOSS);
+        for (int i = 0; i < PIXELS * LEARNT; i++)
+            CHECK_NEAR(back.data[i], values[k], 1e-4 + 0.03 * values[k]);
+        mem_free(words.word);
+        relume_image_destroy(&model);
+        relume_image_destroy(&back);
+    }
+}
+
+static void other_words_are_damaged(void **state)
+{
+    (void)state;
+    struct relume_image model, back;
+    struct learnt_steps steps;
+    struct lossy_words words;
+    make(&model, LEARNT_GLOSS);
+    code(&back, &words, &steps, &model, LEARNT_GLOSS);
+    words.word[words.count - 1] ^= 1;
+    assert_int_equal(learnt_decode(&back, &words, &steps, LEARNT_GLOSS, 2), RELUME_EDAMAGED);
+    words.count = 2;
+    assert_int_equal(learnt_decode(&back, &words, &steps, LEARNT_GLOSS, 2), RELUME_EDAMAGED);
+    mem_free(words.word);
+    relume_image_destroy(&model);
+    relume_image_destroy(&back);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_come_back),       cmocka_unit_test(infinity_stays),
+        cmocka_unit_test(metals_stay_metals),      cmocka_unit_test(even_models_come_back),
+        cmocka_unit_test(other_words_are_damaged),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

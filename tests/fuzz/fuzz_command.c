@@ -49,6 +49,14 @@ static int keep(const char *path, const struct stat *s, int type, struct FTW *pl
     return 0;
 }
 
+// What the library calls files that it has not finished: a line may ask for others like it.
+static bool is_unfinished(const char *name)
+{
+    static const char prefix[] = ".relume-";
+    const size_t length = strlen(name), begins = sizeof prefix - 1;
+    return !strncmp(name, prefix, begins) && (length == begins + 12 || length == begins + 6);
+}
+
 static int look(const char *path, const struct stat *s, int type, struct FTW *place)
 {
     if (place->level == 0)
@@ -60,7 +68,7 @@ static int look(const char *path, const struct stat *s, int type, struct FTW *pl
         seen.made++;
     else
         seen.found++;
-    seen.unfinished += !strncmp(path + place->base, ".relume-", 8);
+    seen.unfinished += is_unfinished(path + place->base);
     if (k < kept + kept_count && type == FTW_F)
         seen.changed += k->state.st_ino != s->st_ino || k->state.st_size != s->st_size ||
                         k->state.st_mtim.tv_nsec != s->st_mtim.tv_nsec;

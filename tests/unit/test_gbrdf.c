@@ -1,6 +1,7 @@
 // g-BRDFs: rays and reflectance against slow references, and what was planted comes back.
 #include "made_btf.h"
 
+#include "made_energy.h"
 #include "base/half.h"
 #include "base/memory.h"
 #include "btf_model/model_gbrdf.h"
@@ -228,24 +229,6 @@ static void test_reciprocal(void **state)
     free_made(&m);
 }
 
-// What a texel sends back of light from `l`, by the midpoint rule over the hemisphere.
-static double sent_back(const struct gbrdf *g, double x, double y, vec3 l, int channel)
-{
-    enum { RINGS = TEST_SANITIZED ? 30 : 60, AROUND = 2 * RINGS };
-    double sum = 0.0;
-    for (int r = 0; r < RINGS; r++)
-        for (int i = 0; i < AROUND; i++) {
-            const double theta = (r + 0.5) * 0.5 * M_PI / RINGS,
-                         phi = (i + 0.5) * 2.0 * M_PI / AROUND;
-            const vec3 v = vec3_of(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
-            float rgb[3];
-            gbrdf_evaluate(g, x, y, v, l, rgb);
-            sum += (double)rgb[channel] / (M_PI * l.z) * v.z * sin(theta) * (0.5 * M_PI / RINGS) *
-                   (2.0 * M_PI / AROUND);
-        }
-    return sum;
-}
-
 // Maps of white metals that reflect several times what they get, before they are limited.
 static void test_energy(void **state)
 {
@@ -267,7 +250,8 @@ static void test_energy(void **state)
             const vec3 l =
                 vec3_of(sin(theta) * cos(2.0 * i), sin(theta) * sin(2.0 * i), cos(theta));
             if (l.z > 0.0)
-                most = fmax(most, sent_back(m.g, i % 4 + 0.5, i / 4 + 0.5, l, i % 3));
+                most = fmax(most, sent_back(m.g, i % 4 + 0.5, i / 4 + 0.5, l, i % 3,
+                                            TEST_SANITIZED ? 30 : 60));
         }
         // sums of cells of 1/16 of the disc against those of a degree
         assert_true(limited ? most <= 1.02 && most > 0.5 : most > 2.0);

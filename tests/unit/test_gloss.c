@@ -110,13 +110,6 @@ static void pixels_show_what_maps_show(void **state)
     relume_maps_destroy(&m);
 }
 
-static const char *path_of(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
 static void encode(const struct scene *s, const char *path, const struct relume_image *gloss)
 {
     relume_coder *coder;

@@ -1,9 +1,9 @@
 // Mirrors among objects: what they show of panoramas and environments against closed forms, and the
 // descriptions of edited reflections, good and broken.
 #include "capture_fixture.h"
-#include "test.h"
+#include "in_folder.h"
 
-static char folder[64], last[512];
+static char last[512];
 static int warnings;
 
 static void hear(void *user, enum relume_level level, const char *text)
@@ -15,27 +15,11 @@ static void hear(void *user, enum relume_level level, const char *text)
 static const struct relume_log hearing = {.message = hear};
 #define CHECK_OK(call) assert_int_equal((call), RELUME_OK)
 
-static const char *path_of(const char *name)
-{
-    static char path[4][128];
-    static int next;
-    char *p = path[next++ % 4];
-    snprintf(p, sizeof path[0], "%s/%s", folder, name);
-    return p;
-}
-
 static FILE *file_of(const char *name)
 {
     FILE *file = fopen(path_of(name), "w");
     assert_non_null(file);
     return file;
-}
-
-static void write_text(const char *name, const char *text)
-{
-    FILE *file = file_of(name);
-    fputs(text, file);
-    fclose(file);
 }
 
 // A ball of radius 1.
@@ -514,22 +498,9 @@ static void bad_edits_are_told(void **state)
 
 static int open_all(void **state)
 {
-    (void)state;
-    char command[128];
-    snprintf(folder, sizeof folder, "/tmp/relume-mirror-%ld", (long)getpid());
-    snprintf(command, sizeof command, "mkdir -p %s", folder);
-    if (system(command))
-        return -1;
+    const int status = make_folder(state);
     write_ball();
-    return 0;
-}
-
-static int close_all(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command);
+    return status;
 }
 
 int main(void)
@@ -543,5 +514,5 @@ int main(void)
         cmocka_unit_test(edits_belong_to_objects),
         cmocka_unit_test(bad_edits_are_told),
     };
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    return cmocka_run_group_tests(tests, open_all, remove_folder);
 }

@@ -1,10 +1,11 @@
 // Objects covered with BTFs: tangent frames against their definition, pictures against the sample
 // itself, shadows against geometry; descriptions and meshes that are broken.
 #include "capture_fixture.h"
+#include "in_folder.h"
 #include "made_btf.h"
 
 enum { TEXELS = 4 };
-static char folder[64], last[512];
+static char last[512];
 static int warnings;
 
 static void hear(void *user, enum relume_level level, const char *text)
@@ -14,23 +15,6 @@ static void hear(void *user, enum relume_level level, const char *text)
     warnings += level == RELUME_WARNING;
 }
 static const struct relume_log hearing = {.message = hear};
-
-static const char *path_of(const char *name)
-{
-    static char path[4][128];
-    static int next;
-    char *p = path[next++ % 4];
-    snprintf(p, sizeof path[0], "%s/%s", folder, name);
-    return p;
-}
-
-static void write_text(const char *name, const char *text)
-{
-    FILE *file = fopen(path_of(name), "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
 
 // A sample without symmetry: every texel, view and light shows something else.
 struct shown {
@@ -702,22 +686,9 @@ static void threads_agree(void **state)
 
 static int open_all(void **state)
 {
-    (void)state;
-    char command[128];
-    snprintf(folder, sizeof folder, "/tmp/relume-object-%ld", (long)getpid());
-    snprintf(command, sizeof command, "mkdir -p %s", folder);
-    if (system(command))
-        return -1;
+    const int status = make_folder(state);
     write_sample("sample", false, false);
-    return 0;
-}
-
-static int close_all(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command);
+    return status;
 }
 
 int main(void)
@@ -738,5 +709,5 @@ int main(void)
         cmocka_unit_test(descriptions_are_followed),
         cmocka_unit_test(threads_agree),
     };
-    return cmocka_run_group_tests(tests, open_all, close_all);
+    return cmocka_run_group_tests(tests, open_all, remove_folder);
 }

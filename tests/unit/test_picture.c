@@ -16,13 +16,6 @@ enum { MOST = 70 };
 
 static const struct oiio_bridge *bridge;
 
-static char *path_of(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
 // Rows in portions that blocks do not know about.
 static void read_all(picture_reader *r, void *out)
 {

@@ -282,13 +282,6 @@ static double psnr_of(const struct relume_image *a, const float *want)
     return -10.0 * log10(sum / (3 * PIXELS));
 }
 
-static const char *path_of(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
 struct file {
     relume_pack *pack;
     relume_renderer *renderer;

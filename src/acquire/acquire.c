@@ -356,14 +356,20 @@ static relume_status check_balls(const struct relume_acquire_params *p)
     const char *odd = more ? odd_one(p->ball_photographs, balls, p->photographs, objects)
                            : odd_one(p->photographs, objects, p->ball_photographs, balls);
     const char *what = more ? "photograph of the object" : "photograph of the ball";
+    if (balls == 1)
+        return log_fail(p->log, RELUME_EUNFIT,
+                        "1 photograph of the ball, %d of the object; expected one for each; give "
+                        "the folder of the ball's photographs, not its files (a shell's * leaves "
+                        "all but the first to the object)",
+                        objects);
     if (odd)
         return log_fail(p->log, RELUME_EUNFIT,
                         "%s: there is no %s with this number; expected one for each; found %d of "
                         "the ball, %d of the object",
                         odd, what, balls, objects);
     return log_fail(p->log, RELUME_EUNFIT,
-                    "%d photograph%s of the ball; expected %d, one for each of the object", balls,
-                    relume_plural(balls), objects);
+                    "%d photographs of the ball; expected %d, one for each of the object", balls,
+                    objects);
 }
 
 static relume_status check_params(const struct relume_acquire_params *p)

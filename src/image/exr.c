@@ -531,10 +531,10 @@ static relume_status check_bytes(const exr_file *file, const struct relume_limit
         const uint64_t bytes = (uint64_t)part.width * (uint64_t)part.height * planes * 4;
         if (bytes > always && bytes / ratio > size)
             return log_fail(log, RELUME_EDAMAGED,
-                            "%s: part %d claims %d x %d pixels of %d channels in %llu bytes; "
+                            "%s: part %d claims %d x %d pixels of %d channel%s in %llu bytes; "
                             "damaged, or made to fill memory",
                             file->path, i, part.width, part.height, part.channels,
-                            (unsigned long long)size);
+                            relume_plural(part.channels), (unsigned long long)size);
         if (bytes > most && !part.tile)  // of tiles no more is read than what is asked for
             return log_fail(log, RELUME_ELIMIT,
                             "%s: part %d of %d x %d pixels and %d channels takes %s; expected at "

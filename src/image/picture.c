@@ -135,14 +135,15 @@ static relume_status check_size(const picture_reader *reader, const struct openi
     if (!picture_kind_is_likely(s->kind, s->look.bytes, bytes))
         return log_fail(
             log, RELUME_EDAMAGED,
-            "%s: claims %d x %d pixels of %d channels in %llu bytes; damaged, or made to "
+            "%s: claims %d x %d pixels of %d channel%s in %llu bytes; damaged, or made to "
             "fill memory",
-            s->path, i->width, i->height, i->channels, (unsigned long long)s->look.bytes);
+            s->path, i->width, i->height, i->channels, relume_plural(i->channels),
+            (unsigned long long)s->look.bytes);
     if (bytes > most.max_memory)
         return log_fail(log, RELUME_ELIMIT,
-                        "%s: %d x %d pixels of %d channels are %s; expected at most %s "
+                        "%s: %d x %d pixels of %d channel%s are %s; expected at most %s "
                         "(--max-memory)",
-                        s->path, i->width, i->height, i->channels,
+                        s->path, i->width, i->height, i->channels, relume_plural(i->channels),
                         memory_text(bytes, most.max_memory).text,
                         memory_text(most.max_memory, bytes).text);
     return RELUME_OK;

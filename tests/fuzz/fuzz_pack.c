@@ -45,6 +45,8 @@ static const char *const words[] = {"relume.format",
                                     "compression",
                                     "view0000",
                                     "view0001.depth",
+                                    "view0000.shadows",
+                                    "view0000.highlights",
                                     "type",
                                     "lineOrder",
                                     "floatvector",
@@ -89,6 +91,10 @@ static void use(relume_pack *pack)
         if (!relume_pack_depth(&plane, pack, v))
             relume_image_destroy(&plane);
         if (!relume_pack_mask(&plane, pack, v))
+            relume_image_destroy(&plane);
+        if (!relume_pack_shadow(&plane, pack, v))
+            relume_image_destroy(&plane);
+        if (!relume_pack_gloss(&plane, pack, v))
             relume_image_destroy(&plane);
         const struct relume_codes *codes;
         double rgb[3];
@@ -162,6 +168,26 @@ static void add_coded(struct fuzz *f, const struct fixture *fixture,
     fuzz_add(f, fuzz_load(f->path));
 }
 
+// Shadows that move where there is depth, else highlights; with loss, or without.
+static void add_moving(struct fuzz *f, const struct fixture *fixture, double psnr_db)
+{
+    struct relume_image gloss;
+    fixture_must(
+        relume_image_create(&gloss, fixture->width, fixture->height, RELUME_GLOSS_CHANNELS),
+        "gloss");
+    for (int i = 0; i < fixture->width * fixture->height; i++)
+        for (int c = 0; c < RELUME_GLOSS_CHANNELS; c++)
+            gloss.data[RELUME_GLOSS_CHANNELS * i + c] = (float)(i % 7 + c) / 20.0f;
+    fixture_write(fixture, f->folder);
+    fixture_must(fixture_encode(f->folder, f->path, &relume_basis_table, 0,
+                                relume_pack_encode_params(.psnr_db = psnr_db, .threads = 1,
+                                                          .shadows = fixture->depth,
+                                                          .gloss = fixture->depth ? NULL : &gloss)),
+                 "encode");
+    fuzz_add(f, fuzz_load(f->path));
+    relume_image_destroy(&gloss);
+}
+
 static void add_pyramid(struct fuzz *f, const struct fixture *fixture,
                         const struct relume_basis *basis, enum relume_compression compression)
 {
@@ -218,5 +244,9 @@ int main(int argc, char **argv)
     add_pyramid(&f, &tall, &relume_basis_sh, RELUME_COMPRESS_PIZ);
     add_coded(&f, &plain, &relume_basis_table, 0);
     add_coded(&f, &slab, &relume_basis_pca, 4);
+    add_moving(&f, &plain, 0.0);
+    add_moving(&f, &plain, 25.0);
+    add_moving(&f, &slab, 0.0);
+    add_moving(&f, &slab, 25.0);
     return fuzz_run(&f, argc, argv, one);
 }

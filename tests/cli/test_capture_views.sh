@@ -179,6 +179,8 @@ expect_fail 'grey depth asks for its range' 2 'expected the distances of white a
 # ---- stitching
 if [ ! -e "$BUILD/librelume-stitch.so.0" ]; then
     skip 'stitched photographs' 'built without OpenCV'
+    expect_fail 'but what it needs is said' 3 "expected a build with OpenCV \('make deps-stitch', then 'make'\)" out.exr \
+        "$RELUME" panorama s.exr s.exr -o out.exr
 elif [ ! -e "$data/hdri-polyhaven-1k/forest.hdr" ]; then
     skip 'stitched photographs' 'no data'
 else

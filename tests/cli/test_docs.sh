@@ -13,8 +13,9 @@ docs="$TOP/docs"
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
 # options of other programs that the texts use, a mistake that they show, and old spellings
 printf '%s\n' --cflags --libs --static --info --version --lihgt --table --hdr --slab --panorama >>known.txt
-# anchors of a page: its headings as web pages of Git hosts name them, once each
-anchors() { grep '^#' "$1" | sed 's/^#* //' | tr 'A-Z' 'a-z' | sed 's/\[\([^]]*\)\]([^)]*)/\1/g; s/[^a-z0-9 _-]//g; s/ /-/g'; }
+# anchors of a page: its headings as web pages of Git hosts name them, once each, and its own <a id>
+anchors() { grep '^#' "$1" | sed 's/^#* //' | tr 'A-Z' 'a-z' | sed 's/\[\([^]]*\)\]([^)]*)/\1/g; s/[^a-z0-9 _-]//g; s/ /-/g'
+    sed -n 's/.*<a id="\([^"]*\)">.*/\1/p' "$1"; }
 for page in "$docs"/*.md "$docs"/*/*.md "$TOP/README.md"; do
     text=${page#"$docs"/} folder=$(dirname "$page")
     unknown=$(grep -o -e '\(^\|[^a-z-]\)--[a-z][a-z-]*' "$page" | sed 's/^[^-]*//' | sort -u |

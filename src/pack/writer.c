@@ -162,7 +162,7 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
         return RELUME_EINVAL;
     w.parts = arena_array(&w.arena, most_parts, sizeof *w.parts);
     w.channels = channel_names(&w);
-    w.failed = !w.parts || !w.channels;
+    w.failed |= !w.parts || !w.channels;
     relume_status status = w.failed ? RELUME_ENOMEM : add_parts(&w, &p);
     if (!status)
         status = w.failed || is_crowded(&w)

@@ -75,13 +75,14 @@ static void add_row(void *context, size_t row, int worker)
     }
 }
 
-// The captured lights, of the interpolant of the codes.
-static relume_status know(relume_coder **out, const struct relume_coder_info *info)
+// The captured lights, of the interpolant of the codes; in a sum of lights that of environments,
+// whose weights are never negative.
+static relume_status know(relume_coder **out, const struct relume_coder_info *info, bool summed)
 {
-    struct relume_coder_params p =
-        *relume_coder_params(.hemispherical = info->hemispherical, .pole_y = info->pole_y,
-                             .interpolant = info->interpolant, .decode = true);
-    for (int i = 0; i < 4; i++)
+    struct relume_coder_params p = *relume_coder_params(.hemispherical = info->hemispherical,
+                                                        .pole_y = info->pole_y, .decode = true);
+    p.interpolant = summed ? relume_interpolant_find("delaunay") : info->interpolant;
+    for (int i = 0; !summed && i < 4; i++)
         p.parameter[i] = info->parameter[i];
     return relume_coder_create(out, relume_basis_find("table"), info->directions, info->lights, &p);
 }
@@ -89,7 +90,7 @@ static relume_status know(relume_coder **out, const struct relume_coder_info *in
 relume_status gloss_add(struct relume_image *more, int left, int top,
                         const struct relume_image *model, const relume_coder *coder,
                         const struct relume_transfer *display, const struct relume_light *light,
-                        int threads)
+                        bool summed, int threads)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);
     relume_coder *between = NULL;
@@ -97,7 +98,7 @@ relume_status gloss_add(struct relume_image *more, int left, int top,
     struct adding a = {.more = more, .left = left, .top = top, .model = model};
     const float share =
         (float)relume_coder_clamp(&a.light.light, coder, vec3_unit(light->direction));
-    relume_status status = weights ? know(&between, info) : RELUME_ENOMEM;
+    relume_status status = weights ? know(&between, info, summed) : RELUME_ENOMEM;
     if (!status) {
         relume_coder_weights(between, a.light.light, weights, constant);
         a.light.captured = info->lights;

@@ -27,10 +27,11 @@ struct gloss_light {
 };
 void gloss_wanders(float rgb[3], const float *pixel, const struct gloss_light *l);
 
-// What relume_shadows_add adds for a directional light.
+// What relume_shadows_add adds for a directional light, or for one of those that an environment is
+// the sum of (`summed`).
 relume_status gloss_add(struct relume_image *more, int left, int top,
                         const struct relume_image *model, const relume_coder *coder,
                         const struct relume_transfer *display, const struct relume_light *light,
-                        int threads);
+                        bool summed, int threads);
 
 #endif

@@ -197,6 +197,7 @@ struct adding {
     float weight[AROUND];
     const uint8_t *reached[AROUND];
     const struct relume_transfer *display;  // NULL: linear codes
+    bool summed;                            // the light is one of an environment's
 };
 
 // `lit` and `known` are what the matte surface shows under the light and under those around it.
@@ -444,11 +445,13 @@ static float luminance_of(const struct relume_light *light)
 }
 
 // Of an environment's lamps those that are more than an even share come first: suns and windows,
-// whose shadows have edges. How many they are.
+// whose shadows have edges. How many they are. Those beyond the captured lights fade: a sum has
+// other shares of them than a light alone (relume_environment_weights).
 static relume_status find_suns(struct relume_light lamp[LAMPS], int *suns,
-                               const struct relume_light *environment,
-                               const struct relume_coder_info *info)
+                               const struct relume_light *environment, const relume_coder *coder)
 {
+    vec3 from;
+    const struct relume_coder_info *info = relume_coder_info(coder);
     const relume_status status = relume_environment_sample(lamp, LAMPS, environment, 0);
     float total = 0.0f;
     *suns = 0;
@@ -456,7 +459,8 @@ static relume_status find_suns(struct relume_light lamp[LAMPS], int *suns,
         total += luminance_of(&lamp[i]);
     for (int i = 0; !status && i < LAMPS; i++)
         if (luminance_of(&lamp[i]) > MORE * total / LAMPS &&
-            !(info->hemispherical && pole_from_world(lamp[i].direction, info->pole_y).z < 0.0))
+            !(info->hemispherical && pole_from_world(lamp[i].direction, info->pole_y).z < 0.0) &&
+            relume_coder_clamp(&from, coder, vec3_unit(lamp[i].direction)) == 1.0)
             lamp[(*suns)++] = lamp[i];
     return status;
 }
@@ -466,7 +470,7 @@ static relume_status add_lamp(struct adding *a, relume_shadows *s, const relume_
 {
     if (s->gloss.data)
         return gloss_add(a->more, a->rect.left, a->rect.top, &s->gloss, coder, a->display, lamp,
-                         threads);
+                         a->summed, threads);
     const float share = (float)relume_coder_clamp(&a->light, coder, vec3_unit(lamp->direction));
     for (int c = 0; c < 3; c++)
         a->rgb[c] = share * lamp->rgb[c];
@@ -480,8 +484,9 @@ static relume_status add_environment(struct adding *a, relume_shadows *s, const 
 {
     struct relume_light lamp[LAMPS];
     int suns = 0;
-    relume_status status = find_suns(lamp, &suns, light, relume_coder_info(coder));
+    relume_status status = find_suns(lamp, &suns, light, coder);
     a->display = NULL;
+    a->summed = true;
     for (int i = 0; !status && i < suns; i++)
         status = add_lamp(a, s, coder, &lamp[i], threads);
     return status;

@@ -382,7 +382,7 @@ static void say_highlights(const struct args *args, const struct request *r, rel
     if (r->pack.gloss)
         announce(args, RELUME_NOTE,
                  "%s: highlights move with the light: %d lights left out are shown at %.1f dB "
-                 "PSNR, faded ones at %.1f",
+                 "PSNR, faded ones at %.1f; --highlights no leaves that out",
                  r->input, gain->lights, gain->traced_db, gain->faded_db);
     else if (is_better(status, gain, LEAST_HIGHLIGHTS_DB))
         announce(args, RELUME_NOTE,

@@ -71,6 +71,8 @@ struct relume_pack_view {
                                         // with a little loss
     const struct relume_image *gloss;   // likewise, as relume_gloss_learn gives it, of files of one
                                         // view without `shadow`
+    double model_bytes;  // what either may take: it is coded more coarsely, within limits, for
+                         // that; 0: half a byte a pixel
 };
 // Which part of a file is written, where several machines share the work; relume_pack_join makes
 // one file of all parts. Borrowed.

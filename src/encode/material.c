@@ -5,6 +5,8 @@
 
 #include <relume/shadow.h>
 
+#include <math.h>
+
 void material_destroy(struct material *m)
 {
     for (int i = 0; i < m->views; i++) {
@@ -83,6 +85,15 @@ relume_status material_encode(struct material *m, int i)
     return status;
 }
 
+// Of what moves with the light, a view: little beside its planes, or beside the header.
+static double model_bytes(const struct material *m)
+{
+    const double pixels =
+        (double)relume_capture_width(m->capture) * relume_capture_height(m->capture);
+    const double each = m->p->psnr_db > 0.0 ? 1.0 : m->p->bytes_per_pixel, least = 4096.0;
+    return each > 0.0 ? fmax(each * pixels / 8.0, least) : 0.0;
+}
+
 relume_status material_extras(struct material *m, int i)
 {
     relume_status status = RELUME_OK;
@@ -95,6 +106,7 @@ relume_status material_extras(struct material *m, int i)
             relume_shadows_learn(&m->shadow[i], m->capture, i,
                                  relume_shadows_params(.log = m->p->log, .threads = m->p->threads));
     m->view[i].gloss = m->p->gloss;
+    m->view[i].model_bytes = model_bytes(m);
     m->view[i].shadow = m->shadow[i].data ? &m->shadow[i] : NULL;
     m->view[i].depth = m->depth[i].data ? &m->depth[i] : NULL;
     m->view[i].mask = m->mask[i].data ? &m->mask[i] : NULL;

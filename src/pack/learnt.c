@@ -6,8 +6,9 @@
 #include <float.h>
 #include <math.h>
 
-// libaom's 12 of 63: coarser is seen as lost highlights, finer takes twice the bytes for 0.02 dB.
-static const struct av1_effort EFFORT = {12 * AV1_STEPS, AV1_USUAL};
+// Of libaom's 63. Finer than 12 takes twice the bytes for 0.02 dB; coarser is seen as lost
+// highlights, and is what models that are mostly noise are left with.
+enum { FINEST = 12, COARSEST = 60, COARSER = 8 };
 
 // From a number to what has even steps, and back.
 enum curve {
@@ -99,8 +100,8 @@ static relume_status find_steps(struct learnt_steps *out, const struct relume_im
 }
 
 relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
-                            const struct relume_image *model, enum learnt_kind kind, int threads,
-                            const struct relume_log *log)
+                            const struct relume_image *model, enum learnt_kind kind, double bytes,
+                            int threads, const struct relume_log *log)
 {
     const struct channel *channel = channels[kind];
     const size_t n = (size_t)model->width * (size_t)model->height;
@@ -115,8 +116,13 @@ relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
             codes[(size_t)c * n + i] =
                 isinf(value) ? TOP : (uint16_t)rintf((x - steps->offset[c]) / steps->scale[c]);
         }
-    if (!status)
-        status = lossy_encode_codes(out, codes, &shape, &EFFORT, threads, log);
+    for (int q = FINEST; !status && q <= COARSEST; q += COARSER) {
+        const struct av1_effort effort = {q * AV1_STEPS, AV1_USUAL};
+        mem_free(out->word);
+        status = lossy_encode_codes(out, codes, &shape, &effort, threads, log);
+        if (4.0 * (double)out->count <= bytes)
+            break;
+    }
     mem_free(codes);
     return status;
 }

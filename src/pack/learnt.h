@@ -23,11 +23,12 @@ struct learnt_steps {
     float scale[LEARNT], offset[LEARNT];
 };
 
-// A model as words that `steps` belong to. RELUME_EINVAL for numbers that are not finite, but for
-// thicknesses, which are 0 or more. RELUME_ENOMEM, RELUME_ESYSTEM.
+// A model as words that `steps` belong to, of at most `bytes` unless it is coarse then.
+// RELUME_EINVAL for numbers that are not finite, but for thicknesses, which are 0 or more.
+// RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
-                            const struct relume_image *model, enum learnt_kind kind, int threads,
-                            const struct relume_log *log);
+                            const struct relume_image *model, enum learnt_kind kind, double bytes,
+                            int threads, const struct relume_log *log);
 // Into the pixels of `model`, of LEARNT channels. RELUME_EDAMAGED when the words are none of a
 // model of its size, RELUME_ENOMEM.
 relume_status learnt_decode(struct relume_image *model, const struct lossy_words *words,

@@ -147,6 +147,9 @@ void writer_add_groups(struct writer *w)
             add_group(w, groups++, v);
 }
 
+// What a model may take where nobody says it, of the bytes of a pixel.
+static const double USUAL_BYTES = 0.5;
+
 static relume_status add_learnt(struct writer *w, const char *name, int view,
                                 const struct relume_image *model, enum learnt_kind kind,
                                 const struct relume_pack_params *p)
@@ -155,7 +158,10 @@ static relume_status add_learnt(struct writer *w, const char *name, int view,
     struct lossy_words words;
     if (!steps)
         return model ? RELUME_ENOMEM : RELUME_OK;
-    const relume_status status = learnt_encode(&words, steps, model, kind, p->threads, p->log);
+    const double asked = w->contents->view[view].model_bytes;
+    const double bytes = asked > 0.0 ? asked : USUAL_BYTES * model->width * model->height;
+    const relume_status status =
+        learnt_encode(&words, steps, model, kind, bytes, p->threads, p->log);
     if (status)
         return status;
     words = keep(w, &words);

@@ -2,9 +2,10 @@
 //
 // All is judged on samples of the capture as `relume eval` judges pictures: display values,
 // clipped, PSNR of each light, their mean. The usual choice stays where it reaches the quality that
-// is asked for: `pca` of 27 in the capture's own domain. Else hard shadows or highlights are at
-// work. Linear captures then try the display domain, where equal errors are equally visible: errors
-// of dark pixels count, and those of lamps less. Then components are added, as many as the
+// is asked for: `pca` of 27 in the capture's own domain, unless that is linear and the display
+// domain predicts clearly better. Else hard shadows or highlights are at work. Linear captures then
+// try the display domain, where equal errors are equally visible: errors of dark pixels count, and
+// those of lamps less. Then components are added, as many as the
 // quality takes; where smoothing keeps the lights from being reproduced, the smoothing goes. Unseen
 // lights are watched by leaving each captured one out (choose.c). So many components may take more
 // bytes than the pictures themselves, which also keep the colours of small things: then it is
@@ -37,6 +38,7 @@ enum {
 static const int counts[STEPS] = {3,  6,  9,  12, 15, 18,  21,  24,  27,  32,  38,  44,
                                   52, 60, 70, 80, 90, 100, 112, 128, 160, 200, 256, 384};
 
+static const double CLEARLY = 1.0;      // decibels that are worth sums light by light
 static const double MOST_DB = 60.0;     // of one light: exact black must not hide others
 static const double FREE_STORE = 0.05;  // of the basis's squared error: 0.2 dB
 static const double LOSSLESS = 3.2e-6;  // squared error, 55 dB: less than a step of 8 bits
@@ -281,17 +283,21 @@ static void move_samples(struct job *job, enum relume_domain domain)
     job->domain = domain;
 }
 
-// The display domain, where it is better by half a decibel and predicts about as well.
+// The display domain, where it is better by half a decibel and predicts about as well, or predicts
+// clearly better where the quality is reached in both.
 static relume_status try_display(struct job *job)
 {
     const double own = job->own, unseen = job->unseen;
+    const bool reached = own >= job->quality;
     relume_coder *linear = job->coder;
     const struct relume_coder_params params = job->params;
     job->coder = NULL;
     job->params.log = NULL;
     move_samples(job, RELUME_DOMAIN_DISPLAY);
     const relume_status status = make_coder(job, linear->info.coefficients);
-    if (!status && job->own > own + 0.5 && job->unseen > unseen - 0.2) {
+    const bool better = reached ? job->own >= job->quality && job->unseen > unseen + CLEARLY
+                                : job->own > own + 0.5 && job->unseen > unseen - 0.2;
+    if (!status && better) {
         relume_coder_destroy(&linear);
         return RELUME_OK;
     }
@@ -340,7 +346,7 @@ static relume_status choose_coder(struct job *job, bool asked)
     job->usual_unseen = job->unseen;
     const bool may = job->encode.domain == RELUME_DOMAIN_AUTO &&
                      job->domain == RELUME_DOMAIN_LINEAR && lights <= MOST_LIGHTS;
-    if (!status && may && job->own < job->quality)
+    if (!status && may)
         status = try_display(job);
     if (status || fixed || most <= usual || lights > MOST_LIGHTS)
         return status;

@@ -28,6 +28,11 @@ below '--bytes-per-pixel keeps its size' "$(wc -c <small.exr)" $((48 * 48 * 6 + 
 relume encode bust -o large.exr --bytes-per-pixel 9 --no-depth
 below 'more bytes are used' "$(wc -c <small.exr)" "$(wc -c <large.exr)"
 
+# ---- what cannot be had is said
+expect_ok 'too low a quality' 'dB PSNR .*; its coarsest coding is better than 10 dB' "$RELUME" encode bust -o worst.exr --psnr 10 --force
+expect_ok 'too few bytes' 'it needs more than 0.001 bytes a pixel' "$RELUME" encode bust -o worst.exr --bytes-per-pixel 0.001 --force
+expect_ok 'too many bytes' 'its finest coding needs less than 100 bytes a pixel' "$RELUME" encode bust -o best.exr --bytes-per-pixel 100 --force
+
 # ---- components or pictures: as good as the better of the two, which a closer search may miss by
 # a tenth of a decibel; pictures by an interpolant that uses all lights and smooths nothing
 pooled() { "$RELUME" eval "$1" bust --json -q | sed 's/.*"psnr_pooled_db": \([-0-9.]*\).*/\1/'; }

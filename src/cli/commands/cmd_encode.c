@@ -166,16 +166,32 @@ static const char *storage_words(enum relume_storage storage)
     return words[storage];
 }
 
-// ", 12.3 bytes a pixel"; nothing of outputs that are no file.
-static void bytes_words(char text[48], const relume_capture *capture, const char *path)
+// Bytes a pixel of all views; 0 of outputs that are no file.
+static double bytes_of(const relume_capture *capture, const char *path)
 {
     struct stat file;
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const double pixels =
         (double)m->views * relume_capture_width(capture) * relume_capture_height(capture);
-    text[0] = 0;
-    if (!stat(path, &file) && S_ISREG(file.st_mode))
-        snprintf(text, 48, ", %.1f bytes a pixel", (double)file.st_size / pixels);
+    return !stat(path, &file) && S_ISREG(file.st_mode) ? (double)file.st_size / pixels : 0.0;
+}
+
+// What was asked for with --psnr or --bytes-per-pixel and cannot be had.
+static void say_out_of_reach(char text[96], const struct request *r, double psnr_db, double bytes,
+                             bool one)
+{
+    const double asked_db = r->pack.psnr_db, asked = r->pack.bytes_per_pixel;
+    if (asked_db > psnr_db + 0.3)
+        snprintf(text, 96, "; %g dB is more than it reaches%s", asked_db,
+                 one ? "; without --psnr nothing visible is lost" : "");
+    else if (asked_db > 0.0 && asked_db < psnr_db - 1.0)
+        snprintf(text, 96, "; its coarsest coding is better than %g dB", asked_db);
+    else if (asked > 0.0 && bytes > 1.1 * asked)
+        snprintf(text, 96, "; it needs more than %g byte%s a pixel", asked,
+                 asked == 1.0 ? "" : "s");
+    else if (bytes > 0.0 && bytes < 0.7 * asked)
+        snprintf(text, 96, "; its finest coding needs less than %g byte%s a pixel", asked,
+                 asked == 1.0 ? "" : "s");
 }
 
 // What is predicted between photographs has the error of the file besides: dB of both.
@@ -204,17 +220,18 @@ static void say_result(const struct args *args, const relume_capture *capture,
                  judgement(report->psnr_db));
         return;
     }
-    char bytes[48], unseen[64] = "", more[96] = "";
+    char bytes[48] = "", unseen[64] = "", more[96] = "";
+    const double each = bytes_of(capture, r->output);
     const bool one = info->lights == 1;
     const bool single = one && relume_capture_manifest(capture)->views == 1;
     const bool short_of = r->decide && r->quality > report->psnr_db + 0.5;
-    bytes_words(bytes, capture, r->output);
+    if (each > 0.0)
+        snprintf(bytes, sizeof bytes, ", %.1f bytes a pixel", each);
     if (r->unseen > 0.0 && !one)
         snprintf(unseen, sizeof unseen, "; unseen light directions: about %.0f dB",
                  both_errors(r->unseen, report->psnr_db));
-    if (is_coded(r) && r->pack.psnr_db > report->psnr_db + 0.3)
-        snprintf(more, sizeof more, "; %g dB is more than it reaches%s", r->pack.psnr_db,
-                 one ? "; without --psnr nothing visible is lost" : "");
+    if (is_coded(r))
+        say_out_of_reach(more, r, report->psnr_db, each, one);
     if (short_of && !one && !r->coder.coefficients)
         snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
                  info->coefficients);
@@ -651,9 +668,9 @@ static relume_status encode_team(const struct args *args, struct request *r,
         r->coder.choose = false;
     }
     if (!status)
-        status = decide_highlights(args, capture, r, &gloss);
-    if (!status)
         status = learn(&coder, capture, r);
+    if (!status)  // in the domain that was chosen
+        status = decide_highlights(args, capture, r, &gloss);
     if (!status && (!r->learn_only || has_steps(r, capture)))
         status = (args->team ? write_together(args, capture, coder, r, &report)
                              : write_file(capture, coder, r, &report));

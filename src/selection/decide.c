@@ -2,14 +2,14 @@
 //
 // All is judged on samples of the capture as `relume eval` judges pictures: display values,
 // clipped, PSNR of each light, their mean. The usual choice stays where it reaches the quality that
-// is asked for: `pca` of 27 in the capture's own domain, unless that is linear and the display
-// domain predicts clearly better. Else hard shadows or highlights are at work. Linear captures then
-// try the display domain, where equal errors are equally visible: errors of dark pixels count, and
-// those of lamps less. Then components are added, as many as the
-// quality takes; where smoothing keeps the lights from being reproduced, the smoothing goes. Unseen
-// lights are watched by leaving each captured one out (choose.c). So many components may take more
-// bytes than the pictures themselves, which also keep the colours of small things: then it is
-// `table`.
+// is asked for: `pca` of 27 in the capture's own domain, unless that is linear, unseen lights do
+// not reach the quality and the display domain predicts them clearly better. Else hard shadows or
+// highlights are at work. Linear captures then try the display domain, where equal errors are
+// equally visible: errors of dark pixels count, and those of lamps less. Then components are added,
+// as many as the quality takes; where smoothing keeps the lights from being reproduced, the
+// smoothing goes. Unseen lights are watched by leaving each captured one out (choose.c). So many
+// components may take more bytes than the pictures themselves, which also keep the colours of small
+// things: then it is `table`.
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -346,7 +346,7 @@ static relume_status choose_coder(struct job *job, bool asked)
     job->usual_unseen = job->unseen;
     const bool may = job->encode.domain == RELUME_DOMAIN_AUTO &&
                      job->domain == RELUME_DOMAIN_LINEAR && lights <= MOST_LIGHTS;
-    if (!status && may)
+    if (!status && may && (job->own < job->quality || job->unseen < job->quality))
         status = try_display(job);
     if (status || fixed || most <= usual || lights > MOST_LIGHTS)
         return status;

@@ -372,6 +372,12 @@ static void wrong_words_are_refused(void **state)
     fails("choose constraint 0", "that is there");
     fails("choose region -1", "that is there");
     fails("choose constraint 0 7", "that is there");
+    drag(90, 70, 110, 120);
+    fails("choose constraint 0 0 7", "that is there");
+    fails("choose constraint 0x", "that is there");
+    fails("choose constraint 4294967296", "that is there");
+    does("choose constraint 0 0");
+    does("undo");
     fails("radius 0", "above 0");
     fails("radius nan", "above 0");
     fails("radius 1 2", "above 0");
@@ -407,6 +413,37 @@ static void wrong_words_are_refused(void **state)
     e->constraint[0].position.x = NAN;
     assert_false(handles_show(app.handles));
     assert_true(isfinite(app.handles->now[0].constraint[0].position.x));
+}
+
+// What the mouse held is a change then; a handle of another kind is not moved in its place.
+static void a_drag_ends_by_another_button_or_word(void **state)
+{
+    (void)state;
+    send(APP_PRESS, 90, 70);
+    send(APP_MOVE, 110, 120);
+    (void)app_handle(
+        &app, &(struct app_event){.kind = APP_PRESS, .button = APP_RIGHT, .x = 110, .y = 120});
+    assert_false(app.handles->changes);
+    const struct relume_reflection_constraint dragged = edit_now()->constraint[0];
+    send(APP_MOVE, 120, 130);
+    send(APP_RELEASE, 120, 130);
+    assert_memory_equal(&edit_now()->constraint[0], &dragged, sizeof dragged);
+    does("tool ball");
+    drag(60, 100, 75, 100);
+    const struct relume_reflection_region region = edit_now()->region[0];
+    send(APP_PRESS, 75, 100);
+    does("choose constraint 0");
+    send(APP_MOVE, 90, 100);
+    send(APP_RELEASE, 90, 100);
+    assert_memory_equal(&edit_now()->region[0], &region, sizeof region);
+    does("undo");
+    does("undo");
+    assert_null(edit_now());
+    // as small as there are numbers, and back
+    does("tool ball");
+    drag(60, 100, 75, 100);
+    does("radius 1e-320");
+    does("radius 0.5");
 }
 
 // Whatever a hand does, it can be undone to the beginning and redone to the end.
@@ -484,10 +521,15 @@ int main(void)
 {
 #define CASE(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        CASE(what_was_seen_follows_the_pointer), CASE(changes_are_undone),
-        CASE(regions_bound_the_effect),          CASE(strokes_are_painted),
-        CASE(an_edit_is_frozen_and_seen_again),  CASE(places_of_a_scene_are_shown),
-        CASE(wrong_words_are_refused),           CASE(anything_is_undone),
+        CASE(what_was_seen_follows_the_pointer),
+        CASE(changes_are_undone),
+        CASE(regions_bound_the_effect),
+        CASE(strokes_are_painted),
+        CASE(an_edit_is_frozen_and_seen_again),
+        CASE(places_of_a_scene_are_shown),
+        CASE(wrong_words_are_refused),
+        CASE(a_drag_ends_by_another_button_or_word),
+        CASE(anything_is_undone),
         CASE(edits_that_are_there_get_handles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

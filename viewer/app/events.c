@@ -123,7 +123,7 @@ static void (*const drag_camera[])(struct app *, double dx, double dy) = {
     [RELUME_FRAME_LOOK] = turn_look,
 };
 
-static bool on_press(struct app *app, const struct app_event *e)
+static bool begin_drag(struct app *app, const struct app_event *e)
 {
     if (app->picks_focus && e->button == APP_LEFT) {
         app->cursor[0] = e->x;
@@ -157,6 +157,13 @@ static bool on_press(struct app *app, const struct app_event *e)
     return grabbed >= 0 || ball;
 }
 
+// Of two buttons the later one counts.
+static bool on_press(struct app *app, const struct app_event *e)
+{
+    const bool edited = handles_release(app);
+    return begin_drag(app, e) || edited;
+}
+
 // What is drawn roughly while it moves is drawn once more when it rests.
 static bool is_rough(const struct app *app)
 {
@@ -166,7 +173,7 @@ static bool is_rough(const struct app *app)
 static bool on_release(struct app *app, const struct app_event *e)
 {
     (void)e;
-    const bool edited = app->drag == APP_DRAG_HANDLE && handles_release(app);
+    const bool edited = handles_release(app);
     app->drag = APP_DRAG_NONE;
     return edited || is_rough(app);
 }

@@ -292,7 +292,7 @@ static bool drag_rim(struct app *app, struct handles_edit *e, const struct look 
         return false;
     const struct relume_vec3 p = vec3_along(l->eye, l->direction, ahead / along);
     const double radius = fmax(vec3_length(vec3_sub(p, middle_of(r))), LEAST * app->handles->size);
-    r->border *= radius / r->radius;
+    r->border = r->border / r->radius * radius;
     r->radius = radius;
     return true;
 }
@@ -357,7 +357,10 @@ bool handles_move(struct app *app, double x, double y)
 bool handles_release(struct app *app)
 {
     struct handles *h = app->handles;
+    if (app->drag != APP_DRAG_HANDLE)
+        return false;
     const bool changes = h->changes;
+    app->drag = APP_DRAG_NONE;
     if (h->shown)
         (void)handles_end(h, NULL);
     else

@@ -28,6 +28,7 @@ bool handles_outline(double xy[2], const struct app *app, int object, int region
 // changed.
 bool handles_press(struct app *app, double x, double y);
 bool handles_move(struct app *app, double x, double y);
+// Also of whoever takes a handle from the mouse; false when it holds none.
 bool handles_release(struct app *app);
 
 #endif

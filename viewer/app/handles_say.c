@@ -2,6 +2,7 @@
 #include "app/handles_say.h"
 
 #include "app/handles.h"
+#include "app/handles_drag.h"
 #include "app/orbit.h"
 #include "app/sight.h"
 #include "common/vec.h"
@@ -36,8 +37,9 @@ static bool say_choose(struct app *app, const char *rest)
     char kind[16];
     struct handles_choice c = {.object = 0};
     struct handles *h = app->handles;
-    if (sscanf(rest, "%15s %d %d", kind, &c.number, &c.object) < 2 || c.number < 0 ||
-        c.object < 0 || c.object >= h->count)
+    int end = 0;
+    if (sscanf(rest, "%15s %9d %n%9d %n", kind, &c.number, &end, &c.object, &end) < 2 ||
+        rest[end] || c.number < 0 || c.object < 0 || c.object >= h->count)
         return false;
     c.kind = !strcmp(kind, "constraint") ? HANDLES_CONSTRAINT
              : !strcmp(kind, "region")   ? HANDLES_REGION
@@ -135,7 +137,7 @@ static bool say_radius(struct app *app, const char *rest)
     if (!e)
         return true;
     struct relume_reflection_region *r = &e->region[h->chosen.number];
-    r->border *= radius / r->radius;
+    r->border = r->border / r->radius * radius;
     r->radius = radius;
     return handles_end(h, "radius");
 }
@@ -189,6 +191,7 @@ relume_status handles_say(struct app *app, const char *words, const struct relum
 {
     const bool off = !strcmp(words, "off");
     const char *rest;
+    (void)handles_release(app);
     if (!handles_turn_on(app, !off))
         return say(log, RELUME_EUNFIT, "reflection: expected objects of which one is a mirror");
     if (off || !strcmp(words, "on"))

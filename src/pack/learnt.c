@@ -95,6 +95,8 @@ static relume_status find_steps(struct learnt_steps *out, const struct relume_im
         }
         out->offset[c] = least <= most ? least : 0.0f;
         out->scale[c] = fmaxf(channel[c].step, (most - out->offset[c]) / END);
+        if (!isfinite(out->scale[c]))
+            return RELUME_EINVAL;
     }
     return RELUME_OK;
 }

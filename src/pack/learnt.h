@@ -24,7 +24,8 @@ struct learnt_steps {
 };
 
 // A model as words that `steps` belong to, of at most `bytes` unless it is coarse then.
-// RELUME_EINVAL for numbers that are not finite, but for thicknesses, which are 0 or more.
+// RELUME_EINVAL for numbers that are not finite, but for thicknesses, which are 0 or more, or whose
+// differences are not.
 // RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
                             const struct relume_image *model, enum learnt_kind kind, double bytes,

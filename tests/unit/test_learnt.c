@@ -156,6 +156,34 @@ static void noise_becomes_smooth(void **state)
     relume_image_destroy(&back);
 }
 
+static void numbers_that_cannot_be_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        enum learnt_kind kind;
+        int channel;
+        float values[2];
+    } bad[] = {{LEARNT_SHADOW, RELUME_SHADOW_THICK, {NAN, 1.0f}},
+               {LEARNT_SHADOW, RELUME_SHADOW_THICK, {-1.0f, 1.0f}},
+               {LEARNT_SHADOW, RELUME_SHADOW_COLOUR, {INFINITY, 1.0f}},
+               {LEARNT_GLOSS, RELUME_GLOSS_SHINE, {NAN, 1.0f}},
+               {LEARNT_GLOSS, RELUME_GLOSS_NORMAL, {-INFINITY, 0.0f}},
+               // finite, but no float holds how far they are apart
+               {LEARNT_GLOSS, RELUME_GLOSS_NORMAL, {3e38f, -3e38f}}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct relume_image model;
+        struct learnt_steps steps;
+        struct lossy_words words;
+        make(&model, bad[i].kind);
+        for (int k = 0; k < 2; k++)
+            model.data[k * LEARNT + bad[i].channel] = bad[i].values[k];
+        assert_int_equal(learnt_encode(&words, &steps, &model, bad[i].kind, INFINITY, 2, NULL),
+                         RELUME_EINVAL);
+        assert_null(words.word);
+        relume_image_destroy(&model);
+    }
+}
+
 static void other_words_are_damaged(void **state)
 {
     (void)state;
@@ -176,9 +204,13 @@ static void other_words_are_damaged(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_come_back),    cmocka_unit_test(infinity_stays),
-        cmocka_unit_test(metals_stay_metals),   cmocka_unit_test(even_models_come_back),
-        cmocka_unit_test(noise_becomes_smooth), cmocka_unit_test(other_words_are_damaged),
+        cmocka_unit_test(numbers_come_back),
+        cmocka_unit_test(infinity_stays),
+        cmocka_unit_test(metals_stay_metals),
+        cmocka_unit_test(even_models_come_back),
+        cmocka_unit_test(noise_becomes_smooth),
+        cmocka_unit_test(numbers_that_cannot_be_are_refused),
+        cmocka_unit_test(other_words_are_damaged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

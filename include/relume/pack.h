@@ -149,7 +149,7 @@ struct relume_pack_params {
 
 // Write `path` whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL,
 // RELUME_ESYSTEM, RELUME_EINVAL for a `shadow` or `gloss` whose numbers are not finite (a thickness
-// may be infinite), or what `preview` returned.
+// may be infinite) or too far apart for a float, or what `preview` returned.
 RELUME_RESULT relume_status relume_pack_write(const struct relume_pack_contents *contents,
                                               const char *path,
                                               const struct relume_pack_params *params);

@@ -4,7 +4,7 @@
 // Eight numbers a pixel are eight pictures of 12-bit codes, coded with loss as AV1 (lossy.h). A
 // number is curve(code * scale + offset): itself, what is squared with its sign kept, or a power of
 // two. Under captured lights what is lost cancels out; between them it costs a few hundredths of a
-// decibel, and the pictures take a twentieth of what halves without loss do.
+// decibel, and the pictures take a fifth of what halves without loss do, or less.
 #ifndef PACK_LEARNT_H
 #define PACK_LEARNT_H
 
@@ -25,8 +25,7 @@ struct learnt_steps {
 
 // A model as words that `steps` belong to, of at most `bytes` unless it is coarse then.
 // RELUME_EINVAL for numbers that are not finite, but for thicknesses, which are 0 or more, or whose
-// differences are not.
-// RELUME_ENOMEM, RELUME_ESYSTEM.
+// differences are not. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
                             const struct relume_image *model, enum learnt_kind kind, double bytes,
                             int threads, const struct relume_log *log);

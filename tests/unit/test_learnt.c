@@ -32,12 +32,32 @@ static void make(struct relume_image *out, enum learnt_kind kind)
     }
 }
 
-static void code(struct relume_image *back, struct lossy_words *words, struct learnt_steps *steps,
-                 const struct relume_image *model, enum learnt_kind kind)
+// A model, its words, and what they are read as.
+struct trip {
+    struct relume_image model, back;
+    struct learnt_steps steps;
+    struct lossy_words words;
+};
+
+// Of a model that is there.
+static void code(struct trip *t, enum learnt_kind kind)
 {
-    CHECK_OK(learnt_encode(words, steps, model, kind, INFINITY, 2, NULL));
-    CHECK_OK(relume_image_create(back, WIDTH, HEIGHT, LEARNT));
-    CHECK_OK(learnt_decode(back, words, steps, kind, 2));
+    CHECK_OK(learnt_encode(&t->words, &t->steps, &t->model, kind, INFINITY, 2, NULL));
+    CHECK_OK(relume_image_create(&t->back, WIDTH, HEIGHT, LEARNT));
+    CHECK_OK(learnt_decode(&t->back, &t->words, &t->steps, kind, 2));
+}
+
+static void code_made(struct trip *t, enum learnt_kind kind)
+{
+    make(&t->model, kind);
+    code(t, kind);
+}
+
+static void trip_destroy(struct trip *t)
+{
+    mem_free(t->words.word);
+    relume_image_destroy(&t->model);
+    relume_image_destroy(&t->back);
 }
 
 // Root mean square over the finite numbers of a channel.
@@ -56,55 +76,40 @@ static void numbers_come_back(void **state)
 {
     (void)state;
     for (int kind = LEARNT_SHADOW; kind <= LEARNT_GLOSS; kind++) {
-        struct relume_image model, back;
-        struct learnt_steps steps;
-        struct lossy_words words;
-        make(&model, (enum learnt_kind)kind);
-        code(&back, &words, &steps, &model, (enum learnt_kind)kind);
+        struct trip t;
+        code_made(&t, (enum learnt_kind)kind);
         for (int c = 0; c < LEARNT; c++)
-            assert_true(missed(&model, &back, c) < 0.02);
-        assert_true(4 * words.count < PIXELS * LEARNT * sizeof(uint16_t) / 8);
-        mem_free(words.word);
-        relume_image_destroy(&model);
-        relume_image_destroy(&back);
+            assert_true(missed(&t.model, &t.back, c) < 0.02);
+        assert_true(4 * t.words.count < PIXELS * LEARNT * sizeof(uint16_t) / 8);
+        trip_destroy(&t);
     }
 }
 
 static void infinity_stays(void **state)
 {
     (void)state;
-    struct relume_image model, back;
-    struct learnt_steps steps;
-    struct lossy_words words;
-    make(&model, LEARNT_SHADOW);
-    code(&back, &words, &steps, &model, LEARNT_SHADOW);
+    struct trip t;
+    code_made(&t, LEARNT_SHADOW);
     for (int i = 0; i < PIXELS; i++) {
         const int from_edge = abs(i / WIDTH - 20);
         if (from_edge > 1)  // at the edge coding may err by more
-            assert_int_equal(isinf(back.data[i * LEARNT + RELUME_SHADOW_THICK]) != 0,
-                             isinf(model.data[i * LEARNT + RELUME_SHADOW_THICK]) != 0);
+            assert_int_equal(isinf(t.back.data[i * LEARNT + RELUME_SHADOW_THICK]) != 0,
+                             isinf(t.model.data[i * LEARNT + RELUME_SHADOW_THICK]) != 0);
     }
-    mem_free(words.word);
-    relume_image_destroy(&model);
-    relume_image_destroy(&back);
+    trip_destroy(&t);
 }
 
 // What shines a little must not become a metal, whose highlights have its colour.
 static void metals_stay_metals(void **state)
 {
     (void)state;
-    struct relume_image model, back;
-    struct learnt_steps steps;
-    struct lossy_words words;
-    make(&model, LEARNT_GLOSS);
-    code(&back, &words, &steps, &model, LEARNT_GLOSS);
+    struct trip t;
+    code_made(&t, LEARNT_GLOSS);
     for (int i = 0; i < PIXELS; i++)
         if (abs(i % WIDTH - WIDTH / 2) > 1)
-            assert_int_equal(back.data[i * LEARNT + RELUME_GLOSS_SHINE] < 0.0f,
+            assert_int_equal(t.back.data[i * LEARNT + RELUME_GLOSS_SHINE] < 0.0f,
                              i % WIDTH < WIDTH / 2);
-    mem_free(words.word);
-    relume_image_destroy(&model);
-    relume_image_destroy(&back);
+    trip_destroy(&t);
 }
 
 // One number everywhere is the offset and codes of 0, which the quantiser makes ten at most: a two
@@ -114,18 +119,14 @@ static void even_models_come_back(void **state)
     (void)state;
     static const float values[] = {0.0f, 1e-30f, 0.25f, 65536.0f};
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
-        struct relume_image model, back;
-        struct learnt_steps steps;
-        struct lossy_words words;
-        CHECK_OK(relume_image_create(&model, WIDTH, HEIGHT, LEARNT));
+        struct trip t;
+        CHECK_OK(relume_image_create(&t.model, WIDTH, HEIGHT, LEARNT));
         for (int i = 0; i < PIXELS * LEARNT; i++)
-            model.data[i] = values[k];
-        code(&back, &words, &steps, &model, LEARNT_GLOSS);
+            t.model.data[i] = values[k];
+        code(&t, LEARNT_GLOSS);
         for (int i = 0; i < PIXELS * LEARNT; i++)
-            CHECK_NEAR(back.data[i], values[k], 1e-4 + 0.03 * values[k]);
-        mem_free(words.word);
-        relume_image_destroy(&model);
-        relume_image_destroy(&back);
+            CHECK_NEAR(t.back.data[i], values[k], 1e-4 + 0.03 * values[k]);
+        trip_destroy(&t);
     }
 }
 
@@ -133,27 +134,25 @@ static void even_models_come_back(void **state)
 static void noise_becomes_smooth(void **state)
 {
     (void)state;
-    struct relume_image model, back;
-    struct learnt_steps steps;
-    struct lossy_words words, fewer;
+    struct trip t;
+    struct lossy_words fewer;
     uint32_t noise = 1;
     double sum = 0.0;
-    CHECK_OK(relume_image_create(&model, WIDTH, HEIGHT, LEARNT));
+    CHECK_OK(relume_image_create(&t.model, WIDTH, HEIGHT, LEARNT));
     for (int i = 0; i < PIXELS * LEARNT; i++) {
         noise = noise * 1664525u + 1013904223u;
-        model.data[i] = (float)(noise >> 8) / 16777216.0f;
+        t.model.data[i] = (float)(noise >> 8) / 16777216.0f;
     }
-    code(&back, &words, &steps, &model, LEARNT_GLOSS);
-    CHECK_OK(learnt_encode(&fewer, &steps, &model, LEARNT_GLOSS, (double)words.count, 2, NULL));
-    assert_true(fewer.count < words.count / 4);
-    CHECK_OK(learnt_decode(&back, &fewer, &steps, LEARNT_GLOSS, 2));
+    code(&t, LEARNT_GLOSS);
+    CHECK_OK(
+        learnt_encode(&fewer, &t.steps, &t.model, LEARNT_GLOSS, (double)t.words.count, 2, NULL));
+    assert_true(fewer.count < t.words.count / 4);
+    CHECK_OK(learnt_decode(&t.back, &fewer, &t.steps, LEARNT_GLOSS, 2));
     for (int i = 0; i < PIXELS; i++)
-        sum += back.data[i * LEARNT + RELUME_GLOSS_SHARE] / PIXELS;
+        sum += t.back.data[i * LEARNT + RELUME_GLOSS_SHARE] / PIXELS;
     CHECK_NEAR(sum, 0.5, 0.05);
-    mem_free(words.word);
     mem_free(fewer.word);
-    relume_image_destroy(&model);
-    relume_image_destroy(&back);
+    trip_destroy(&t);
 }
 
 static void numbers_that_cannot_be_are_refused(void **state)
@@ -187,18 +186,13 @@ static void numbers_that_cannot_be_are_refused(void **state)
 static void other_words_are_damaged(void **state)
 {
     (void)state;
-    struct relume_image model, back;
-    struct learnt_steps steps;
-    struct lossy_words words;
-    make(&model, LEARNT_GLOSS);
-    code(&back, &words, &steps, &model, LEARNT_GLOSS);
-    words.word[words.count - 1] ^= 1;
-    assert_int_equal(learnt_decode(&back, &words, &steps, LEARNT_GLOSS, 2), RELUME_EDAMAGED);
-    words.count = 2;
-    assert_int_equal(learnt_decode(&back, &words, &steps, LEARNT_GLOSS, 2), RELUME_EDAMAGED);
-    mem_free(words.word);
-    relume_image_destroy(&model);
-    relume_image_destroy(&back);
+    struct trip t;
+    code_made(&t, LEARNT_GLOSS);
+    t.words.word[t.words.count - 1] ^= 1;
+    assert_int_equal(learnt_decode(&t.back, &t.words, &t.steps, LEARNT_GLOSS, 2), RELUME_EDAMAGED);
+    t.words.count = 2;
+    assert_int_equal(learnt_decode(&t.back, &t.words, &t.steps, LEARNT_GLOSS, 2), RELUME_EDAMAGED);
+    trip_destroy(&t);
 }
 
 int main(void)

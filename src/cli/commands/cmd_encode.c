@@ -92,8 +92,7 @@ static const struct option options[] = {
          "auto, yes or no: fit normals, colour and gloss, by which highlights move with the light; "
          "auto: where they foresee photographs left out better; planar captures without traced "
          "shadows; default: auto with basis auto and at least 64 x 64 pixels, but not with --psnr "
-         "or "
-         "less than --bytes-per-pixel 0.5; else no",
+         "or less than --bytes-per-pixel 0.5; else no",
          WANDER_AUTO, "auto", "yes", "no"),
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),

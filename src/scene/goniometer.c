@@ -340,6 +340,10 @@ static relume_status complete(struct goniometer *g, const struct relume_btf_synt
     if (g->p.size < 1 || g->p.size > 1024)
         return log_fail(g->p.log, RELUME_EINVAL, "size: expected 1 to 1024 texels; found %d",
                         g->p.size);
+    if (!limits_allow(limits_of(NULL, g->p.log), g->p.size, g->p.size))
+        return log_fail(g->p.log, RELUME_EINVAL,
+                        "size: expected a picture of at most --max-pixels; found %d x %d",
+                        g->p.size, g->p.size);
     if (g->p.extent < 1 || g->p.extent > 16)
         return log_fail(g->p.log, RELUME_EINVAL, "extent: expected 1 to 16; found %d", g->p.extent);
     const struct relume_btf_faults *f = &g->p.faults;

@@ -20,6 +20,7 @@ expect_ok 'a material likewise' - "$RELUME" synth --btf knit -o knit --size 4 --
 expect_ok 'and once more' - "$RELUME" synth --btf knit -o knit --size 4 --directions coarse --force
 expect_fail 'a scene beyond --max-memory' 1 'a picture of this size takes 6104 MB; expected at most 50 MB' huge "$RELUME" synth box -o huge --size 20000 --max-memory 50M
 expect_fail 'one beyond --max-pixels' 2 'size: expected .* at most --max-pixels; found 200' huge "$RELUME" synth box -o huge --size 200 --max-pixels 5000
+expect_fail 'a material beyond --max-pixels' 2 'size: expected .* at most --max-pixels; found 64 x 64' huge "$RELUME" synth --btf stone -o huge --max-pixels 4095
 expect_fail 'a material beyond --max-memory' 1 'a view of this size under all lights takes [0-9]* MB; expected at most 100 MB' huge "$RELUME" btf fit stone -o huge --size 1024 --max-memory 100M
 # A cylinder with discs shows what a sphere shows, upwards and downwards and over both rims; without
 # them there is black.

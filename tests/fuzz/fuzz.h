@@ -283,6 +283,7 @@ static inline void fuzz_publish(const struct fuzz *f, const char *folder)
 static void fuzz_clean(void)
 {
     char command[128];
+    printf("%ld inputs, %ld accepted\n", fuzz_target.iterations, fuzz_target.accepted);
     snprintf(command, sizeof command, "/bin/rm -rf '%s'", fuzz_target.folder);
     if (system(command))
         perror(command);

@@ -49,13 +49,8 @@ static int keep(const char *path, const struct stat *s, int type, struct FTW *pl
     return 0;
 }
 
-// What the library calls files that it has not finished: a line may ask for others like it.
-static bool is_unfinished(const char *name)
-{
-    static const char prefix[] = ".relume-";
-    const size_t length = strlen(name), begins = sizeof prefix - 1;
-    return !strncmp(name, prefix, begins) && (length == begins + 12 || length == begins + 6);
-}
+// How the library begins the names of files that it has not finished.
+#define UNFINISHED ".relume-"
 
 static int look(const char *path, const struct stat *s, int type, struct FTW *place)
 {
@@ -68,7 +63,7 @@ static int look(const char *path, const struct stat *s, int type, struct FTW *pl
         seen.made++;
     else
         seen.found++;
-    seen.unfinished += is_unfinished(path + place->base);
+    seen.unfinished += !strncmp(path + place->base, UNFINISHED, strlen(UNFINISHED));
     if (k < kept + kept_count && type == FTW_F)
         seen.changed += k->state.st_ino != s->st_ino || k->state.st_size != s->st_size ||
                         k->state.st_mtim.tv_nsec != s->st_mtim.tv_nsec;
@@ -119,7 +114,7 @@ static relume_status run(int count, char **line, bool patiently)
     const struct itimerval once = {{0, 0}, patiently ? never.it_value : PATIENT};
     FILE *const out = stdout;
     parsed.log = (struct relume_log){.message = on_message, .progress = go_on};
-    parsed.limits = (struct relume_limits){.max_memory = 64 << 20, .max_pixels = 1 << 16};
+    parsed.limits = (struct relume_limits){.max_memory = 64 << 20, .max_pixels = 1 << 7};
     stopped = 0;
     parsed.command = find_command(commands, line[0]);
     stdout = people;
@@ -135,11 +130,13 @@ static relume_status run(int count, char **line, bool patiently)
     return status;
 }
 
-// Nothing is named outside the folder, and the limits stay. A glare takes seconds.
+// Nothing is named outside the folder or as what is unfinished there, and the limits stay. A glare
+// takes seconds.
 static bool is_harmless(const char *argument)
 {
     return strcmp(argument, "glare") && !strstr(argument, "..") && *argument != '/' &&
-           !strstr(argument, "=/") && strncmp(argument, "--max-", 6);
+           !strstr(argument, "=/") && !strstr(argument, UNFINISHED) &&
+           strncmp(argument, "--max-", 6);
 }
 
 static bool one(struct fuzz *f, struct bytes b)

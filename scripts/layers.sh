@@ -44,7 +44,8 @@ surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base object
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
-object:base math mesh frame:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection object renderer
+transport:base math mesh:base image capture view viewport transport
+object:base math mesh transport frame:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport object renderer
 helper:base image mesh:base
 measure:base math kernel image:*
 program:base:base image

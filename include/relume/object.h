@@ -27,6 +27,7 @@
 #include <relume/renderer.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
+#include <relume/transport.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -84,7 +85,7 @@ struct relume_object_material {
     // its normal to the eye (Schlick 1994, "An inexpensive BRDF model for physically-based
     // rendering").
     bool mirror;
-    float reflectance[3];  // F, of a mirror, in [0, 1]
+    float reflectance[3];  // F, of a mirror, or of a matte surface; in [0, 1]
 };
 
 // Triangles of one mesh that show one material.
@@ -191,8 +192,12 @@ struct relume_render_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int samples;      // rays along each side of a pixel, [1, 16]; default 1, through its middle
-    bool no_shadows;  // all light samples reach all points
+    bool no_shadows;  // all light samples reach all points; no light goes between
     int threads;      // default: all cores
+    // In a renderer's scene: how light goes between it and the objects. NULL or "none": not.
+    const struct relume_transport *transport;
+    int transport_samples;  // directions at each pixel, [1, 65536]; default: the way's own
+    int bounces;  // of light off objects, at most 16; default 2; below 0: objects only hide light
 };
 #define relume_render_params(...)                                                                  \
     (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})
@@ -216,10 +221,10 @@ RELUME_RESULT relume_status relume_objects_render(struct relume_image *out,
 // renderer is destroyed; NULL: none. relume_renderer_frame and _draw show them where they stand
 // before what the file's depth says, under the renderer's lights, and with their shadows on the
 // scene: each light sample is relit alone and reaches a point of the scene when no object lies
-// between. Scenes throw no shadows on objects. A pass shows the scene alone: leave it at colour.
-// Rays, single pixels and places are those of the scene. `params` are copied. RELUME_ENOMEM; then
-// all is as before. Frames also fail with RELUME_EINVAL (samples) and RELUME_EUNFIT (a file without
-// depth).
+// between. Scenes throw no shadows on objects, unless light goes between them (`transport`). A pass
+// shows the scene alone: leave it at colour. Rays, single pixels and places are those of the scene.
+// `params` are copied. RELUME_ENOMEM, RELUME_EINVAL (of transport); then all is as before. Frames
+// also fail with RELUME_EINVAL (samples) and RELUME_EUNFIT (a file without depth).
 RELUME_RESULT relume_status relume_renderer_set_objects(relume_renderer *renderer,
                                                         const relume_objects *objects,
                                                         const struct relume_render_params *params);

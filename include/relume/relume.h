@@ -45,6 +45,7 @@
 #include <relume/surface.h>
 #include <relume/team.h>
 #include <relume/tone.h>
+#include <relume/transport.h>
 #include <relume/vec.h>
 #include <relume/view.h>
 #include <relume/ingest.h>

@@ -9,13 +9,17 @@ relume_status parse_lights(const struct args *args, const struct light_options *
         o->rig ? relume_rig_load(rig, o->rig, args->log) : relume_rig_create(rig);
     for (int i = 0; !status && i < (n || o->rig ? n : 1); i++)
         status = relume_rig_add(*rig, n ? o->light.text[i] : "dir 0 0 1", NULL, args->log);
-    if (!status && o->save_rig)
-        status = relume_rig_save(*rig, o->save_rig, args->log);
     if (!status)
         status = relume_rig_lights(lights, count, *rig);
     if (status)
         relume_rig_destroy(rig);
     return status;
+}
+
+relume_status save_lights(const struct args *args, const struct light_options *o,
+                          const relume_rig *rig)
+{
+    return o->save_rig ? relume_rig_save(rig, o->save_rig, args->log) : RELUME_OK;
 }
 
 struct relume_frame_params parse_frame(const struct args *args, const struct light_options *o,

@@ -29,10 +29,13 @@ struct light_options {
     INT("--cpu-mask", cpu_mask, "M", "CPU features to use, 0: plain C; default: all", 0, 65535)
 // clang-format on
 
-// The lights of --rig and --light, "dir 0 0 1" where both are missing; --save-rig is obeyed. They
-// belong to `*rig`, which the caller destroys.
+// The lights of --rig and --light, "dir 0 0 1" where both are missing. They belong to `*rig`,
+// which the caller destroys.
 relume_status parse_lights(const struct args *args, const struct light_options *options,
                            relume_rig **rig, const struct relume_light **lights, int *count);
+// What --save-rig asks for, once all else is done: who fails leaves no rig.
+relume_status save_lights(const struct args *args, const struct light_options *options,
+                          const relume_rig *rig);
 // Threads, kernels (a `cpu_mask` of ALL_KERNELS is the default) and depth; the log is still to be
 // set.
 enum { ALL_KERNELS = -1 };

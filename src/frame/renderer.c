@@ -224,7 +224,8 @@ void relume_renderer_destroy(relume_renderer **renderer)
     mem_free(r->needed);
     mem_free(r->changed);
     mem_free(r->lights);
-    mem_free(r->over);
+    if (r->free_over)
+        r->free_over(r->over);
     mem_free(r);
 }
 

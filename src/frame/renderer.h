@@ -54,7 +54,8 @@ struct relume_renderer {
     // Draws a frame of light with what stands in the scene; NULL: nothing does.
     relume_status (*draw_over)(struct relume_image *out, relume_renderer *r,
                                const struct relume_camera *camera);
-    void *over;  // of it, freed with the renderer
+    void *over;  // of it
+    void (*free_over)(void *over);
 };
 
 __attribute__((format(printf, 3, 4))) void renderer_note(relume_renderer *r, enum note note,

@@ -20,77 +20,6 @@ struct shadows {
     bool none;
 };
 
-static vec3 place_at(const struct relume_image *places, size_t x, size_t y)
-{
-    const float *p = places->data + 3 * (y * (size_t)places->width + x);
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
-
-// From one pixel to the next: of the steps to both sides the shorter one, which stays on the
-// surface.
-static vec3 step_across(vec3 before, vec3 at, vec3 after)
-{
-    const vec3 back = vec3_sub(at, before), on = vec3_sub(after, at);
-    const double b = vec3_length(back), o = vec3_length(on);
-    const bool is_on = o > 0.0 && !(b > 0.0 && b < o);
-    return is_on ? on : b > 0.0 ? back : vec3_of(0, 0, 0);
-}
-
-// The next place to one side. In an enlarged picture several pixels in a row show the same one.
-static vec3 place_beside(const struct relume_image *places, int x, int y, int dx, int dy)
-{
-    enum { MOST = 64 };  // so far enlarged
-    const vec3 at = place_at(places, (size_t)x, (size_t)y);
-    vec3 beside = at;
-    for (int i = 0; i < MOST && at.x == beside.x && at.y == beside.y && at.z == beside.z; i++) {
-        x += dx;
-        y += dy;
-        if (x < 0 || y < 0 || x >= places->width || y >= places->height)
-            break;
-        beside = place_at(places, (size_t)x, (size_t)y);
-    }
-    return beside;
-}
-
-// Which way the scene faces in a pixel, from the places beside it; 0 where they are too far away.
-static vec3 scene_normal(const struct relume_image *places, int x, int y)
-{
-    const vec3 at = place_at(places, (size_t)x, (size_t)y);
-    const vec3 across =
-        step_across(place_beside(places, x, y, -1, 0), at, place_beside(places, x, y, 1, 0));
-    const vec3 down =
-        step_across(place_beside(places, x, y, 0, -1), at, place_beside(places, x, y, 0, 1));
-    const vec3 normal = vec3_cross(down, across);
-    return vec3_length(normal) > 0.0 ? vec3_unit(normal) : vec3_of(0, 0, 0);
-}
-
-// What a light sample among several of one light counts for in a pixel: its value times n.l.
-static double counts_for(const struct relume_object_light *light_sample, vec3 towards, vec3 normal)
-{
-    const float *rgb = light_sample->is_patch ? light_sample->patch.rgb : light_sample->light.rgb;
-    const bool unknown = vec3_length(normal) == 0.0;
-    return (double)(rgb[0] + rgb[1] + rgb[2]) *
-           (unknown ? 1.0 : fmax(vec3_dot(normal, towards), 0.0));
-}
-
-// The share of a light that reaches a point. One light sample does or does not.
-static double share(const struct shadows *s, vec3 point, vec3 normal)
-{
-    double sent = 0.0, arrived = 0.0;
-    for (int i = 0; i < s->n; i++) {
-        float unused[3];
-        double distance;
-        vec3 towards;
-        const struct relume_object_light *light_sample = &s->light_samples[i];
-        (void)relume_object_light_at(&towards, unused, &distance, light_sample, point);
-        const double value = s->n > 1 ? counts_for(light_sample, towards, normal) : 1.0;
-        sent += value;
-        if (value > 0.0 && objects_reached(s->o, point, vec3_of(0, 0, 0), towards, distance))
-            arrived += value;
-    }
-    return sent > 0.0 ? arrived / sent : 1.0;
-}
-
 static void add_row(void *context, size_t row, int worker)
 {
     (void)worker;
@@ -100,9 +29,11 @@ static void add_row(void *context, size_t row, int worker)
         const size_t i = 3 * (row * width + x);
         const float *lone = s->lone->data + i;
         const bool lit = lone[0] != 0.0f || lone[1] != 0.0f || lone[2] != 0.0f;
-        const vec3 at = place_at(s->places, x, row);
+        const float *place = s->places->data + i;
+        const vec3 at = vec3_of((double)place[0], (double)place[1], (double)place[2]);
         const double part = lit && !s->none && !isnan(at.x)
-                                ? share(s, at, scene_normal(s->places, (int)x, (int)row))
+                                ? scene_share(s->o, s->light_samples, s->n, at,
+                                              scene_normal(s->places, (int)x, (int)row), 1, 0)
                                 : 1.0;
         for (size_t c = 0; c < 3; c++)
             s->sum->data[i + c] += (float)(part * (double)lone[c]);
@@ -138,6 +69,7 @@ struct layered {
     const relume_objects *o;
     const struct relume_viewport *viewport;
     const struct relume_image *scene, *places;
+    const struct relume_image *reflected;  // light of the scene that objects show; empty: none
     const struct lighting *lighting;
 };
 
@@ -163,6 +95,8 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
         return;
     objects_spread(&point, l->o, &ray, &right, &below);
     objects_shade(rgb, l->o, &point, ray.origin, l->lighting);
+    for (size_t c = 0; c < 3 && l->reflected->data; c++)
+        rgb[c] += l->reflected->data[pixel + c];
 }
 
 static relume_status layer(struct relume_image *out, const struct layered *l,
@@ -170,6 +104,86 @@ static relume_status layer(struct relume_image *out, const struct layered *l,
 {
     relume_status status = relume_image_create(out, l->scene->width, l->scene->height, 3);
     return status ? status : objects_trace(out, layered_value, l, params);
+}
+
+// What a renderer has been given.
+struct standing_in {
+    const relume_objects *objects;
+    struct relume_render_params params;
+    bool said;                // that mirrors are black
+    bool said_far;            // that the scene is taken to be far away
+    struct scenery *scenery;  // the scene as light meets it, of a view; NULL: not needed yet
+    int view;                 // ... which one
+};
+
+static void free_standing_in(void *over)
+{
+    struct standing_in *in = over;
+    if (in)
+        scenery_destroy(&in->scenery);
+    mem_free(in);
+}
+
+static bool exchanges_light(const struct standing_in *in)
+{
+    return in->params.transport && in->params.transport->gather && !in->params.no_shadows;
+}
+
+// The view that stands for the scene: the one looked at, of a slab the middle one.
+static struct relume_camera whole_view(const relume_renderer *renderer,
+                                       const struct relume_camera *camera)
+{
+    const bool views = renderer->info->geometry.projection == RELUME_SLAB;
+    const bool from_eye = views && camera->framing != RELUME_FRAME_VIEW;
+    return (struct relume_camera){.framing = RELUME_FRAME_VIEW,
+                                  .view = from_eye ? renderer->info->views / 2 : camera->view};
+}
+
+// A panorama without depth is far away on all sides.
+static bool is_far(const relume_renderer *renderer)
+{
+    return exchanges_light(renderer->over) && !renderer->info->has_depth &&
+           renderer->info->geometry.projection >= RELUME_CYLINDRICAL &&
+           !(renderer->params.assume_depth > 0.0);
+}
+
+static relume_status find_places(struct relume_image *places, relume_renderer *renderer,
+                                 const struct relume_camera *camera)
+{
+    struct standing_in *in = renderer->over;
+    int frame[2];
+    if (!is_far(renderer))
+        return relume_renderer_places(places, renderer, camera);
+    if (!in->said_far)
+        log_line(in->params.log, RELUME_NOTE,
+                 "the panorama has no depth: it is taken to be far away, and lights the objects, "
+                 "which throw no shadows on it");
+    in->said_far = true;
+    (void)relume_camera_rect(frame, renderer->info, camera);
+    const relume_status status = relume_image_create(places, frame[0], frame[1], 3);
+    for (size_t i = 0; i < 3 * (size_t)frame[0] * (size_t)frame[1] && !status; i++)
+        places->data[i] = NAN;
+    return status;
+}
+
+static relume_status need_scenery(struct standing_in *in, relume_renderer *renderer,
+                                  const struct relume_camera *view)
+{
+    struct relume_image places = {0};
+    struct relume_viewport viewport;
+    if (in->scenery && in->view == view->view)
+        return RELUME_OK;
+    scenery_destroy(&in->scenery);
+    relume_status status = find_places(&places, renderer, view);
+    if (!status)
+        status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), view,
+                                       places.width, places.height);
+    if (!status)
+        status = scenery_create(&in->scenery, &renderer->info->geometry,
+                                relume_viewport_eye(&viewport), &places, in->params.log);
+    in->view = view->view;
+    relume_image_destroy(&places);
+    return status;
 }
 
 // Each light alone, in the shadow of the objects; the renderer has all of them again at the end.
@@ -187,18 +201,11 @@ static relume_status light_scene(struct relume_image *scene, const struct relume
     return status ? status : restored;
 }
 
-// What a renderer has been given.
-struct standing_in {
-    const relume_objects *objects;
-    struct relume_render_params params;
-    bool said;  // that mirrors are black
-};
-
 // The panorama, relit, and the places that it shows, for mirrors.
 static relume_status find_surround(struct surround *s, relume_renderer *renderer,
                                    const struct relume_camera *camera)
 {
-    const struct relume_camera whole = {.framing = RELUME_FRAME_VIEW, .view = camera->view};
+    const struct relume_camera whole = whole_view(renderer, camera);
     s->geometry = &renderer->info->geometry;
     s->filter = renderer->params.filter;
     const relume_status status = renderer_bare_frame(&s->panorama, renderer, &whole);
@@ -221,34 +228,91 @@ static relume_status light_objects(struct lighting *lighting, relume_renderer *r
     return status;
 }
 
+static vec3 middle_of(const relume_objects *o)
+{
+    return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
+}
+
+// One light alone, and what it does between the scene and the objects.
+static relume_status exchange_one(struct exchange *e, struct relume_image *scene,
+                                  struct relume_image *reflected, relume_renderer *renderer,
+                                  const struct relume_camera *camera,
+                                  const struct relume_light *light)
+{
+    struct standing_in *in = renderer->over;
+    const struct relume_camera whole = whole_view(renderer, camera);
+    struct relume_image lone = {0}, relit = {0};
+    relume_status status = relume_renderer_set_lights(renderer, light, 1);
+    if (!status)
+        status = renderer_bare_frame(&lone, renderer, camera);
+    if (!status)
+        status = renderer_bare_frame(&relit, renderer, &whole);
+    if (!status)
+        status = scenery_light(in->scenery, &relit, middle_of(in->objects));
+    if (!status)
+        status = exchange_light(e, scene, reflected, &lone, light);
+    relume_image_destroy(&lone);
+    relume_image_destroy(&relit);
+    return status;
+}
+
+// light_scene, with light between the scene and the objects, of which `reflected` is created, too.
+static relume_status exchange_all(struct relume_image *scene, struct relume_image *reflected,
+                                  const struct relume_image *places,
+                                  const struct relume_viewport *viewport, relume_renderer *renderer,
+                                  const struct relume_camera *camera,
+                                  const struct relume_light *lights, int n)
+{
+    struct standing_in *in = renderer->over;
+    struct exchange *e = NULL;
+    relume_status status = relume_image_create(scene, places->width, places->height, 3);
+    if (!status)
+        status = relume_image_create(reflected, places->width, places->height, 3);
+    if (!status)
+        status = exchange_create(&e, in->objects, in->scenery, viewport, places, &in->params);
+    for (int i = 0; i < n && !status; i++)
+        status = exchange_one(e, scene, reflected, renderer, camera, &lights[i]);
+    exchange_destroy(&e);
+    const relume_status restored = relume_renderer_set_lights(renderer, lights, n);
+    return status ? status : restored;
+}
+
 static relume_status draw_over(struct relume_image *out, relume_renderer *renderer,
                                const struct relume_camera *camera)
 {
-    const struct standing_in *in = renderer->over;
+    struct standing_in *in = renderer->over;
     const relume_objects *objects = in->objects;
     const struct relume_render_params *params = &in->params;
-    struct relume_image places = {0}, scene = {0};
+    const struct relume_camera whole = whole_view(renderer, camera);
+    struct relume_image places = {0}, scene = {0}, reflected = {0};
     struct lighting lighting = {0};
     struct relume_viewport viewport;
     int n;
     const struct relume_light *own = relume_renderer_lights(&n, renderer);
     struct relume_light *lights = mem_copy(own, (size_t)n, sizeof *lights);
     *out = (struct relume_image){0};
-    relume_status status =
-        lights ? relume_renderer_places(&places, renderer, camera) : RELUME_ENOMEM;
+    relume_status status = lights ? find_places(&places, renderer, camera) : RELUME_ENOMEM;
     if (!status)
         status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), camera,
                                        places.width, places.height);
     if (!status)
         status = light_objects(&lighting, renderer, camera, lights, n);
-    if (!status)
+    if (!status && exchanges_light(in)) {
+        status = need_scenery(in, renderer, &whole);
+        lighting.scenery = in->scenery;
+        if (!status)
+            status =
+                exchange_all(&scene, &reflected, &places, &viewport, renderer, camera, lights, n);
+    } else if (!status) {
         status = light_scene(&scene, &places, objects, renderer, camera, lights, n, params);
-    const struct layered layers = {objects, &viewport, &scene, &places, &lighting};
+    }
+    const struct layered layers = {objects, &viewport, &scene, &places, &reflected, &lighting};
     if (!status)
         status = layer(out, &layers, params);
     if (status)
         relume_image_destroy(out);
     relume_image_destroy(&scene);
+    relume_image_destroy(&reflected);
     relume_image_destroy(&places);
     lighting_destroy(&lighting);
     mem_free(lights);
@@ -258,12 +322,18 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
 relume_status relume_renderer_set_objects(relume_renderer *renderer, const relume_objects *objects,
                                           const struct relume_render_params *params)
 {
-    const struct standing_in in = {objects, PARAMS_WORK(relume_render_params, params), false};
+    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16 };
+    const struct standing_in in = {.objects = objects,
+                                   .params = PARAMS_WORK(relume_render_params, params)};
+    if (in.params.transport_samples < 0 || in.params.transport_samples > MOST_SAMPLES ||
+        in.params.bounces > MOST_BOUNCES)
+        return RELUME_EINVAL;
     struct standing_in *copy = objects ? mem_copy(&in, 1, sizeof in) : NULL;
     if (objects && !copy)
         return RELUME_ENOMEM;
-    mem_free(renderer->over);
+    free_standing_in(renderer->over);
     renderer->over = copy;
+    renderer->free_over = free_standing_in;
     renderer->draw_over = objects ? draw_over : NULL;
     return RELUME_OK;
 }

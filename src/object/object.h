@@ -4,6 +4,7 @@
 
 #include "base/json.h"
 #include "mesh/trace.h"
+#include "transport/transport.h"
 
 #include <relume/object.h>
 
@@ -26,6 +27,9 @@ relume_status objects_material(relume_objects *o, const char *folder, int *numbe
 // A mirror of that reflectance. RELUME_ELIMIT with a sentence, RELUME_ENOMEM.
 relume_status objects_mirror(relume_objects *o, const float reflectance[3], int *number,
                              const struct relume_objects_params *params);
+// A matte surface likewise. Errors of relume_btf_fit, too.
+relume_status objects_matte(relume_objects *o, const float reflectance[3], int *number,
+                            const struct relume_objects_params *params);
 
 // How a mesh stands and how its parts are covered.
 struct covering {
@@ -74,6 +78,11 @@ struct ray {
     vec3 origin, direction;
 };
 bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin, vec3 direction);
+// What a ray in `direction` has hit.
+void objects_point(struct surface_point *out, const relume_objects *o, const struct trace_hit *hit,
+                   vec3 direction);
+// Where rays from the point begin: just off the surface.
+vec3 point_leave(const struct surface_point *point);
 // How far a pixel spreads over the surface: from the ray that hit the point to the rays of the
 // pixels to the right and below (Igehy 1999).
 void objects_spread(struct surface_point *point, const relume_objects *o, const struct ray *ray,
@@ -107,6 +116,9 @@ struct lighting {
     int skies;
     int materials;
     bool no_shadows;
+    const struct scenery *scenery;  // stands in the way of lamps; NULL: nothing does
+    int every;     // of the samples of environments one in so many is looked for, ...
+    uint64_t key;  // ... from any on
 };
 // RELUME_ENOMEM, RELUME_EINVAL. The caller destroys what is in `out`, whatever is returned.
 relume_status lighting_create(struct lighting *out, const relume_objects *o,
@@ -126,6 +138,9 @@ void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_po
 // What lies in a direction (unit) from a place.
 void surround_value(float rgb[3], const struct surround *surround, vec3 place, vec3 direction);
 
+// What the point throws back of light that arrives; nothing of a mirror.
+void objects_return(float rgb[3], const relume_objects *o, const struct surface_point *point,
+                    vec3 eye, const struct arrival *arrival);
 // What the point shows of all lights.
 void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
                    vec3 eye, const struct lighting *lighting);
@@ -137,5 +152,29 @@ void objects_shade(float rgb[3], const relume_objects *o, const struct surface_p
 typedef void pixel_value(float rgb[3], const void *context, double x, double y, double step);
 relume_status objects_trace(struct relume_image *out, pixel_value *value, const void *context,
                             const struct relume_render_params *params);
+
+// ---------------------------------------------------------------- the scene
+
+// Which way the scene faces in a pixel, from the places beside it; 0 where they are too far away.
+vec3 scene_normal(const struct relume_image *places, int x, int y);
+// The share of `n` samples of a light that reach a place of the scene past the objects, one in
+// `every` of them looked for.
+double scene_share(const relume_objects *o, const struct relume_object_light *light_sample, int n,
+                   vec3 place, vec3 normal, int every, uint64_t key);
+
+// Light between a scene and the objects in it at the pixels of a frame.
+struct exchange;
+// `captured` and what else is handed over is borrowed. RELUME_ENOMEM.
+relume_status exchange_create(struct exchange **out, const relume_objects *o,
+                              struct scenery *scenery, const struct relume_viewport *viewport,
+                              const struct relume_image *places,
+                              const struct relume_render_params *params);
+void exchange_destroy(struct exchange **e);
+// Under one light, in which the scene alone shows `lone` and `captured` sends it: the scene as it
+// is with the objects is added to `scene`, what objects show of its light to `reflected`, at pixels
+// where objects are. RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status exchange_light(struct exchange *e, struct relume_image *scene,
+                             struct relume_image *reflected, const struct relume_image *lone,
+                             const struct relume_light *light);
 
 #endif

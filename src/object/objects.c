@@ -104,23 +104,21 @@ static relume_status open_surface(struct relume_object_material *m, const char *
 
 // The sample alone as a surface, which takes over the model.
 static relume_status cover_whole(struct relume_object_material *m, relume_btf_fitted *model,
-                                 const struct relume_btf_params *p)
+                                 const struct relume_log *log)
 {
     relume_btf_surface *surface;
-    const relume_status status = relume_btf_surface_create(&surface, model, NULL, p->log);
+    const relume_status status = relume_btf_surface_create(&surface, model, NULL, log);
     m->surface = surface;
     if (status)
         relume_btf_fitted_destroy(&model);
     return status;
 }
 
-static relume_status open_model(struct relume_object_material *m, const char *folder,
-                                const struct relume_btf_params *p)
+// Takes over the model, whatever is returned.
+static relume_status take_model(struct relume_object_material *m, relume_btf_fitted *fitted,
+                                const struct relume_log *log)
 {
-    relume_btf_fitted *fitted;
-    relume_status status = relume_btf_fitted_open(&fitted, folder, p);
-    if (!status)
-        status = cover_whole(m, fitted, p);
+    const relume_status status = cover_whole(m, fitted, log);
     if (status)
         return status;
     const struct relume_btf_fitted_info *info = relume_btf_fitted_info(fitted);
@@ -129,6 +127,14 @@ static relume_status open_model(struct relume_object_material *m, const char *fo
     m->width = info->width, m->height = info->height;
     m->bytes = info->bytes_levels;
     return RELUME_OK;
+}
+
+static relume_status open_model(struct relume_object_material *m, const char *folder,
+                                const struct relume_btf_params *p)
+{
+    relume_btf_fitted *fitted;
+    const relume_status status = relume_btf_fitted_open(&fitted, folder, p);
+    return status ? status : take_model(m, fitted, p->log);
 }
 
 static relume_status open_measured(struct relume_object_material *m, const char *folder,
@@ -141,7 +147,7 @@ static relume_status open_measured(struct relume_object_material *m, const char 
     if (!status)
         status = relume_btf_as_model(&values, btf, p->log);
     if (!status)
-        status = cover_whole(m, values, p);
+        status = cover_whole(m, values, p->log);
     if (status)
         return status;
     const struct relume_btf_info *i = relume_btf_info(btf);
@@ -201,24 +207,85 @@ relume_status objects_material(relume_objects *o, const char *folder, int *numbe
     return status;
 }
 
-relume_status objects_mirror(relume_objects *o, const float reflectance[3], int *number,
-                             const struct relume_objects_params *params)
+// A material of a few numbers: one like it, or room for it.
+static relume_status find_reflectance(struct relume_object_material **out, relume_objects *o,
+                                      const struct relume_object_material *like, int *number,
+                                      const struct relume_log *log)
 {
+    *out = NULL;
     for (*number = 0; *number < o->info.materials; ++*number) {
         const struct relume_object_material *m = &o->material[*number];
-        if (m->mirror && !memcmp(m->reflectance, reflectance, sizeof m->reflectance))
+        if (m->mirror == like->mirror && !strcmp(m->name, like->name) && !o->folder[*number] &&
+            !memcmp(m->reflectance, like->reflectance, sizeof m->reflectance))
             return RELUME_OK;
     }
-    const relume_status status = need_material(o, "mirror", params ? params->log : NULL);
-    char *name = status ? NULL : mem_text("mirror");
+    const relume_status status = need_material(o, like->name, log);
+    char *name = status ? NULL : mem_text(like->name);
     if (!name)
         return status ? status : RELUME_ENOMEM;
-    struct relume_object_material *m = &o->material[*number];
-    *m = (struct relume_object_material){.name = name, .model = "mirror", .mirror = true};
-    memcpy(m->reflectance, reflectance, sizeof m->reflectance);
+    struct relume_object_material *m = *out = &o->material[*number];
+    *m = *like;
+    m->name = name;
     o->folder[*number] = NULL;
     o->info.materials++;
     return RELUME_OK;
+}
+
+relume_status objects_mirror(relume_objects *o, const float reflectance[3], int *number,
+                             const struct relume_objects_params *params)
+{
+    struct relume_object_material like = {.name = "mirror", .model = "mirror", .mirror = true};
+    struct relume_object_material *added;
+    memcpy(like.reflectance, reflectance, sizeof like.reflectance);
+    return find_reflectance(&added, o, &like, number, params ? params->log : NULL);
+}
+
+// The model of a lit texture, fitted to one texel that is that matte.
+static relume_status fit_matte(relume_btf_fitted **out, const float reflectance[3],
+                               const struct relume_objects_params *params)
+{
+    const struct relume_btf_set *set = relume_btf_set_find("coarse");
+    struct relume_vec3 *direction = mem_array((size_t)set->count, sizeof *direction);
+    const struct relume_btf_params kept = {.scratch = params ? params->scratch : NULL};
+    relume_btf *btf = NULL;
+    if (!direction)
+        return RELUME_ENOMEM;
+    relume_btf_set_directions(set, direction);
+    relume_status status = relume_btf_create(&btf,
+                                             &(struct relume_btf_info){.name = "diffuse",
+                                                                       .width = 1,
+                                                                       .height = 1,
+                                                                       .views = set->count,
+                                                                       .lights = set->count,
+                                                                       .view = direction,
+                                                                       .light = direction},
+                                             &kept);
+    for (int v = 0; v < set->count && !status; v++)
+        for (int l = 0; l < set->count; l++) {
+            float rgb[3];
+            for (int c = 0; c < 3; c++)
+                rgb[c] = reflectance[c] * (float)direction[l].z;
+            relume_btf_store(btf, v, l, rgb);
+        }
+    if (!status)
+        status = relume_btf_fit(out, btf, relume_btf_model_find("lit"), NULL);
+    relume_btf_destroy(&btf);
+    mem_free(direction);
+    return status;
+}
+
+relume_status objects_matte(relume_objects *o, const float reflectance[3], int *number,
+                            const struct relume_objects_params *params)
+{
+    struct relume_object_material like = {.name = "diffuse"};
+    struct relume_object_material *added;
+    relume_btf_fitted *fitted = NULL;
+    memcpy(like.reflectance, reflectance, sizeof like.reflectance);
+    relume_status status = find_reflectance(&added, o, &like, number, params ? params->log : NULL);
+    if (status || !added)
+        return status;
+    status = fit_matte(&fitted, reflectance, params);
+    return status ? status : take_model(added, fitted, params ? params->log : NULL);
 }
 
 // ---------------------------------------------------------------- the description
@@ -240,39 +307,43 @@ static relume_status know(const struct reader *r, const jvalue *object, const ch
                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-// One number for all, or one for each: what a mirror reflects.
-static relume_status read_mirror(const struct reader *r, const jvalue *value, int *number)
+// One number for all, or one for each: what a mirror or a matte surface reflects.
+static relume_status read_reflectance(const struct reader *r, const jvalue *value, int *number)
 {
-    static const char *const known[] = {"mirror", NULL};
-    const jvalue *m = jvalue_member(value, "mirror");
+    static const char *const known[] = {"mirror", "diffuse", NULL};
+    const bool matte = jvalue_member(value, "diffuse");
+    const char *what = matte ? "diffuse" : "mirror";
+    const jvalue *m = jvalue_member(value, what);
     double f[3];
     float reflectance[3];
     relume_status status = know(r, value, known);
     if (status)
         return status;
+    if (matte && jvalue_member(value, "mirror"))
+        return log_fail(r->log, RELUME_EFORMAT, "material: expected one of diffuse and mirror");
     if (!jvalue_numbers(m, f, 3)) {
         if (!jvalue_number(m, &f[0]))
             return log_fail(r->log, RELUME_EFORMAT,
-                            "mirror: expected the part of light that it reflects, or [r, g, b]");
+                            "%s: expected the part of light that it reflects, or [r, g, b]", what);
         f[1] = f[2] = f[0];
     }
     for (int c = 0; c < 3; c++) {
         if (!(f[c] >= 0.0 && f[c] <= 1.0))
-            return log_fail(r->log, RELUME_EFORMAT, "mirror: expected 0 to 1; found %g", f[c]);
+            return log_fail(r->log, RELUME_EFORMAT, "%s: expected 0 to 1; found %g", what, f[c]);
         reflectance[c] = (float)f[c];
     }
-    return objects_mirror(r->o, reflectance, number, r->params);
+    return (matte ? objects_matte : objects_mirror)(r->o, reflectance, number, r->params);
 }
 
 static relume_status read_folder(const struct reader *r, const jvalue *text, int *number)
 {
     const char *name = jvalue_text(text);
     if (jvalue_is_object(text))
-        return read_mirror(r, text, number);
+        return read_reflectance(r, text, number);
     if (!name || !*name)
         return log_fail(r->log, RELUME_EFORMAT,
-                        "material: expected the folder of a BTF or of a model, {\"mirror\": 1}, or "
-                        "a list of them");
+                        "material: expected the folder of a BTF or of a model, {\"diffuse\": 0.5}, "
+                        "{\"mirror\": 1}, or a list of them");
     char *folder = mesh_beside(r->path, name);
     const relume_status status =
         folder ? objects_material(r->o, folder, number, r->params) : RELUME_ENOMEM;

@@ -59,6 +59,40 @@ static vec3 lift(const struct surface_point *p, const struct relume_object_verte
     return lifted;
 }
 
+void objects_point(struct surface_point *out, const relume_objects *o, const struct trace_hit *hit,
+                   vec3 direction)
+{
+    const struct relume_object_vertex *v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = &o->vertices[o->triangles[hit->triangle][k]];
+    const double u = (double)hit->u, w = (double)hit->v;
+    const double weight[3] = {1.0 - u - w, u, w};
+    const vec3 first = vector(v[0]->position);
+    out->geometric = vec3_unit(vec3_cross(vec3_sub(vector(v[1]->position), first),
+                                          vec3_sub(vector(v[2]->position), first)));
+    out->distance = (double)hit->distance;
+    out->triangle = hit->triangle;
+    memcpy(out->corner, weight, sizeof weight);
+    memset(out->right, 0, sizeof out->right);
+    memset(out->down, 0, sizeof out->down);
+    out->part = (int)o->mesh.triangles[hit->triangle].material;
+    interpolate(out, v, weight);
+    // from behind: the same sample seen through, its normal on this side
+    const double side = vec3_dot(out->geometric, direction) > 0.0 ? -1.0 : 1.0;
+    out->geometric = vec3_scale(out->geometric, side);
+    out->normal = vec3_scale(out->normal, side);
+    out->lifted = lift(out, v, weight, side);
+}
+
+vec3 point_leave(const struct surface_point *p)
+{
+    float at[3], off[3], from[3];
+    copy(at, p->lifted);
+    copy(off, p->geometric);
+    trace_leave(at, off, from);
+    return vector(from);
+}
+
 bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin, vec3 direction)
 {
     float from[3], along[3];
@@ -67,26 +101,7 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
     copy(along, direction);
     if (!trace_closest(o->tracer, from, along, &hit))
         return false;
-    const struct relume_object_vertex *v[3];
-    for (int k = 0; k < 3; k++)
-        v[k] = &o->vertices[o->triangles[hit.triangle][k]];
-    const double u = (double)hit.u, w = (double)hit.v;
-    const double weight[3] = {1.0 - u - w, u, w};
-    const vec3 first = vector(v[0]->position);
-    out->geometric = vec3_unit(vec3_cross(vec3_sub(vector(v[1]->position), first),
-                                          vec3_sub(vector(v[2]->position), first)));
-    out->distance = (double)hit.distance;
-    out->triangle = hit.triangle;
-    memcpy(out->corner, weight, sizeof weight);
-    memset(out->right, 0, sizeof out->right);
-    memset(out->down, 0, sizeof out->down);
-    out->part = (int)o->mesh.triangles[hit.triangle].material;
-    interpolate(out, v, weight);
-    // from behind: the same sample seen through, its normal on this side
-    const double side = vec3_dot(out->geometric, direction) > 0.0 ? -1.0 : 1.0;
-    out->geometric = vec3_scale(out->geometric, side);
-    out->normal = vec3_scale(out->normal, side);
-    out->lifted = lift(out, v, weight, side);
+    objects_point(out, o, &hit, direction);
     return true;
 }
 
@@ -158,8 +173,21 @@ static void ask(float rgb[3], const relume_objects *o, const struct surface_poin
         relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, ray, rgb);
 }
 
+// Whether neither objects nor what is captured stand before a lamp.
+static bool is_lit(const relume_objects *o, const struct surface_point *p, const struct lighting *l,
+                   vec3 towards, double distance)
+{
+    if (l->no_shadows)
+        return true;
+    return objects_reached(o, p->lifted, p->geometric, towards, distance) &&
+           (!l->scenery ||
+            scenery_reached(l->scenery, scenery_leave(l->scenery, p->lifted, p->geometric), towards,
+                            distance));
+}
+
 static void add_sample(float rgb[3], const relume_objects *o, const struct surface_point *p,
-                       vec3 view, const struct relume_object_light *light_sample, bool no_shadows)
+                       vec3 view, const struct relume_object_light *light_sample,
+                       const struct lighting *l)
 {
     float arriving[3], value[3];
     double distance;
@@ -169,7 +197,7 @@ static void add_sample(float rgb[3], const relume_objects *o, const struct surfa
     const vec3 light = local(p, towards);
     if (!(light.z > 0.0))
         return;
-    if (!no_shadows && !objects_reached(o, p->lifted, p->geometric, towards, distance))
+    if (!is_lit(o, p, l, towards, distance))
         return;
     ask(value, o, p, &(struct relume_btf_ray){.view = view, .light = vec3_unit(light)});
     for (int c = 0; c < 3; c++)
@@ -181,13 +209,13 @@ static void share_of_sky(float share[3], const relume_objects *o, const struct s
                          const struct lighting *l, const struct sky_light *sky)
 {
     float sent[3] = {0.0f, 0.0f, 0.0f}, arrived[3] = {0.0f, 0.0f, 0.0f};
-    for (int i = sky->first; i < sky->first + sky->light_samples && !l->no_shadows; i++) {
-        const struct relume_light *light_sample = &l->light_sample[i].light;
+    const int every = l->every > 1 ? l->every : 1, begin = (int)(l->key % (uint64_t)every);
+    for (int i = begin; i < sky->light_samples && !l->no_shadows; i += every) {
+        const struct relume_light *light_sample = &l->light_sample[sky->first + i].light;
         const float cosine = (float)vec3_dot(light_sample->direction, p->normal);
         if (!(cosine > 0.0f))
             continue;
-        const bool reached =
-            objects_reached(o, p->lifted, p->geometric, light_sample->direction, INFINITY);
+        const bool reached = is_lit(o, p, l, light_sample->direction, INFINITY);
         for (int c = 0; c < 3; c++) {
             sent[c] += cosine * light_sample->rgb[c];
             arrived[c] += reached ? cosine * light_sample->rgb[c] : 0.0f;
@@ -210,19 +238,43 @@ static void add_sky(float rgb[3], const relume_objects *o, const struct surface_
         rgb[c] += share[c] * value[c];
 }
 
+static bool is_mirror(const relume_objects *o, const struct surface_point *p)
+{
+    return o->material[o->part[p->part].material].mirror;
+}
+
+static vec3 view_from(const struct surface_point *p, vec3 eye)
+{
+    const vec3 view = local(p, vec3_unit(vec3_sub(eye, p->position)));
+    return vec3_unit(vec3_of(view.x, view.y, fmax(view.z, LOWEST)));
+}
+
+void objects_return(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 eye,
+                    const struct arrival *arrival)
+{
+    const double GRAZING = 0.05;  // values hold n.l, the arrival's share too
+    const vec3 light = local(p, arrival->towards);
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    if (!(light.z > 0.0) || is_mirror(o, p))
+        return;
+    const float share = (float)(arrival->share / fmax(light.z, GRAZING));
+    ask(rgb, o, p, &(struct relume_btf_ray){.view = view_from(p, eye), .light = vec3_unit(light)});
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= share * arrival->with[c];
+}
+
 void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 eye,
                    const struct lighting *lighting)
 {
-    if (o->material[o->part[p->part].material].mirror) {
+    if (is_mirror(o, p)) {
         mirror_shade(rgb, o, p, eye, &lighting->surround);
         return;
     }
-    vec3 view = local(p, vec3_unit(vec3_sub(eye, p->position)));
-    view = vec3_unit(vec3_of(view.x, view.y, fmax(view.z, LOWEST)));
+    const vec3 view = view_from(p, eye);
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     for (int i = 0; i < lighting->light_samples; i++)
         if (!lighting->light_sample[i].is_sky)
-            add_sample(rgb, o, p, view, &lighting->light_sample[i], lighting->no_shadows);
+            add_sample(rgb, o, p, view, &lighting->light_sample[i], lighting);
     for (int i = 0; i < lighting->skies; i++)
         add_sky(rgb, o, p, view, lighting, &lighting->sky[i]);
 }
@@ -318,8 +370,7 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
                                     const struct relume_render_params *params)
 {
     const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
-    struct view view = {
-        .o = objects, .window = window, .width = out->width, .height = out->height};
+    struct view view = {.o = objects, .window = window, .width = out->width, .height = out->height};
     relume_status status = lighting_create(&view.lighting, objects, lights, n, &own);
     if (!status && surround_lacks(&view.lighting.surround, objects))
         log_line(own.log, RELUME_WARNING, "%s", SURROUND_LACKS);

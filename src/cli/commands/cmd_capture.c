@@ -332,6 +332,8 @@ static relume_status relight(const struct capture_options *o, const char *file)
         status = blacken(&frame, pack);
     if (!status)
         status = relume_image_save(&frame, o->relight, relume_image_params(.log = o->args.log));
+    if (!status)
+        status = save_lights(&o->args, &o->lighting, rig);
     relume_image_destroy(&frame);
     relume_rig_destroy(&rig);
     relume_pack_destroy(&pack);

@@ -123,6 +123,8 @@ static relume_status run(const struct args *args)
         status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)
         status = query(o, rays ? rays : &o->ray, n, lights, count);
+    if (!status)
+        status = save_lights(args, &o->lighting, rig);
     relume_rig_destroy(&rig);
     free(rays);
     return status;

@@ -21,12 +21,28 @@ struct relight_options {
     enum relume_filter filter;
     enum relume_interpolation interpolation;
     unsigned pass;
+    const struct relume_transport *transport;  // NULL: none
+    int bounces;
     bool nearest, alpha, allow_outside, keep_going;
     struct light_options lighting;
     struct develop_options develop;
     struct eye_options glare;
 };
 #define OPTIONS struct relight_options
+enum { ACROSS = 3, MOST_ACROSS = 16 };  // rays along each side of a pixel
+
+static relume_status take_transport(void *place, const struct option *o, const char *text,
+                                    const struct relume_log *log)
+{
+    const char *names[16];
+    int n = 0;
+    for (; n < 15 && relume_transports[n]; n++)
+        names[n] = relume_transport_name(relume_transports[n]);
+    names[n] = NULL;
+    const struct relume_transport *found = relume_transport_find(text);
+    memcpy(place, &found, sizeof found);
+    return found ? RELUME_OK : unknown_word(log, o->name, text, names);
+}
 
 static const struct option options[] = {
     GROUP("output"),
@@ -110,7 +126,15 @@ static const struct option options[] = {
             "--objects: print what is reflected at this pixel of the picture, as a constraint for "
             "--reflections",
             2),
-    INT("--samples", samples, "N", "--objects: N x N rays a pixel; default: 3", 1, 16),
+    OWN("--transport", transport, "NAME",
+        "--objects: how light goes between them and the scene: none (default), ssao, ssdo, path "
+        "(docs/transport.md)",
+        take_transport),
+    INT("--bounces", bounces, "N", "--transport: of light off objects; default: 2", 0, 16),
+    INT("--samples", samples, "N",
+        "--objects: N x N rays a pixel, at most 16; default: 3; with --transport: directions that "
+        "light is gathered from at a pixel",
+        1, 65536),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
     KEEP_GOING_OPTION,
@@ -186,6 +210,12 @@ static relume_status check_pass(const struct relight_options *o)
     if ((o->reflections || given(o, o->reflection_at)) && !o->objects)
         return usage_error("--reflections and --reflection-at work only with --objects; add "
                            "--objects FILE");
+    if ((o->transport || given(o, &o->bounces)) && !o->objects)
+        return usage_error("--transport and --bounces work only with --objects; add "
+                           "--objects FILE");
+    if (o->samples > MOST_ACROSS && !(o->transport && relume_transport_samples(o->transport)))
+        return usage_error("--samples: expected 1 to %d rays along each side of a pixel; found %d",
+                           MOST_ACROSS, o->samples);
     if (o->pass == RELUME_PASS_DIFFERENCE && !o->capture)
         return usage_error("relight: --pass difference needs --capture");
     if (o->pass != RELUME_PASS_COLOUR && o->pass != GLARE_PASS && o->objects)
@@ -216,12 +246,18 @@ static relume_status set_objects(relume_objects **objects, relume_renderer *rend
 {
     if (!o->objects)
         return RELUME_OK;
+    const bool gathers = o->transport && relume_transport_samples(o->transport);
+    const struct relume_render_params params = {
+        .struct_size = sizeof params,
+        .log = o->args.log,
+        .samples = gathers ? ACROSS : o->samples,
+        .threads = o->args.threads,
+        .transport = o->transport,
+        .transport_samples = given(o, &o->samples) && gathers ? o->samples : 0,
+        .bounces = given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
+    };
     const relume_status status = objects_open(objects, o->objects, o->reflections, &o->args);
-    return status ? status
-                  : relume_renderer_set_objects(renderer, *objects,
-                                                relume_render_params(.log = o->args.log,
-                                                                     .samples = o->samples,
-                                                                     .threads = o->args.threads));
+    return status ? status : relume_renderer_set_objects(renderer, *objects, &params);
 }
 
 static relume_status tell_reflection(const relume_objects *objects, relume_pack *pack,
@@ -437,6 +473,8 @@ static relume_status run(const struct args *args)
         status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)
         status = render(o, &camera, params, lights, count);
+    if (!status)
+        status = save_lights(args, &o->lighting, rig);
     relume_rig_destroy(&rig);
     return status;
 }
@@ -445,5 +483,6 @@ const struct command command_relight = {
     COMMAND("relight", "FILE -o OUT [OPTION ...]",
             "show a relume file under any lights, from any eye, as a picture",
             "relume relight statue.exr -o raking.png --light \"dir 1 0 0.2 rgb 1 .9 .8\"", 1, 1),
-    .defaults = &(const OPTIONS){.samples = 3, .cpu_mask = ALL_KERNELS, .glare = GLARE_DEFAULTS},
+    .defaults =
+        &(const OPTIONS){.samples = ACROSS, .cpu_mask = ALL_KERNELS, .glare = GLARE_DEFAULTS},
 };

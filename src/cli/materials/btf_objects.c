@@ -78,6 +78,8 @@ static relume_status render(struct relume_image *image, const relume_objects *ob
             image, objects, window, lights, count,
             relume_render_params(.log = o->args.log, .samples = o->samples,
                                  .no_shadows = o->no_shadows, .threads = o->args.threads));
+    if (!status)
+        status = save_lights(&o->args, &o->lighting, rig);
     relume_rig_destroy(&rig);
     return status;
 }

@@ -46,6 +46,8 @@ static relume_status draw(const relume_btf_surface *surface, const struct btf_op
                             relume_btf_draw_params(.log = o->args.log, .threads = o->args.threads));
     if (!status)
         status = relume_image_save(&image, o->output, relume_image_params(.log = o->args.log));
+    if (!status)
+        status = save_lights(&o->args, &o->lighting, rig);
     relume_image_destroy(&image);
     relume_rig_destroy(&rig);
     return status;

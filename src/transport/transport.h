@@ -1,0 +1,89 @@
+// transport.h - the inside of relume_transport: which light arrives at a place, and from where
+//
+// Units are those of pictures: a white matte surface shows 1 where light of 1 comes from
+// everywhere, and n.l under a lamp of 1.
+#ifndef TRANSPORT_TRANSPORT_H
+#define TRANSPORT_TRANSPORT_H
+
+#include "transport/scenery.h"
+
+#include <relume/transport.h>
+#include <relume/viewport.h>
+
+// A place of a surface that light arrives at.
+struct site {
+    vec3 position, normal;  // unit, towards the eye
+    vec3 start;             // where rays begin: just off the surface
+    bool scenery;           // it is the scene's
+    uint64_t key;           // of its random numbers
+};
+
+// Light from one direction.
+struct arrival {
+    vec3 towards;      // unit
+    double share;      // of what a white matte surface there shows, the cosine included
+    float without[3];  // radiance, were there no objects
+    float with[3];     // ... as it is
+};
+
+// A frame as it shows on the screen, for ways that go by that.
+struct screen {
+    const struct relume_image *places, *normals, *shown;
+    const float *behind;  // [pixels]: how far off the eye it is open again; NULL: nowhere
+};
+
+// What light meets, under one light of the rig.
+struct world {
+    const struct scenery *scenery;
+    const tracer *objects;
+    // Where a ray has met the objects; the light that they send back to its origin: what reaches
+    // them from the lamps, and the arrivals, `n` of them.
+    void (*site)(struct site *out, const void *context, const struct trace_hit *hit,
+                 vec3 direction);
+    void (*sent)(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
+                 vec3 direction, uint64_t key, const struct arrival *arrivals, int n);
+    // Which part of what a place of the scene shows is left with the objects before its lamps.
+    double (*dimmed)(const void *context, vec3 place, vec3 normal, uint64_t key);
+    const void *context;
+    const struct relume_viewport *viewport;
+    struct screen bare, full;  // without the objects and with them
+    float mean[3];             // scenery_mean
+    double radius;             // of the ball about the objects
+    int samples;               // directions at each site
+    int bounces;               // off objects
+};
+
+typedef void take_arrival(void *context, const struct arrival *arrival);
+
+struct relume_transport {
+    const char *name, *summary;
+    int samples;  // at a site, by default
+    int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
+    bool screen;  // needs the frames
+    void (*gather)(const struct world *w, const struct site *site, take_arrival *arrive,
+                   void *context);
+};
+
+// Direction `i` of `n` from a site: half of them spread as the cosine to the normal
+// (Hammersley's points, rotated by the key: Cranley and Patterson 1976), half by what the scenery
+// sends, weighed against each other (the balance heuristic: Veach and Guibas 1995).
+struct look {
+    vec3 towards;
+    struct scenery_hit scene;  // what would be seen there were there no objects
+    double share;              // of what the scene sends there; 0: it is hidden, or counted already
+    double share_nearer;       // of what something nearer sends, which only cosines find
+};
+void transport_look(struct look *out, const struct world *w, const struct site *site, int i, int n);
+
+extern const struct relume_transport transport_none, transport_ssao, transport_ssdo, transport_path;
+
+// ---------------------------------------------------------------- frames
+
+// A mean over `size` x `size` pixels of each image, of those pixels that are the same surface by
+// places and normals ("geometry-aware blur": Segovia et al. 2006); where a place is NaN nothing is
+// changed; nor with a `size` of 1. RELUME_ENOMEM.
+relume_status transport_smooth(struct relume_image *const *images, int count,
+                               const struct relume_image *places,
+                               const struct relume_image *normals, vec3 eye, int size, int threads);
+
+#endif

@@ -1,0 +1,47 @@
+#!/bin/sh
+# Light between captured scenes and objects from the command line: what the ways do to a slab, a
+# panorama and a panorama without depth; options; bad input.
+. "$(dirname "$0")/lib.sh"
+
+awk -v n=24 -f "$TOP/scripts/ball.awk" >ball.obj
+objects() { # translate, material
+    echo "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"ball.obj\",
+        \"parts\":[{\"material\":$2}],\"pose\":{\"scale\":0.3,\"translate\":[$1]}}]}"
+}
+objects '0,-0.6,-1.4' '{"diffuse":[0.8,0.4,0.2]}' >ball.json
+"$RELUME" synth attic -q -o room --projection spherical --size 32 --lights 6 --samples 1
+"$RELUME" encode -q room -o room.exr --shadows no
+look="--tilt -20 --size 48x32"
+for way in none ssao ssdo path; do
+    expect_ok "$way" - "$RELUME" relight room.exr --objects ball.json $look -o $way.exr --light 'dir 0 1 0' --transport $way -q
+done
+expect_ok 'none is what is done without' - "$RELUME" relight room.exr --objects ball.json $look -o without.exr --light 'dir 0 1 0' -q
+check 'the same' cmp none.exr without.exr
+check 'light goes between' sh -c "'$RELUME' compare none.exr path.exr | awk '/max_abs/ { exit !(\$2 > 0.02) }'"
+expect_ok 'twice the same' - "$RELUME" relight room.exr --objects ball.json $look -o again.exr --light 'dir 0 1 0' --transport path --threads 1 -q
+check 'byte for byte' cmp path.exr again.exr
+expect_ok 'samples and bounces' - "$RELUME" relight room.exr --objects ball.json $look -o few.exr --transport path --samples 100 --bounces 0 -q
+
+# an object before the plane of a slab: it is lit from behind by what it stands before
+"$RELUME" synth teapot -q -o slab --views 2x2 --size 24 --lights 6 --samples 1
+"$RELUME" encode -q slab -o slab.exr --shadows no
+objects '0,0,0.6' '{"diffuse":0.7}' >front.json
+expect_ok 'a slab' - "$RELUME" relight slab.exr --objects front.json -o slab-ssdo.exr --transport ssdo -q
+
+# a panorama without depth is far away, which is said once
+"$RELUME" encode -q room -o far.exr --no-depth
+expect_ok 'a far panorama' - "$RELUME" relight far.exr --objects ball.json $look -o far.png --transport ssdo
+check 'is told' test "$(grep -c 'the panorama has no depth' err.txt)" = 1
+expect_fail 'without light between it needs depth' 1 'how far the scene is' x.png "$RELUME" relight far.exr --objects ball.json -o x.png
+
+expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'\?" x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport sddo
+expect_fail 'without objects' 2 'work only with --objects' x.png "$RELUME" relight room.exr -o x.png --transport path
+expect_fail 'many rays a pixel' 2 'expected 1 to 16 rays' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --samples 17
+expect_fail 'many bounces' 2 'bounces' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport path --bounces 17
+for material in '{"diffuse":1.5}' '{"diffuse":"red"}' '{"diffuse":0.5,"mirror":1}' '{"diffuse":[1,1]}'; do
+    objects '0,0,0' "$material" >bad.json
+    expect_fail "material $material" 1 'bad.json: object 0: (diffuse|material): expected' x.png "$RELUME" relight room.exr --objects bad.json -o x.png
+done
+objects '0,0,0' '{"difuse":0.5}' >bad.json
+expect_fail 'a misspelt material' 1 "unknown member 'difuse'; did you mean 'diffuse'\?" x.png "$RELUME" relight room.exr --objects bad.json -o x.png
+finish

@@ -1,0 +1,442 @@
+// Light between captured scenes and objects: against a scene that is rendered with the object in
+// it, and closed forms: furnaces, form factors, draws, smoothing.
+#include "capture_fixture.h"
+#include "in_folder.h"
+#include "scene/scene.h"
+#include "transport/bright.h"
+#include "transport/transport.h"
+
+#include <sys/stat.h>
+
+// ---------------------------------------------------------------- a room with a ball
+
+// Three walls and a floor, one of them red, seen from the middle; light falls in from the open
+// side. The ball stands on the floor.
+static const struct relume_vec3 light_direction = {0.55, 0.75, 0.6};
+static const double ball[3] = {0.3, -0.6, -1.0}, ball_radius = 0.4;
+static const float ball_grey = 0.8f;
+
+static void add_wall(struct relume_scene_builder *b, vec3 corner, vec3 u, vec3 v, float r, float g,
+                     float blue)
+{
+    struct mesh part = {0};
+    shape_quad(&part, corner, u, v);
+    build_put_exact(b, &part, build_material(b, build_matte(r, g, blue)));
+}
+
+static relume_status build_room(struct relume_scene_builder *b)
+{
+    add_wall(b, vec3_of(-2, -1, 2), vec3_of(4, 0, 0), vec3_of(0, 0, -4), 0.7f, 0.7f, 0.7f);
+    add_wall(b, vec3_of(-2, -1, -2), vec3_of(4, 0, 0), vec3_of(0, 3, 0), 0.6f, 0.6f, 0.6f);
+    add_wall(b, vec3_of(-2, -1, 2), vec3_of(0, 0, -4), vec3_of(0, 3, 0), 0.7f, 0.15f, 0.1f);
+    return RELUME_OK;
+}
+
+static relume_status build_room_with_ball(struct relume_scene_builder *b)
+{
+    struct mesh part = {0};
+    shape_sphere(&part, vec3_of(ball[0], ball[1], ball[2]), ball_radius, 64);
+    build_put_exact(b, &part, build_material(b, build_matte(ball_grey, ball_grey, ball_grey)));
+    return build_room(b);
+}
+
+static const struct relume_scene_kind room = {.name = "room",
+                                              .summary = "three walls",
+                                              .projection = RELUME_SPHERICAL,
+                                              .build = build_room},
+                                      room_with_ball = {.name = "room-with-ball",
+                                                        .summary = "three walls and a ball",
+                                                        .projection = RELUME_SPHERICAL,
+                                                        .build = build_room_with_ball};
+
+enum { HEIGHT = 96, WIDTH = 2 * HEIGHT };
+
+static void photograph(const struct relume_scene_kind *kind, const char *name)
+{
+    relume_scene *scene;
+    const struct relume_vec3 lights[] = {light_direction, {0, 1, 0.2}, {1, 1, 0}, {0, 0.2, 1}};
+    CHECK_OK(relume_scene_create(&scene, kind, NULL));
+    CHECK_OK(
+        relume_scene_capture(scene, path_of(name),
+                             relume_synth_params(.size = HEIGHT, .lights = lights, .light_count = 4,
+                                                 .samples = 64, .bounces = 4)));
+    relume_scene_destroy(&scene);
+}
+
+static relume_pack *open_capture(const char *name)
+{
+    relume_pack *pack;
+    char file[64];
+    snprintf(file, sizeof file, "%s.exr", name);
+    CHECK_OK(fixture_encode(path_of(name), path_of(file), &relume_basis_table, 0,
+                            relume_pack_encode_params(.storage = RELUME_STORE_HALF)));
+    CHECK_OK(relume_pack_open(&pack, path_of(file), NULL));
+    return pack;
+}
+
+static void write_ball(void)
+{
+    struct mesh m = {0};
+    shape_sphere(&m, vec3_of(0, 0, 0), 1.0, 64);
+    FILE *file = fopen(path_of("ball.obj"), "w");
+    for (size_t i = 0; i < m.vertex_count; i++) {
+        const struct vertex *v = &m.vertices[i];
+        fprintf(file, "v %.9g %.9g %.9g\nvn %.9g %.9g %.9g\n", v->position[0], v->position[1],
+                v->position[2], v->normal[0], v->normal[1], v->normal[2]);
+    }
+    for (size_t i = 0; i < m.triangle_count; i++) {
+        const uint32_t *v = m.triangles[i].vertex;
+        fprintf(file, "f %u//%u %u//%u %u//%u\n", v[0] + 1, v[0] + 1, v[1] + 1, v[1] + 1, v[2] + 1,
+                v[2] + 1);
+    }
+    fclose(file);
+    mesh_free(&m);
+}
+
+static relume_objects *place_ball(float grey)
+{
+    relume_objects *o;
+    char text[512];
+    snprintf(text, sizeof text,
+             "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"ball.obj\","
+             "\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]},\"parts\":[{\"material\":"
+             "{\"diffuse\":%g}}]}]}",
+             ball_radius, ball[0], ball[1], ball[2], (double)grey);
+    write_text("ball.json", text);
+    CHECK_OK(relume_objects_open(&o, path_of("ball.json"), NULL));
+    return o;
+}
+
+static const struct relume_camera unfolded = {.framing = RELUME_FRAME_VIEW};
+
+static struct relume_image with_ball(relume_pack *pack, const relume_objects *o, const char *way,
+                                     const struct relume_light *light, int samples, int bounces)
+{
+    relume_renderer *renderer;
+    struct relume_image image;
+    const struct relume_transport *transport = relume_transport_find(way);
+    assert_non_null(transport);
+    CHECK_OK(relume_renderer_create(&renderer, pack, NULL));
+    CHECK_OK(relume_renderer_set_lights(renderer, light, 1));
+    CHECK_OK(relume_renderer_set_objects(renderer, o,
+                                         relume_render_params(.samples = 2, .transport = transport,
+                                                              .transport_samples = samples,
+                                                              .bounces = bounces)));
+    CHECK_OK(relume_renderer_frame(&image, renderer, &unfolded));
+    relume_renderer_destroy(&renderer);
+    return image;
+}
+
+static struct relume_image without_ball(relume_pack *pack, const struct relume_light *light)
+{
+    struct relume_image image;
+    CHECK_OK(relume_frame(&image, pack, &unfolded, light, 1, NULL));
+    return image;
+}
+
+// Root of the mean square over what the object changes in the truth, over its root mean square.
+static double error(const struct relume_image *got, const struct relume_image *want,
+                    const struct relume_image *before)
+{
+    double wrong = 0.0, all = 0.0;
+    for (size_t i = 0; i < 3 * (size_t)WIDTH * HEIGHT; i++) {
+        const double changed = (double)want->data[i] - (double)before->data[i];
+        if (fabs(changed) < 0.02)
+            continue;
+        wrong += pow((double)got->data[i] - (double)want->data[i], 2.0);
+        all += pow((double)want->data[i], 2.0);
+    }
+    return sqrt(wrong / all);
+}
+
+// Measured here: none .239, ssao .110, ssdo .098, path .072. What is left of the last are borders
+// of shadows, which one ray a pixel draws hard, and noise of 64 directions.
+static void ways_come_near_the_truth(void **state)
+{
+    (void)state;
+    static const char *const ways[] = {"none", "ssao", "ssdo", "path"};
+    static const double most[] = {0.30, 0.14, 0.12, 0.09};
+    const struct relume_light light = {.direction = light_direction, .rgb = {1, 1, 1}};
+    double before_it = 1.0;
+    photograph(&room, "room");
+    photograph(&room_with_ball, "truth");
+    relume_pack *pack = open_capture("room"), *other = open_capture("truth");
+    relume_objects *o = place_ball(ball_grey);
+    struct relume_image before = without_ball(pack, &light), truth = without_ball(other, &light);
+    for (int i = 0; i < 4; i++) {
+        struct relume_image got = with_ball(pack, o, ways[i], &light, i == 3 ? 64 : 16, 2);
+        const double found = error(&got, &truth, &before);
+        printf("%s: %.4f\n", ways[i], found);
+        assert_true(found < most[i] && found < before_it);
+        before_it = found;
+        relume_image_destroy(&got);
+    }
+    relume_image_destroy(&before);
+    relume_image_destroy(&truth);
+    relume_objects_destroy(&o);
+    relume_pack_destroy(&pack);
+    relume_pack_destroy(&other);
+}
+
+// ---------------------------------------------------------------- a furnace
+
+enum { ROWS = 24, COLUMNS = 2 * ROWS };
+static const double furnace_radius = 3.0;
+
+// Around the eye all shows 1, at one distance or at none.
+static relume_pack *open_furnace(const char *name, bool depth)
+{
+    relume_pack *pack;
+    char text[512], file[64];
+    struct relume_image image, distance;
+    mkdir(path_of(name), 0777);
+    CHECK_OK(relume_image_create(&image, COLUMNS, ROWS, 3));
+    CHECK_OK(relume_image_create(&distance, COLUMNS, ROWS, 1));
+    for (int i = 0; i < COLUMNS * ROWS * 3; i++)
+        image.data[i] = 1.0f;
+    for (int i = 0; i < COLUMNS * ROWS; i++)
+        distance.data[i] = (float)furnace_radius;
+    snprintf(file, sizeof file, "%s/light.exr", name);
+    CHECK_OK(relume_image_save(&image, path_of(file), NULL));
+    snprintf(file, sizeof file, "%s/depth.exr", name);
+    CHECK_OK(relume_image_save(&distance, path_of(file), NULL));
+    snprintf(text, sizeof text,
+             "{\"format\":\"relume-capture\",\"version\":1,\"projection\":\"spherical\","
+             "\"transfer\":\"linear\",\"lights\":{\"directions\":[[0,1,0]]},"
+             "\"views\":[{\"images\":[\"light.exr\"]%s}]}",
+             depth ? ",\"depth\":\"depth.exr\"" : "");
+    snprintf(file, sizeof file, "%s/capture.json", name);
+    write_text(file, text);
+    relume_image_destroy(&image);
+    relume_image_destroy(&distance);
+    snprintf(file, sizeof file, "%s.exr", name);
+    CHECK_OK(fixture_encode(path_of(name), path_of(file), &relume_basis_table, 0,
+                            relume_pack_encode_params(.storage = RELUME_STORE_HALF)));
+    CHECK_OK(relume_pack_open(&pack, path_of(file), NULL));
+    return pack;
+}
+
+// A white ball in even light is not to be seen, wherever the light comes from; its one lamp is
+// behind the walls. Depth is halves: 2^-11; the ball's own pixels see gaps of the mesh at the
+// poles.
+static void a_furnace_hides_what_is_white(void **state)
+{
+    (void)state;
+    static const char *const ways[] = {"ssdo", "path"};
+    const struct relume_light light = {.direction = {0, 1, 0}, .rgb = {1, 1, 1}};
+    relume_objects *o = place_ball(1.0f);
+    for (int way = 0; way < 2; way++) {
+        relume_pack *pack = open_furnace("furnace", true);
+        struct relume_image got = with_ball(pack, o, ways[way], &light, 256, 8);
+        double sum = 0.0;
+        for (int i = 0; i < COLUMNS * ROWS * 3; i++) {
+            sum += (double)got.data[i] / (COLUMNS * ROWS * 3);
+            CHECK_NEAR(got.data[i], 1.0, way ? 0.03 : 0.12);  // ssdo: from hidden pixels comes none
+        }
+        CHECK_NEAR(sum, 1.0, 0.01);
+        relume_image_destroy(&got);
+        relume_pack_destroy(&pack);
+    }
+    relume_objects_destroy(&o);
+}
+
+// A black ball takes its form factor off the walls: (r / d)^2 times the cosine, in closed form.
+static void a_black_ball_takes_its_form_factor(void **state)
+{
+    (void)state;
+    const struct relume_light light = {.direction = {0, 1, 0}, .rgb = {1, 1, 1}};
+    relume_pack *pack = open_furnace("walls", true);
+    const struct relume_geometry *geometry = &relume_pack_info(pack)->geometry;
+    relume_objects *o = place_ball(0.0f);
+    struct relume_image got = with_ball(pack, o, "path", &light, 4096, 1);
+    double got_sum = 0.0, want_sum = 0.0;
+    for (int y = 0; y < ROWS; y++)
+        for (int x = 0; x < COLUMNS; x++) {
+            const struct relume_vec3 ray =
+                relume_panorama_ray(geometry, COLUMNS, ROWS, x + 0.5, y + 0.5);
+            const vec3 place = vec3_scale(ray, furnace_radius);
+            const vec3 to = vec3_sub(vec3_of(ball[0], ball[1], ball[2]), place);
+            const double d = vec3_length(to), cosine = -vec3_dot(to, ray) / d;
+            const double taken = pow(ball_radius / d, 2.0) * cosine;
+            const float shown = got.data[3 * (y * COLUMNS + x)];
+            // not where the ball is before the wall
+            const double off = vec3_length(vec3_cross(vec3_of(ball[0], ball[1], ball[2]), ray));
+            if (off < 1.3 * ball_radius && cosine > 0.0 &&
+                vec3_dot(ray, vec3_of(ball[0], ball[1], ball[2])) > 0.0)
+                continue;
+            CHECK_NEAR(shown, 1.0 - taken, 0.012);
+            got_sum += 1.0 - (double)shown;
+            want_sum += taken;
+        }
+    CHECK_NEAR(got_sum / want_sum, 1.0, 0.04);
+    relume_image_destroy(&got);
+    relume_objects_destroy(&o);
+    relume_pack_destroy(&pack);
+}
+
+static int notes;
+static void count_notes(void *user, enum relume_level level, const char *text)
+{
+    (void)user;
+    notes += level == RELUME_NOTE && strstr(text, "no depth") != NULL;
+}
+
+// Without depth the panorama is far away: a grey ball shows its grey, and the note is made once.
+static void far_panoramas_light_objects(void **state)
+{
+    (void)state;
+    const struct relume_log counting = {.message = count_notes};
+    const struct relume_light light = {.direction = {0, 1, 0}, .rgb = {1, 1, 1}};
+    relume_pack *pack = open_furnace("far", false);
+    relume_objects *o = place_ball(0.5f);
+    relume_renderer *renderer;
+    CHECK_OK(relume_renderer_create(&renderer, pack, NULL));
+    CHECK_OK(relume_renderer_set_lights(renderer, &light, 1));
+    CHECK_OK(relume_renderer_set_objects(
+        renderer, o,
+        relume_render_params(.log = &counting, .transport = relume_transport_find("path"),
+                             .transport_samples = 256)));
+    for (int frame = 0; frame < 2; frame++) {
+        struct relume_image got;
+        int grey = 0;
+        CHECK_OK(relume_renderer_frame(&got, renderer, &unfolded));
+        for (int i = 0; i < COLUMNS * ROWS; i++) {
+            const float shown = got.data[3 * i];
+            // its lamp from above lights its upper half, by n.l of at most 1
+            assert_true(shown > 0.49f && shown < 1.02f);
+            grey += shown < 0.55f;
+        }
+        assert_true(grey > 3);
+        relume_image_destroy(&got);
+    }
+    assert_int_equal(notes, 1);
+    relume_renderer_destroy(&renderer);
+    relume_objects_destroy(&o);
+    relume_pack_destroy(&pack);
+}
+
+// ---------------------------------------------------------------- parts
+
+static void bright_numbers_are_drawn_by_their_light(void **state)
+{
+    (void)state;
+    static const double light[] = {0.0, 1.0, 0.0, 3.0, 4.0, 0.0};
+    enum { COUNT = 6, DRAWS = 800 };
+    int drawn[COUNT] = {0};
+    struct bright b = {0};
+    double *copy = malloc(sizeof light);
+    memcpy(copy, light, sizeof light);
+    size_t number;
+    assert_false(bright_draw(&number, &b, 0.5));
+    bright_take(&b, copy, COUNT);
+    for (int i = 0; i < DRAWS; i++) {
+        assert_true(bright_draw(&number, &b, (i + 0.5) / DRAWS));
+        drawn[number]++;
+    }
+    for (size_t i = 0; i < COUNT; i++) {
+        assert_int_equal(drawn[i], (int)(light[i] * DRAWS / 8.0));
+        CHECK_NEAR(bright_chance(&b, i), light[i] / 8.0, 1e-15);
+    }
+    bright_forget(&b);
+}
+
+// Two planes that meet in an edge: noise is gone on both, and the step between them stays. At
+// borders a window may have 3 x 3 pixels, 4 or 5 of which are 1.
+static void smoothing_stops_at_edges(void **state)
+{
+    (void)state;
+    enum { W = 16, H = 8 };
+    struct relume_image places, normals, image;
+    struct relume_image *const images[] = {&image};
+    CHECK_OK(relume_image_create(&places, W, H, 3));
+    CHECK_OK(relume_image_create(&normals, W, H, 3));
+    CHECK_OK(relume_image_create(&image, W, H, 3));
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const bool right = x >= W / 2;
+            const float place[3] = {0.1f * (float)(right ? W / 2 : x), 0.1f * (float)y,
+                                    right ? 0.1f * (float)(x - W / 2) : 0.0f};
+            const float normal[3] = {right ? -1.0f : 0.0f, 0.0f, right ? 0.0f : 1.0f};
+            const float value = (right ? 10.0f : 0.0f) + (float)((x + y) % 2);
+            memcpy(places.data + 3 * (y * W + x), place, sizeof place);
+            memcpy(normals.data + 3 * (y * W + x), normal, sizeof normal);
+            for (int c = 0; c < 3; c++)
+                image.data[3 * (y * W + x) + c] = value;
+        }
+    CHECK_OK(transport_smooth(images, 1, &places, &normals, vec3_of(0, 0, 5), 4, 1));
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            CHECK_NEAR(image.data[3 * (y * W + x)], x >= W / 2 ? 10.5 : 0.5, 0.06);
+    relume_image_destroy(&places);
+    relume_image_destroy(&normals);
+    relume_image_destroy(&image);
+}
+
+static void threads_agree(void **state)
+{
+    (void)state;
+    const struct relume_light light = {.direction = light_direction, .rgb = {1, 1, 1}};
+    relume_pack *pack = open_furnace("threads", true);
+    relume_objects *o = place_ball(0.5f);
+    struct relume_image first = {0};
+    for (int threads = 1; threads <= 7; threads += 3) {
+        struct relume_image got;
+        relume_renderer *renderer;
+        CHECK_OK(relume_renderer_create(&renderer, pack, NULL));
+        CHECK_OK(relume_renderer_set_lights(renderer, &light, 1));
+        CHECK_OK(relume_renderer_set_objects(
+            renderer, o,
+            relume_render_params(.transport = relume_transport_find("ssdo"), .threads = threads)));
+        CHECK_OK(relume_renderer_frame(&got, renderer, &unfolded));
+        if (first.data)
+            assert_memory_equal(first.data, got.data, COLUMNS * ROWS * 3 * sizeof *got.data);
+        relume_renderer_destroy(&renderer);
+        if (!first.data)
+            first = got;
+        else
+            relume_image_destroy(&got);
+    }
+    relume_image_destroy(&first);
+    relume_objects_destroy(&o);
+    relume_pack_destroy(&pack);
+}
+
+static void wrong_numbers_are_refused(void **state)
+{
+    (void)state;
+    relume_pack *pack = open_furnace("refused", true);
+    relume_objects *o = place_ball(0.5f);
+    relume_renderer *renderer;
+    CHECK_OK(relume_renderer_create(&renderer, pack, NULL));
+    assert_int_equal(
+        relume_renderer_set_objects(renderer, o, relume_render_params(.transport_samples = -1)),
+        RELUME_EINVAL);
+    assert_int_equal(relume_renderer_set_objects(renderer, o, relume_render_params(.bounces = 17)),
+                     RELUME_EINVAL);
+    assert_null(relume_transport_find("radiosity"));
+    relume_renderer_destroy(&renderer);
+    relume_objects_destroy(&o);
+    relume_pack_destroy(&pack);
+}
+
+static int begin(void **state)
+{
+    make_folder(state);
+    write_ball();
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ways_come_near_the_truth),
+        cmocka_unit_test(a_furnace_hides_what_is_white),
+        cmocka_unit_test(a_black_ball_takes_its_form_factor),
+        cmocka_unit_test(far_panoramas_light_objects),
+        cmocka_unit_test(bright_numbers_are_drawn_by_their_light),
+        cmocka_unit_test(smoothing_stops_at_edges),
+        cmocka_unit_test(threads_agree),
+        cmocka_unit_test(wrong_numbers_are_refused),
+    };
+    return cmocka_run_group_tests(tests, begin, remove_folder);
+}

@@ -65,7 +65,7 @@ shared() { # name capture parts options...: learnt first, then the parts, backwa
     rm -rf learnt ./*.part
     relume encode "$capture" --shadows no "$@" -o whole.exr
     for i in $(seq "$parts"); do
-        relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" || return
+        relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" >out.txt || return
     done
     check "$name: a share each, and no part" [ "$(ls learnt | grep -c samples)" = "$parts" -a ! -e 1.part ]
     for i in $(seq "$parts" -1 1); do
@@ -95,8 +95,8 @@ nothing_learnt() { # name, options: said, done, and no folder
     name=$1
     shift
     rm -rf none
-    "$RELUME" encode slab "$@" --part 1/2 --learnt none --learn-only -o 1.part 2>err.txt
-    check "$name" [ $? = 0 -a ! -e none -a "$(grep -c 'nothing is learnt before encoding with these options; run the same line without --learn-only' err.txt)" = 1 ]
+    "$RELUME" encode slab "$@" --part 1/2 --learnt none --learn-only -o 1.part -q >out.txt 2>err.txt
+    check "$name" [ $? = 0 -a ! -e none -a ! -s err.txt -a "$(grep -c '^slab: nothing is learnt before encoding with these options; run the same line without --learn-only$' out.txt)" = 1 ]
 }
 nothing_learnt 'nothing to learn for a fixed basis' --basis sh --coefficients 4
 nothing_learnt 'nor for a table' --basis table --interpolant chord
@@ -143,8 +143,8 @@ with_loss() { # name capture parts options...: learnt in rounds, the parts backw
     while [ "$(grep -c 'all is learnt' said.txt)" != "$parts" ] && [ $rounds -lt 12 ]; do
         rounds=$((rounds + 1))
         for i in $(seq "$parts"); do
-            "$RELUME" encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" || return
-        done >said.txt 2>&1
+            "$RELUME" encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" -q || return
+        done >said.txt 2>err.txt
     done
     check "$name: no part before all is learnt" [ ! -e 1.part ]
     for i in $(seq "$parts" -1 1); do

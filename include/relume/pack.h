@@ -309,7 +309,8 @@ RELUME_RESULT relume_status relume_pack_shadow(struct relume_image *out, relume_
 // What highlights of a view wander by (shadow.h); empty when the file has none.
 RELUME_RESULT relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack,
                                               int view);
-// Either, ready to be added; NULL when the file has neither. The caller destroys it.
+// Either, ready to be added; NULL when the file has neither, or where one keeps going and it is
+// damaged: a warning says so once. The caller destroys it.
 RELUME_RESULT relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view);
 
 // Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing

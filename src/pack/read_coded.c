@@ -310,7 +310,10 @@ relume_status reader_load_learnt(struct relume_image *out, relume_pack *p, int p
     if (!status)
         status = learnt_decode(out, &words, &steps, kind, p->threads);
     if (status == RELUME_EDAMAGED)
-        status = reader_bad(p, info.name, "tiles of sound AV1 data");
+        status = reader_bad(p, info.name,
+                            p->keep_going
+                                ? "tiles of sound AV1 data"
+                                : "tiles of sound AV1 data; --keep-going shows the rest");
     mem_free(words.word);
     return status;
 }

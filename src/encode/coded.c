@@ -385,12 +385,13 @@ static relume_status find_words(struct coding *c, struct relume_encode_report *r
 static relume_status take_words(struct coding *c, int view, struct group_share tiles)
 {
     struct relume_pack_view *v = &c->m->view[view];
-    struct lossy_words *own = &c->m->words[view], all = *own;
+    struct lossy_words *own = &c->m->words[view];
+    const struct lossy_words all = *own;
     relume_status status = RELUME_OK;
     if (c->m->p->parts) {
+        *own = (struct lossy_words){0};
         status = lossy_keep_tiles(own, &all, tiles.first, tiles.end);
         mem_free(all.word);
-        *own = status ? (struct lossy_words){0} : *own;
     }
     v->coded = own->word;
     v->coded_words = own->count;

@@ -105,7 +105,7 @@ static relume_status add_view(struct tiling *t)
     const int views = t->own->part->info.all_views;
     uint32_t *head = NULL, *other;
     struct lossy_held held, first = {0};
-    size_t depth = 0, words = 0;
+    size_t depth = 0, words = 0, heads = 0;
     int view = -1;
     struct word_run *const all = add_run(t, 0);
     for (int i = 0; i < t->count; i++) {
@@ -125,12 +125,12 @@ static relume_status add_view(struct tiling *t)
         if (i)
             lossy_add_tiles(head, other, &held);
         else
-            head = other, first = held, view = own, depth = n[1], words = size;
+            head = other, heads = words = size, first = held, view = own, depth = n[1];
         add_of_part(t, i, p->at + size, n[0] - size);
         words += n[0] - size;
         p->at += n[0] + n[1];
     }
-    *all = (struct word_run){.count = lossy_head(head), .word = head};
+    *all = (struct word_run){.count = heads, .word = head};
     add_of_part(t, 0, t->place[0].at - depth, depth);
     t->list = arena_format(t->arena, FORMAT_MEMBER, t->list ? t->list : "", view, words, depth);
     return t->list ? RELUME_OK : RELUME_ENOMEM;

@@ -85,7 +85,8 @@ struct relume_pack_share {
     enum relume_pyramid pyramid;    // likewise
     bool shared_books;              // all views of all parts have the same
     const struct relume_encode_report *measured;  // [views] of it; `coded`: one of all views
-    bool coded;  // planes are coded with loss: it holds the views that have `coded` words
+    bool coded;  // planes are coded with loss: it holds the views that have `coded` words, of all
+                 // tiles or of some; tiles of 0 bytes are another part's
     int group;   // then: the number of its first group
 };
 
@@ -221,6 +222,8 @@ struct relume_pack_part {
     uint64_t file_bytes;
     bool coded;  // with loss: it holds groups of neighbours, of which `first` is the lowest view
     char capture[RELUME_DIGEST];  // relume_capture_digest of what it was made from
+    int tiles, all_tiles;  // coded: that it holds of its groups, of how many; views of a group are
+                           // cut alike
 };
 // An input status with a sentence when `path` is no part. Of `params` log, limits and reader are
 // used.
@@ -309,7 +312,8 @@ RELUME_RESULT relume_status relume_pack_shadow(struct relume_image *out, relume_
 // What highlights of a view wander by (shadow.h); empty when the file has none.
 RELUME_RESULT relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack,
                                               int view);
-// Either, ready to be added; NULL when the file has neither. The caller destroys it.
+// Either, ready to be added; NULL when the file has neither, or where one keeps going and it is
+// damaged: a warning says so once. The caller destroys it.
 RELUME_RESULT relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view);
 
 // Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing

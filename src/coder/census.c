@@ -96,6 +96,14 @@ void census_add(struct census *c, int worker, const float *planes, size_t n, con
     }
 }
 
+bool census_is_lit(const struct census *c, int light)
+{
+    bool lit = false;
+    for (int w = 0; w < c->workers; w++)
+        lit |= c->lit[w * c->lights + light];
+    return lit;
+}
+
 struct relume_encode_census census_result(const struct census *c)
 {
     struct relume_encode_census sum = {0};
@@ -105,11 +113,7 @@ struct relume_encode_census census_result(const struct census *c)
         sum.clipped += c->count[w].clipped;
         sum.always_clipped += c->count[w].always_clipped;
     }
-    for (int i = 0; i < c->lights; i++) {
-        bool lit = false;
-        for (int w = 0; w < c->workers; w++)
-            lit |= c->lit[w * c->lights + i];
-        sum.black_images += !lit;
-    }
+    for (int i = 0; i < c->lights; i++)
+        sum.black_images += !census_is_lit(c, i);
     return sum;
 }

@@ -17,5 +17,7 @@ void census_destroy(struct census *c);
 // Some pixels: planes[channel][light][n]. `mask` may be NULL.
 void census_add(struct census *c, int worker, const float *planes, size_t n, const float *mask);
 struct relume_encode_census census_result(const struct census *c);
+// Whether a sample of a light is above 0.
+bool census_is_lit(const struct census *c, int light);
 
 #endif

@@ -28,6 +28,7 @@ void relume_coefficients_destroy(relume_coefficients **coefficients)
     mem_free(c->band);
     mem_free(c->some.error);
     mem_free(c->some.shown_error);
+    mem_free(c->some.lit);
     mem_free(c->some.stored);
     mem_free(c);
 }

@@ -29,6 +29,7 @@ struct encode_rows {
     double *shown_error;  // [lights]: squared, of display values
     double root_sum;
     size_t error_count, lit_count;
+    bool *lit;                     // [lights]: whether a sample of these rows is above 0
     struct encode_stored *stored;  // [height of the view], or NULL: steps are not known yet
 };
 
@@ -89,6 +90,10 @@ relume_status coefficients_values(const relume_coefficients *c, int row, void *w
 relume_status encode_some_rows(relume_coefficients **out, const relume_coder *coder,
                                const relume_capture *capture, int view, int row, int rows,
                                const struct relume_encode_params *p);
+// Rows that join those that `c` has, which may be the same: `some` and the census of the report are
+// theirs alone. As above.
+relume_status encode_more_rows(relume_coefficients *c, const relume_capture *capture, int view,
+                               int row, int rows, const struct relume_encode_params *p);
 // All rows wait in `c`, its bands and `some` are those of all of them: choose the steps and fill in
 // the report. `display` is the curve of the domain `p->domain`, which is not AUTO. RELUME_EIO,
 // RELUME_ENOMEM.
@@ -127,15 +132,27 @@ struct encode_values {
     const void *user;
 };
 // How well they reproduce the captured images, as `relume eval` measures it.
-struct encode_judgement {
-    double psnr_db;  // as that of a report
-    double square;   // mean squared difference of display values, 1 = white, all lights pooled
-};
-// On the rows of a report, or `every` row. The images are read again. An input status,
-// RELUME_ENOMEM, RELUME_ECANCEL.
-relume_status encode_judge(struct encode_judgement *out, relume_coefficients *c,
-                           const relume_capture *capture, int view, bool every,
-                           const struct encode_values *values,
+// The PSNR of a report, on its rows. The images are read again. An input status, RELUME_ENOMEM,
+// RELUME_ECANCEL.
+relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
+                           int view, const struct encode_values *values,
                            const struct relume_encode_params *p);
+
+// Of the tiles of a view, numbered row by row: those from `first` to `end`. The side is a multiple
+// of BAND_ROWS.
+struct encode_tiles {
+    int side, across, first, end;
+};
+struct encode_square {
+    double sum;  // of squared differences of display values, 1 = white, of all lights
+    uint64_t count;
+};
+// The same on all pixels of some tiles: out[end - first], each what it is whatever the others are.
+// Of a row only the values of those tiles are asked for.
+relume_status encode_judge_tiles(struct encode_square *out, relume_coefficients *c,
+                                 const relume_capture *capture, int view,
+                                 const struct encode_tiles *tiles,
+                                 const struct encode_values *values,
+                                 const struct relume_encode_params *p);
 
 #endif

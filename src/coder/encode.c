@@ -38,6 +38,7 @@ struct encoding {
     struct measured *sums;       // [pieces of the band's rows]
     double *shown;               // [the same][lights]
     int measured[BAND_ROWS];     // rows of the band that are looked at
+    int run, first_run, runs;    // pixels of a row that are measured together, and which of them
     struct thread_task packing;  // of a band while the next one is read
     int packed_row, packed_rows;
     void *packed;     // [rows][planes][x]
@@ -65,7 +66,7 @@ struct measured {
     size_t count, lit;
 };
 
-enum { PIECE = 512 };  // pixels of a row that are measured together
+enum { PIECE = 512 };  // the most pixels of a row that are measured together
 
 static bool is_inside(const struct relume_image *mask, size_t pixel)
 {
@@ -162,9 +163,9 @@ static double shown_difference(const struct encoding *e, float a, float b)
     return d * d;
 }
 
-static size_t pieces_of(const struct encoding *e)
+static int runs_of(const struct encoding *e)
 {
-    return ((size_t)e->width + PIECE - 1) / PIECE;
+    return (e->width + e->run - 1) / e->run;
 }
 
 // What a worker measures with.
@@ -216,27 +217,33 @@ static void measure_near(const struct encoding *e, int row, size_t first, size_t
 static void measure_piece(void *context, size_t item, int worker)
 {
     struct encoding *e = context;
-    const size_t pieces = pieces_of(e), lights = (size_t)e->lights;
-    const size_t first = item % pieces * PIECE, left = (size_t)e->width - first;
-    const size_t n = left < PIECE ? left : PIECE;
-    const int row = e->measured[item / pieces];
+    const size_t runs = (size_t)e->runs, lights = (size_t)e->lights, run = (size_t)e->run;
+    const size_t first = ((size_t)e->first_run + item % runs) * run,
+                 left = (size_t)e->width - first;
+    const size_t n = left < run ? left : run;
+    const int row = e->measured[item / runs];
     double *shown = e->shown + item * lights;
     e->sums[item] = (struct measured){0};
     memset(shown, 0, lights * sizeof *shown);
     (e->near ? measure_near : measure_fit)(e, row, first, n, worker, &e->sums[item], shown);
 }
 
-// On those rows of the band that the report looks at, or on all of them.
-static void measure_band(struct encoding *e, bool every)
+// Some runs of those rows of the band that the report looks at, or of all of them: so many items.
+static size_t measure_runs(struct encoding *e, bool every)
 {
-    const size_t pieces = pieces_of(e), lights = (size_t)e->lights;
     size_t rows = 0;
     for (int y = 0; y < e->rows; y++)
         if (every || is_measured(e->out, e->row + y))
             e->measured[rows++] = y;
-    thread_for(e->threads, rows * pieces, measure_piece, e);
-    for (size_t k = 0; k < rows * pieces; k++) {
-        e->row_error[e->row + e->measured[k / pieces]] += e->sums[k].error;
+    thread_for(e->threads, rows * (size_t)e->runs, measure_piece, e);
+    return rows * (size_t)e->runs;
+}
+
+static void measure_band(struct encoding *e)
+{
+    const size_t lights = (size_t)e->lights, items = measure_runs(e, false);
+    for (size_t k = 0; k < items; k++) {
+        e->row_error[e->row + e->measured[k / (size_t)e->runs]] += e->sums[k].error;
         e->root_sum += e->sums[k].root_sum;
         e->error_count += e->sums[k].count;
         e->lit_count += e->sums[k].lit;
@@ -309,7 +316,7 @@ static relume_status encode_band(struct encoding *e, const struct relume_encode_
     if (status)
         return status;
     thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
-    measure_band(e, false);
+    measure_band(e);
     start_packing(e);
     return RELUME_OK;
 }
@@ -532,14 +539,6 @@ static double shown_psnr(const struct encoding *e)
     return sum;
 }
 
-static double shown_square(const struct encoding *e)
-{
-    double sum = 0.0;
-    for (int i = 0; i < e->lights; i++)
-        sum += e->shown_error[i];
-    return e->error_count ? sum / (double)e->error_count : 0.0;
-}
-
 // What measuring needs; coefficients that are no display values are looked at on `screen`.
 static relume_status alloc_measuring(struct encoding *e, struct relume_transfer screen)
 {
@@ -564,8 +563,8 @@ static relume_status alloc_encoder(struct encoding *e, const relume_capture *cap
     e->work = mem_array((size_t)thread_count(e->threads) * coder_work(e->coder), sizeof *e->work);
     e->piece = mem_array((size_t)thread_count(e->threads) * 4 * (size_t)e->lights,
                          PIECE * sizeof *e->piece);
-    e->sums = mem_array(BAND_ROWS * pieces_of(e), sizeof *e->sums);
-    e->shown = mem_array(BAND_ROWS * pieces_of(e) * (size_t)e->lights, sizeof *e->shown);
+    e->sums = mem_array(BAND_ROWS * (size_t)runs_of(e), sizeof *e->sums);
+    e->shown = mem_array(BAND_ROWS * (size_t)runs_of(e) * (size_t)e->lights, sizeof *e->shown);
     e->packed = mem_array(planes * band, coefficients_waiting(e->out));
     e->total = mem_array(planes, sizeof *e->total);
     if (!e->values || !e->chunk || !e->work || !e->piece || !e->sums || !e->shown || !e->packed ||
@@ -611,8 +610,10 @@ static relume_status begin(struct encoding *e, const relume_coder *coder,
         .end = relume_capture_height(capture),
         .images = m->view[view].images,
         .display = {.curve = RELUME_CURVE_LINEAR},
+        .run = PIECE,
         .threads = p->threads,
     };
+    e->runs = runs_of(e);
     if (relume_encode_domain(capture, p->domain) == RELUME_DOMAIN_DISPLAY)
         e->display = relume_encode_curve(capture, p->display);
     return relume_capture_mask(&e->mask, capture, view, p->log);
@@ -651,14 +652,58 @@ static relume_status finish(relume_coefficients *c, struct encoding *e, enum rel
     return status;
 }
 
-static void keep_sums(relume_coefficients *c, struct encoding *e)
+static relume_status keep_sums(relume_coefficients *c, struct encoding *e)
 {
+    mem_free(c->some.error);
+    mem_free(c->some.shown_error);
+    mem_free(c->some.lit);
     c->some.error = e->row_error;
     c->some.shown_error = e->shown_error;
     c->some.root_sum = e->root_sum;
     c->some.error_count = e->error_count;
     c->some.lit_count = e->lit_count;
     e->row_error = e->shown_error = NULL;
+    c->some.lit = mem_array((size_t)e->lights, sizeof *c->some.lit);
+    for (int i = 0; c->some.lit && i < e->lights; i++)
+        c->some.lit[i] = census_is_lit(&e->census, i);
+    return c->some.lit ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// Rows of a view, 0: all of them, into `c`; what a report needs of them is left in `e`.
+static relume_status encode_into(struct encoding *e, relume_coefficients *c,
+                                 const relume_capture *capture, int view, int row, int rows,
+                                 const struct relume_encode_params *p)
+{
+    e->out = c;
+    e->row = row;
+    if (rows)
+        e->end = row + rows;
+    relume_status status = alloc_encoder(e, capture);
+    if (!status)
+        status = census_create(&e->census, capture, e->display, thread_count(p->threads));
+    if (!status)
+        status = encode_bands(e, capture, view, p);
+    if (!status) {
+        c->report.census = census_result(&e->census);
+        c->report.census.repaired = e->repaired;
+        c->some.row = row;
+        c->some.rows = rows;
+    }
+    return status;
+}
+
+relume_status encode_more_rows(relume_coefficients *c, const relume_capture *capture, int view,
+                               int row, int rows, const struct relume_encode_params *params)
+{
+    const struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
+    struct encoding e;
+    relume_status status = begin(&e, c->info.coder, capture, view, &p);
+    if (!status)
+        status = encode_into(&e, c, capture, view, row, rows, &p);
+    if (!status)
+        status = keep_sums(c, &e);
+    free_encoder(&e);
+    return status;
 }
 
 relume_status encode_some_rows(relume_coefficients **out, const relume_coder *coder,
@@ -676,26 +721,10 @@ relume_status encode_some_rows(relume_coefficients **out, const relume_coder *co
     relume_status status = begin(&e, coder, capture, view, &p);
     if (!status)
         status = coefficients_create(&c, coder, e.width, e.height, &p);
-    e.out = c;
-    e.row = row;
-    if (rows)
-        e.end = row + rows;
     if (!status)
-        status = alloc_encoder(&e, capture);
+        status = encode_into(&e, c, capture, view, row, rows, &p);
     if (!status)
-        status = census_create(&e.census, capture, e.display, thread_count(p.threads));
-    if (!status)
-        status = encode_bands(&e, capture, view, &p);
-    if (!status) {
-        c->report.census = census_result(&e.census);
-        c->report.census.repaired = e.repaired;
-        c->some.row = row;
-        c->some.rows = rows;
-        if (rows)
-            keep_sums(c, &e);
-        else
-            status = finish(c, &e, p.step);
-    }
+        status = rows ? keep_sums(c, &e) : finish(c, &e, p.step);
     free_encoder(&e);
     if (status)
         relume_coefficients_destroy(&c);
@@ -810,39 +839,107 @@ struct relume_encode_report encode_rows_report(const struct encode_rows *all, in
 
 // ---------------------------------------------------------------- other coefficients
 
-static relume_status judge_band(struct encoding *e, bool every, const struct encode_values *values)
+// The rows of `values` in a band, or those of a report.
+static void take_values(struct encoding *e, bool every, const struct encode_values *values)
 {
-    relume_status status = read_band(e);
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
-    for (int y = 0; !status && y < e->rows; y++)
+    for (int y = 0; y < e->rows; y++)
         if (every || is_measured(e->out, e->row + y))
             values->row(values->user, e->row + y, e->values + (size_t)y * (size_t)e->width, pixels);
-    if (!status)
-        measure_band(e, every);
-    return status;
 }
 
-relume_status encode_judge(struct encode_judgement *out, relume_coefficients *c,
-                           const relume_capture *capture, int view, bool every,
-                           const struct encode_values *values, const struct relume_encode_params *p)
+// To read the images from `row` on, and to compare them.
+static relume_status begin_judging(struct encoding *e, relume_coefficients *c,
+                                   const relume_capture *capture, int view,
+                                   const struct encode_tiles *tiles,
+                                   const struct relume_encode_params *p)
+{
+    relume_status status = begin(e, c->info.coder, capture, view, p);
+    e->out = c;
+    if (tiles) {
+        const int last = (tiles->end - 1) / tiles->across * tiles->side;
+        e->row = tiles->first / tiles->across * tiles->side;
+        e->end = last + tiles->side < e->height ? last + tiles->side : e->height;
+        e->run = tiles->side < PIECE ? tiles->side : PIECE;
+    }
+    if (!status)
+        status = alloc_encoder(e, capture);
+    if (!status)
+        status = open_table(e, capture, view, p);
+    return status ? status : relume_table_skip(e->table, e->row);
+}
+
+static void end_judging(struct encoding *e)
+{
+    near_fit_destroy(&e->near);
+    relume_table_destroy(&e->table);
+    free_encoder(e);
+}
+
+relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
+                           int view, const struct encode_values *values,
+                           const struct relume_encode_params *p)
 {
     struct encoding e;
-    relume_status status = begin(&e, c->info.coder, capture, view, p);
-    e.out = c;
-    if (!status)
-        status = alloc_encoder(&e, capture);
-    if (!status)
-        status = open_table(&e, capture, view, p);
-    for (e.row = 0; !status && e.row < e.height; e.row += BAND_ROWS) {
-        status = judge_band(&e, every, values);
+    relume_status status = begin_judging(&e, c, capture, view, NULL, p);
+    for (; !status && e.row < e.end; e.row += BAND_ROWS) {
+        status = read_band(&e);
+        if (!status) {
+            take_values(&e, false, values);
+            measure_band(&e);
+        }
         if (!status && !say_done(&e, capture, view, "measuring", p->log))
             status = RELUME_ECANCEL;
     }
-    *out = (struct encode_judgement){0.0, 0.0};
-    if (!status)
-        *out = (struct encode_judgement){shown_psnr(&e), shown_square(&e)};
-    near_fit_destroy(&e.near);
-    relume_table_destroy(&e.table);
-    free_encoder(&e);
+    *psnr_db = status ? 0.0 : shown_psnr(&e);
+    end_judging(&e);
+    return status;
+}
+
+// Which runs of a band are of the tiles.
+static void choose_runs(struct encoding *e, const struct encode_tiles *t)
+{
+    const int before = e->row / t->side * t->across, each = t->side / e->run, most = runs_of(e);
+    const int first = t->first > before ? t->first - before : 0;
+    const int end = t->end < before + t->across ? t->end - before : t->across;
+    e->first_run = first * each;
+    e->runs = (end * each < most ? end * each : most) - e->first_run;
+}
+
+// The sums of a band join those of its tiles, row by row from left to right.
+static void add_runs(struct encode_square *out, const struct encoding *e,
+                     const struct encode_tiles *t, size_t items)
+{
+    const size_t lights = (size_t)e->lights;
+    for (size_t k = 0; k < items; k++) {
+        const int run = e->first_run + (int)(k % (size_t)e->runs);
+        const int tile = e->row / t->side * t->across + run * e->run / t->side;
+        struct encode_square *to = &out[tile - t->first];
+        for (size_t i = 0; i < lights; i++)
+            to->sum += e->shown[k * lights + i];
+        to->count += e->sums[k].count;
+    }
+}
+
+relume_status encode_judge_tiles(struct encode_square *out, relume_coefficients *c,
+                                 const relume_capture *capture, int view,
+                                 const struct encode_tiles *tiles,
+                                 const struct encode_values *values,
+                                 const struct relume_encode_params *p)
+{
+    struct encoding e;
+    memset(out, 0, (size_t)(tiles->end - tiles->first) * sizeof *out);
+    relume_status status = begin_judging(&e, c, capture, view, tiles, p);
+    for (; !status && e.row < e.end; e.row += BAND_ROWS) {
+        status = read_band(&e);
+        if (!status) {
+            choose_runs(&e, tiles);
+            take_values(&e, true, values);
+            add_runs(out, &e, tiles, measure_runs(&e, true));
+        }
+        if (!status && !say_done(&e, capture, view, "measuring", p->log))
+            status = RELUME_ECANCEL;
+    }
+    end_judging(&e);
     return status;
 }

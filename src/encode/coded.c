@@ -2,18 +2,17 @@
 // together
 //
 // Ranges of planes, bytes beside the planes' own, and every step that is tried are pieces of a team
-// (team.h). Coefficients are made where a piece needs them, so that who finds its pieces made only
-// writes. Alone one is a team of one.
+// (team.h), whose members have tiles of groups each (groups.h). Coefficients are made where a piece
+// needs them, so that who finds its pieces made only writes. Alone one is a team of one.
 #include "encode/coded.h"
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "encode/groups.h"
+#include "encode/coded_rows.h"
 #include "encode/pyramid.h"
 #include "encode/rate.h"
 #include "team/gather.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,10 +20,9 @@
 struct coding {
     struct material *m;
     struct view_groups groups;
+    struct coded_rows rows;
     const struct relume_team *team;  // or NULL
     int members;                     // of the team
-    struct range *total;             // [planes]
-    bool masked, settled;            // steps are known
     double rest;                     // bytes
     struct av1_effort effort;        // of the levels
     double level_bytes;
@@ -84,167 +82,54 @@ static double depth_step(const struct relume_manifest *m, const struct relume_im
     return 2.0 * MOST_PARALLAX * pixel / (between * fabs(g->uv_z - g->st_z));
 }
 
-// ---------------------------------------------------------------- coefficients
+// ---------------------------------------------------------------- shares
 
-static relume_status load_view(void *user, int view)
+static bool has_first_tile(const struct coding *c, int group, int member, int members)
 {
-    struct coding *c = user;
-    struct material *m = c->m;
-    if (m->coefficients[view])
-        return RELUME_OK;
-    const relume_status status = material_encode(m, view);
-    if (!status && c->settled)
-        coefficients_choose_steps(m->coefficients[view], c->total, c->masked, m->encode->step);
-    return status;
+    const struct group_share share = groups_share(&c->groups, member, members);
+    const int tile = c->groups.tile[group];
+    return share.first <= tile && tile < share.end;
 }
 
-// Calls `body` for the views of the groups of a member.
+// Calls `body` for the views whose first tile is a member's: what they have beside tiles is made by
+// that one.
 static relume_status each_view(struct coding *c, int member, int members,
                                relume_status (*body)(void *user, int view))
 {
     const int *begin = c->groups.begin;
     relume_status status = RELUME_OK;
-    for (int i = begin[groups_first(&c->groups, member, members)];
-         !status && i < begin[groups_first(&c->groups, member + 1, members)]; i++)
-        status = body(c, c->groups.view[i]);
+    for (int g = 0; !status && g < c->groups.count; g++)
+        for (int i = begin[g]; !status && i < begin[g + 1]; i++)
+            if (has_first_tile(c, g, member, members))
+                status = body(c, c->groups.view[i]);
     return status;
+}
+
+static int own_of(const struct coding *c, int *members)
+{
+    const struct relume_pack_encode_params *p = c->m->p;
+    *members = p->parts ? p->parts : 1;
+    return p->parts ? p->part - 1 : 0;
 }
 
 // Of this part.
 static relume_status each_own_view(struct coding *c, relume_status (*body)(void *user, int view))
 {
-    const struct relume_pack_encode_params *p = c->m->p;
-    return each_view(c, p->parts ? p->part - 1 : 0, p->parts ? p->parts : 1, body);
+    int members;
+    const int own = own_of(c, &members);
+    return each_view(c, own, members, body);
 }
 
-// The ranges of all planes, and of each view what its report says, as doubles.
-enum { REPORT = 11 };
-
-static void put_report(double *to, const struct relume_encode_report *r)
+static relume_status load_view(void *user, int view)
 {
-    const struct relume_encode_census *s = &r->census;
-    const double numbers[REPORT] = {r->fit_rms,
-                                    r->store_rms,
-                                    r->steps_rms,
-                                    r->psnr_db,
-                                    r->typical,
-                                    (double)s->pixels,
-                                    (double)s->black,
-                                    (double)s->clipped,
-                                    (double)s->always_clipped,
-                                    (double)s->repaired,
-                                    (double)s->black_images};
-    memcpy(to, numbers, sizeof numbers);
+    struct coding *c = user;
+    return coded_rows_load_view(&c->rows, view);
 }
 
-static bool take_report(struct relume_encode_report *r, const double *from)
+static relume_status load_tiles(void *user, int group, struct group_share tiles)
 {
-    for (int i = 0; i < REPORT; i++)
-        if (!(from[i] >= (i < 5 ? -DBL_MAX : 0.0) && from[i] < (i < 5 ? DBL_MAX : 0x1p53)))
-            return false;
-    if (!(from[10] < 0x1p31))
-        return false;
-    *r = (struct relume_encode_report){.fit_rms = from[0],
-                                       .store_rms = from[1],
-                                       .steps_rms = from[2],
-                                       .psnr_db = from[3],
-                                       .typical = from[4],
-                                       .census = {.pixels = (size_t)from[5],
-                                                  .black = (size_t)from[6],
-                                                  .clipped = (size_t)from[7],
-                                                  .always_clipped = (size_t)from[8],
-                                                  .repaired = (size_t)from[9],
-                                                  .black_images = (int)from[10]}};
-    return true;
-}
-
-// How many views a member has, and the bytes of its ranges and reports.
-static size_t size_of_ranges(const struct coding *c, int member, size_t *ranges)
-{
-    const int *begin = c->groups.begin;
-    const size_t views = (size_t)(begin[groups_first(&c->groups, member + 1, c->members)] -
-                                  begin[groups_first(&c->groups, member, c->members)]);
-    *ranges = (size_t)relume_coder_info(c->m->coder)->planes * sizeof *c->total;
-    return *ranges + views * REPORT * sizeof(double);
-}
-
-static relume_status make_ranges(void *context, int member, struct relume_buffer *out)
-{
-    struct coding *c = context;
-    const size_t planes = (size_t)relume_coder_info(c->m->coder)->planes;
-    size_t ranges;
-    const size_t size = size_of_ranges(c, member, &ranges);
-    relume_status status = each_view(c, member, c->members, load_view);
-    if (status)
-        return status;
-    if (!(out->data = mem_zeroed(size, 1)))
-        return RELUME_ENOMEM;
-    out->size = size;
-    struct range *total = mem_array(planes, sizeof *total);
-    if (!total)
-        return RELUME_ENOMEM;
-    for (size_t p = 0; p < planes; p++)
-        total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    unsigned char *to = out->data + ranges;
-    for (int i = c->groups.begin[groups_first(&c->groups, member, c->members)];
-         i < c->groups.begin[groups_first(&c->groups, member + 1, c->members)]; i++) {
-        const relume_coefficients *one = c->m->coefficients[c->groups.view[i]];
-        double report[REPORT];
-        for (size_t b = 0; b < (size_t)one->bands * planes; b++)
-            total[b % planes] = range_join(total[b % planes], one->band[b]);
-        put_report(report, &c->m->report[c->groups.view[i]]);
-        memcpy(to, report, sizeof report);
-        to += sizeof report;
-    }
-    memcpy(out->data, total, ranges);
-    mem_free(total);
-    return RELUME_OK;
-}
-
-static relume_status take_ranges(void *context, int member, const struct relume_buffer *piece)
-{
-    struct coding *c = context;
-    size_t ranges;
-    if (piece->size != size_of_ranges(c, member, &ranges))
-        return RELUME_EDAMAGED;
-    for (size_t p = 0; p * sizeof *c->total < ranges; p++) {
-        struct range r;
-        memcpy(&r, piece->data + p * sizeof r, sizeof r);
-        if (!(r.min >= -FLT_MAX && r.max <= FLT_MAX))
-            return RELUME_EDAMAGED;
-        c->total[p] = range_join(c->total[p], r);
-    }
-    const unsigned char *from = piece->data + ranges;
-    for (int i = c->groups.begin[groups_first(&c->groups, member, c->members)];
-         i < c->groups.begin[groups_first(&c->groups, member + 1, c->members)]; i++) {
-        double report[REPORT];
-        memcpy(report, from, sizeof report);
-        from += sizeof report;
-        if (!take_report(&c->m->report[c->groups.view[i]], report))
-            return RELUME_EDAMAGED;
-    }
-    return RELUME_OK;
-}
-
-static relume_status find_steps(struct coding *c)
-{
-    struct material *m = c->m;
-    const struct relume_manifest *manifest = relume_capture_manifest(m->capture);
-    const size_t planes = (size_t)relume_coder_info(m->coder)->planes;
-    c->masked = manifest->geometry.disc > 0;
-    for (int i = 0; i < m->views; i++)
-        c->masked |= manifest->view[i].mask != NULL;
-    if (!(c->total = mem_array(planes, sizeof *c->total)))
-        return RELUME_ENOMEM;
-    for (size_t p = 0; p < planes; p++)
-        c->total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    const relume_status status =
-        team_gather(c->team, "ranges", make_ranges, take_ranges, c, m->p->log);
-    for (int i = 0; !status && i < m->views; i++)
-        if (m->coefficients[i])
-            coefficients_choose_steps(m->coefficients[i], c->total, c->masked, m->encode->step);
-    c->settled = !status;
-    return status;
+    struct coding *c = user;
+    return coded_rows_load(&c->rows, group, tiles);
 }
 
 // ---------------------------------------------------------------- what is not planes
@@ -269,7 +154,9 @@ static relume_status load_levels(void *user, int view)
     struct coding *c = user;
     if (c->m->view[view].levels)
         return RELUME_OK;
-    const relume_status status = load_view(c, view);
+    relume_status status = load_view(c, view);
+    if (!status)
+        status = load_extras(c, view);
     return status ? status : material_reduce(c->m, view);
 }
 
@@ -289,9 +176,12 @@ static void set_anchors(struct material *m, const struct view_groups *groups)
 // Words and the heads of their rows, against the words.
 static const double PACKED = 1.003;
 
-// The bytes of a file of group `g` but for its words; `plain`: of its anchor, without depth and
-// mask.
-static relume_status weigh(double *bytes, const struct coding *c, int g, bool plain, bool preview)
+// What is weighed beside the header and a word for each view of a group.
+enum weighed { BARE, EXTRAS, PREVIEW, MODELS };
+
+// The bytes of a file of group `g` but for its words: with depth, mask and levels of its views, or
+// the preview, or what shadows and highlights of all views move by.
+static relume_status weigh(double *bytes, const struct coding *c, int g, enum weighed what)
 {
     static const uint32_t nothing[1];
     struct relume_buffer file = {0};
@@ -299,11 +189,14 @@ static relume_status weigh(double *bytes, const struct coding *c, int g, bool pl
     struct relume_pack_encode_params to_memory = *c->m->p;
     struct relume_pack_contents contents;
     struct relume_pack_view *view = mem_array((size_t)c->m->views, sizeof *view);
+    const bool plain = what != EXTRAS;
     if (!view)
         return RELUME_ENOMEM;
     for (int i = 0; i < c->m->views; i++) {
         view[i] = c->m->view[i];
         view[i].levels = NULL;
+        view[i].shadow = what == MODELS ? view[i].shadow : NULL;
+        view[i].gloss = what == MODELS ? view[i].gloss : NULL;
     }
     for (int i = c->groups.begin[g]; i < c->groups.begin[g + 1]; i++) {
         struct relume_pack_view *v = &view[c->groups.view[i]];
@@ -317,23 +210,13 @@ static relume_status weigh(double *bytes, const struct coding *c, int g, bool pl
     }
     material_contents(&contents, c->m);
     contents.view = view;
-    contents.preview = preview ? relume_pack_preview : NULL;
+    contents.preview = what == PREVIEW ? relume_pack_preview : NULL;
     to_memory.writer = &writer;
     const relume_status status = material_write(&contents, NULL, &to_memory);
     *bytes = (double)file.size;
     relume_buffer_destroy(&file);
     mem_free(view);
     return status;
-}
-
-static bool holds(const struct coding *c, int member, int members, int view)
-{
-    const int *begin = c->groups.begin;
-    for (int i = begin[groups_first(&c->groups, member, members)];
-         i < begin[groups_first(&c->groups, member + 1, members)]; i++)
-        if (c->groups.view[i] == view)
-            return true;
-    return false;
 }
 
 static relume_status put_number(struct relume_buffer *out, double number)
@@ -354,26 +237,39 @@ static relume_status take_number(double *sum, const struct relume_buffer *piece)
     return RELUME_OK;
 }
 
+// Of what moves with the light, which all views are asked for once.
+static bool has_models(const struct material *m)
+{
+    for (int i = 0; i < m->views; i++)
+        if (m->view[i].shadow || m->view[i].gloss)
+            return true;
+    return false;
+}
+
 static relume_status make_rest(void *context, int member, struct relume_buffer *out)
 {
     struct coding *c = context;
     const int middle = c->m->views / 2;
     double header = 0.0, one = 0.0, bytes;
-    relume_status status = weigh(&header, c, 0, true, false);
+    relume_status status = weigh(&header, c, 0, BARE);
     bytes = member ? 0.0 : header;
     if (!status)
         status = each_view(c, member, c->members, load_extras);
     if (!status && c->leveled)
         status = each_view(c, member, c->members, load_levels);
-    for (int g = groups_first(&c->groups, member, c->members);
-         !status && g < groups_first(&c->groups, member + 1, c->members); g++) {
-        status = weigh(&one, c, g, false, false);
-        bytes += one - header;
-    }
-    if (!status && holds(c, member, c->members, middle)) {
+    for (int g = 0; !status && g < c->groups.count; g++)
+        if (has_first_tile(c, g, member, c->members)) {
+            status = weigh(&one, c, g, EXTRAS);
+            bytes += one - header;
+        }
+    if (!status && has_first_tile(c, groups_with(&c->groups, middle), member, c->members)) {
         status = load_view(c, middle);
         if (!status)
-            status = weigh(&one, c, 0, true, true);
+            status = weigh(&one, c, 0, PREVIEW);
+        bytes += one - header;
+    }
+    if (!status && !member && has_models(c->m)) {
+        status = weigh(&one, c, 0, MODELS);
         bytes += one - header;
     }
     return status ? status : put_number(out, bytes);
@@ -450,7 +346,7 @@ static relume_status place_header(struct coding *c)
         status = coefficients_create(&c->empty, m->coder, relume_capture_width(m->capture),
                                      relume_capture_height(m->capture), m->encode);
         if (!status)
-            coefficients_choose_steps(c->empty, c->total, c->masked, m->encode->step);
+            coefficients_choose_steps(c->empty, c->rows.total, c->rows.masked, m->encode->step);
         m->view[0].coefficients = c->empty;
     }
     return status;
@@ -463,7 +359,7 @@ static relume_status find_words(struct coding *c, struct relume_encode_report *r
     const int width = relume_capture_width(m->capture), height = relume_capture_height(m->capture);
     const double pixels = (double)m->views * width * height;
     const bool quality = p->psnr_db > 0.0;
-    const struct rate_team by = {c->team, load_view, c};
+    const struct rate_team by = {c->team, load_tiles, c};
     struct rate_result result;
     relume_status status =
         quality ? RELUME_OK : team_gather(c->team, "rest", make_rest, take_rest, c, p->log);
@@ -475,67 +371,97 @@ static relume_status find_words(struct coding *c, struct relume_encode_report *r
                              &target, m->encode, c->team ? &by : NULL);
     if (status)
         return status;
-    double words = 0.0;
-    for (int i = 0; i < m->views; i++)
-        words += 4.0 * (double)m->words[i].count;
     c->effort = result.effort;
     *report = encode_report_mean(m->report, m->views);
     const double all = pow(10.0, -result.psnr_db / 20.0), fit = report->fit_rms;
     report->psnr_db = result.psnr_db;
     report->store_rms = report->steps_rms = sqrt(fmax(all * all - fit * fit, 0.0));
-    return c->leveled ? find_levels(c, quality ? (double)INFINITY : allowed - words) : RELUME_OK;
+    return c->leveled ? find_levels(c, quality ? (double)INFINITY : allowed - result.bytes)
+                      : RELUME_OK;
 }
 
-static relume_status take_words(void *user, int view)
+// Of the tiles of a part, with all that belongs to the view beside them where the first is among
+// them.
+static relume_status take_words(struct coding *c, int view, struct group_share tiles)
 {
-    const struct coding *c = user;
-    c->m->view[view].coded = c->m->words[view].word;
-    c->m->view[view].coded_words = c->m->words[view].count;
-    return RELUME_OK;
+    struct relume_pack_view *v = &c->m->view[view];
+    struct lossy_words *own = &c->m->words[view];
+    const struct lossy_words all = *own;
+    relume_status status = RELUME_OK;
+    if (c->m->p->parts) {
+        *own = (struct lossy_words){0};
+        status = lossy_keep_tiles(own, &all, tiles.first, tiles.end);
+        mem_free(all.word);
+    }
+    v->coded = own->word;
+    v->coded_words = own->count;
+    if (tiles.first > 0) {
+        v->depth = v->mask = NULL;
+        v->levels = NULL;
+    }
+    return status;
 }
 
-static bool share_is_empty(const struct coding *c, int part)
+static relume_status take_own(struct coding *c)
+{
+    int members;
+    const int own = own_of(c, &members);
+    const struct group_share share = groups_share(&c->groups, own, members);
+    relume_status status = RELUME_OK;
+    for (int g = 0; !status && g < c->groups.count; g++) {
+        const struct group_share tiles = groups_tiles(&c->groups, g, share);
+        for (int i = c->groups.begin[g]; !status && tiles.end && i < c->groups.begin[g + 1]; i++)
+            status = take_words(c, c->groups.view[i], tiles);
+    }
+    return status;
+}
+
+// Where people count the parts themselves.
+static void say_empty(const struct coding *c)
 {
     const struct relume_pack_encode_params *p = c->m->p;
-    return p->parts && !(c->team && c->team->close) &&
-           groups_first(&c->groups, part, p->parts) == groups_first(&c->groups, part + 1, p->parts);
+    const int tiles = c->groups.tile[c->groups.count];
+    int members;
+    const int own = own_of(c, &members);
+    const struct group_share share = groups_share(&c->groups, own, members);
+    if (share.first == share.end && !(c->team && c->team->close))
+        log_line(p->log, RELUME_NOTE,
+                 "part %d of %d holds nothing: planes with loss are coded in %d tile%s here; "
+                 "expected no more than %d part%s",
+                 p->part, p->parts, tiles, relume_plural(tiles), tiles, relume_plural(tiles));
 }
 
 static relume_status write_own(struct coding *c, const char *path,
                                const struct relume_encode_report *report)
 {
     const struct relume_pack_encode_params *p = c->m->p;
-    const int middle = c->m->views / 2, own = p->parts ? p->part - 1 : 0;
+    const int middle = c->m->views / 2;
+    int members;
+    const int own = own_of(c, &members);
     struct relume_pack_contents contents;
     struct relume_pack_share share;
     char digest[RELUME_DIGEST];
-    relume_status status = each_own_view(c, take_words);
+    relume_status status = take_own(c);
     material_contents(&contents, c->m);
     contents.report = *report;
-    if (!holds(c, own, p->parts ? p->parts : 1, middle))
+    if (!has_first_tile(c, groups_with(&c->groups, middle), own, members))
         contents.preview = NULL;
-    else
+    else if (!status)
         status = load_view(c, middle);
     if (!status && p->parts) {
         status = material_share(&share, digest, c->m);
         share.coded = true;
-        share.group = groups_first(&c->groups, own, p->parts);
+        share.group = groups_of_tile(&c->groups, groups_share(&c->groups, own, members).first);
         share.measured = report;
         contents.share = &share;
     }
-    if (!status && share_is_empty(c, own))
-        log_line(p->log, RELUME_NOTE,
-                 "part %d of %d holds no views: planes with loss are coded in %d group%s of "
-                 "neighbours here; expected no more than %d part%s",
-                 p->part, p->parts, c->groups.count, relume_plural(c->groups.count),
-                 c->groups.count, relume_plural(c->groups.count));
+    say_empty(c);
     return status ? status : material_write(&contents, path, p);
 }
 
 relume_status encode_coded(struct material *m, const char *path,
                            struct relume_encode_report *report)
 {
-    const struct relume_manifest *manifest = relume_capture_manifest(m->capture);
     struct coding c = {.m = m, .team = m->p->team};
     struct relume_pack_contents contents;
     material_contents(&contents, m);
@@ -546,24 +472,24 @@ relume_status encode_coded(struct material *m, const char *path,
     c.levels_by = mem_zeroed((size_t)m->views, sizeof *c.levels_by);
     relume_status status = c.levels_by ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = groups_make(&c.groups, manifest, lossy_most_views(m->coder));
+        status = groups_make(&c.groups, m->capture, m->coder);
+    if (!status)
+        status = coded_rows_create(&c.rows, m, &c.groups, c.team);
     if (!status) {
         set_anchors(m, &c.groups);
-        status = find_steps(&c);
+        status = coded_rows_find_steps(&c.rows);
     }
     if (!status)
         status = place_header(&c);
     if (!status)
         status = each_own_view(&c, load_extras);
-    if (!status && c.leveled)
-        status = each_own_view(&c, load_levels);
     if (!status)
         status = find_words(&c, report);
     if (!status && !m->p->learn_only)
         status = write_own(&c, path, report);
     relume_coefficients_destroy(&c.empty);
+    coded_rows_destroy(&c.rows);
     groups_destroy(&c.groups);
-    mem_free(c.total);
     mem_free(c.levels_by);
     return status;
 }

@@ -5,7 +5,7 @@
 #include "encode/material.h"
 
 // Writes `path`, or by the writer of m->p, with what has its steps by m->p->psnr_db or
-// bytes_per_pixel. Of a part these are the groups of views of its share; what all parts must know
+// bytes_per_pixel. Of a part these are the tiles of its share; what all parts must know
 // is shared with the team, each part making what its own views say; without a team all is made
 // here. Errors as relume_pack_encode.
 relume_status encode_coded(struct material *m, const char *path,

@@ -60,12 +60,10 @@ static relume_status judge_books(const struct material *m)
 {
     relume_status status = RELUME_OK;
     for (int i = m->first; !status && i < m->end; i++) {
-        struct encode_judgement judgement;
         const struct shelf shelf = {m->view[i].books, m->index + i * RELUME_MOST_BOOKS,
                                     (size_t)relume_capture_width(m->capture)};
-        status = encode_judge(&judgement, m->coefficients[i], m->capture, i, false,
+        status = encode_judge(&m->report[i].psnr_db, m->coefficients[i], m->capture, i,
                               &(const struct encode_values){shelf_row, &shelf}, m->encode);
-        m->report[i].psnr_db = judgement.psnr_db;
     }
     return status;
 }

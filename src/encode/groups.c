@@ -1,4 +1,5 @@
-// groups.c - the cameras of a slab are halved until as many stand together as are wanted
+// groups.c - the cameras of a slab are halved until as many stand together as are wanted; the tiles
+// of all groups are shared evenly
 #include "encode/groups.h"
 
 #include "base/memory.h"
@@ -92,12 +93,26 @@ static void sort_groups(struct view_groups *to, const struct view_groups *from, 
 static bool groups_create(struct view_groups *out, size_t views)
 {
     *out = (struct view_groups){.begin = mem_array(views + 1, sizeof *out->begin),
-                                .view = mem_array(views, sizeof *out->view)};
-    return out->begin && out->view;
+                                .view = mem_array(views, sizeof *out->view),
+                                .tile = mem_array(views + 1, sizeof *out->tile),
+                                .cut = mem_array(views, sizeof *out->cut)};
+    return out->begin && out->view && out->tile && out->cut;
 }
 
-relume_status groups_make(struct view_groups *out, const struct relume_manifest *manifest, int most)
+static void cut_into_tiles(struct view_groups *g, const relume_coder *coder, int width, int height)
 {
+    g->tile[0] = 0;
+    for (int i = 0; i < g->count; i++) {
+        g->cut[i] = lossy_cut_of(coder, width, height, g->begin[i + 1] - g->begin[i]);
+        g->tile[i + 1] = g->tile[i] + g->cut[i].count;
+    }
+}
+
+relume_status groups_make(struct view_groups *out, const relume_capture *capture,
+                          const relume_coder *coder)
+{
+    const struct relume_manifest *manifest = relume_capture_manifest(capture);
+    const int most = lossy_most_views(coder);
     const size_t views = (size_t)manifest->views;
     const int side_by_side = manifest->geometry.projection == RELUME_SLAB ? most : 1;
     struct camera *camera = mem_array(views, sizeof *camera);
@@ -118,19 +133,67 @@ relume_status groups_make(struct view_groups *out, const struct relume_manifest 
     if (good) {
         halved.begin[halved.count] = manifest->views;
         sort_groups(out, &halved, manifest->views);
+        cut_into_tiles(out, coder, relume_capture_width(capture), relume_capture_height(capture));
     }
     mem_free(camera);
     groups_destroy(&halved);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
-int groups_first(const struct view_groups *groups, int member, int members)
+relume_status groups_alone(struct view_groups *out, const relume_coder *coder, int width,
+                           int height)
 {
-    return (int)((int64_t)groups->count * member / members);
+    if (!groups_create(out, 1))
+        return RELUME_ENOMEM;
+    out->count = 1;
+    out->begin[0] = out->view[0] = 0;
+    out->begin[1] = 1;
+    cut_into_tiles(out, coder, width, height);
+    return RELUME_OK;
 }
 
 void groups_destroy(struct view_groups *groups)
 {
     mem_free(groups->begin);
     mem_free(groups->view);
+    mem_free(groups->tile);
+    mem_free(groups->cut);
+}
+
+static int first_tile(const struct view_groups *groups, int member, int members)
+{
+    return (int)((int64_t)groups->tile[groups->count] * member / members);
+}
+
+struct group_share groups_share(const struct view_groups *groups, int member, int members)
+{
+    return (struct group_share){first_tile(groups, member, members),
+                                first_tile(groups, member + 1, members)};
+}
+
+struct group_share groups_tiles(const struct view_groups *groups, int group,
+                                struct group_share share)
+{
+    const int begin = groups->tile[group], count = groups->cut[group].count;
+    const int first = share.first - begin, end = share.end - begin;
+    const struct group_share own = {first > 0 ? first : 0, end < count ? end : count};
+    return own.first < own.end ? own : (struct group_share){0, 0};
+}
+
+int groups_of_tile(const struct view_groups *groups, int tile)
+{
+    int g = 0;
+    while (g < groups->count && groups->tile[g + 1] <= tile)
+        g++;
+    return g;
+}
+
+int groups_with(const struct view_groups *groups, int view)
+{
+    int g = 0, i = 0;
+    while (groups->view[i] != view)
+        i++;
+    while (groups->begin[g + 1] <= i)
+        g++;
+    return g;
 }

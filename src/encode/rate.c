@@ -6,6 +6,7 @@
 #include "base/thread.h"
 #include "coder/codes.h"
 #include "coder/coefficients.h"
+#include "math/scalar.h"
 #include "team/gather.h"
 
 #include <math.h>
@@ -26,8 +27,10 @@ enum { MOST_ALONE = 3, MOST_GROUPS = 2, WORTH_TRYING = 2 };
 static const double MOST_SLOW = 64e6;
 
 struct trial {
-    struct lossy_words *words;  // [views], of the groups that are tried; NULL: not tried
-    double *square;             // [views]: their mean squared differences
+    struct lossy_words *words;     // [views], of the tiles of this member; NULL: not tried
+    size_t *count;                 // [views]: words, with the tiles of all members
+    struct encode_square *square;  // [views]
+    bool *known;                   // [groups]
     double psnr_db, bytes;
 };
 
@@ -51,16 +54,17 @@ static int views_of(const struct view_groups *g)
     return g->begin[g->count];
 }
 
-// ---------------------------------------------------------------- groups in parallel
-
-struct job {
-    const struct rate *rate;
-    int quantiser, each;        // threads for each
-    int first;                  // of the groups that are tried
-    const struct trial *known;  // whose groups are not coded again
-    struct trial *trial;
-    relume_status *status;  // [groups that are coded]
+// What a member codes of a group.
+struct piece {
+    struct group_share tiles;
+    struct av1_bytes *sequence;    // [tiles][views]
+    struct encode_square *square;  // [views][tiles]
 };
+
+static size_t tiles_in(const struct piece *p)
+{
+    return (size_t)(p->tiles.end - p->tiles.first);
+}
 
 // Which group is the i-th that is tried.
 static int group_at(const struct rate *r, int i)
@@ -68,60 +72,64 @@ static int group_at(const struct rate *r, int i)
     return (int)((2LL * i + 1) * r->groups->count / (2LL * r->tried));
 }
 
-// Its views, *count of them.
-static const int *views_at(const struct rate *r, int i, int *count)
+// The views of a group, *count of them.
+static const int *views_in(const struct rate *r, int group, int *count)
 {
     const struct view_groups *g = r->groups;
-    const int group = group_at(r, i);
     *count = g->begin[group + 1] - g->begin[group];
     return g->view + g->begin[group];
 }
 
-// The same, none of a group that a trial of fewer groups has coded.
-static const int *views_left(const struct trial *known, const struct rate *r, int i, int *count)
+// The tiles of a member in a group, none where a trial of fewer groups has coded it.
+static struct group_share tiles_left(const struct rate *r, const struct trial *known, int group,
+                                     int member)
 {
-    const int *view = views_at(r, i, count);
-    *count = known->words[*view].word ? 0 : *count;
-    return view;
+    const int members = r->by ? r->by->team->members : 1;
+    return known->known[group]
+               ? (struct group_share){0, 0}
+               : groups_tiles(r->groups, group, groups_share(r->groups, member, members));
 }
+
+// ---------------------------------------------------------------- groups in parallel
+
+struct job {
+    const struct rate *rate;
+    int quantiser, each;  // threads for each
+    struct piece *piece;  // [tried]
+    relume_status *status;
+};
 
 static void code_group(void *context, size_t item, int worker)
 {
     struct job *j = context;
     const struct rate *r = j->rate;
+    const struct piece *p = &j->piece[item];
     int n;
-    const int *view = views_left(j->known, r, j->first + (int)item, &n);
+    const int *view = views_in(r, group_at(r, (int)item), &n);
     const struct av1_effort effort = {j->quantiser, r->speed};
     relume_coefficients *from[AV1_MOST_MEMBERS] = {0};
-    struct lossy_words words[AV1_MOST_MEMBERS];
     (void)worker;
-    if (!n)
+    if (!tiles_in(p))
         return;
     for (int i = 0; i < n; i++)
         from[i] = r->coefficients[view[i]];
-    j->status[item] = lossy_encode(words, from, n, &effort, j->each, r->p->log);
-    for (int i = 0; i < n; i++)
-        j->trial->words[view[i]] = words[i];
+    j->status[item] = lossy_encode_tiles(p->sequence, from, n, p->tiles.first, p->tiles.end,
+                                         &effort, j->each, r->p->log);
 }
 
-// The groups `first` .. `end` of those that are tried.
-static relume_status code_groups(struct trial *t, const struct trial *known, const struct rate *r,
-                                 int first, int end, int quantiser)
+static relume_status code_groups(struct piece *piece, const struct rate *r, int quantiser)
 {
-    const int threads = thread_count(r->p->threads), n = end - first;
-    int left = 0, views;
-    for (int i = first; i < end; i++) {
-        views_left(known, r, i, &views);
-        left += views > 0;
-    }
-    struct job j = {r, quantiser, left && left < threads ? threads / left : 1, first, known,
-                    t, NULL};
-    j.status = mem_zeroed((size_t)n + 1, sizeof *j.status);
+    const int threads = thread_count(r->p->threads);
+    int left = 0;
+    for (int i = 0; i < r->tried; i++)
+        left += tiles_in(&piece[i]) > 0;
+    struct job j = {r, quantiser, left && left < threads ? threads / left : 1, piece, NULL};
+    j.status = mem_zeroed((size_t)r->tried, sizeof *j.status);
     if (!j.status)
         return RELUME_ENOMEM;
-    thread_for(threads, (size_t)n, code_group, &j);
+    thread_for(threads, (size_t)r->tried, code_group, &j);
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < n; i++)
+    for (int i = 0; !status && i < r->tried; i++)
         status = j.status[i];
     mem_free(j.status);
     return status;
@@ -129,57 +137,103 @@ static relume_status code_groups(struct trial *t, const struct trial *known, con
 
 // ---------------------------------------------------------------- quality
 
+// A row of tiles as it was decoded.
+struct decoded {
+    int row;  // of tiles; -1: none so far
+    struct relume_rect rect;
+    uint16_t *codes;
+    relume_status status;
+};
+
 struct shown {
     const struct relume_coefficients_info *info;
-    const uint16_t *codes;
+    const struct lossy_shape *shape;
+    const struct lossy_words *words, *anchor;
+    const struct encode_tiles *tiles;
+    int threads;
+    struct decoded *now;
 };
+
+static void decode_tiles(const struct shown *s, int row)
+{
+    const struct encode_tiles *t = s->tiles;
+    const int before = row * t->across, width = s->info->width, height = s->info->height;
+    const int first = t->first > before ? t->first - before : 0;
+    const int end = t->end < before + t->across ? t->end - before : t->across;
+    const int left = first * t->side, top = row * t->side;
+    s->now->row = row;
+    s->now->rect = (struct relume_rect){left, top, smaller_of(end * t->side, width) - left,
+                                        smaller_of(t->side, height - top)};
+    s->now->status =
+        lossy_decode(s->now->codes, s->shape, &s->now->rect, s->words, s->anchor, s->threads, NULL);
+}
 
 static void shown_row(const void *user, int row, float *planes, size_t stride)
 {
     const struct shown *s = user;
-    const size_t width = (size_t)s->info->width, size = width * (size_t)s->info->height;
-    for (int k = 0; k < s->info->planes; k++)
-        codes_restore(planes + (size_t)k * stride, RELUME_STORE_12, s->codes,
-                      (size_t)k * size + (size_t)row * width, width, s->info->scale[k],
+    if (!s->now->status && row / s->tiles->side != s->now->row)
+        decode_tiles(s, row / s->tiles->side);
+    const struct relume_rect *at = &s->now->rect;
+    const size_t width = (size_t)at->width, size = width * (size_t)at->height;
+    for (int k = 0; !s->now->status && k < s->info->planes; k++)
+        codes_restore(planes + (size_t)k * stride + at->left, RELUME_STORE_12, s->now->codes,
+                      (size_t)k * size + (size_t)(row - at->top) * width, width, s->info->scale[k],
                       s->info->offset[k]);
 }
 
-static relume_status judge_view(double *square, const struct rate *r, int view,
-                                const struct lossy_words *words, const struct lossy_words *anchor)
+// The words of the `member`-th of the views of a group, with what a piece has of its tiles.
+static relume_status piece_words(struct lossy_words *out, const struct lossy_cut *cut,
+                                 const struct piece *p, size_t views, size_t member)
+{
+    struct av1_bytes *all = mem_zeroed((size_t)cut->count, sizeof *all);
+    *out = (struct lossy_words){0};
+    for (size_t i = 0; all && i < tiles_in(p); i++)
+        all[(size_t)p->tiles.first + i] = p->sequence[i * views + member];
+    const relume_status status = all ? lossy_join(out, cut, all, 1) : RELUME_ENOMEM;
+    mem_free(all);
+    return status;
+}
+
+static relume_status judge_view(struct encode_square *square, const struct rate *r, int view,
+                                const struct encode_tiles *tiles, const struct lossy_words *words,
+                                const struct lossy_words *anchor)
 {
     relume_coefficients *c = r->coefficients[view];
     const struct relume_coefficients_info *info = relume_coefficients_info(c);
     int *order = lossy_order(info->coder);
     const struct lossy_shape shape = {info->width, info->height, info->planes,
                                       lossy_in_colour(info->coder), order};
-    uint16_t *codes =
-        mem_array((size_t)info->planes, (size_t)info->width * (size_t)info->height * sizeof *codes);
-    const struct relume_rect all = {0, 0, info->width, info->height};
-    relume_status status =
-        codes ? lossy_decode(codes, &shape, &all, words, anchor, r->p->threads, NULL)
-              : RELUME_ENOMEM;
-    const struct shown shown = {info, codes};
-    struct encode_judgement judgement = {0};
+    const size_t pixels = (size_t)info->width * (size_t)smaller_of(tiles->side, info->height);
+    struct decoded now = {.row = -1,
+                          .codes = mem_array((size_t)info->planes, pixels * sizeof *now.codes)};
+    const struct shown shown = {info, &shape, words, anchor, tiles, r->p->threads, &now};
+    relume_status status = now.codes ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = encode_judge(&judgement, c, r->capture, r->first + view, true,
-                              &(const struct encode_values){shown_row, &shown}, r->p);
-    *square = judgement.square;
+        status = encode_judge_tiles(square, c, r->capture, r->first + view, tiles,
+                                    &(const struct encode_values){shown_row, &shown}, r->p);
     mem_free(order);
-    mem_free(codes);
-    return status;
+    mem_free(now.codes);
+    return status ? status : now.status;
 }
 
-static relume_status judge_groups(struct trial *t, const struct trial *known, const struct rate *r,
-                                  int first, int end)
+static relume_status judge_group(struct piece *p, const struct rate *r, int group)
 {
+    const struct lossy_cut *cut = &r->groups->cut[group];
+    const struct encode_tiles tiles = {cut->side, cut->across, p->tiles.first, p->tiles.end};
+    struct lossy_words anchor = {0}, words = {0};
     relume_status status = RELUME_OK;
     int n;
-    for (int i = first; !status && i < end; i++) {
-        const int *view = views_left(known, r, i, &n);
-        for (int k = 0; !status && k < n; k++)
-            status = judge_view(&t->square[view[k]], r, view[k], &t->words[view[k]],
-                                k ? &t->words[view[0]] : NULL);
+    const int *view = views_in(r, group, &n);
+    for (int k = 0; !status && k < n; k++) {
+        struct lossy_words *own = k ? &words : &anchor;
+        status = piece_words(own, cut, p, (size_t)n, (size_t)k);
+        if (!status)
+            status = judge_view(p->square + (size_t)k * tiles_in(p), r, view[k], &tiles, own,
+                                k ? &anchor : NULL);
+        mem_free(words.word);
+        words = (struct lossy_words){0};
     }
+    mem_free(anchor.word);
     return status;
 }
 
@@ -190,10 +244,11 @@ static void sum_up(struct trial *t, const struct rate *r)
     int views = 0, n;
     t->bytes = 0.0;
     for (int i = 0; i < r->tried; i++) {
-        const int *view = views_at(r, i, &n);
+        const int *view = views_in(r, group_at(r, i), &n);
         for (int k = 0; k < n; k++, views++) {
-            square += t->square[view[k]];
-            t->bytes += 4.0 * (double)t->words[view[k]].count;
+            const struct encode_square *s = &t->square[view[k]];
+            square += s->count ? s->sum / (double)s->count : 0.0;
+            t->bytes += 4.0 * (double)t->count[view[k]];
         }
     }
     t->bytes *= (double)views_of(r->groups) / views;
@@ -206,8 +261,10 @@ static relume_status trial_create(struct trial *t, const struct rate *r)
 {
     const size_t views = (size_t)views_of(r->groups);
     t->words = mem_zeroed(views, sizeof *t->words);
+    t->count = mem_zeroed(views, sizeof *t->count);
     t->square = mem_zeroed(views, sizeof *t->square);
-    return t->words && t->square ? RELUME_OK : RELUME_ENOMEM;
+    t->known = mem_zeroed((size_t)r->groups->count, sizeof *t->known);
+    return t->words && t->count && t->square && t->known ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static void trial_destroy(struct trial *t, int views)
@@ -215,7 +272,9 @@ static void trial_destroy(struct trial *t, int views)
     for (int i = 0; t->words && i < views; i++)
         mem_free(t->words[i].word);
     mem_free(t->words);
+    mem_free(t->count);
     mem_free(t->square);
+    mem_free(t->known);
     *t = (struct trial){0};
 }
 
@@ -225,101 +284,146 @@ struct trying {
     int quantiser;
 };
 
-// The groups of a member, among those that are tried.
-static void share_of(const struct rate *r, int member, int *first, int *end)
+// The pieces of the groups that are tried, each with room for what is coded.
+static relume_status create_pieces(struct piece **out, const struct trying *try, int member)
 {
-    const int members = r->by ? r->by->team->members : 1;
-    for (*first = 0; *first < r->tried; ++*first)
-        if (group_at(r, *first) >= groups_first(r->groups, member, members))
-            break;
-    for (*end = *first; *end < r->tried; ++*end)
-        if (group_at(r, *end) >= groups_first(r->groups, member + 1, members))
-            break;
+    const struct rate *r = try->rate;
+    struct piece *piece = *out = mem_zeroed((size_t)r->tried, sizeof *piece);
+    bool good = piece != NULL;
+    for (int i = 0, n; good && i < r->tried; i++) {
+        struct piece *p = &piece[i];
+        views_in(r, group_at(r, i), &n);
+        p->tiles = tiles_left(r, try->trial, group_at(r, i), member);
+        p->sequence = mem_zeroed(tiles_in(p) * (size_t)n + 1, sizeof *p->sequence);
+        p->square = mem_zeroed(tiles_in(p) * (size_t)n + 1, sizeof *p->square);
+        good = p->sequence && p->square;
+    }
+    return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
-// Of each view the difference, the number of its words, and they.
-struct put_view {
-    double square;
-    uint64_t words;
+static void destroy_pieces(struct piece *piece, const struct rate *r)
+{
+    for (int i = 0, n; piece && i < r->tried; i++) {
+        views_in(r, group_at(r, i), &n);
+        for (size_t k = 0; piece[i].sequence && k < tiles_in(&piece[i]) * (size_t)n; k++)
+            mem_free(piece[i].sequence[k].byte);
+        mem_free(piece[i].sequence);
+        mem_free(piece[i].square);
+    }
+    mem_free(piece);
+}
+
+// Of each tile and view of a group its difference, and the bytes that follow.
+struct put_tile {
+    struct encode_square square;
+    uint64_t bytes;
 };
 
-static bool put_views(const struct trial *t, const struct trial *known, const struct rate *r,
-                      int first, int end, struct relume_buffer *out)
+static bool put_piece(const struct piece *p, size_t views, struct relume_buffer *out)
 {
     const struct relume_writer writer = relume_buffer_writer(out);
-    uint64_t at = 1;
-    int n;
-    bool good = writer.write(writer.user, "w", 1, 0);  // a piece is never empty
-    for (int i = first; good && i < end; i++) {
-        const int *view = views_left(known, r, i, &n);
-        for (int k = 0; good && k < n; k++) {
-            const struct lossy_words *w = &t->words[view[k]];
-            const struct put_view head = {t->square[view[k]], w->count};
-            good = writer.write(writer.user, &head, sizeof head, at) &&
-                   writer.write(writer.user, w->word, 4 * w->count, at + sizeof head);
-            at += sizeof head + 4 * w->count;
-        }
+    bool good = true;
+    for (size_t i = 0; good && i < tiles_in(p) * views; i++) {
+        const struct av1_bytes *b = &p->sequence[i];
+        const struct put_tile head = {p->square[i % views * tiles_in(p) + i / views], b->size};
+        good = writer.write(writer.user, &head, sizeof head, out->size) &&
+               writer.write(writer.user, b->byte, b->size, out->size);
     }
     return good;
+}
+
+static relume_status put_pieces(const struct piece *piece, const struct rate *r,
+                                struct relume_buffer *out)
+{
+    const struct relume_writer writer = relume_buffer_writer(out);
+    bool good = writer.write(writer.user, "w", 1, 0);  // a piece is never empty
+    for (int i = 0, n; good && i < r->tried; i++) {
+        views_in(r, group_at(r, i), &n);
+        good = put_piece(&piece[i], (size_t)n, out);
+    }
+    return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status make_trial(void *context, int member, struct relume_buffer *out)
 {
     const struct trying *try = context;
     struct rate *r = try->rate;
-    const struct trial *known = try->trial;
-    struct trial own = {0};
-    int first, end;
-    share_of(r, member, &first, &end);
-    relume_status status = trial_create(&own, r);
-    for (int i = first, n; !status && r->by && i < end; i++) {
-        const int *view = views_left(known, r, i, &n);
-        for (int k = 0; !status && k < n; k++)
-            status = r->by->load(r->by->user, view[k]);
-    }
+    struct piece *piece;
+    relume_status status = create_pieces(&piece, try, member);
+    for (int i = 0; !status && r->by && i < r->tried; i++)
+        if (tiles_in(&piece[i]))
+            status = r->by->load(r->by->user, group_at(r, i), piece[i].tiles);
     if (!status)
-        status = code_groups(&own, known, r, first, end, try->quantiser);
+        status = code_groups(piece, r, try->quantiser);
+    for (int i = 0; !status && i < r->tried; i++)
+        if (tiles_in(&piece[i]))
+            status = judge_group(&piece[i], r, group_at(r, i));
     if (!status)
-        status = judge_groups(&own, known, r, first, end);
-    if (!status && !put_views(&own, known, r, first, end, out))
-        status = RELUME_ENOMEM;
-    trial_destroy(&own, views_of(r->groups));
+        status = put_pieces(piece, r, out);
+    destroy_pieces(piece, r);
     return status;
 }
 
-static relume_status take_view(struct trial *t, int view, const struct relume_buffer *piece,
-                               size_t *at)
+// The tiles of a member in a group, as they were put; `p` has their bytes afterwards, which are the
+// buffer's.
+static relume_status take_piece(struct trial *t, struct piece *p, const struct rate *r, int group,
+                                const struct relume_buffer *from, size_t *at)
 {
-    struct put_view head;
-    struct lossy_words *w = &t->words[view];
-    if (piece->size - *at < sizeof head)
-        return RELUME_EDAMAGED;
-    memcpy(&head, piece->data + *at, sizeof head);
-    *at += sizeof head;
-    if (!head.words || head.words > (piece->size - *at) / 4 || !(head.square >= 0.0))
-        return RELUME_EDAMAGED;
-    *w = (struct lossy_words){mem_array((size_t)head.words, sizeof *w->word), (size_t)head.words};
-    if (!w->word)
-        return RELUME_ENOMEM;
-    memcpy(w->word, piece->data + *at, 4 * w->count);
-    *at += 4 * w->count;
-    t->square[view] = head.square;
+    int n;
+    const int *view = views_in(r, group, &n);
+    for (size_t i = 0; i < tiles_in(p) * (size_t)n; i++) {
+        const int own = view[i % (size_t)n];
+        struct put_tile head;
+        if (from->size - *at < sizeof head)
+            return RELUME_EDAMAGED;
+        memcpy(&head, from->data + *at, sizeof head);
+        *at += sizeof head;
+        if (!head.bytes || head.bytes > from->size - *at ||
+            !(head.square.sum >= 0.0 && head.square.sum < 0x1p60))
+            return RELUME_EDAMAGED;
+        p->sequence[i] = (struct av1_bytes){.byte = from->data + *at, .size = (size_t)head.bytes};
+        *at += (size_t)head.bytes;
+        t->square[own].sum += head.square.sum;
+        t->square[own].count += head.square.count;
+        t->count[own] += (t->count[own] ? 0 : lossy_words_of(&r->groups->cut[group])) +
+                         lossy_words_for((size_t)head.bytes);
+    }
     return RELUME_OK;
 }
 
-static relume_status take_trial(void *context, int member, const struct relume_buffer *piece)
+static relume_status keep_words(struct trial *t, const struct piece *p, const struct rate *r,
+                                int group)
+{
+    relume_status status = RELUME_OK;
+    int n;
+    const int *view = views_in(r, group, &n);
+    for (int k = 0; !status && k < n; k++)
+        status = piece_words(&t->words[view[k]], &r->groups->cut[group], p, (size_t)n, (size_t)k);
+    return status;
+}
+
+static relume_status take_trial(void *context, int member, const struct relume_buffer *from)
 {
     const struct trying *try = context;
+    const struct rate *r = try->rate;
+    const bool is_own = !r->by || member == r->by->team->member;
+    struct piece *piece;
     size_t at = 1;
-    int first, end, n;
-    relume_status status = piece->size < at ? RELUME_EDAMAGED : RELUME_OK;
-    share_of(try->rate, member, &first, &end);
-    for (int i = first; !status && i < end; i++) {
-        const int *view = views_left(try->trial, try->rate, i, &n);
-        for (int k = 0; !status && k < n; k++)
-            status = take_view(try->trial, view[k], piece, &at);
+    relume_status status = create_pieces(&piece, try, member);
+    if (!status && from->size < at)
+        status = RELUME_EDAMAGED;
+    for (int i = 0; !status && i < r->tried; i++) {
+        status = take_piece(try->trial, &piece[i], r, group_at(r, i), from, &at);
+        if (!status && is_own && tiles_in(&piece[i]))
+            status = keep_words(try->trial, &piece[i], r, group_at(r, i));
     }
-    return status || at == piece->size ? status : RELUME_EDAMAGED;
+    for (int i = 0, n; piece && i < r->tried; i++) {  // the bytes are not theirs
+        views_in(r, group_at(r, i), &n);
+        if (piece[i].sequence)
+            memset(piece[i].sequence, 0, tiles_in(&piece[i]) * (size_t)n * sizeof *piece->sequence);
+    }
+    destroy_pieces(piece, r);
+    return status || at == from->size ? status : RELUME_EDAMAGED;
 }
 
 // ---------------------------------------------------------------- search
@@ -333,6 +437,8 @@ static relume_status try_one(struct rate *r, int quantiser)
     if (!status)
         status =
             team_gather(r->by ? r->by->team : NULL, what, make_trial, take_trial, &try, r->p->log);
+    for (int i = 0; !status && i < r->tried; i++)
+        try.trial->known[group_at(r, i)] = true;
     if (!status)
         sum_up(try.trial, r);
     return status;
@@ -482,6 +588,7 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
         status = search(&r, groups->count, speed, quantiser);
     struct trial *best = &r.trial[*quantiser];
     result->psnr_db = best->psnr_db;
+    result->bytes = best->bytes;
     if (!status) {
         memcpy(words, best->words, (size_t)views_of(groups) * sizeof *words);
         memset(best->words, 0, (size_t)views_of(groups) * sizeof *words);
@@ -502,8 +609,8 @@ relume_status rate_merit(double *merit, relume_coefficients *coefficients, int v
                          const relume_capture *capture, const struct rate_target *target,
                          double header, const struct relume_encode_params *p)
 {
-    int begin[] = {0, 1}, alone[] = {0};
-    const struct view_groups group = {1, begin, alone};
+    const struct relume_coefficients_info *info = relume_coefficients_info(coefficients);
+    struct view_groups group;
     struct rate r = {.coefficients = &coefficients,
                      .groups = &group,
                      .rough = true,
@@ -514,12 +621,16 @@ relume_status rate_merit(double *merit, relume_coefficients *coefficients, int v
                      .target = *target};
     int quantiser = RATE_FIRST_GUESS, nearest = RATE_FIRST_GUESS;
     r.target.bytes = fmax(target->bytes - header, 1.0);
-    const relume_status status = search(&r, 1, AV1_FAST, &quantiser);
+    relume_status status = groups_alone(&group, info->coder, info->width, info->height);
+    if (!status)
+        status = search(&r, 1, AV1_FAST, &quantiser);
     for (int q = AV1_FINEST; !status && q <= AV1_COARSEST; q++)
         if (r.trial[q].words && fabs(surplus(&r, q)) < fabs(surplus(&r, nearest)))
             nearest = q;
     const struct trial *t = &r.trial[nearest];
     *merit = rate_merit_of(t->psnr_db, t->bytes, target, header);
-    forget(&r);
+    if (group.count)
+        forget(&r);
+    groups_destroy(&group);
     return status;
 }

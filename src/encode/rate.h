@@ -17,21 +17,23 @@ struct rate_target {
 };
 struct rate_result {
     double psnr_db;  // as the target's
+    double bytes;    // likewise
     struct av1_effort effort;
 };
 
-// The groups are shared by members, who tell each other what they try (groups_first).
+// The tiles of groups are shared by members, who tell each other what they try (groups_share).
 struct rate_team {
     const struct relume_team *team;
-    // The coefficients of a view are needed that may be missing so far.
-    relume_status (*load)(void *user, int view);
+    // The coefficients of some tiles of a group are needed that may be missing so far.
+    relume_status (*load)(void *user, int group, struct group_share tiles);
     void *user;
 };
 
 // words[views] of the coefficients of all views by `coder`, of the coarsest quantiser that reaches
 // the PSNR best or the finest that keeps the bytes. It is found on some of the groups, and
 // corrected on all. Where the target is out of reach it is the finest or coarsest. Caller frees the
-// words, also on failure. `by` is NULL where nobody shares the work. RELUME_ENOMEM, RELUME_EIO,
+// words, also on failure. `by` is NULL where nobody shares the work; of a team words have the tiles
+// of this member alone, and those of views without any are NULL. RELUME_ENOMEM, RELUME_EIO,
 // RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           relume_coefficients *const *coefficients, const relume_coder *coder,

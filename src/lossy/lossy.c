@@ -172,11 +172,12 @@ struct encoding {
     struct tiles tiles;
     relume_coefficients *const *from;  // [views], or ...
     const uint16_t *codes;             // [planes][height][width] of one
-    int views, each;                   // threads for each tile
+    int views, first, end;             // which tiles
+    int each;                          // threads for each of them
     const struct av1_effort *effort;
     const struct relume_log *log;
-    relume_status *status;    // [tiles]
-    struct av1_bytes *bytes;  // [tiles][views]
+    relume_status *status;    // [end - first]
+    struct av1_bytes *bytes;  // [end - first][views]
 };
 
 // Rows of a coefficient are [row][plane][x].
@@ -227,7 +228,7 @@ static relume_status take_view(uint16_t *samples, const struct encoding *e, int 
 static void encode_tile(void *context, size_t item, int worker)
 {
     struct encoding *e = context;
-    const struct tile t = tile_at(&e->tiles, (int)item);
+    const struct tile t = tile_at(&e->tiles, e->first + (int)item);
     uint16_t *samples[AV1_MOST_MEMBERS] = {0};
     relume_status status = RELUME_OK;
     (void)worker;
@@ -245,14 +246,19 @@ static void encode_tile(void *context, size_t item, int worker)
         mem_free(samples[v]);
 }
 
-static size_t words_for(size_t bytes)
+size_t lossy_words_for(size_t bytes)
 {
     return (bytes + 3) / 4;
 }
 
+size_t lossy_words_of(const struct lossy_cut *cut)
+{
+    return HEAD_WORDS + 2 * (size_t)cut->count;
+}
+
 void lossy_put_bytes(uint32_t *word, const unsigned char *bytes, size_t size)
 {
-    memset(word, 0, 4 * words_for(size));
+    memset(word, 0, 4 * lossy_words_for(size));
     for (size_t i = 0; i < size; i++)
         word[i / 4] |= (uint32_t)bytes[i] << 8 * (i % 4);
 }
@@ -263,26 +269,74 @@ void lossy_take_bytes(unsigned char *bytes, const uint32_t *word, size_t size)
         bytes[i] = (unsigned char)(word[i / 4] >> 8 * (i % 4));
 }
 
-static relume_status join(struct lossy_words *out, const struct encoding *e, int view)
+relume_status lossy_join(struct lossy_words *out, const struct lossy_cut *cut,
+                         const struct av1_bytes *sequence, size_t stride)
 {
-    const size_t tiles = (size_t)e->tiles.count;
-    size_t count = HEAD_WORDS + 2 * tiles, at = count;
+    const size_t tiles = (size_t)cut->count;
+    size_t at = lossy_words_of(cut), count = at;
     for (size_t i = 0; i < tiles; i++)
-        count += words_for(e->bytes[i * (size_t)e->views + (size_t)view].size);
+        count += lossy_words_for(sequence[i * stride].size);
     uint32_t *word = mem_array(count, sizeof *word);
     if (!word)
         return RELUME_ENOMEM;
     word[WORD_MAGIC] = MAGIC;
-    word[WORD_TILE] = (uint32_t)e->tiles.size;
+    word[WORD_TILE] = (uint32_t)cut->side;
     word[WORD_TILES] = (uint32_t)tiles;
     for (size_t i = 0; i < tiles; i++) {
-        const struct av1_bytes *b = &e->bytes[i * (size_t)e->views + (size_t)view];
+        const struct av1_bytes *b = &sequence[i * stride];
         word[HEAD_WORDS + 2 * i] = (uint32_t)b->size;
-        word[HEAD_WORDS + 2 * i + 1] = (uint32_t)crc32(0, b->byte, (uInt)b->size);
+        word[HEAD_WORDS + 2 * i + 1] = b->size ? (uint32_t)crc32(0, b->byte, (uInt)b->size) : 0;
         lossy_put_bytes(word + at, b->byte, b->size);
-        at += words_for(b->size);
+        at += lossy_words_for(b->size);
     }
     *out = (struct lossy_words){word, count};
+    return RELUME_OK;
+}
+
+relume_status lossy_look(struct lossy_held *out, const uint32_t *head, size_t words)
+{
+    const struct lossy_words some = {(uint32_t *)(uintptr_t)head, words};
+    *out = (struct lossy_held){.side = lossy_side(&some)};
+    if (!out->side || lossy_head(head) > words || head[WORD_TILES] > INT32_MAX)
+        return RELUME_EDAMAGED;
+    const uint32_t *size = head + HEAD_WORDS;
+    out->count = (int)head[WORD_TILES];
+    out->words = lossy_head(head);
+    for (out->first = 0; out->first < out->count && !size[2 * (size_t)out->first];)
+        out->first++;
+    for (out->end = out->first; out->end < out->count && size[2 * (size_t)out->end]; out->end++)
+        out->words += lossy_words_for(size[2 * (size_t)out->end]);
+    for (int i = out->end; i < out->count; i++)
+        if (size[2 * (size_t)i])
+            return RELUME_EDAMAGED;
+    return RELUME_OK;
+}
+
+void lossy_add_tiles(uint32_t *head, const uint32_t *other, const struct lossy_held *held)
+{
+    const size_t at = HEAD_WORDS + 2 * (size_t)held->first;
+    memcpy(head + at, other + at, 2 * (size_t)(held->end - held->first) * sizeof *head);
+}
+
+relume_status lossy_keep_tiles(struct lossy_words *out, const struct lossy_words *words, int first,
+                               int end)
+{
+    const uint32_t *from = words->word;
+    const size_t tiles = from[WORD_TILES], head = HEAD_WORDS + 2 * tiles;
+    size_t at = head, before = head, kept = 0;
+    for (size_t i = 0; i < (size_t)end; i++) {
+        const size_t count = lossy_words_for(from[HEAD_WORDS + 2 * i]);
+        before += i < (size_t)first ? count : 0;
+        kept += i < (size_t)first ? 0 : count;
+    }
+    uint32_t *word = mem_zeroed(head + kept, sizeof *word);
+    if (!word)
+        return RELUME_ENOMEM;
+    memcpy(word, from, HEAD_WORDS * sizeof *word);
+    memcpy(word + HEAD_WORDS + 2 * first, from + HEAD_WORDS + 2 * first,
+           2 * (size_t)(end - first) * sizeof *word);
+    memcpy(word + at, from + before, kept * sizeof *word);
+    *out = (struct lossy_words){word, head + kept};
     return RELUME_OK;
 }
 
@@ -301,24 +355,79 @@ static int tile_side(const struct lossy_shape *shape, int views)
     return side;
 }
 
-static relume_status encode_all(struct lossy_words *out, struct encoding *e, int threads)
+// bytes[end - first][views] of the tiles `first` .. `end`, without any on failure.
+static relume_status encode_tiles(struct encoding *e, int threads)
 {
-    const size_t n = (size_t)e->tiles.count, sequences = n * (size_t)e->views;
-    e->status = mem_zeroed(n, sizeof *e->status);
-    e->bytes = mem_zeroed(sequences, sizeof *e->bytes);
-    e->each = thread_count(threads) / e->tiles.count;
-    relume_status status = e->status && e->bytes ? RELUME_OK : RELUME_ENOMEM;
-    memset(out, 0, (size_t)e->views * sizeof *out);
+    const size_t n = (size_t)(e->end - e->first), sequences = n * (size_t)e->views;
+    e->status = mem_zeroed(n + 1, sizeof *e->status);
+    e->each = n ? thread_count(threads) / (int)n : 1;
+    relume_status status = e->status ? RELUME_OK : RELUME_ENOMEM;
+    memset(e->bytes, 0, sequences * sizeof *e->bytes);
     if (!status)
         thread_for(threads, n, encode_tile, e);
     for (size_t i = 0; !status && i < n; i++)
         status = e->status[i];
-    for (int v = 0; !status && v < e->views; v++)
-        status = join(&out[v], e, v);
+    for (size_t i = 0; status && i < sequences; i++) {
+        mem_free(e->bytes[i].byte);
+        e->bytes[i] = (struct av1_bytes){0};
+    }
+    mem_free(e->status);
+    return status;
+}
+
+static relume_status encode_all(struct lossy_words *out, struct encoding *e, int threads)
+{
+    const struct lossy_cut cut = {e->tiles.size, e->tiles.across, e->tiles.count};
+    const size_t views = (size_t)e->views, sequences = (size_t)cut.count * views;
+    e->end = cut.count;
+    e->bytes = mem_zeroed(sequences, sizeof *e->bytes);
+    memset(out, 0, views * sizeof *out);
+    relume_status status = e->bytes ? encode_tiles(e, threads) : RELUME_ENOMEM;
+    for (size_t v = 0; !status && v < views; v++)
+        status = lossy_join(&out[v], &cut, e->bytes + v, views);
     for (size_t i = 0; e->bytes && i < sequences; i++)
         mem_free(e->bytes[i].byte);
     mem_free(e->bytes);
-    mem_free(e->status);
+    return status;
+}
+
+static struct lossy_shape shape_of(const relume_coder *coder, int width, int height)
+{
+    return (struct lossy_shape){width, height, relume_coder_info(coder)->planes,
+                                lossy_in_colour(coder), lossy_order(coder)};
+}
+
+struct lossy_cut lossy_cut_of(const relume_coder *coder, int width, int height, int views)
+{
+    const struct lossy_shape shape = {
+        .width = width, .height = height, .planes = relume_coder_info(coder)->planes};
+    const struct tiles t = tiles_of(&shape, tile_side(&shape, views));
+    return (struct lossy_cut){t.size, t.across, t.count};
+}
+
+static struct encoding encoding_of(const struct lossy_shape *shape,
+                                   relume_coefficients *const *from, int views,
+                                   const struct av1_effort *effort, const struct relume_log *log)
+{
+    return (struct encoding){.tiles = tiles_of(shape, tile_side(shape, views)),
+                             .from = from,
+                             .views = views,
+                             .effort = effort,
+                             .log = log};
+}
+
+relume_status lossy_encode_tiles(struct av1_bytes *sequence, relume_coefficients *const *from,
+                                 int views, int first, int end, const struct av1_effort *effort,
+                                 int threads, const struct relume_log *log)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(from[0]);
+    const struct lossy_shape shape = shape_of(info->coder, info->width, info->height);
+    struct encoding e = encoding_of(&shape, from, views, effort, log);
+    e.first = first;
+    e.end = end;
+    e.bytes = sequence;
+    const relume_status status = encode_tiles(&e, threads);
+    mem_free((int *)(uintptr_t)shape.order);
     return status;
 }
 
@@ -327,16 +436,10 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                            const struct relume_log *log)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(from[0]);
-    int *order = lossy_order(info->coder);
-    const struct lossy_shape shape = {info->width, info->height, info->planes,
-                                      lossy_in_colour(info->coder), order};
-    struct encoding e = {.tiles = tiles_of(&shape, tile_side(&shape, views)),
-                         .from = from,
-                         .views = views,
-                         .effort = effort,
-                         .log = log};
+    const struct lossy_shape shape = shape_of(info->coder, info->width, info->height);
+    struct encoding e = encoding_of(&shape, from, views, effort, log);
     const relume_status status = encode_all(out, &e, threads);
-    mem_free(order);
+    mem_free((int *)(uintptr_t)shape.order);
     return status;
 }
 
@@ -344,11 +447,8 @@ relume_status lossy_encode_codes(struct lossy_words *out, const uint16_t *codes,
                                  const struct lossy_shape *shape, const struct av1_effort *effort,
                                  int threads, const struct relume_log *log)
 {
-    struct encoding e = {.tiles = tiles_of(shape, tile_side(shape, 1)),
-                         .codes = codes,
-                         .views = 1,
-                         .effort = effort,
-                         .log = log};
+    struct encoding e = encoding_of(shape, NULL, 1, effort, log);
+    e.codes = codes;
     return encode_all(out, &e, threads);
 }
 
@@ -417,7 +517,7 @@ static relume_status find_tiles(struct found *f, struct tiles *tiles,
         return RELUME_ENOMEM;
     for (int i = 0; i < tiles->count; i++) {
         f->at[i] = at;
-        at += words_for(word[HEAD_WORDS + 2 * i]);
+        at += lossy_words_for(word[HEAD_WORDS + 2 * i]);
     }
     return at <= words->count ? RELUME_OK : RELUME_EDAMAGED;
 }
@@ -439,7 +539,8 @@ relume_status lossy_needs(const struct lossy_shape *shape, const struct relume_r
     for (int i = d.first; !status && i < d.first + d.count / d.across * d.tiles.across;
          i += d.tiles.across) {
         const int last = i + d.across - 1;
-        const size_t end = d.view.at[last] + words_for(words->word[HEAD_WORDS + 2 * (size_t)last]);
+        const size_t end =
+            d.view.at[last] + lossy_words_for(words->word[HEAD_WORDS + 2 * (size_t)last]);
         status = need(user, d.view.at[i], end - d.view.at[i]);
     }
     mem_free(d.view.at);

@@ -42,6 +42,38 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                            const struct av1_effort *effort, int threads,
                            const struct relume_log *log);
 
+// The tiles of each view of a group, which are numbered row by row: their side, a multiple of 128,
+// how many stand in a row, and how many there are.
+struct lossy_cut {
+    int side, across, count;
+};
+struct lossy_cut lossy_cut_of(const relume_coder *coder, int width, int height, int views);
+// The tiles `first` .. `end` alone, of coefficients that need no other rows than theirs:
+// sequence[end - first][views], of which the caller frees the bytes. As lossy_encode.
+relume_status lossy_encode_tiles(struct av1_bytes *sequence, relume_coefficients *const *from,
+                                 int views, int first, int end, const struct av1_effort *effort,
+                                 int threads, const struct relume_log *log);
+// The words of a view of these sequences, `stride` from tile to tile; those without bytes are
+// missing, and nothing else of the view can be decoded. RELUME_ENOMEM.
+relume_status lossy_join(struct lossy_words *out, const struct lossy_cut *cut,
+                         const struct av1_bytes *sequence, size_t stride);
+// Words without tiles, and what a sequence adds to them.
+size_t lossy_words_of(const struct lossy_cut *cut);
+size_t lossy_words_for(size_t bytes);
+// Which tiles words have, from the first to behind the last with bytes, of how many; the words and
+// the side of a tile. None of it is believed: RELUME_EDAMAGED where the head, of lossy_head(word)
+// words, cannot be, or where tiles between them are missing.
+struct lossy_held {
+    int first, end, count, side;
+    size_t words;
+};
+relume_status lossy_look(struct lossy_held *out, const uint32_t *head, size_t words);
+// The head of one that misses tiles gets those of another, of the same view.
+void lossy_add_tiles(uint32_t *head, const uint32_t *other, const struct lossy_held *held);
+// Words with the tiles `first` .. `end` of `words` alone. RELUME_ENOMEM.
+relume_status lossy_keep_tiles(struct lossy_words *out, const struct lossy_words *words, int first,
+                               int end);
+
 // Codes[planes][height][width] as the words of a view that is an anchor. `order` of the shape is
 // NULL. Errors as above, without RELUME_EIO.
 relume_status lossy_encode_codes(struct lossy_words *out, const uint16_t *codes,

@@ -61,6 +61,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_BANDS     "relume.part.bands"
 #define ATTR_ERRORS    "relume.part.errors"
 #define ATTR_STORED    "relume.part.stored"
+#define ATTR_TILES     "relume.part.tiles"
 
 // A report, its figures as hexadecimal floats: fit, store, steps, PSNR, typical, the census
 #define FORMAT_MEASURED "%a %a %a %a %a %zu %zu %zu %zu %zu %d"

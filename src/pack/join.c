@@ -6,6 +6,7 @@
 #include "coder/coefficients.h"
 #include "pack/format.h"
 #include "pack/join_rows.h"
+#include "pack/join_tiles.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -300,23 +301,66 @@ static relume_status find_packed(const struct joining *j, bool *packed)
 
 // ---------------------------------------------------------------- planes with loss
 
+// The parts that have tiles of a group, *count of them.
+static relume_status find_tiles(struct joining *j, int group, struct tiles_of_part **out,
+                                int *count)
+{
+    struct tiles_of_part *own = *out = arena_array(&j->arena, (size_t)j->count, sizeof *own);
+    *count = 0;
+    for (int i = 0; own && i < j->count; i++) {
+        const struct part_file *p = j->order[i];
+        const int k = 1 + group - p->first_group;
+        if (k >= 1 && k <= p->groups)
+            own[(*count)++] = (struct tiles_of_part){.part = p, .exr = k};
+    }
+    return own ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static relume_status add_group(struct joining *j, struct tiles_of_part *own, int count)
+{
+    const struct part_file *bad = own->part;
+    relume_status status = join_tiles_check(own, count, &bad);
+    if (!status && count == 1)
+        return add_again(j, own->part, own->exr);
+    struct exr_part *to = &j->exr[j->exrs++];
+    if (!status)
+        status = exr_part_again(to, own->part->file, own->exr, &j->arena);
+    if (!status) {
+        keep_attributes(to);
+        status = join_tiles(to, own, count, &bad, &j->arena, j->log);
+    }
+    return status == RELUME_EDAMAGED ? damaged(j, bad) : status;
+}
+
+static relume_status see_views(struct joining *j, const struct tiles_of_part *own, char *seen)
+{
+    const struct part_file *p = own->part;
+    const char *list = exr_get_text(p->file, own->exr, ATTR_GROUP);
+    while (*list) {
+        const int view = part_next_member(&list, p->info.all_views, NULL);
+        if (view < 0 || seen[view]++)
+            return damaged(j, p);
+    }
+    return RELUME_OK;
+}
+
 static relume_status add_groups(struct joining *j, char *seen)
 {
     relume_status status = RELUME_OK;
-    int groups = 0;
-    for (int i = 0; !status && i < j->count; i++) {
-        const struct part_file *p = j->order[i];
-        if (p->groups && p->first_group != groups)
-            return damaged(j, p);
-        for (int k = 1; !status && k <= p->groups; k++, groups++) {
-            const char *list = exr_get_text(p->file, k, ATTR_GROUP);
-            while (*list) {
-                const int view = part_next_member(&list, p->info.all_views);
-                if (view < 0 || seen[view]++)
-                    return damaged(j, p);
-            }
-            status = add_again(j, p, k);
-        }
+    int groups = 0, count;
+    for (int i = 0; i < j->count; i++) {
+        const int end = j->part[i].first_group + j->part[i].groups;
+        groups = j->part[i].groups && end > groups ? end : groups;
+    }
+    for (int g = 0; !status && g < groups; g++) {
+        struct tiles_of_part *own;
+        status = find_tiles(j, g, &own, &count);
+        if (!status && !count)
+            return damaged(j, j->part);
+        if (!status)
+            status = see_views(j, own, seen);
+        if (!status)
+            status = add_group(j, own, count);
     }
     for (int v = 0; !status && v < j->part->info.all_views; v++)
         if (!seen[v])
@@ -358,7 +402,7 @@ static bool holds_view(const struct part_file *p, int view)
     for (int k = 1; k <= p->groups; k++) {
         const char *list = exr_get_text(p->file, k, ATTR_GROUP);
         while (*list) {
-            const int own = part_next_member(&list, p->info.all_views);
+            const int own = part_next_member(&list, p->info.all_views, NULL);
             if (own < 0 || own == view)
                 return own == view;
         }

@@ -8,6 +8,7 @@
 #include "coder/coefficients.h"
 #include "pack/format.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -105,21 +106,33 @@ static void count_books(struct part_file *p)
            !strcmp(exr_part_info(p->file, 1 + p->books).name, name) && ++p->books);
 }
 
-int part_next_member(const char **list, int views)
+int part_next_member(const char **list, int views, size_t words[2])
 {
     int view, read = 0;
-    size_t words, depth;
-    if (sscanf(*list, FORMAT_MEMBER_SCAN, &view, &words, &depth, &read) != 3 || view < 0 ||
+    size_t own[2], *to = words ? words : own;
+    if (sscanf(*list, FORMAT_MEMBER_SCAN, &view, &to[0], &to[1], &read) != 3 || view < 0 ||
         view >= views)
         return -1;
     *list += read;
     return view;
 }
 
+bool part_tiles(struct lossy_held *out, const struct part_file *part, int exr)
+{
+    int count;
+    const float *v = exr_get_floats(part->file, exr, ATTR_TILES, &count);
+    for (int k = 0; k < 3; k++)
+        if (!v || count != 3 || !(v[k] >= 0.0f && v[k] < 0x1p24f && v[k] == floorf(v[k])))
+            return false;
+    *out = (struct lossy_held){.first = (int)v[0], .end = (int)v[1], .count = (int)v[2]};
+    return out->first < out->end && out->end <= out->count;
+}
+
 // "group0003" and the next ones, whose views are counted, and then what belongs to views.
 static relume_status check_groups(struct part_file *p, const struct relume_log *log)
 {
     struct relume_encode_report measured;
+    struct lossy_held tiles;
     char name[32];
     int k = 1, view, first = 0;
     if (!part_measured(&measured, p, 0))
@@ -132,10 +145,13 @@ static relume_status check_groups(struct part_file *p, const struct relume_log *
             return bad(p, "list of groups", log);
         snprintf(name, sizeof name, "group%04d", p->first_group + p->groups);
         if (strcmp(exr_part_info(p->file, k).name, name) || p->first_group < 0 ||
-            p->first_group > p->info.all_views)
+            p->first_group > p->info.all_views || !part_tiles(&tiles, p, k) ||
+            tiles.count > INT_MAX - p->info.all_tiles)
             return bad(p, "list of groups", log);
+        p->info.tiles += tiles.end - tiles.first;
+        p->info.all_tiles += tiles.count;
         for (; *list; p->info.views++) {
-            view = part_next_member(&list, p->info.all_views);
+            view = part_next_member(&list, p->info.all_views, NULL);
             if (view < 0 || p->info.views >= p->info.all_views)
                 return bad(p, "list of groups", log);
             first = !p->info.views || view < first ? view : first;

@@ -3,6 +3,7 @@
 #define PACK_PART_H
 
 #include "image/exr.h"
+#include "lossy/lossy.h"
 
 #include <relume/pack.h>
 
@@ -20,8 +21,12 @@ struct part_file {
 // when it is no part, RELUME_ENOMEM.
 relume_status part_open(struct part_file *out, const char *path, const struct relume_reader *from,
                         const struct relume_limits *limits, const struct relume_log *log);
-// The next view of the list of a group; -1: there is none, or it is damaged.
-int part_next_member(const char **list, int views);
+// The next view of the list of a group, and the words of its planes and its depth, or NULL; -1:
+// there is none, or it is damaged.
+int part_next_member(const char **list, int views, size_t words[2]);
+// The tiles that part `exr` of the file, a group, has of its views, and how many these have; false:
+// it does not say.
+bool part_tiles(struct lossy_held *out, const struct part_file *part, int exr);
 // What was measured of the view whose rows are part `exr` of the file.
 bool part_measured(struct relume_encode_report *out, const struct part_file *part, int exr);
 // RELUME_EUNFIT with a sentence where nobody asked for the storage and its steps are too coarse.

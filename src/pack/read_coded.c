@@ -5,6 +5,7 @@
 #include "lossy/disparity.h"
 #include "pack/format.h"
 #include "pack/reader.h"
+#include "pack/words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -85,34 +86,11 @@ relume_status reader_find_groups(relume_pack *p, int *part)
 
 // ---------------------------------------------------------------- words
 
-struct words {
-    uint32_t *word;  // [range.count]
-    struct word_range range;
-    size_t width;
-};
-
-static void load_words(void *context, const struct relume_rect *at, const void *samples)
-{
-    const struct words *to = context;
-    const size_t from = (size_t)at->top * to->width, last = to->range.first + to->range.count;
-    const size_t begin = from > to->range.first ? from : to->range.first;
-    const size_t rows_end = from + (size_t)at->height * to->width;
-    const size_t end = rows_end < last ? rows_end : last;
-    if (begin < end)
-        memcpy(to->word + (begin - to->range.first), (const uint32_t *)samples + (begin - from),
-               (end - begin) * sizeof *to->word);
-}
-
 // Words of a part into those from `range.first` on.
 static relume_status read_range(uint32_t *to, const relume_pack *p, int part,
                                 struct word_range range)
 {
-    const size_t width = (size_t)exr_part_info(p->file, part).width;
-    const size_t first = range.first / width, end = (range.first + range.count + width - 1) / width;
-    const struct relume_rect rows = {0, (int)first, (int)width, (int)(end - first)};
-    struct words words = {to, range, width};
-    return range.count ? exr_read(p->file, part, &rows, p->threads, load_words, &words, p->log)
-                       : RELUME_OK;
+    return words_read(to, p->file, part, range.first, range.count, p->threads, p->log);
 }
 
 // All of them, which the caller frees.
@@ -310,7 +288,9 @@ relume_status reader_load_learnt(struct relume_image *out, relume_pack *p, int p
     if (!status)
         status = learnt_decode(out, &words, &steps, kind, p->threads);
     if (status == RELUME_EDAMAGED)
-        status = reader_bad(p, info.name, "tiles of sound AV1 data");
+        status = reader_bad(p, info.name,
+                            p->keep_going ? "tiles of sound AV1 data"
+                                          : "tiles of sound AV1 data; --keep-going shows the rest");
     mem_free(words.word);
     return status;
 }

@@ -1,5 +1,6 @@
 // read_view.c - the samples of one view: its codes, depth and mask
 #include "base/half.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "coder/codes.h"
 #include "pack/format.h"
@@ -229,17 +230,40 @@ static relume_status open_shadows(relume_shadows **out, relume_pack *pack, int v
     return status;
 }
 
-relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view)
+static relume_status open_gloss(relume_shadows **out, relume_pack *pack)
 {
     struct relume_image model;
-    *out = NULL;
-    if (!pack->info.has_gloss)
-        return open_shadows(out, pack, view);
-    relume_status status = relume_pack_gloss(&model, pack, view);
+    relume_status status = relume_pack_gloss(&model, pack, 0);
     if (!status)
         status = relume_gloss_create(out, &model);
     relume_image_destroy(&model);
     return status;
+}
+
+// Where one goes on without what is damaged, it is a warning, and is not asked for again.
+static relume_status open_or_lose(relume_shadows **out, relume_pack *pack, int view, int *part)
+{
+    const struct relume_log *const log = pack->log;
+    if (pack->keep_going)
+        pack->log = NULL;
+    const relume_status status =
+        part == &pack->gloss ? open_gloss(out, pack) : open_shadows(out, pack, view);
+    pack->log = log;
+    if (status != RELUME_EDAMAGED || !pack->keep_going)
+        return status;
+    log_line(log, RELUME_WARNING, "%s: damaged part '%s'; shown without it", pack->path,
+             exr_part_info(pack->file, *part).name);
+    *part = -1;
+    return RELUME_OK;
+}
+
+relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view)
+{
+    *out = NULL;
+    if (view < 0 || view >= pack->info.views)
+        return RELUME_EINVAL;
+    int *part = pack->info.has_gloss ? &pack->gloss : &pack->parts[view].shadow;
+    return *part < 0 ? RELUME_OK : open_or_lose(out, pack, view, part);
 }
 
 struct picking {

@@ -39,7 +39,7 @@ struct relume_pack {
     struct view_parts *parts;                      // [views]
     struct relume_codes_part *loaded;              // [views]
     struct read_books *books;                      // [views]; shared ones in the first
-    int gloss;                                     // the part, where info.has_gloss
+    int gloss;                                     // the part, where info.has_gloss; -1: lost
     bool part;                                     // the header of a part of several (part.h)
     bool coded;                                    // planes with loss, ...
     bool keep_going;                               // ... of which tiles may be damaged;

@@ -4,41 +4,10 @@
 #include "lossy/disparity.h"
 #include "pack/format.h"
 #include "pack/learnt.h"
+#include "pack/words.h"
 #include "pack/writer.h"
 
 #include <string.h>
-
-// What a part holds: the words of the planes and of the depth of a view, view after view.
-struct words {
-    struct lossy_words *run;  // [runs], some of them empty
-    int runs;
-    size_t count, width;
-};
-
-// Rows are short, so that few more are read than a view needs, and the part is not too high.
-enum { ROW_WORDS = 2048, MOST_ROWS = 65536 };
-
-static size_t rows_of(size_t words)
-{
-    const size_t rows = (words + ROW_WORDS - 1) / ROW_WORDS;
-    return rows < MOST_ROWS ? rows : MOST_ROWS;
-}
-
-static relume_status words_rows(void *context, int row, int rows, void *samples)
-{
-    const struct words *w = context;
-    const size_t from = (size_t)row * w->width, to = from + (size_t)rows * w->width;
-    uint32_t *out = samples;
-    size_t at = 0;
-    memset(out, 0, (to - from) * sizeof *out);
-    for (int i = 0; i < w->runs; at += w->run[i++].count) {
-        const size_t begin = at > from ? at : from;
-        const size_t end = at + w->run[i].count < to ? at + w->run[i].count : to;
-        if (begin < end)
-            memcpy(out + begin - from, w->run[i].word + begin - at, (end - begin) * sizeof *out);
-    }
-    return RELUME_OK;
-}
 
 // Words become the writer's.
 static struct lossy_words keep(struct writer *w, struct lossy_words *made)
@@ -73,70 +42,64 @@ static struct lossy_words depth_words(struct writer *w, const struct relume_pack
     return status ? made : keep(w, &made);
 }
 
-static void add_view(struct writer *w, struct words *to, const char **members, float *step,
-                     int index)
+// The words of the planes and of the depth of a view, which follow those of the last.
+static void add_view(struct writer *w, struct word_run *run, int member, const char **members,
+                     float *step, int index)
 {
     const struct relume_pack_view *view = &w->contents->view[index];
-    const int member = to->runs / 2;
-    struct lossy_words *run = to->run + to->runs;
-    run[0] = (struct lossy_words){(uint32_t *)(uintptr_t)view->coded, view->coded_words};
-    run[1] = depth_words(w, view, &step[member]);
-    to->runs += 2;
-    to->count += run[0].count + run[1].count;
-    *members = arena_format(&w->arena, FORMAT_MEMBER, *members ? *members : "", index, run[0].count,
-                            run[1].count);
+    const struct lossy_words depth = depth_words(w, view, &step[member]);
+    run[2 * member] = (struct word_run){.count = view->coded_words, .word = view->coded};
+    run[2 * member + 1] = (struct word_run){.count = depth.count, .word = depth.word};
+    *members = arena_format(&w->arena, FORMAT_MEMBER, *members ? *members : "", index,
+                            view->coded_words, depth.count);
     w->failed |= !*members;
-}
-
-static void fill(struct exr_part *part, struct words *words)
-{
-    static const char *const channel[] = {CODING_AV1};
-    const size_t rows = rows_of(words->count);
-    words->width = (words->count + rows - 1) / rows;
-    part->codec = EXR_CODEC_NONE;
-    part->sample = EXR_SAMPLE_UINT;
-    part->width = (int)words->width;
-    part->height = (int)rows;
-    part->channels = 1;
-    part->channel = channel;
-    part->rows = words_rows;
-    part->context = words;
 }
 
 void writer_fill_words(struct writer *w, struct exr_part *part, const uint32_t *word, size_t count)
 {
-    struct words *words = arena_array(&w->arena, 1, sizeof *words);
-    struct lossy_words *run = arena_array(&w->arena, 1, sizeof *run);
+    struct word_rows *words = arena_array(&w->arena, 1, sizeof *words);
+    struct word_run *run = arena_array(&w->arena, 1, sizeof *run);
     w->failed |= !words || !run;
     if (w->failed)
         return;
-    *run = (struct lossy_words){(uint32_t *)(uintptr_t)word, count};
-    *words = (struct words){.run = run, .runs = 1, .count = count};
-    fill(part, words);
+    *run = (struct word_run){.count = count, .word = word};
+    *words = (struct word_rows){.run = run, .runs = 1};
+    words_fill(part, words);
+}
+
+// Which tiles of its views a part of the work has.
+static void add_tiles(struct writer *w, struct exr_part *part, const struct relume_pack_view *view)
+{
+    struct lossy_held held;
+    w->failed |= lossy_look(&held, view->coded, view->coded_words) != RELUME_OK;
+    writer_doubles(w, part, ATTR_TILES, (const double[]){held.first, held.end, held.count}, 3);
 }
 
 // The anchor and the views that are predicted from it.
 static void add_group(struct writer *w, int group, int anchor)
 {
     const struct relume_pack_contents *c = w->contents;
-    struct words *words = arena_array(&w->arena, 1, sizeof *words);
+    struct word_rows *words = arena_array(&w->arena, 1, sizeof *words);
     float *step = arena_array(&w->arena, (size_t)c->views, sizeof *step);
-    struct lossy_words *run = arena_array(&w->arena, 2 * (size_t)c->views, sizeof *run);
+    struct word_run *run = arena_array(&w->arena, 2 * (size_t)c->views, sizeof *run);
     struct exr_part *part = writer_part(w, arena_format(&w->arena, "group%04d", group), 1, 1);
     const char *members = NULL;
+    int count = 0;
     w->failed |= !words || !step || !run;
     if (w->failed)
         return;
-    words->run = run;
-    add_view(w, words, &members, step, anchor);
+    add_view(w, run, count++, &members, step, anchor);
     for (int v = 0; v < c->views; v++)
         if (c->view[v].predicted && c->view[v].anchor == anchor && c->view[v].coded)
-            add_view(w, words, &members, step, v);
-    fill(part, words);
+            add_view(w, run, count++, &members, step, v);
+    *words = (struct word_rows){.run = run, .runs = 2 * count};
+    words_fill(part, words);
     writer_text(part, ATTR_GROUP, members);
-    writer_floats(w, part, ATTR_STEP, step, words->runs / 2);
+    writer_floats(w, part, ATTR_STEP, step, count);
     if (c->slabs)
         writer_int(part, ATTR_MEMBER, c->view[anchor].slab);
+    if (c->share)
+        add_tiles(w, part, &c->view[anchor]);
 }
 
 void writer_add_groups(struct writer *w)

@@ -103,9 +103,14 @@ head -c $(($(wc -c <moves.exr) - 100)) moves.exr >cut.exr
 expect_fail 'cut off' 1 "cut.exr: truncated or damaged" e.png "$RELUME" relight cut.exr -o e.png --light "$sun"
 # Their words are the last of the file and have a check sum.
 { head -c $(($(wc -c <moves.exr) - 40)) moves.exr && tail -c 40 moves.exr | tr '\000-\377' '\001-\377\000'; } >broken.exr
-expect_fail 'damaged' 1 "broken.exr: view0000.highlights; expected tiles of sound AV1 data" e.png \
+expect_fail 'damaged' 1 "broken.exr: view0000.highlights; expected tiles of sound AV1 data; --keep-going shows the rest" e.png \
     "$RELUME" relight broken.exr -o e.png --light "$sun"
-expect_fail 'check finds it' 1 "view0000.highlights" - "$RELUME" check broken.exr
+expect_fail 'check finds it' 1 "view0000.highlights; expected tiles of sound AV1 data$" - "$RELUME" check broken.exr
+expect_ok 'one can go on' '^relume: warning: broken.exr: damaged part .view0000.highlights.; shown without it$' \
+    "$RELUME" relight broken.exr -o lost.png --light "$sun" --light "$sun" --keep-going
+check 'that is said once' [ "$(grep -c damaged err.txt)" = 1 ]
+"$RELUME" relight broken.exr -o lost.png --light "$sun" --keep-going -q 2>/dev/null
+check 'highlights fade then' cmp lost.png fades.png
 sed 's/view0000\.highlights/view0000.othersorts/' moves.exr >older.exr
 "$RELUME" relight older.exr -o older.png --light "$sun" -q
 check 'programs that do not know the part show what fades' cmp older.png fades.png

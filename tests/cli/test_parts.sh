@@ -65,7 +65,7 @@ shared() { # name capture parts options...: learnt first, then the parts, backwa
     rm -rf learnt ./*.part
     relume encode "$capture" --shadows no "$@" -o whole.exr
     for i in $(seq "$parts"); do
-        relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" || return
+        relume encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" >out.txt || return
     done
     check "$name: a share each, and no part" [ "$(ls learnt | grep -c samples)" = "$parts" -a ! -e 1.part ]
     for i in $(seq "$parts" -1 1); do
@@ -95,8 +95,8 @@ nothing_learnt() { # name, options: said, done, and no folder
     name=$1
     shift
     rm -rf none
-    "$RELUME" encode slab "$@" --part 1/2 --learnt none --learn-only -o 1.part 2>err.txt
-    check "$name" [ $? = 0 -a ! -e none -a "$(grep -c 'nothing is learnt before encoding with these options; run the same line without --learn-only' err.txt)" = 1 ]
+    "$RELUME" encode slab "$@" --part 1/2 --learnt none --learn-only -o 1.part -q >out.txt 2>err.txt
+    check "$name" [ $? = 0 -a ! -e none -a ! -s err.txt -a "$(grep -c '^slab: nothing is learnt before encoding with these options; run the same line without --learn-only$' out.txt)" = 1 ]
 }
 nothing_learnt 'nothing to learn for a fixed basis' --basis sh --coefficients 4
 nothing_learnt 'nor for a table' --basis table --interpolant chord
@@ -143,8 +143,8 @@ with_loss() { # name capture parts options...: learnt in rounds, the parts backw
     while [ "$(grep -c 'all is learnt' said.txt)" != "$parts" ] && [ $rounds -lt 12 ]; do
         rounds=$((rounds + 1))
         for i in $(seq "$parts"); do
-            "$RELUME" encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" || return
-        done >said.txt 2>&1
+            "$RELUME" encode "$capture" "$@" --part "$i/$parts" --learnt learnt --learn-only -o "$i.part" -q || return
+        done >said.txt 2>err.txt
     done
     check "$name: no part before all is learnt" [ ! -e 1.part ]
     for i in $(seq "$parts" -1 1); do
@@ -183,8 +183,69 @@ wait
 relume encode large --basis pca --coefficients 6 --bytes-per-pixel 1 --pyramid yes -o whole.exr
 relume join ./*.part -o joined.exr
 same 'a pyramid with loss, both parts at once' whole.exr joined.exr
-check 'a part without views says so' grep -q 'part 1 of 2 holds no views' said.1
+check 'a part without tiles says so' grep -q 'part 1 of 2 holds nothing' said.1
 
+# larger views are shared by their tiles of 512 pixels: here four of a picture, of which three are small
+"$sphere" wide --size 520 --lights 4 --hemisphere --mask --format png
+: >said.txt
+with_loss 'tiles of one picture' wide 3 --basis sh --coefficients 4 --psnr 20
+"$RELUME" info 3.part >info.txt
+check 'info says how many tiles' grep -q '^tiles         2 of 4 of these views$' info.txt
+"$RELUME" info 1.part --json >info.json
+[ "$python" ] && check 'info --json too' "$python" -c 'import json; d = json.load(open("info.json")); assert (d["tiles"], d["all_tiles"]) == (1, 4)'
+check 'a part of tiles is whole' relume check 3.part
+mkdir tiles && cp ./*.part tiles
+not_tiles() { # name, bytes of 2.part that become others of the same length, part
+    LC_ALL=C sed "s/$2/" tiles/2.part >2.part
+    expect_fail "$1" 1 "${3:-2}.part: .*run this part again" out.exr "$RELUME" join 1.part 2.part 3.part -o out.exr
+}
+not_tiles 'words that are none' 'RLV1/RLV2'
+not_tiles 'a group that is another' 'group0000/group0001' 3
+not_tiles 'a view that is another' '^\(.*relume.group.string.....\)0 /\11 '
+cp tiles/1.part 2.part
+expect_fail 'tiles doubled' 1 '2.part: part 1 of 3, as 1.part is' out.exr "$RELUME" join 1.part 2.part 3.part -o out.exr
+expect_fail 'tiles missing' 1 '1.part: part 2 of 3 is missing' out.exr "$RELUME" join 1.part 3.part -o out.exr
+cp tiles/2.part 2.part
+relume join 3.part 1.part 2.part -o joined.exr
+same 'and once more' whole.exr joined.exr
+rm -f ./*.part
+for i in 1 2 3 4 5 6; do
+    "$RELUME" encode wide --basis sh --coefficients 4 --psnr 20 --part $i/6 --learnt learnt -o $i.part
+done 2>said.txt
+check 'more parts than tiles: two hold nothing' [ "$(grep -c 'holds nothing: planes with loss are coded in 4 tiles here; expected no more than 4 parts' said.txt)" = 2 ]
+relume join ./*.part -o joined.exr
+same 'more parts than tiles' whole.exr joined.exr
+encode_parts wide 2 --basis sh --coefficients 4 --psnr 20
+relume join ./*.part -o joined.exr
+same 'tiles, each part by itself' whole.exr joined.exr
+# a part is killed in the middle of its trials; what it has coded stays
+rm -rf learnt ./*.part
+"$RELUME" encode wide --basis sh --coefficients 4 --psnr 20 --part 2/2 --learnt learnt -o 2.part 2>/dev/null &
+for i in $(seq 600); do
+    [ "$(ls learnt 2>/dev/null | grep -c '^words.*of2$')" -gt 1 ] && break
+    sleep 0.05
+done
+kill -9 $! && wait $! 2>/dev/null
+kept=$(ls learnt/words.*2of2 | head -n 1)
+touch -d 2001-01-01 "$kept"
+check 'a part that is killed leaves none' [ ! -e 2.part ]
+encode_parts wide 2 --basis sh --coefficients 4 --psnr 20 --learnt learnt
+relume join ./*.part -o joined.exr
+same 'parts go on where one was killed' whole.exr joined.exr
+check 'by what it has coded' [ "$kept" -ot whole.exr ]
+head -c -1 "$kept" >short && mv short "$kept"
+expect_fail 'tiles that were learnt, damaged' 1 "$kept: damaged; remove it, and it is made again" out.part "$RELUME" encode wide --basis sh --coefficients 4 --psnr 20 --part 1/2 --learnt learnt -o out.part
+: >said.txt
+with_loss 'tiles for bytes, with a pyramid' wide 3 --basis sh --coefficients 4 --bytes-per-pixel 0.03 --pyramid yes
+"$RELUME" synth attic -o hall --size 260 --lights 3 --samples 1 -q
+: >said.txt
+with_loss 'tiles of a panorama' hall 2 --basis sh --coefficients 1 --psnr 14
+"$RELUME" synth teapot -o pair --size 520 --views 2x1 --lights 3 --samples 1 -q
+relume encode pair --basis sh --coefficients 1 --bytes-per-pixel 0.05 --shadows no -o whole.exr
+rm -rf learnt
+encode_parts pair 3 --basis sh --coefficients 1 --bytes-per-pixel 0.05 --learnt learnt
+relume join ./*.part -o joined.exr
+same 'tiles of neighbours' whole.exr joined.exr
 
 encode_parts slab 2 --basis pca
 # ---- the lines for the shell

@@ -37,6 +37,14 @@ above 'unseen lights are shown better' "$(psnr few.exr unseen)" "$(psnr fewer.ex
 expect_ok 'as many bytes as were asked for' - "$RELUME" encode box -o small.exr --bytes-per-pixel 6 --shadows yes
 below 'with what shadows take' "$(wc -c <small.exr)" $((6 * 48 * 48 + 1))
 rm small.exr
+# their words are the last of the file
+{ head -c $(($(wc -c <few.exr) - 40)) few.exr && tail -c 40 few.exr | tr '\000-\377' '\001-\377\000'; } >broken.exr
+expect_fail 'damaged' 1 "broken.exr: view0000.shadows; expected tiles of sound AV1 data; --keep-going shows the rest" e.png \
+    "$RELUME" relight broken.exr -o e.png --light "$sun"
+expect_ok 'one can go on' '^relume: warning: broken.exr: damaged part .view0000.shadows.; shown without it$' \
+    "$RELUME" relight broken.exr -o lost.png --light "$sun" --keep-going
+check 'that is said once' [ "$(grep -c damaged err.txt)" = 1 ]
+rm broken.exr
 
 # ---- where it cannot be
 expect_ok 'too little memory' 'box: between the lamps shadows fade; tracing them takes more than --max-memory allows' \

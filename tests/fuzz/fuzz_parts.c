@@ -3,7 +3,7 @@
 #include "fuzz.h"
 
 static const struct relume_limits limits = {
-    .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
+    .max_side = 1024, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
 
 static const char *const words[] = {"relume.format",
                                     "relume.version",
@@ -18,6 +18,7 @@ static const char *const words[] = {"relume.format",
                                     "relume.part.measured",
                                     "relume.part.bands",
                                     "relume.part.errors",
+                                    "relume.part.tiles",
                                     "relume.coding",
                                     "relume.group",
                                     "group0000",
@@ -35,8 +36,13 @@ static const char *const words[] = {"relume.format",
                                     "scanlineimage",
                                     NULL};
 
-// The second part of rows, of views, and of groups of views with loss.
-static char second[3][96];
+// The second part of rows, of views, of groups of views with loss, and of their tiles.
+static char second[4][96];
+
+static const char *second_of(const struct relume_pack_part *part)
+{
+    return second[part->tiles < part->all_tiles ? 3 : part->coded ? 2 : part->rows == 0];
+}
 
 static void join(const char *const *parts, int count)
 {
@@ -60,7 +66,7 @@ static bool one(struct fuzz *f, struct bytes b)
                               relume_pack_params(.limits = &limits, .reader = &reader)))
         return false;
     join((const char *const[]){f->path}, 1);
-    join((const char *const[]){f->path, second[part.coded ? 2 : part.rows == 0]}, 2);
+    join((const char *const[]){f->path, second_of(&part)}, 2);
     return true;
 }
 
@@ -87,6 +93,7 @@ int main(int argc, char **argv)
                                  .hemisphere = true,
                                  .depth = true,
                                  .mask = true};
+    const struct fixture wide = {.width = 520, .height = 4, .lights = 5, .views = 1, .mask = true};
     struct fixture large = slab;
     large.views = 9;
     fuzz_begin(&f, "fuzz_parts", argc, argv);
@@ -104,5 +111,9 @@ int main(int argc, char **argv)
     snprintf(second[2], sizeof second[2], "%s/groups.part", f.folder);
     fuzz_store(second[2], f.seed[f.seeds - 1]);
     add(&f, &large, &relume_basis_sh, 4, 1, 2, RELUME_STORE_DEFAULT, 25.0);
+    add(&f, &wide, &relume_basis_sh, 1, 2, 2, RELUME_STORE_DEFAULT, 25.0);
+    snprintf(second[3], sizeof second[3], "%s/tiles.part", f.folder);
+    fuzz_store(second[3], f.seed[f.seeds - 1]);
+    add(&f, &wide, &relume_basis_sh, 1, 1, 2, RELUME_STORE_DEFAULT, 25.0);
     return fuzz_run(&f, argc, argv, one);
 }

@@ -207,6 +207,58 @@ static void test_threads_change_nothing(void **state)
     drop(&m);
 }
 
+// Three tiles in two pieces, as those of two machines: what they hold, and both together.
+static void test_tiles_alone_are_those_of_the_view(void **state)
+{
+    const struct av1_effort effort = {122, AV1_FAST};
+    struct made m;
+    struct lossy_held held;
+    struct lossy_words some, rest, again;
+    (void)state;
+    make(&m, 1040, 24, true);
+    const struct lossy_words whole = encoded(&m, effort.quantiser, 1);
+    const struct lossy_cut cut = lossy_cut_of(m.coder, 1040, 24, 1);
+    assert_true(cut.side == 512 && cut.across == 3 && cut.count == 3);
+    struct av1_bytes tile[3];
+    assert_int_equal(lossy_encode_tiles(tile, &m.coefficients, 1, 0, 1, &effort, 2, NULL),
+                     RELUME_OK);
+    assert_int_equal(lossy_encode_tiles(tile + 1, &m.coefficients, 1, 1, 3, &effort, 1, NULL),
+                     RELUME_OK);
+    assert_int_equal(lossy_join(&again, &cut, tile, 1), RELUME_OK);
+    assert_int_equal(again.count, whole.count);
+    assert_memory_equal(again.word, whole.word, whole.count * sizeof *whole.word);
+    assert_int_equal(lossy_keep_tiles(&some, &whole, 0, 1), RELUME_OK);
+    assert_int_equal(lossy_keep_tiles(&rest, &whole, 1, 3), RELUME_OK);
+    assert_int_equal(lossy_look(&held, some.word, some.count), RELUME_OK);
+    assert_true(held.first == 0 && held.end == 1 && held.count == 3 && held.words == some.count);
+    assert_int_equal(lossy_look(&held, rest.word, rest.count), RELUME_OK);
+    assert_true(held.first == 1 && held.end == 3 && held.side == 512 && held.words == rest.count);
+    const size_t head = lossy_words_of(&cut);
+    assert_int_equal(some.count + rest.count, whole.count + head);
+    lossy_add_tiles(some.word, rest.word, &held);
+    assert_memory_equal(some.word, whole.word, some.count * sizeof *some.word);
+    assert_memory_equal(rest.word + head, whole.word + some.count, (rest.count - head) * 4);
+    // what is missing cannot be decoded, and nothing is believed
+    uint16_t *back = malloc((size_t)m.shape.planes * 1040 * 24 * sizeof *back);
+    const struct relume_rect first = {0, 0, 512, 24}, last = {1024, 0, 16, 24};
+    assert_int_equal(lossy_decode(back, &m.shape, &last, &rest, NULL, 1, NULL), RELUME_OK);
+    assert_int_equal(lossy_decode(back, &m.shape, &first, &rest, NULL, 1, NULL), RELUME_EDAMAGED);
+    assert_int_equal(lossy_look(&held, rest.word, head - 1), RELUME_EDAMAGED);
+    rest.word[3] = rest.word[7];  // the tile between them is missing
+    rest.word[5] = 0;
+    assert_int_equal(lossy_look(&held, rest.word, rest.count), RELUME_EDAMAGED);
+    rest.word[2] = 0xffffffff;
+    assert_int_equal(lossy_look(&held, rest.word, rest.count), RELUME_EDAMAGED);
+    for (int i = 0; i < 3; i++)
+        mem_free(tile[i].byte);
+    mem_free(again.word);
+    mem_free(some.word);
+    mem_free(rest.word);
+    relume_free(whole.word);
+    free(back);
+    drop(&m);
+}
+
 static void note_tile(void *user, const struct relume_rect *at)
 {
     int *seen = user;
@@ -439,6 +491,7 @@ int main(void)
         cmocka_unit_test(test_a_trial_is_what_would_be_read),
         cmocka_unit_test(test_a_rectangle_is_that_of_the_view),
         cmocka_unit_test(test_threads_change_nothing),
+        cmocka_unit_test(test_tiles_alone_are_those_of_the_view),
         cmocka_unit_test(test_a_damaged_tile_is_lost_alone),
         cmocka_unit_test(test_words_are_not_believed),
         cmocka_unit_test(test_a_group_is_predicted_from_its_anchor),

@@ -686,6 +686,29 @@ static relume_status encode_team(const struct args *args, struct request *r,
     return status;
 }
 
+// What learning has come to is what scripts wait for: the command's output.
+static void say_learnt(const char *path, const char *text)
+{
+    struct shown name;
+    printf("%s: %s\n", shown(&name, path), text);
+}
+
+static void say_share(const struct request *r, const relume_capture *capture, bool all)
+{
+    char text[256];
+    if (all)
+        snprintf(text, sizeof text,
+                 "all is learnt; encode part %d of %d by the same line without --learn-only",
+                 r->pack.part, r->pack.parts);
+    else
+        snprintf(text, sizeof text, "part %d of %d has learnt its share; %s", r->pack.part,
+                 r->pack.parts,
+                 has_steps(r, capture)
+                     ? "run this line again when the other parts have learnt theirs"
+                     : "other parts have not learnt theirs yet");
+    say_learnt(r->learnt, text);
+}
+
 static relume_status encode(const struct args *args, struct request *r)
 {
     relume_capture *capture;
@@ -696,10 +719,8 @@ static relume_status encode(const struct args *args, struct request *r)
     if (status)
         return status;
     if (r->learn_only && !learns_first(r) && !has_steps(r, capture)) {
-        announce(args, RELUME_NOTE,
-                 "%s: nothing is learnt before encoding with these options; run the same line "
-                 "without --learn-only",
-                 r->input);
+        say_learnt(r->input, "nothing is learnt before encoding with these options; run the same "
+                             "line without --learn-only");
         relume_capture_destroy(&capture);
         return RELUME_OK;
     }
@@ -717,17 +738,11 @@ static relume_status encode(const struct args *args, struct request *r)
         status = form_team(&team, capture, r);
     if (!status)
         status = encode_team(args, r, capture);
-    if (r->learn_only && !status)
-        announce(args, RELUME_NOTE,
-                 "%s: all is learnt; encode part %d of %d by the same line without --learn-only",
-                 r->learnt, r->pack.part, r->pack.parts);
     if (r->learn_only && status == RELUME_ECANCEL && relume_team_folder_waits(team)) {
         status = RELUME_OK;
-        announce(args, RELUME_NOTE, "%s: part %d of %d has learnt its share; %s", r->learnt,
-                 r->pack.part, r->pack.parts,
-                 has_steps(r, capture)
-                     ? "run this line again when the other parts have learnt theirs"
-                     : "other parts have not learnt theirs yet");
+        say_share(r, capture, false);
+    } else if (r->learn_only && !status) {
+        say_share(r, capture, true);
     }
     relume_team_folder_destroy(&team);
     relume_capture_destroy(&capture);

@@ -137,8 +137,10 @@ static void print_part(const struct relume_pack_part *p, bool json)
     struct shown text;
     if (json) {
         printf("{\"format\": \"relume part\", \"part\": %d, \"parts\": %d, \"first_view\": %d, "
-               "\"views\": %d, \"all_views\": %d, \"first_row\": %d, \"rows\": %d, \"options\": ",
-               p->part, p->parts, p->first, p->views, p->all_views, p->row, p->rows);
+               "\"views\": %d, \"all_views\": %d, \"first_row\": %d, \"rows\": %d, "
+               "\"tiles\": %d, \"all_tiles\": %d, \"options\": ",
+               p->part, p->parts, p->first, p->views, p->all_views, p->row, p->rows, p->tiles,
+               p->all_tiles);
         json_text(stdout, p->options);
         printf(", \"file_bytes\": %llu}\n", (unsigned long long)p->file_bytes);
         return;
@@ -151,6 +153,8 @@ static void print_part(const struct relume_pack_part *p, bool json)
         printf("views         %d to %d of %d\n", p->first, p->first + p->views - 1, p->all_views);
     if (p->rows)
         printf("rows          %d to %d\n", p->row, p->row + p->rows - 1);
+    if (p->tiles < p->all_tiles)
+        printf("tiles         %d of %d of these views\n", p->tiles, p->all_tiles);
     printf("options       %s\n", p->options[0] ? shown(&text, p->options) : "none");
     printf("file          %llu bytes\n", (unsigned long long)p->file_bytes);
 }

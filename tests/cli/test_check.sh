@@ -47,9 +47,10 @@ damage rows.exr $((size - 66)) # 14 words and the beginning of their row
 check_says "those before are the last rows" 1 "part 'view0000.depth', rows 32 to 39: missing or damaged" rows.exr
 head -c $((size - 30)) zip.exr >sumless.exr
 check_says "cut off in the check sums" 1 "part 'sums', rows 0 to 0: missing or damaged" sumless.exr
+expect_fail "a picture is refused then" 1 "sumless.exr: truncated or damaged in part 3" x.png "$RELUME" relight sumless.exr -o x.png
 relume relight zip.exr -o whole.png 2>/dev/null
-check "which no picture needs" relume relight sumless.exr -o sumless.png
-same "and is as it was" whole.png sumless.png
+check "damaged ones are not needed for it" relume relight last.exr -o last.png
+same "and it is as it was" whole.png last.png
 head -c $((size * 3 / 4)) zip.exr >cut.exr
 check_says "what a cut file lacks ends with the last row" 1 "rows [0-9]+ to 39: missing" cut.exr
 expect_fail "a damaged header" 1 "cannot be read as OpenEXR" - "$RELUME" check "$TOP/README.md"

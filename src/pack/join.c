@@ -483,7 +483,8 @@ relume_status relume_pack_join(const char *const *parts, int count, const char *
     if (!status && packed)
         status = gather(&j, report);
     if (!status && packed)
-        status = exr_write(path, p.writer, j.exr, j.exrs, true, p.threads, p.log);
+        status = exr_write(path, p.writer, j.exr, j.exrs, find_attribute(j.exr, ATTR_SUMS) != NULL,
+                           p.threads, p.log);
     else if (!status)
         status = join_rows(j.order, j.count, path, report ? report : &ignored, &p);
     for (int i = 0; i < open; i++)

@@ -224,6 +224,7 @@ struct relume_pack_part {
     char capture[RELUME_DIGEST];  // relume_capture_digest of what it was made from
     int tiles, all_tiles;  // coded: that it holds of its groups, of how many; views of a group are
                            // cut alike
+    bool has_sums;                // as relume_pack_info
 };
 // An input status with a sentence when `path` is no part. Of `params` log, limits and reader are
 // used.
@@ -274,6 +275,7 @@ struct relume_pack_info {
     uint64_t file_bytes;
     bool has_shadow;  // shadows can be traced: relume_pack_shadow
     bool has_gloss;   // highlights wander: relume_pack_gloss
+    bool has_sums;    // check sums, by which relume_pack_check notices any byte that has changed
 };
 // It belongs to the pack.
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
@@ -316,11 +318,12 @@ RELUME_RESULT relume_status relume_pack_gloss(struct relume_image *out, relume_p
 // damaged: a warning says so once. The caller destroys it.
 RELUME_RESULT relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view);
 
-// Read all of a file, or of a part, and call `found` for each run of rows of a part that is missing
-// or cannot be decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; an
-// input status when it is not, with a sentence where it is more than those rows: a header, a value
-// out of range. What PIZ and no compression decode in spite of damage to single bits is not
-// noticed.
+// Read all of a file, or of a part, compare it with its check sums (docs/format.md) and call
+// `found` for each run of rows of a part that has changed, is missing or cannot be decoded, rows
+// from the top of the part. Returns RELUME_OK when the file is whole; an input status when it is
+// not, with a sentence where it is more than those rows: a header, a value out of range. Files of
+// earlier versions have no sums: what PIZ and no compression decode in spite of damage to single
+// bits is not noticed there.
 struct relume_pack_check_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -331,6 +334,7 @@ struct relume_pack_check_params {
     // Likewise, of coded planes: a tile, by column and row of tiles, and what it covers; or NULL.
     void (*tile)(void *user, const char *part, int column, int row, const struct relume_rect *at);
     const struct relume_reader *reader;  // as relume_pack_params
+    bool *has_sums;                      // whether it has check sums; or NULL
 };
 #define relume_pack_check_params(...)                                                              \
     (&(const struct relume_pack_check_params){RELUME_SIZED(relume_pack_check_params), __VA_ARGS__})

@@ -131,7 +131,7 @@ relume_status gbrdf_file_save(const relume_btf_fitted *m, const char *path,
             .context = &source[i],
         };
     }
-    status = view && light ? exr_write(path, NULL, part, PARTS, 1, log) : RELUME_ENOMEM;
+    status = view && light ? exr_write(path, NULL, part, PARTS, false, 1, log) : RELUME_ENOMEM;
     mem_free(view);
     mem_free(light);
     return status;

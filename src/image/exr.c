@@ -7,7 +7,10 @@
 #include "base/outfile.h"
 #include "base/thread.h"
 #include "base/half.h"
+#include "image/exr_sums.h"
 #include "image/piz.h"
+
+#include <relume/io.h>
 
 #include <errno.h>
 #include <openexr.h>
@@ -64,6 +67,29 @@ static const exr_pixel_type_t pixel_types[] = {
     [EXR_SAMPLE_FLOAT] = EXR_PIXEL_FLOAT,
 };
 
+// The whole numbers with which a block begins: its part, its place, how many bytes follow.
+struct lead {
+    int32_t number[6];
+    size_t count;
+};
+
+static struct lead lead_of(const exr_chunk_info_t *chunk, int part, size_t size)
+{
+    if (chunk->type == EXR_STORAGE_TILED)
+        return (struct lead){
+            {part, chunk->start_x, chunk->start_y, chunk->level_x, chunk->level_y, (int32_t)size},
+            6};
+    return (struct lead){{part, chunk->start_y, (int32_t)size}, 3};
+}
+
+// Bytes of that of a row of check sums.
+enum { SUMS_LEAD = 12 };
+
+static uint32_t sum_of(const struct lead *lead, const void *packed, size_t size)
+{
+    return exr_sum(exr_sum(0, lead->number, lead->count * sizeof *lead->number), packed, size);
+}
+
 static int tiles_across(int width, int tile)
 {
     return (width + tile - 1) / tile;
@@ -109,6 +135,10 @@ struct writing {
     int next_block;
     relume_status status;        // the first failure of any block
     struct pipeline *pipelines;  // one a worker
+    struct exr_sums sums;        // of what is written, where they are asked for, ...
+    uint32_t *bytes;             // ... and how long each block is
+    struct relume_buffer head;   // the headers of all parts
+    bool heading;                // they are being written
 };
 
 static int64_t write_stream(exr_const_context_t context, void *user, const void *buffer,
@@ -118,6 +148,10 @@ static int64_t write_stream(exr_const_context_t context, void *user, const void 
     struct writing *w = user;
     if (!w->io)
         w->io = outfile_write(w->file, buffer, size, (off_t)offset);
+    if (!w->io && w->heading) {
+        const struct relume_writer head = relume_buffer_writer(&w->head);
+        w->io = head.write(head.user, buffer, size, offset) ? RELUME_OK : RELUME_ENOMEM;
+    }
     return w->io ? -1 : (int64_t)size;
 }
 
@@ -207,6 +241,18 @@ static exr_result_t compress(exr_encode_pipeline_t *pipeline)
     return r;
 }
 
+// The sum of a block that is about to be written.
+static void sum_block(struct writing *w, int index, int block, const exr_chunk_info_t *chunk,
+                      const void *packed, size_t size)
+{
+    if (!w->sums.word || index >= w->sums.parts)
+        return;
+    const size_t word = w->sums.first[index] + (size_t)block;
+    const struct lead lead = lead_of(chunk, index, size);
+    w->sums.word[word] = sum_of(&lead, packed, size);
+    w->bytes[word] = (uint32_t)(lead.count * sizeof *lead.number + size);
+}
+
 struct block_turn {
     struct writing *w;
     int block;
@@ -216,6 +262,8 @@ struct block_turn {
 static exr_result_t await_turn(exr_encode_pipeline_t *pipeline)
 {
     const struct block_turn *t = pipeline->encoding_user_data;
+    sum_block(t->w, t->w->index, t->block, &pipeline->chunk, pipeline->compressed_buffer,
+              pipeline->compressed_bytes);
     pthread_mutex_lock(&t->w->lock);
     while (t->w->next_block != t->block)
         pthread_cond_wait(&t->w->turn, &t->w->lock);
@@ -393,6 +441,8 @@ static relume_status copy_part(struct writing *w, const struct exr_part *part, i
         const struct exr_copied s = source_of(part, &there);
         w->status = read_packed(s.from, s.from_part, &chunk, there, &packed, &room, log);
         exr_result_t e = w->status ? 0 : written_chunk(&to, w, part, index, block);
+        if (!w->status && !e)
+            sum_block(w, index, block, &to, packed, chunk.packed_size);
         if (!w->status && !e && part->tile)
             e = exr_write_tile_chunk(w->exr, index, block % across, block / across, 0, 0, packed,
                                      chunk.packed_size);
@@ -430,8 +480,84 @@ static relume_status write_part(struct writing *w, const struct exr_part *part, 
     return w->status;
 }
 
+static relume_status sums_rows(void *context, int row, int rows, void *samples)
+{
+    const struct exr_sums *s = context;
+    memcpy(samples, s->word + (size_t)row * (size_t)s->width,
+           (size_t)rows * (size_t)s->width * sizeof *s->word);
+    return RELUME_OK;
+}
+
+static struct exr_part sums_part(const struct exr_sums *s)
+{
+    static const char *const channel[] = {EXR_SUMS_CHANNEL};
+    return (struct exr_part){
+        .name = EXR_SUMS_PART,
+        .width = s->width,
+        .height = s->height,
+        .sample = EXR_SAMPLE_UINT,
+        .codec = EXR_CODEC_NONE,
+        .channels = 1,
+        .channel = channel,
+        .rows = sums_rows,
+        .context = (void *)(uintptr_t)s,
+    };
+}
+
+static relume_status prepare_sums(struct writing *w, const struct exr_part *parts, int count)
+{
+    relume_status status = exr_sums_create(&w->sums, count);
+    for (int i = 0; !status && i < count; i++)
+        exr_sums_count(&w->sums, (size_t)blocks_of(&parts[i]));
+    if (!status)
+        status = exr_sums_finish(&w->sums);
+    if (!status)
+        w->bytes = mem_zeroed(w->sums.first[count], sizeof *w->bytes);
+    return w->bytes ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// Headers, and behind them the tables, where each block begins: of all parts, then of the sums.
+// Blocks follow one another without gaps.
+static uint32_t sum_of_head(const struct writing *w)
+{
+    const struct exr_sums *s = &w->sums;
+    const size_t end = s->first[s->parts], blocks = end - 1 + (size_t)s->height;
+    const size_t row = SUMS_LEAD + (size_t)s->width * sizeof *s->word;
+    uint32_t sum = exr_sum(0, w->head.data, w->head.size);
+    uint64_t at = w->head.size + blocks * sizeof at;
+    for (size_t i = 0; i < blocks; i++) {
+        sum = exr_sum(sum, &at, sizeof at);
+        at += i + 1 < end ? w->bytes[i + 1] : row;
+    }
+    return sum;
+}
+
+static relume_status write_sums(struct writing *w, const struct relume_log *log)
+{
+    struct exr_sums *s = &w->sums;
+    const struct exr_part part = sums_part(s);
+    s->word[0] = sum_of_head(w);
+    s->word[(size_t)s->width * (size_t)s->height - 1] = exr_sums_own(s);
+    return write_part(w, &part, s->parts, 1, log);
+}
+
+static exr_result_t write_headers(struct writing *w, const struct exr_part *parts, int count)
+{
+    exr_result_t r = EXR_ERR_SUCCESS;
+    for (int i = 0; !r && i < count; i++)
+        r = declare_part(w->exr, &parts[i], parts);
+    const struct exr_part sums = sums_part(&w->sums);
+    if (!r && w->sums.word)
+        r = declare_part(w->exr, &sums, parts);
+    w->heading = w->sums.word != NULL;
+    if (!r)
+        r = exr_write_header(w->exr);
+    w->heading = false;
+    return r;
+}
+
 relume_status exr_write(const char *path, const struct relume_writer *writer,
-                        const struct exr_part *parts, int count, int threads,
+                        const struct exr_part *parts, int count, bool sums, int threads,
                         const struct relume_log *log)
 {
     threads = thread_count(threads);
@@ -443,11 +569,11 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
     exr_context_initializer_t init = initial(&w);
     init.write_fn = write_stream;
     path = infile_name(path);
-    exr_result_t r = exr_start_write(&w.exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
-    for (int i = 0; !r && i < count; i++)
-        r = declare_part(w.exr, &parts[i], parts);
-    if (!r)
-        r = exr_write_header(w.exr);
+    if (sums)
+        status = prepare_sums(&w, parts, count);
+    exr_result_t r = status ? 0 : exr_start_write(&w.exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
+    if (!status && !r)
+        r = write_headers(&w, parts, count);
     if (r)
         status = w.io                         ? w.io
                  : r == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM
@@ -458,6 +584,11 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
         if (!status && !log_progress(log, "writing", (i + 1.0) / count))
             status = RELUME_ECANCEL;
     }
+    if (!status && sums)
+        status = write_sums(&w, log);
+    exr_sums_destroy(&w.sums);
+    relume_buffer_destroy(&w.head);
+    mem_free(w.bytes);
     if (w.exr && exr_finish(&w.exr) && !status)
         status = w.io ? w.io : RELUME_EIO;
     if (!status)
@@ -472,6 +603,8 @@ struct exr_file {
     exr_context_t exr;
     char *path;
     struct infile in;
+    int parts;             // without the sums
+    struct exr_sums sums;  // with which blocks are compared, or empty
 };
 
 static int64_t read_stream(exr_const_context_t context, void *user, void *buffer, uint64_t size,
@@ -513,6 +646,7 @@ void exr_close(exr_file **file)
     if ((*file)->exr)
         exr_finish(&(*file)->exr);
     infile_close(&(*file)->in);
+    exr_sums_destroy(&(*file)->sums);
     mem_free((*file)->path);
     mem_free(*file);
     *file = NULL;
@@ -641,23 +775,38 @@ static exr_result_t find_chunk(exr_chunk_info_t *out, const struct layout *l, si
                                                   l->first_row + row * l->block_rows, out);
 }
 
-// Parts are written one after the other, so a file cut anywhere lacks the last block of some part.
+// All parts of the container, the sums among them.
+static int count_parts(const exr_file *file)
+{
+    int count;
+    return exr_get_count(file->exr, &count) ? 0 : count;
+}
+
+// Parts are written one after the other, so a file cut anywhere lacks the last block of some part,
+// or some of the check sums, which need not be read for that.
 static relume_status check_ends(const exr_file *file, const struct relume_log *log)
 {
-    const int count = exr_part_count(file);
     const uint64_t size = exr_bytes(file);
-    for (int i = 0; i < count; i++) {
-        exr_attr_box2i_t box;
+    uint64_t end = 0;
+    int part = 0;
+    bool whole = true;
+    for (; whole && part < file->parts; part += whole) {
         exr_chunk_info_t last;
         struct layout layout;
-        if (exr_get_data_window(file->exr, i, &box) || !find_layout(&layout, file, i) ||
-            find_chunk(&last, &layout, layout.blocks - 1) || last.data_offset > size ||
-            last.packed_size > size - last.data_offset)
-            return log_fail(log, RELUME_EDAMAGED,
-                            "%s: truncated or damaged in part %d; expected %d rows", file->path, i,
-                            box.max.y - box.min.y + 1);
+        whole = find_layout(&layout, file, part) &&
+                !find_chunk(&last, &layout, layout.blocks - 1) && last.data_offset <= size &&
+                last.packed_size <= size - last.data_offset;
+        end = whole ? last.data_offset + last.packed_size : 0;
     }
-    return RELUME_OK;
+    if (whole && exr_has_sums(file)) {
+        const struct exr_part_info sums = exr_part_info(file, part);
+        const uint64_t row = SUMS_LEAD + 4 * (uint64_t)sums.width;
+        whole = (uint64_t)sums.height * row <= size - end;
+    }
+    return whole ? RELUME_OK
+                 : log_fail(log, RELUME_EDAMAGED,
+                            "%s: truncated or damaged in part %d; expected %d rows", file->path,
+                            part, exr_part_info(file, part).height);
 }
 
 // The library says "error reading from stream" of a folder, and of a text that its header is bad.
@@ -672,6 +821,15 @@ static const char *why_unread(exr_file *file, exr_result_t r)
     return r == EXR_ERR_READ_IO || r == EXR_ERR_FILE_BAD_HEADER || r == EXR_ERR_MISSING_REQ_ATTR
                ? "it is damaged or cut off in its header"
                : exr_get_default_error_message(r);
+}
+
+// Whether a part is what exr_write puts behind the others.
+static bool is_sums(const exr_file *file, int part)
+{
+    const struct exr_part_info info = exr_part_info(file, part);
+    return part > 0 && !strcmp(info.name, EXR_SUMS_PART) && info.channels == 1 && !info.tile &&
+           info.uniform && info.sample == EXR_SAMPLE_UINT &&
+           !strcmp(exr_channel_name(file, part, 0), EXR_SUMS_CHANNEL);
 }
 
 static relume_status start_read(exr_file *file, const struct relume_limits *limits,
@@ -689,7 +847,10 @@ static relume_status start_read(exr_file *file, const struct relume_limits *limi
                         : r == EXR_ERR_FEATURE_NOT_IMPLEMENTED ? RELUME_EUNSUPPORTED
                                                                : RELUME_EDAMAGED,
                         "%s: cannot be read as OpenEXR; %s", file->path, why_unread(file, r));
-    return check_parts(file, limits, log);
+    file->parts = count_parts(file);
+    const relume_status status = check_parts(file, limits, log);
+    file->parts -= !status && is_sums(file, file->parts - 1);
+    return status;
 }
 
 relume_status exr_open_damaged(exr_file **out, const char *path, const struct relume_reader *from,
@@ -724,8 +885,12 @@ relume_status exr_open(exr_file **out, const char *path, const struct relume_rea
 
 int exr_part_count(const exr_file *file)
 {
-    int count;
-    return exr_get_count(file->exr, &count) ? 0 : count;
+    return file->parts;
+}
+
+bool exr_has_sums(const exr_file *file)
+{
+    return file->parts < count_parts(file);
 }
 
 static const exr_attr_chlist_t *channel_list(const exr_file *file, int part)
@@ -934,11 +1099,22 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
     return floats;
 }
 
+// Whether a block that has been read is not the one that was written.
+static bool is_changed(const struct layout *l, size_t item, const exr_chunk_info_t *chunk,
+                       const void *packed)
+{
+    const struct exr_sums *s = &l->file->sums;
+    if (!s->word || l->part >= s->parts)
+        return false;
+    const struct lead lead = lead_of(chunk, l->part, chunk->packed_size);
+    return sum_of(&lead, packed, chunk->packed_size) != s->word[s->first[l->part] + item];
+}
+
 // A block as it is packed, into *packed, which grows.
 static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int block,
                                  void **packed, size_t *room, const struct relume_log *log)
 {
-    struct layout layout;
+    struct layout layout = {.across = 1};
     const bool found = find_layout(&layout, file, part) &&
                        !find_chunk(chunk, &layout, (size_t)block) &&
                        chunk->packed_size <= chunk->unpacked_size;
@@ -950,10 +1126,13 @@ static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_
             return RELUME_ENOMEM;
         *room = chunk->packed_size;
     }
-    if (found && !exr_read_chunk(file->exr, part, chunk, *packed))
+    if (found && !exr_read_chunk(file->exr, part, chunk, *packed) &&
+        !is_changed(&layout, (size_t)block, chunk, *packed))
         return RELUME_OK;
-    return log_fail(log, RELUME_EDAMAGED, "%s: truncated or damaged in part '%s', block %d",
-                    file->path, exr_part_info(file, part).name, block);
+    const struct relume_rect at = rect_of(&layout, (size_t)block);
+    return log_fail(log, RELUME_EDAMAGED,
+                    "%s: damaged in part '%s', rows %d to %d; run this part again", file->path,
+                    exr_part_info(file, part).name, at.top, at.top + at.height - 1);
 }
 
 // A block, decoded.
@@ -1006,6 +1185,8 @@ static relume_status decode(struct block *out, const struct layout *l,
         e = exr_decoding_run(exr, l->part, pipeline);
     if (e)
         return block_error(e);
+    if (is_changed(l, item, &pipeline->chunk, pipeline->packed_buffer))
+        return RELUME_EDAMAGED;
     out->at = rect_of(l, item);
     return RELUME_OK;
 }
@@ -1116,6 +1297,83 @@ relume_status exr_find_damage(const exr_file *file, int part, int threads,
     mem_free(f.pipelines);
     mem_free(f.damaged);
     return done ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// ---------------------------------------------------------------- check sums
+
+static void take_words(void *context, const struct relume_rect *at, const void *samples)
+{
+    const struct exr_sums *s = context;
+    memcpy(s->word + (size_t)at->top * (size_t)s->width, samples,
+           (size_t)at->height * (size_t)s->width * sizeof *s->word);
+}
+
+// The words that the file has; `*whole` where they are those that were written.
+static relume_status read_words(struct exr_sums *out, bool *whole, const exr_file *file)
+{
+    const struct exr_part_info info = exr_part_info(file, file->parts);
+    relume_status status = exr_sums_create(out, file->parts);
+    struct layout layout = {.blocks = 0};
+    bool fits = true;
+    for (int i = 0; !status && i < file->parts; i++) {
+        fits &= find_layout(&layout, file, i);
+        exr_sums_count(out, layout.blocks);
+    }
+    fits &= !status && out->first[file->parts] < exr_bytes(file) / sizeof *out->word;
+    if (!status && fits)
+        status = exr_sums_finish(out);
+    fits &= info.width == out->width && info.height == out->height;
+    if (!status && fits)
+        status = exr_read(file, file->parts, NULL, 1, take_words, out, NULL);
+    *whole = !status && fits &&
+             exr_sums_own(out) == out->word[(size_t)out->width * (size_t)out->height - 1];
+    return status == RELUME_EDAMAGED ? RELUME_OK : status;
+}
+
+// All that comes before the first block.
+static relume_status sum_head(uint32_t *out, exr_file *file)
+{
+    enum { PIECE = 1 << 16 };
+    struct layout layout;
+    exr_chunk_info_t first;
+    char *piece = mem_array(PIECE, 1);
+    *out = 0;
+    if (!piece)
+        return RELUME_ENOMEM;
+    uint64_t left = 0;
+    if (find_layout(&layout, file, 0) && !find_chunk(&first, &layout, 0))
+        left = first.data_offset - 4 * lead_of(&first, 0, 0).count;
+    for (uint64_t at = 0; left > 0;) {
+        const ssize_t n = infile_read(&file->in, piece, left < PIECE ? left : PIECE, at);
+        if (n <= 0)
+            break;
+        *out = exr_sum(*out, piece, (size_t)n);
+        at += (uint64_t)n;
+        left -= (uint64_t)n;
+    }
+    mem_free(piece);
+    return RELUME_OK;
+}
+
+relume_status exr_use_sums(exr_file *file, enum exr_sums_found *found)
+{
+    struct exr_sums sums = {.word = NULL};
+    uint32_t head = 0;
+    bool whole = false;
+    *found = EXR_SUMS_NONE;
+    if (!exr_has_sums(file))
+        return RELUME_OK;
+    relume_status status = read_words(&sums, &whole, file);
+    if (!status && whole)
+        status = sum_head(&head, file);
+    if (status || !whole) {
+        exr_sums_destroy(&sums);
+        *found = EXR_SUMS_DAMAGED;
+        return status;
+    }
+    file->sums = sums;
+    *found = head == sums.word[0] ? EXR_SUMS_WHOLE : EXR_SUMS_HEAD_CHANGED;
+    return RELUME_OK;
 }
 
 struct exr_blocks {

@@ -59,10 +59,11 @@ struct exr_copied {
 // Rows of a block of scanlines.
 int exr_block_rows(enum exr_codec codec);
 
-// Write all parts into `path`, or `writer` (outfile.h), whole or not at all. RELUME_EIO,
-// RELUME_ENOMEM, RELUME_ECANCEL or what a `rows` function returned.
+// Write all parts into `path`, or `writer` (outfile.h), whole or not at all; with `sums` one more
+// behind them that holds their check sums (exr_sums.h). RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL
+// or what a `rows` function returned.
 relume_status exr_write(const char *path, const struct relume_writer *writer,
-                        const struct exr_part *parts, int count, int threads,
+                        const struct exr_part *parts, int count, bool sums, int threads,
                         const struct relume_log *log);
 
 // The file `path`, or what `from` reads (infile.h). An input status with a sentence when it is not
@@ -74,7 +75,19 @@ relume_status exr_open_damaged(exr_file **out, const char *path, const struct re
                                const struct relume_limits *limits, const struct relume_log *log);
 void exr_close(exr_file **file);
 uint64_t exr_bytes(const exr_file *file);
-int exr_part_count(const exr_file *file);
+int exr_part_count(const exr_file *file);  // without that of check sums
+
+// Whether the file has check sums; and compare what it holds with them: the headers and the tables
+// of blocks now, each block when it is read from now on (what differs is damaged). Not while others
+// read. RELUME_ENOMEM.
+bool exr_has_sums(const exr_file *file);
+enum exr_sums_found {
+    EXR_SUMS_NONE,
+    EXR_SUMS_WHOLE,
+    EXR_SUMS_HEAD_CHANGED,
+    EXR_SUMS_DAMAGED,  // the sums themselves: nothing is compared with them
+};
+relume_status exr_use_sums(exr_file *file, enum exr_sums_found *found);
 
 struct exr_part_info {
     const char *name;  // "" when the part has none

@@ -378,7 +378,7 @@ static relume_status save_exr(const struct relume_image *image, const char *path
     };
     struct relume_log quiet = p->log ? *p->log : (struct relume_log){0};
     quiet.progress = NULL;  // one image is not long work
-    return exr_write(path, p->writer, &part, 1, p->threads > 1 ? p->threads : 1, &quiet);
+    return exr_write(path, p->writer, &part, 1, false, p->threads > 1 ? p->threads : 1, &quiet);
 }
 
 static relume_status save_bytes(const struct relume_image *image, const char *path,

@@ -1,5 +1,8 @@
 // check.c - what of a relume file is damaged, and where: first every block of the container, then
 // what the blocks say
+#include "base/infile.h"
+#include "base/log.h"
+#include "image/exr_sums.h"
 #include "pack/format.h"
 #include "pack/part.h"
 #include "pack/reader.h"
@@ -10,7 +13,8 @@ struct check {
     const struct relume_pack_check_params *p;
     const char *part;
     int tile;  // side of its tiles, 0: scanlines
-    bool damaged, one_of_several;
+    bool damaged, one_of_several, coded;
+    bool header;  // is not the one that was written
 };
 
 static void note(void *context, const struct relume_rect *at)
@@ -23,12 +27,33 @@ static void note(void *context, const struct relume_rect *at)
         c->p->found(c->p->user, c->part, at->top, at->height);
 }
 
+// Headers at once, and blocks from now on, where the file has check sums.
+static relume_status use_sums(struct check *c, exr_file *file)
+{
+    enum exr_sums_found found;
+    const relume_status status = exr_use_sums(file, &found);
+    if (c->p->has_sums)
+        *c->p->has_sums = found != EXR_SUMS_NONE;
+    if (!status && found == EXR_SUMS_DAMAGED) {
+        c->damaged = true;
+        if (c->p->found)
+            c->p->found(c->p->user, EXR_SUMS_PART, 0,
+                        exr_part_info(file, exr_part_count(file)).height);
+    }
+    c->header = found == EXR_SUMS_HEAD_CHANGED ||
+                (found == EXR_SUMS_NONE && exr_get_text(file, 0, ATTR_SUMS));
+    return status;
+}
+
 static relume_status check_blocks(struct check *c, const char *path)
 {
     exr_file *file;
     relume_status status = exr_open_damaged(&file, path, c->p->reader, c->p->limits, c->p->log);
     const char *format = status ? NULL : exr_get_text(file, 0, ATTR_FORMAT);
     c->one_of_several = format && !strcmp(format, FORMAT_PART);
+    c->coded = format && exr_get_text(file, 0, ATTR_CODING);
+    if (!status)
+        status = use_sums(c, file);
     for (int i = 0; !status && i < exr_part_count(file); i++) {
         c->part = exr_part_info(file, i).name;
         c->tile = exr_part_info(file, i).tile;
@@ -146,10 +171,21 @@ static relume_status check_values(const struct relume_pack_check_params *p, cons
     return !status && tiles.count ? RELUME_EDAMAGED : status;
 }
 
+// Which tiles are lost with the blocks that are damaged.
+static relume_status find_tiles(const struct relume_pack_check_params *p, const char *path)
+{
+    struct relume_log quiet = p->log ? *p->log : (struct relume_log){0};
+    struct relume_pack_check_params tiles = *p;
+    quiet.message = NULL;
+    tiles.log = &quiet;
+    const relume_status status = check_values(&tiles, path);
+    return !status || relume_status_is_input(status) ? RELUME_EDAMAGED : status;
+}
+
 static relume_status check_part(const struct relume_pack_check_params *p, const char *path)
 {
     struct part_file part;
-    const relume_status status = part_open(&part, path, p->reader, p->limits, p->log);
+    const relume_status status = part_open(&part, path, p->reader, p->limits, false, p->log);
     part_close(&part);
     return status;
 }
@@ -163,7 +199,12 @@ relume_status relume_pack_check(const char *path, const struct relume_pack_check
     const relume_status status = check_blocks(&c, path);
     if (status)
         return status;
+    if (c.header)
+        return log_fail(c.p->log, RELUME_EDAMAGED,
+                        "%s: damaged header: sizes, lights, steps or the places of blocks have "
+                        "changed; encode it again or take it from a copy",
+                        infile_name(path));
     if (c.damaged)
-        return RELUME_EDAMAGED;
+        return c.coded && !c.one_of_several ? find_tiles(c.p, path) : RELUME_EDAMAGED;
     return (c.one_of_several ? check_part : check_values)(c.p, path);
 }

@@ -47,6 +47,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_HEIGHT        "relume.height"
 #define ATTR_FUNCTIONS     "relume.functions"
 #define ATTR_MOST          "relume.functions.most"
+#define ATTR_SUMS          "relume.sums"
 
 // A part of the work (docs/format.md, "Parts"): format and attributes of the first part beside
 // those of the whole, and of a view's

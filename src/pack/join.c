@@ -474,7 +474,22 @@ static relume_status gather(struct joining *j, struct relume_encode_report *repo
     return status ? status : set_report(j, report);
 }
 
-static relume_status check_parts(struct joining *j)
+static void ignore(void *context, const struct relume_rect *at, const void *samples)
+{
+    (void)context, (void)at, (void)samples;
+}
+
+// Pictures and codebooks, which are copied from one part alone: damage to the others' would not be
+// noticed.
+static relume_status check_unused(const struct joining *j, const struct part_file *p, int threads)
+{
+    relume_status status = RELUME_OK;
+    for (int k = 0; !status && k <= p->books; k++)
+        status = exr_read(p->file, k, NULL, threads, ignore, NULL, NULL);
+    return status == RELUME_EDAMAGED ? damaged(j, p) : status;
+}
+
+static relume_status check_parts(struct joining *j, int threads)
 {
     struct exr_part first;
     relume_status status = exr_part_again(&first, j->part->file, 0, &j->arena);
@@ -482,6 +497,8 @@ static relume_status check_parts(struct joining *j)
         return damaged(j, j->part);
     for (int i = 1; !status && i < j->count; i++)
         status = compare_headers(j, &first, i);
+    for (int i = 0; !status && i < j->count; i++)
+        status = check_unused(j, &j->part[i], threads);
     return status ? status : put_in_order(j);
 }
 
@@ -498,19 +515,20 @@ relume_status relume_pack_join(const char *const *parts, int count, const char *
     j.part = arena_array(&j.arena, (size_t)count, sizeof *j.part);
     relume_status status = j.part ? RELUME_OK : RELUME_ENOMEM;
     while (!status && open < count) {
-        status = part_open(&j.part[open], parts[open], NULL, p.limits, p.log);
+        status = part_open(&j.part[open], parts[open], NULL, p.limits, true, p.log);
         open += !status;
     }
     j.count = open;
     if (!status)
-        status = check_parts(&j);
+        status = check_parts(&j, p.threads);
     bool packed = true;
     if (!status && j.part->info.rows)
         status = find_packed(&j, &packed);
     if (!status && packed)
         status = gather(&j, report);
     if (!status && packed)
-        status = exr_write(path, p.writer, j.exr, j.exrs, p.threads, p.log);
+        status = exr_write(path, p.writer, j.exr, j.exrs, find_attribute(j.exr, ATTR_SUMS) != NULL,
+                           p.threads, p.log);
     else if (!status)
         status = join_rows(j.order, j.count, path, report ? report : &ignored, &p);
     for (int i = 0; i < open; i++)

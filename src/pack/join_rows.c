@@ -147,7 +147,9 @@ static relume_status read_rows(const struct rows_joining *j, const struct part_f
         info.channels != c->info.planes || info.sample != sample || info.tile)
         return damaged(j, part);
     const relume_status status =
-        exr_read(part->file, 1, NULL, j->p->threads, sink_rows, &sinking, j->p->log);
+        exr_read(part->file, 1, NULL, j->p->threads, sink_rows, &sinking, NULL);
+    if (status == RELUME_EDAMAGED)
+        return damaged(j, part);
     if (!status && atomic_load(&sinking.failed))
         return log_fail(j->p->log, RELUME_EIO, "%s: no room for temporary data; %s", j->path,
                         strerror(atomic_load(&sinking.failed)));
@@ -228,9 +230,11 @@ static relume_status read_plane(struct relume_image *out, const struct rows_join
     exr_file *own = h->file;
     const struct relume_rect all = reader_whole(h);
     h->file = part->file;
+    h->log = NULL;
     const relume_status status = reader_load_plane(out, h, k, &all);
     h->file = own;
-    return status;
+    h->log = j->p->log;
+    return status == RELUME_EDAMAGED ? damaged(j, part) : status;
 }
 
 // All parts of a view, the first of which is part *i; *i moves behind them.

@@ -191,13 +191,29 @@ static relume_status check_names(const struct part_file *p, const struct relume_
     return next == p->info.first + p->info.views ? RELUME_OK : bad(p, "list of views", log);
 }
 
+static relume_status use_sums(const struct part_file *p, const struct relume_log *log)
+{
+    enum exr_sums_found found;
+    const relume_status status = exr_use_sums(p->file, &found);
+    if (status)
+        return status;
+    if (found == EXR_SUMS_DAMAGED)
+        return bad(p, "check sums", log);
+    return found == EXR_SUMS_HEAD_CHANGED ||
+                   (found == EXR_SUMS_NONE && exr_get_text(p->file, 0, ATTR_SUMS))
+               ? bad(p, "header", log)
+               : RELUME_OK;
+}
+
 relume_status part_open(struct part_file *out, const char *path, const struct relume_reader *from,
-                        const struct relume_limits *limits, const struct relume_log *log)
+                        const struct relume_limits *limits, bool sums, const struct relume_log *log)
 {
     const struct relume_limits most = limits_or_default(limits_of(limits, log));
     struct relume_pack_part *i = &out->info;
     *out = (struct part_file){.path = infile_name(path)};
     relume_status status = exr_open(&out->file, path, from, &most, log);
+    if (!status && sums)
+        status = use_sums(out, log);
     if (!status)
         status = check_format(out, log);
     if (!status)
@@ -215,6 +231,7 @@ relume_status part_open(struct part_file *out, const char *path, const struct re
         part_close(out);
     else
         i->file_bytes = exr_bytes(out->file);
+    i->has_sums = !status && exr_has_sums(out->file);
     return status;
 }
 
@@ -241,7 +258,7 @@ relume_status relume_pack_part_read(struct relume_pack_part *out, const char *pa
     struct part_file part;
     if (!path && !p.reader)
         return RELUME_EINVAL;
-    const relume_status status = part_open(&part, path, p.reader, p.limits, p.log);
+    const relume_status status = part_open(&part, path, p.reader, p.limits, false, p.log);
     *out = part.info;
     part_close(&part);
     return status;

@@ -17,10 +17,12 @@ struct part_file {
     int first_group;
 };
 
-// The file `path`, which must outlive it, or what `from` reads. An input status with a sentence
+// The file `path`, which must outlive it, or what `from` reads. With `sums` its header, and all
+// that is read of it from now on, is compared with its check sums. An input status with a sentence
 // when it is no part, RELUME_ENOMEM.
 relume_status part_open(struct part_file *out, const char *path, const struct relume_reader *from,
-                        const struct relume_limits *limits, const struct relume_log *log);
+                        const struct relume_limits *limits, bool sums,
+                        const struct relume_log *log);
 // The next view of the list of a group, and the words of its planes and its depth, or NULL; -1:
 // there is none, or it is damaged.
 int part_next_member(const char **list, int views, size_t words[2]);

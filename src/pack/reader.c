@@ -56,6 +56,7 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
         status = exr_open(&p->file, path, params_.reader, &p->limits, p->log);
     if (!status) {
         p->info.file_bytes = exr_bytes(p->file);
+        p->info.has_sums = exr_has_sums(p->file);
         status = reader_read_header(p);
     }
     if (!status)

@@ -1,6 +1,7 @@
 // write_header.c - the first part of a relume file: the preview, and what all of the file is
 #include "base/memory.h"
 #include "base/half.h"
+#include "image/exr_sums.h"
 #include "pack/format.h"
 #include "pack/writer.h"
 
@@ -293,6 +294,7 @@ void writer_add_header(struct writer *w)
                : c->geometry.disc    ? FORMAT_DISCS
                                      : FORMAT_PLAIN);
     writer_text(part, ATTR_CREATOR, "relume " RELUME_VERSION);
+    writer_text(part, ATTR_SUMS, EXR_SUMS_CHANNEL);
     writer_text(part, ATTR_DOMAIN, c->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear");
     writer_text(part, ATTR_DISPLAY, w->display);
     writer_text(part, ATTR_STORAGE, relume_storage_name(info->storage));

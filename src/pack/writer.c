@@ -167,7 +167,7 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
     if (!status)
         status = w.failed || is_crowded(&w)
                      ? RELUME_ENOMEM
-                     : exr_write(path, p.writer, w.parts, w.count, p.threads, p.log);
+                     : exr_write(path, p.writer, w.parts, w.count, true, p.threads, p.log);
     arena_free(&w.arena);
     return status;
 }

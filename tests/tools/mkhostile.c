@@ -240,7 +240,7 @@ static int exr(const char *path, int channels, const char *const *names)
                                   .channel = names,
                                   .rows = zeros,
                                   .context = &row};
-    return exr_write(path, NULL, &part, 1, 1, NULL) ? 3 : 0;
+    return exr_write(path, NULL, &part, 1, false, 1, NULL) ? 3 : 0;
 }
 
 static int exr_hundred(const char *path)

@@ -95,7 +95,7 @@ static void round_trip(enum exr_codec codec, enum exr_sample sample, int width, 
                                      .rows = source,
                                      .context = &b};
     exr_file *file;
-    CHECK_OK(exr_write(path, NULL, parts, 2, threads, NULL));
+    CHECK_OK(exr_write(path, NULL, parts, 2, true, threads, NULL));
     CHECK_OK(exr_open(&file, path, NULL, NULL, NULL));
     assert_int_equal(exr_part_count(file), 2);
     for (int i = 0; i < 2; i++) {
@@ -169,7 +169,7 @@ static void test_failing_source(void **state)
                                   .rows = refuse};
     unlink(path);
     for (int threads = 1; threads <= 4; threads += 3) {
-        assert_int_equal(exr_write(path, NULL, &part, 1, threads, NULL), RELUME_EDAMAGED);
+        assert_int_equal(exr_write(path, NULL, &part, 1, false, threads, NULL), RELUME_EDAMAGED);
         assert_int_not_equal(access(path, F_OK), 0);
     }
 }

@@ -101,7 +101,7 @@ static void write_exr(const char *path, struct made m, int height, enum exr_code
                                   .attribute = attribute,
                                   .rows = rows,
                                   .context = &m};
-    CHECK_OK(exr_write(path, NULL, &part, 1, 1, NULL));
+    CHECK_OK(exr_write(path, NULL, &part, 1, false, 1, NULL));
 }
 
 static void exr_is_what_openimageio_sees(void **state)

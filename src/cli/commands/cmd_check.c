@@ -58,6 +58,7 @@ static relume_status check_file(const struct check_options *o, const char *path)
     struct findings f = {.path = path, .json = o->json};
     struct relume_pack_part part;
     struct shown name;
+    bool has_sums = false;
     if (f.json) {
         printf("{\"file\": ");
         json_text(stdout, path);
@@ -65,13 +66,17 @@ static relume_status check_file(const struct check_options *o, const char *path)
     }
     const relume_status status = relume_pack_check(
         path, relume_pack_check_params(.log = o->args.log, .threads = o->args.threads,
-                                       .found = print_damage, .tile = print_tile, .user = &f));
+                                       .found = print_damage, .tile = print_tile, .user = &f,
+                                       .has_sums = &has_sums));
+    const char *const unsure =
+        has_sums ? "" : "; without check sums, so that not every changed byte is seen";
     if (f.json)
-        printf("], \"whole\": %s}", status ? "false" : "true");
+        printf("], \"check_sums\": %s, \"whole\": %s}", has_sums ? "true" : "false",
+               status ? "false" : "true");
     else if (!status && is_part(&part, path))
-        printf("%s: whole; part %d of %d\n", shown(&name, path), part.part, part.parts);
+        printf("%s: whole; part %d of %d%s\n", shown(&name, path), part.part, part.parts, unsure);
     else if (!status)
-        printf("%s: whole\n", shown(&name, path));
+        printf("%s: whole%s\n", shown(&name, path), unsure);
     else if (f.count && relume_status_is_input(status))
         (void)data_error("%s: damaged; encode it again or take it from a copy", path);
     return status;

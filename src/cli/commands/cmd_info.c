@@ -54,6 +54,7 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            relume_domain_name(i->domain, i->display), display, relume_storage_name(i->storage),
            i->compression);
     printf("\"levels\": %d, \"tile\": %d, ", i->levels, i->tile);
+    printf("\"check_sums\": %s, ", kind == RELUME_KIND_RELUME && i->has_sums ? "true" : "false");
     printf("\"books\": %d, \"codes\": %d, \"shared\": %s, ", i->books, i->codes,
            i->shared ? "true" : "false");
     printf("\"fit_rms\": ");
@@ -80,6 +81,12 @@ static const char *percent(char text[24], double share)
     else
         snprintf(text, 24, "%.*f %%", share < 0.01 ? 2 : 1, 100.0 * share);
     return text;
+}
+
+static const char *yes_or_no(bool has_sums)
+{
+    return has_sums ? "yes; 'relume check' finds any byte that has changed"
+                    : "no; made by an earlier version";
 }
 
 static void print_text(const struct relume_pack_info *i, const struct relume_coder_info *c,
@@ -127,6 +134,8 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
         if (extra[k])
             printf("%s%s", extras++ ? ", " : "", extra[k]);
     puts(extras ? "" : "none");
+    if (kind == RELUME_KIND_RELUME)
+        printf("check sums    %s\n", yes_or_no(i->has_sums));
     if (isfinite(bytes))
         printf("file          %.0f bytes, %.3f bits per pixel and view\n", bytes,
                bits_per_pixel(i, bytes));
@@ -142,7 +151,8 @@ static void print_part(const struct relume_pack_part *p, bool json)
                p->part, p->parts, p->first, p->views, p->all_views, p->row, p->rows, p->tiles,
                p->all_tiles);
         json_text(stdout, p->options);
-        printf(", \"file_bytes\": %llu}\n", (unsigned long long)p->file_bytes);
+        printf(", \"check_sums\": %s, \"file_bytes\": %llu}\n", p->has_sums ? "true" : "false",
+               (unsigned long long)p->file_bytes);
         return;
     }
     printf("part          %d of %d; 'relume join' makes one file of all parts\n", p->part,
@@ -156,6 +166,7 @@ static void print_part(const struct relume_pack_part *p, bool json)
     if (p->tiles < p->all_tiles)
         printf("tiles         %d of %d of these views\n", p->tiles, p->all_tiles);
     printf("options       %s\n", p->options[0] ? shown(&text, p->options) : "none");
+    printf("check sums    %s\n", yes_or_no(p->has_sums));
     printf("file          %llu bytes\n", (unsigned long long)p->file_bytes);
 }
 

@@ -13,6 +13,9 @@
 //                                   holds from there on, `crop=` and `frame=` alone end it; with a
 //                                   gain, what is brighter than white burns out to white
 //   figures column OUT PICTURE...   pictures of one width, one below the other
+//   figures film TRUTH FILM N       folders with 1.exr to N.exr: PSNR of the frames, of what
+//   changes
+//                                   from frame to frame, and how strong that is (RMS, truth: 1)
 #define RELUME_VEC3_SHORT
 #include <relume/relume.h>
 
@@ -688,6 +691,68 @@ static void column(char **args)
     relume_image_destroy(&out);
 }
 
+// ---------------------------------------------------------------- films
+
+// As it is displayed.
+static struct relume_image frame_of(const char *folder, int number)
+{
+    static const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    char path[4096];
+    struct relume_image image = {0};
+    snprintf(path, sizeof path, "%s/%d.exr", folder, number);
+    must(relume_image_load(&image, path, relume_image_params(.log = &to_stderr)), path);
+    const size_t n = 3 * (size_t)image.width * (size_t)image.height;
+    for (size_t i = 0; i < n; i++)
+        image.data[i] = relume_transfer_encode(srgb, fminf(fmaxf(image.data[i], 0.0f), 1.0f));
+    return image;
+}
+
+// Mean squares of display values.
+struct film_error {
+    double frames, changes, shown, wanted;
+};
+
+static void add_frames(struct film_error *e, const struct relume_image *want,
+                       const struct relume_image *got, const struct relume_image *before)
+{
+    const size_t n = 3 * (size_t)want->width * (size_t)want->height;
+    if (got->width != want->width || got->height != want->height)
+        fail("film: expected frames of %d x %d pixels", want->width, want->height);
+    for (size_t i = 0; i < n; i++) {
+        const double off = (double)(got->data[i] - want->data[i]);
+        e->frames += off * off / (double)n;
+        if (!before[0].data)
+            continue;
+        const double wanted = (double)(want->data[i] - before[0].data[i]);
+        const double shown = (double)(got->data[i] - before[1].data[i]);
+        e->changes += (shown - wanted) * (shown - wanted) / (double)n;
+        e->wanted += wanted * wanted / (double)n;
+        e->shown += shown * shown / (double)n;
+    }
+}
+
+static void film(char **args)
+{
+    const int n = atoi(args[2]);
+    struct film_error e = {0};
+    struct relume_image before[2] = {{0}, {0}};
+    if (n < 2)
+        fail("film: expected two frames or more");
+    for (int i = 1; i <= n; i++) {
+        struct relume_image now[2] = {frame_of(args[0], i), frame_of(args[1], i)};
+        add_frames(&e, &now[0], &now[1], before);
+        for (int k = 0; k < 2; k++) {
+            relume_image_destroy(&before[k]);
+            before[k] = now[k];
+        }
+    }
+    printf("%s: frames %.1f dB, changes %.1f dB, %.2f as strong\n", args[1],
+           -10.0 * log10(e.frames / n), -10.0 * log10(e.changes / (n - 1)),
+           sqrt(e.shown / e.wanted));
+    relume_image_destroy(&before[0]);
+    relume_image_destroy(&before[1]);
+}
+
 int main(int argc, char **argv)
 {
     static const struct {
@@ -697,6 +762,7 @@ int main(int argc, char **argv)
     } commands[] = {
         {"blob", 5, 6, blob},      {"disc", 4, 4, disc}, {"resampled", 3, 3, resampled},
         {"errors", 4, 99, errors}, {"row", 2, 99, row},  {"column", 2, 99, column},
+        {"film", 3, 3, film},
     };
     for (size_t i = 0; argc > 1 && i < sizeof commands / sizeof *commands; i++)
         if (!strcmp(argv[1], commands[i].name) && argc - 2 >= commands[i].least &&
@@ -704,5 +770,5 @@ int main(int argc, char **argv)
             commands[i].run(argv + 2);
             return 0;
         }
-    fail("usage: figures blob|disc|resampled|errors|row|column ...; see samples/figures.c");
+    fail("usage: figures blob|disc|resampled|errors|row|column|film ...; see samples/figures.c");
 }

@@ -127,8 +127,8 @@ RELUME_RESULT relume_status relume_objects_set_reflections(
 // How the reflections of an object are edited, until they are set again; NULL: as they are.
 RELUME_API const relume_reflection *relume_objects_reflections(const relume_objects *objects,
                                                                int object);
-// The edits of a file (docs/reflections.md), which replace those of the objects that it names. An
-// input status with a sentence, errors of relume_reflection_create.
+// The edits of a file (docs/reflections.md), which replace those of the objects that it names: all
+// or, with an input status and a sentence or errors of relume_reflection_create, none.
 RELUME_RESULT relume_status relume_objects_load_reflections(
     relume_objects *objects, const char *path, const struct relume_reflection_params *params);
 // Write all edits to such a file. What is there and is no such file stays, RELUME_EINVAL with a

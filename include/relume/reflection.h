@@ -96,7 +96,8 @@ struct relume_reflection_params {
 
 // Copies the edit. Warns of constraints outside every region, which do nothing, and of those in one
 // place that want different things, of which the mean is shown. RELUME_EINVAL with a sentence where
-// a number is not finite, a direction 0, a radius not above 0, a count too large; RELUME_ENOMEM.
+// a number is not finite, a place or radius beyond 1e15, a direction 0, a radius not above 0, a
+// count too large; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_reflection_create(
     relume_reflection **out, const struct relume_reflection_edit *edit,
     const struct relume_reflection_surface *surface, const struct relume_reflection_params *params);

@@ -124,13 +124,27 @@ RELUME_RESULT relume_status relume_gloss_judge(struct relume_shadows_gain *out,
 
 // Add the last two terms to a picture of one light, which is linear and becomes black where it
 // would be less. The picture is the rectangle of the view at `left`, `top` of its size, relit from
-// codes of `coder` and `domain` (`display`: its curve). Area lights are 4 x 4 patches; of
-// environments those of 64 lamps that are more than an even share are traced: suns and windows.
-// Highlights do not wander under near lights. RELUME_ENOMEM.
+// codes of `coder` and `domain` (`display`: its curve). Area lights are 4 x 4 patches. Highlights
+// do not wander under near lights. RELUME_EINVAL for environments, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
                                                relume_shadows *shadows,
                                                const struct relume_codes *codes,
                                                const struct relume_light *light, int threads);
+
+enum { RELUME_SHADOW_LAMPS = 64 };
+// The suns and bright windows of an environment, whose shadows have edges: of RELUME_SHADOW_LAMPS
+// lamps those that are more than an even share, and not beyond the captured lights of the coder.
+// `out[RELUME_SHADOW_LAMPS]`, the first *count of them directional. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_suns(struct relume_light *out, int *count,
+                                                const struct relume_light *environment,
+                                                const relume_coder *coder);
+// The same as relume_shadows_add for one of them: the picture is what an environment that has
+// nothing but this sun shows (relume_environment_weights), whatever the domain of the codes. So
+// what the sun takes off in a pixel is at most what it brings there.
+RELUME_RESULT relume_status relume_shadows_add_sun(struct relume_image *picture, int left, int top,
+                                                   relume_shadows *shadows,
+                                                   const relume_coder *coder,
+                                                   const struct relume_light *sun, int threads);
 
 #ifdef __cplusplus
 }

@@ -143,15 +143,14 @@ static float median(float *value, int n)
 }
 
 // The changes of the pixels of the lattice around one.
-static int changes_around(float around[3][8], const float *change, const struct fit *f, size_t i,
-                          size_t j)
+static int changes_around(float around[3][8], const struct fit *f, size_t i, size_t j)
 {
     int n = 0;
     for (size_t k = 0; k < 9; k++) {
         const size_t column = i + k % 3 - 1, line = j + k / 3 - 1;  // before the first: the largest
         if (k == 4 || column >= f->columns || line >= f->lines)
             continue;
-        const float *const from = change + 4 * (line * f->columns + column);
+        const float *const from = f->change.data + 4 * (line * f->columns + column);
         for (int c = 0; c < 3 && from[3] > 0.0f; c++)
             around[c][n] = from[c];
         n += from[3] > 0.0f;
@@ -161,20 +160,18 @@ static int changes_around(float around[3][8], const float *change, const struct 
 
 // A change that differs from all around it was found wrongly: bent by a shadow or by noise it would
 // be a dent as wide as two steps of the lattice. The median of those around it stands in its place.
-static relume_status mend_changes(struct fit *f)
+// Some stand side by side: those that are mended count for the next ones.
+static void mend_changes(struct fit *f)
 {
-    enum { LEAST = 4 };            // that say what is usual
-    static const double most = 2;  // times what those around differ by
+    enum { LEAST = 4, ROUNDS = 3 };  // that say what is usual
+    static const double most = 2;    // times what those around differ by
     static const double always = 0.04;
     const size_t pixels = f->columns * f->lines;
-    float *const change = mem_array(4 * pixels, sizeof *change);
-    if (!change)
-        return RELUME_ENOMEM;
-    memcpy(change, f->change.data, 4 * pixels * sizeof *change);
-    for (size_t at = 0; at < pixels; at++) {
+    for (size_t i = 0; i < ROUNDS * pixels; i++) {
+        const size_t at = i % pixels;
         float around[3][8], usual[3];
         float *const own = f->change.data + 4 * at;
-        const int n = changes_around(around, change, f, at % f->columns, at / f->columns);
+        const int n = changes_around(around, f, at % f->columns, at / f->columns);
         if (own[3] == 0.0f || n < LEAST)
             continue;
         double off = 0.0, spread = 0.0;
@@ -188,8 +185,6 @@ static relume_status mend_changes(struct fit *f)
         if (off > fmax(most * spread, always))
             memcpy(own, usual, sizeof usual);
     }
-    mem_free(change);
-    return RELUME_OK;
 }
 
 static relume_status solve_band(struct fit *f)
@@ -342,11 +337,11 @@ static relume_status fit_bands(struct fit *f)
         return status;
     // of one band alone the samples are still there
     status = f->rows == f->codes->height ? solve_band(f) : for_bands(f, solve_band);
-    if (!status)
-        status = mend_changes(f);
-    if (!status)
-        thread_for(f->params.threads, (size_t)f->codes->height, change_row, f);
-    return status;
+    if (status)
+        return status;
+    mend_changes(f);
+    thread_for(f->params.threads, (size_t)f->codes->height, change_row, f);
+    return RELUME_OK;
 }
 
 void relume_normals_destroy(struct relume_normals *normals)

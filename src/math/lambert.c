@@ -5,6 +5,7 @@
 
 static const double dark_part = 0.25;    // of the samples: shadows
 static const double bright_part = 0.10;  // highlights
+enum { FEW = 48 };                       // samples: the ends count in the end, by their weights
 static const int rounds = 10;
 static const double tuning = 2.385;  // Cauchy: 95 % as good as least squares for normal errors
 static const double black = 1e-3;    // albedo below which there is nothing but noise to fit
@@ -112,12 +113,20 @@ static bool fit_robustly(vec3 *g, const vec3 *direction, struct lambert_sample *
 struct lambert_sample *lambert_fit(vec3 *g, const vec3 *direction, struct lambert_sample *s, int *n,
                                    bool plain)
 {
+    struct lambert_sample *const all = s;
+    const int given = *n;
     if (!plain)
         s = trim(s, n);
     if (!least_squares(g, direction, s, *n) || !(vec3_length(*g) > black))
         return NULL;
     if (!plain && !fit_robustly(g, direction, s, *n))
         return NULL;
+    if (!plain && given <= FEW) {
+        s = all;
+        *n = given;
+        if (!fit_robustly(g, direction, s, *n))
+            return NULL;
+    }
     return vec3_length(*g) > black ? s : NULL;
 }
 

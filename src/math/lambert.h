@@ -3,7 +3,8 @@
 // The value of a Lambertian pixel under a light of 1 from L is g.L with g = albedo x normal, as
 // long as the light is in front (Woodham 1980). Samples are sorted by brightness, the ends are cut
 // off, and g is found by iteratively reweighted least squares with the weights 1 / (1 + (r / c)^2)
-// (Holland and Welsch 1977).
+// (Holland and Welsch 1977). Where samples are few the ends come back then and are weighed as well:
+// which of them is cut off changes from pixel to pixel, and g jumped there.
 #ifndef MATH_LAMBERT_H
 #define MATH_LAMBERT_H
 

@@ -12,13 +12,14 @@
 enum { VERSION = 1 };
 static const char FORMAT[] = "relume-reflections";
 
-relume_status relume_objects_set_reflections(relume_objects *o, int object,
-                                             const struct relume_reflection_edit *edit,
-                                             const struct relume_reflection_params *params)
+// What is done to an object, before it is; `*made` is NULL where nothing is.
+static relume_status make(relume_reflection **made, const relume_objects *o, int object,
+                          const struct relume_reflection_edit *edit,
+                          const struct relume_reflection_params *params)
 {
-    struct relume_reflection_params own = PARAMS_WORK(relume_reflection_params, params);
-    relume_reflection *made = NULL;
+    struct relume_reflection_params own = *params;
     size_t first = SIZE_MAX, end = 0;
+    *made = NULL;
     if (object < 0 || object >= o->info.objects)
         return log_fail(own.log, RELUME_EINVAL, "%s: object %d does not exist; expected 0 to %d",
                         own.name ? own.name : "reflections", object, o->info.objects - 1);
@@ -35,14 +36,26 @@ relume_status relume_objects_set_reflections(relume_objects *o, int object,
         .triangles = first < end ? end - first : 0,
     };
     own.like = o->reflection[object];
-    const relume_status status =
-        edit ? relume_reflection_create(&made, edit, &surface, &own) : RELUME_OK;
-    if (status)
-        return status;
+    return edit ? relume_reflection_create(made, edit, &surface, &own) : RELUME_OK;
+}
+
+static void take(relume_objects *o, int object, relume_reflection *made)
+{
     relume_reflection_destroy(&o->reflection[object]);
     o->reflection[object] = made;
     o->info.reflections_set++;
-    return RELUME_OK;
+}
+
+relume_status relume_objects_set_reflections(relume_objects *o, int object,
+                                             const struct relume_reflection_edit *edit,
+                                             const struct relume_reflection_params *params)
+{
+    const struct relume_reflection_params own = PARAMS_WORK(relume_reflection_params, params);
+    relume_reflection *made;
+    const relume_status status = make(&made, o, object, edit, &own);
+    if (!status)
+        take(o, object, made);
+    return status;
 }
 
 const relume_reflection *relume_objects_reflections(const relume_objects *o, int object)
@@ -212,9 +225,9 @@ static relume_status read_edit(struct reading *r, struct relume_reflection_edit 
     return status;
 }
 
-relume_status objects_read_reflections(relume_objects *o, int object, const jvalue *value,
-                                       const char *path,
-                                       const struct relume_reflection_params *params)
+static relume_status read_reflections(relume_reflection **made, const relume_objects *o, int object,
+                                      const jvalue *value, const char *path,
+                                      const struct relume_reflection_params *params)
 {
     char *name = mem_format("%s: object %d: reflections", path, object);
     struct reading r = {
@@ -231,7 +244,7 @@ relume_status objects_read_reflections(relume_objects *o, int object, const jval
     relume_status status =
         name && r.constraint && r.region ? read_edit(&r, &edit, value) : RELUME_ENOMEM;
     if (!status) {
-        status = relume_objects_set_reflections(o, object, &edit, &own);
+        status = make(made, o, object, &edit, &own);
         if (status == RELUME_EINVAL)
             status = RELUME_EFORMAT;
     }
@@ -243,9 +256,20 @@ relume_status objects_read_reflections(relume_objects *o, int object, const jval
     return status;
 }
 
-// The next would take the place of one that the same file asks for, without a word.
-static relume_status read_edit_of_file(relume_objects *o, bool *named, size_t i, const jvalue *edit,
+relume_status objects_read_reflections(relume_objects *o, int object, const jvalue *value,
                                        const char *path,
+                                       const struct relume_reflection_params *params)
+{
+    relume_reflection *made = NULL;
+    const relume_status status = read_reflections(&made, o, object, value, path, params);
+    if (!status)
+        take(o, object, made);
+    return status;
+}
+
+// The next would take the place of one that the same file asks for, without a word.
+static relume_status read_edit_of_file(relume_reflection **made, const relume_objects *o, size_t i,
+                                       const jvalue *edit, const char *path,
                                        const struct relume_reflection_params *params)
 {
     const jvalue *number = jvalue_member(edit, "object");
@@ -254,13 +278,12 @@ static relume_status read_edit_of_file(relume_objects *o, bool *named, size_t i,
         return log_fail(params->log, RELUME_EFORMAT,
                         "%s: edit %zu: object: expected a whole number from 0 to %d", path, i,
                         o->info.objects - 1);
-    if (named[object])
+    if (made[object])
         return log_fail(params->log, RELUME_EFORMAT,
                         "%s: edit %zu: object %d has an edit already; expected one with all its "
                         "constraints and regions",
                         path, i, object);
-    named[object] = true;
-    return objects_read_reflections(o, object, edit, path, params);
+    return read_reflections(&made[object], o, object, edit, path, params);
 }
 
 relume_status relume_objects_load_reflections(relume_objects *o, const char *path,
@@ -276,12 +299,17 @@ relume_status relume_objects_load_reflections(relume_objects *o, const char *pat
     if (!status && (!jvalue_is_array(list) || jvalue_unknown(root, known)))
         status =
             log_fail(own.log, RELUME_EFORMAT, "%s: expected a list 'edits' and nothing else", path);
-    bool *named = mem_zeroed((size_t)o->info.objects, sizeof *named);
-    if (!status && !named)
+    relume_reflection **made = mem_zeroed((size_t)o->info.objects, sizeof *made);
+    if (!status && !made)
         status = RELUME_ENOMEM;
     for (size_t i = 0; i < jvalue_count(list) && !status; i++)
-        status = read_edit_of_file(o, named, i, jvalue_item(list, i), path, &own);
-    mem_free(named);
+        status = read_edit_of_file(made, o, i, jvalue_item(list, i), path, &own);
+    for (int i = 0; made && i < o->info.objects; i++)
+        if (made[i] && !status)
+            take(o, i, made[i]);
+        else
+            relume_reflection_destroy(&made[i]);
+    mem_free(made);
     jvalue_free(&root);
     return status;
 }

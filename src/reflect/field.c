@@ -78,21 +78,24 @@ struct asking {
     const char *name;
 };
 
-static bool is_finite(vec3 v)
+static const double FARTHEST = 1e15;  // graphics cards add up its square in single precision
+
+static bool is_within(vec3 v)
 {
-    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+    return fabs(v.x) <= FARTHEST && fabs(v.y) <= FARTHEST && fabs(v.z) <= FARTHEST;
 }
 
 static bool has_direction(vec3 v)
 {
-    return is_finite(v) && vec3_length(v) > 0.0 && isfinite(vec3_length(v));
+    return vec3_length(v) > 0.0 && isfinite(vec3_length(v));
 }
 
 static relume_status check_constraint(const struct relume_log *log,
                                       const struct relume_reflection_constraint *c)
 {
-    if (!is_finite(c->position) || !is_finite(c->eye))
-        return log_fail(log, RELUME_EINVAL, "position and eye: expected finite numbers");
+    if (!is_within(c->position) || !is_within(c->eye))
+        return log_fail(log, RELUME_EINVAL, "position and eye: expected numbers up to %g",
+                        FARTHEST);
     if (!has_direction(c->original) || !has_direction(c->edited))
         return log_fail(log, RELUME_EINVAL,
                         "original and edited direction: expected finite numbers, not all 0");
@@ -102,18 +105,19 @@ static relume_status check_constraint(const struct relume_log *log,
 static relume_status check_region(const struct relume_log *log,
                                   const struct relume_reflection_region *r)
 {
-    if (!(r->radius > 0.0) || !isfinite(r->radius))
-        return log_fail(log, RELUME_EINVAL, "radius: expected a number above 0; found %g",
-                        r->radius);
-    if (!(r->border >= 0.0) || !isfinite(r->border))
-        return log_fail(log, RELUME_EINVAL, "border: expected 0 or more; found %g", r->border);
-    if (!is_finite(r->centre))
-        return log_fail(log, RELUME_EINVAL, "centre: expected finite numbers");
+    if (!(r->radius > 0.0 && r->radius <= FARTHEST))
+        return log_fail(log, RELUME_EINVAL, "radius: expected a number above 0, up to %g; found %g",
+                        FARTHEST, r->radius);
+    if (!(r->border >= 0.0 && r->border <= FARTHEST))
+        return log_fail(log, RELUME_EINVAL, "border: expected 0 to %g; found %g", FARTHEST,
+                        r->border);
+    if (!is_within(r->centre))
+        return log_fail(log, RELUME_EINVAL, "centre: expected numbers up to %g", FARTHEST);
     if (r->shape == RELUME_REFLECTION_STROKES && r->points < 1)
         return log_fail(log, RELUME_EINVAL, "stroke: expected at least one point");
     for (int i = 0; r->shape == RELUME_REFLECTION_STROKES && i < r->points; i++)
-        if (!is_finite(r->stroke[i]))
-            return log_fail(log, RELUME_EINVAL, "stroke: expected finite numbers");
+        if (!is_within(r->stroke[i]))
+            return log_fail(log, RELUME_EINVAL, "stroke: expected numbers up to %g", FARTHEST);
     return RELUME_OK;
 }
 
@@ -127,9 +131,9 @@ static relume_status check(const struct asking *a, const struct relume_reflectio
     if (e->regions < 0 || e->regions > RELUME_REFLECTION_REGIONS_MOST)
         return log_fail(a->log, RELUME_EINVAL, "%s: expected at most %d regions; found %d", a->name,
                         RELUME_REFLECTION_REGIONS_MOST, e->regions);
-    if (e->frozen && !is_finite(e->eye))
-        return log_fail(a->log, RELUME_EINVAL, "%s: frozen: expected an eye of finite numbers",
-                        a->name);
+    if (e->frozen && !is_within(e->eye))
+        return log_fail(a->log, RELUME_EINVAL, "%s: frozen: expected an eye of numbers up to %g",
+                        a->name, FARTHEST);
     for (int i = 0; i < e->constraints && !status; i++)
         status = check_constraint(log_at(&place, a->log, "%s: constraint %d: ", a->name, i),
                                   &e->constraint[i]);

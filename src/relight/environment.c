@@ -212,6 +212,19 @@ relume_status relume_environment_load(relume_environment **out, const char *path
     return status;
 }
 
+relume_status environment_of_lamp(relume_environment **out, const struct relume_light *lamp)
+{
+    relume_environment *e = *out = mem_zeroed(1, sizeof *e);
+    if (!e || !(e->cell = mem_zeroed(1, sizeof *e->cell))) {
+        relume_environment_destroy(out);
+        return RELUME_ENOMEM;
+    }
+    e->cell[0].direction = vec3_unit(lamp->direction);
+    memcpy(e->cell[0].rgb, lamp->rgb, sizeof lamp->rgb);
+    e->count = e->rows = e->end[0] = 1;
+    return RELUME_OK;
+}
+
 void relume_environment_destroy(relume_environment **environment)
 {
     if (!*environment)

@@ -437,28 +437,27 @@ static relume_status add_near(const struct adding *a, const struct relume_light 
 // ---------------------------------------------------------------- a light
 
 static const float MORE = 1.01f;  // than an even share, rounding aside
-enum { LAMPS = 64 };              // that an environment is taken for
 
 static float luminance_of(const struct relume_light *light)
 {
     return luminance_709f(light->rgb);
 }
 
-// Of an environment's lamps those that are more than an even share come first: suns and windows,
-// whose shadows have edges. How many they are. Those beyond the captured lights fade: a sum has
-// other shares of them than a light alone (relume_environment_weights).
-static relume_status find_suns(struct relume_light lamp[LAMPS], int *suns,
-                               const struct relume_light *environment, const relume_coder *coder)
+// Those beyond the captured lights fade: a sum has other shares of them than a light alone
+// (relume_environment_weights).
+relume_status relume_shadows_suns(struct relume_light *lamp, int *suns,
+                                  const struct relume_light *environment, const relume_coder *coder)
 {
     vec3 from;
     const struct relume_coder_info *info = relume_coder_info(coder);
-    const relume_status status = relume_environment_sample(lamp, LAMPS, environment, 0);
+    const relume_status status =
+        relume_environment_sample(lamp, RELUME_SHADOW_LAMPS, environment, 0);
     float total = 0.0f;
     *suns = 0;
-    for (int i = 0; !status && i < LAMPS; i++)
+    for (int i = 0; !status && i < RELUME_SHADOW_LAMPS; i++)
         total += luminance_of(&lamp[i]);
-    for (int i = 0; !status && i < LAMPS; i++)
-        if (luminance_of(&lamp[i]) > MORE * total / LAMPS &&
+    for (int i = 0; !status && i < RELUME_SHADOW_LAMPS; i++)
+        if (luminance_of(&lamp[i]) > MORE * total / RELUME_SHADOW_LAMPS &&
             !(info->hemispherical && pole_from_world(lamp[i].direction, info->pole_y).z < 0.0) &&
             relume_coder_clamp(&from, coder, vec3_unit(lamp[i].direction)) == 1.0)
             lamp[(*suns)++] = lamp[i];
@@ -474,22 +473,7 @@ static relume_status add_lamp(struct adding *a, relume_shadows *s, const relume_
     const float share = (float)relume_coder_clamp(&a->light, coder, vec3_unit(lamp->direction));
     for (int c = 0; c < 3; c++)
         a->rgb[c] = share * lamp->rgb[c];
-    a->around = 0;
     return add_distant(a, s, threads);
-}
-
-// An environment is relit as a sum of the captured lights, whatever the domain of the codes.
-static relume_status add_environment(struct adding *a, relume_shadows *s, const relume_coder *coder,
-                                     const struct relume_light *light, int threads)
-{
-    struct relume_light lamp[LAMPS];
-    int suns = 0;
-    relume_status status = find_suns(lamp, &suns, light, coder);
-    a->display = NULL;
-    a->summed = true;
-    for (int i = 0; !status && i < suns; i++)
-        status = add_lamp(a, s, coder, &lamp[i], threads);
-    return status;
 }
 
 static relume_status add_light(struct adding *a, relume_shadows *s, const relume_coder *coder,
@@ -497,14 +481,13 @@ static relume_status add_light(struct adding *a, relume_shadows *s, const relume
 {
     if (light->kind == RELUME_LIGHT_DIRECTIONAL)
         return add_lamp(a, s, coder, light, threads);
-    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
-        return add_environment(a, s, coder, light, threads);
     return s->gloss.data ? RELUME_OK : add_near(a, light, coder, threads);
 }
 
-relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
-                                 relume_shadows *shadows, const struct relume_codes *codes,
-                                 const struct relume_light *light, int threads)
+// `display`: the curve of the codes that the picture was relit from, NULL where these are linear.
+static relume_status add(struct relume_image *picture, int left, int top, relume_shadows *shadows,
+                         const relume_coder *coder, const struct relume_transfer *display,
+                         bool summed, const struct relume_light *light, int threads)
 {
     const size_t n = 3 * (size_t)picture->width * (size_t)picture->height;
     struct relume_image more;
@@ -512,13 +495,32 @@ relume_status relume_shadows_add(struct relume_image *picture, int left, int top
     struct adding a = {.s = shadows,
                        .more = &more,
                        .rect = {left, top, picture->width, picture->height},
-                       .display = codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL};
+                       .display = display,
+                       .summed = summed};
     if (!status && !shadows->gloss.data)
-        status = need_between(shadows, relume_coder_info(codes->coder));
+        status = need_between(shadows, relume_coder_info(coder));
     if (!status)
-        status = add_light(&a, shadows, codes->coder, light, threads);
+        status = add_light(&a, shadows, coder, light, threads);
     for (size_t i = 0; !status && i < n; i++)
         picture->data[i] = fmaxf(picture->data[i] + more.data[i], fminf(picture->data[i], 0.0f));
     relume_image_destroy(&more);
     return status;
+}
+
+relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
+                                 relume_shadows *shadows, const struct relume_codes *codes,
+                                 const struct relume_light *light, int threads)
+{
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        return RELUME_EINVAL;
+    return add(picture, left, top, shadows, codes->coder,
+               codes->domain == RELUME_DOMAIN_DISPLAY ? &codes->display : NULL, false, light,
+               threads);
+}
+
+relume_status relume_shadows_add_sun(struct relume_image *picture, int left, int top,
+                                     relume_shadows *shadows, const relume_coder *coder,
+                                     const struct relume_light *sun, int threads)
+{
+    return add(picture, left, top, shadows, coder, NULL, true, sun, threads);
 }

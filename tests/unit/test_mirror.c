@@ -473,6 +473,7 @@ static void bad_edits_are_told(void **state)
                                                      relume_reflection_params(.log = &hearing)),
                      RELUME_EFORMAT);
     assert_non_null(strstr(last, "object 1: reflections: constraint 0: its eye sees object 0"));
+    assert_null(relume_objects_reflections(two, 0));  // all edits of a file or none
     relume_objects_destroy(&two);
     // constraints that do nothing are said, and no mistake
     write_text("idle.json", EDITS "{\"constraints\":[" GOOD

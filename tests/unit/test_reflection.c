@@ -350,9 +350,18 @@ static void edits_that_cannot_be(void **state)
     c = good, c.original.y = INFINITY;
     REFUSED("constraint 0: original and edited");
     c = good, g.radius = 0;
-    REFUSED("region 0: radius: expected a number above 0; found 0");
+    REFUSED("region 0: radius: expected a number above 0, up to 1e+15; found 0");
+    g.radius = 1e308;  // infinite on a graphics card
+    REFUSED("region 0: radius: expected a number above 0, up to 1e+15; found 1e+308");
     g.radius = 1, g.border = -1;
     REFUSED("region 0: border");
+    g.border = 1e16;
+    REFUSED("region 0: border: expected 0 to 1e+15; found 1e+16");
+    g.border = 0, g.centre.z = -2e15;
+    REFUSED("region 0: centre: expected numbers up to 1e+15");
+    g.centre.z = 0, c.eye.x = 1e200;
+    REFUSED("constraint 0: position and eye: expected numbers up to 1e+15");
+    c = good;
     g.border = 0, g.shape = RELUME_REFLECTION_GEODESIC;
     REFUSED("need a mesh");
     g.shape = RELUME_REFLECTION_STROKES;

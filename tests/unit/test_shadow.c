@@ -482,6 +482,43 @@ static void suns_throw_shadows(void **state)
     relume_environment_destroy(&environment);
 }
 
+// What a sun takes off it has brought: the sky's light stays where the model is wrong, as at the
+// edges of captured shadows, which were black.
+static void suns_leave_the_sky(void **state)
+{
+    (void)state;
+    enum { WIDE = 64, HIGH = 32, SUN = 20 * WIDE + 11 };
+    static float map[2][3 * WIDE * HIGH];
+    struct scene s;
+    struct file file;
+    struct relume_image got[2];
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
+    for (int i = 0; i < 3 * WIDE * HIGH; i++)
+        map[0][i] = map[1][i] = i / 3 == SUN ? 0.0f : 0.3f;
+    for (int c = 0; c < 3; c++)
+        map[1][3 * SUN + c] = 400.0f;
+    scene_open(&s);
+    encode(&s, "sky.exr", true);
+    file_open(&file, "sky.exr");
+    for (int k = 0; k < 2; k++) {
+        const struct relume_image image = {WIDE, HIGH, 3, .data = map[k]};
+        struct relume_light light = {
+            .kind = RELUME_LIGHT_ENVIRONMENT, .rotate_deg = -30.0, .rgb = {1.0f, 1.0f, 1.0f}};
+        relume_environment *environment;
+        CHECK_OK(relume_environment_create(&environment, &image, NULL));
+        light.environment = environment;
+        CHECK_OK(relume_renderer_set_lights(file.renderer, &light, 1));
+        CHECK_OK(relume_renderer_frame(&got[k], file.renderer, &camera));
+        relume_environment_destroy(&environment);
+    }
+    for (int i = 0; i < 3 * PIXELS; i++)
+        assert_true(got[1].data[i] > got[0].data[i] - 1e-4f);
+    for (int k = 0; k < 2; k++)
+        relume_image_destroy(&got[k]);
+    file_close(&file);
+    scene_close(&s);
+}
+
 // What is added to one light's picture ends where that is black: it takes nothing from another's.
 static void lights_are_the_sum_of_their_pictures(void **state)
 {
@@ -814,6 +851,7 @@ int main(void)
         cmocka_unit_test(near_lights_throw_shadows),
         cmocka_unit_test(areas_throw_soft_shadows),
         cmocka_unit_test(suns_throw_shadows),
+        cmocka_unit_test(suns_leave_the_sky),
         cmocka_unit_test(lights_are_the_sum_of_their_pictures),
         cmocka_unit_test(parts_and_threads_agree),
         cmocka_unit_test(lights_left_out_decide),

@@ -71,6 +71,10 @@ check 'have a row, too' sh -c 'grep -q "^sh  *6 .*skipped: .*coefficients" out.t
 expect_fail 'sizes that no basis has' 2 'none of the bases has that many; .*ptm has 3 6; sh has 1 4 9' - $sweep --basis ptm,sh --coefficients 7
 expect_ok 'more coefficients than lights' - $sweep --basis sh --coefficients 9,16 --json
 if grep -q '"coefficients": 16.*"skipped": "16 coefficients of basis sh need at least 16 lights; found 15"' out.txt; then ok 'the reason is given'; else not_ok 'the reason is given' "$(cat out.txt)"; fi
+# No usual size at all: it was a crash while the diagram was drawn.
+"$RELUME" synth box -o few --size 4 --lights 3 --hemisphere --samples 1 -q
+expect_ok 'a basis that wants more lights' - "$RELUME" sweep few --basis ptm -o fewer
+check 'it says so' grep -q 'ptm .*skipped: 6 coefficients of basis ptm need at least 6 lights; found 2' out.txt
 expect_ok 'nothing can be measured' - $sweep --basis sh --coefficients 36 -o none
 [ -e none.svg ] && not_ok 'no diagram without points' 'none.svg exists'
 

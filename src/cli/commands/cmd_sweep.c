@@ -129,12 +129,14 @@ static relume_status no_such_size(const struct entries *bases)
 }
 
 // A basis that keeps every light has one size. The others have a row for each that is asked for,
-// which says why where it cannot be, or of the usual ones those that the lights determine.
+// which says why where it cannot be, or of the usual ones those that the lights determine; where
+// they determine none, the least says so.
 static bool add_sizes(struct sweep *sweep, const struct relume_basis *asked)
 {
     static const int usual[] = {1, 4, 6, 9, 16, 18, 25, 27, 36, 49};
     const struct ints *sizes = &sweep->options->coefficients;
     const struct relume_basis *basis = asked ? asked : &relume_basis_pca;
+    const int before = sweep->rows;
     bool possible = !sizes->count;
     if (basis->interpolates && !basis->learned) {
         add_forms(sweep, asked, 0);
@@ -146,6 +148,9 @@ static bool add_sizes(struct sweep *sweep, const struct relume_basis *asked)
     }
     for (size_t i = 0; !sizes->count && i < sizeof usual / sizeof *usual; i++)
         if (basis->has_count(usual[i]) && basis->fit_count(usual[i], sweep->lights) == usual[i])
+            add_forms(sweep, asked, usual[i]);
+    for (size_t i = 0; sweep->rows == before && i < sizeof usual / sizeof *usual; i++)
+        if (basis->has_count(usual[i]))
             add_forms(sweep, asked, usual[i]);
     return possible;
 }

@@ -69,28 +69,31 @@ static bool holds(const struct layer *layer, size_t pixel)
 
 typedef void do_pixel(struct exchange *e, int x, int y);
 
-struct rows {
+struct run {
     struct exchange *e;
     do_pixel *pixel;
-    int first;
+    size_t first, each, end;
 };
 
-static void do_row(void *context, size_t row, int worker)
+static void do_run(void *context, size_t item, int worker)
 {
     (void)worker;
-    const struct rows *r = context;
-    for (int x = 0; x < r->e->scene.places.width; x++)
-        r->pixel(r->e, x, r->first + (int)row);
+    const struct run *r = context;
+    const size_t width = (size_t)r->e->scene.places.width, from = r->first + item * r->each;
+    for (size_t i = from; i < from + r->each && i < r->end; i++)
+        r->pixel(r->e, (int)(i % width), (int)(i / width));
 }
 
-static relume_status over_pixels(struct exchange *e, do_pixel *pixel)
+// `rays` for each pixel or so: who stops does not wait for more than some of them.
+static relume_status over_pixels(struct exchange *e, int rays, do_pixel *pixel)
 {
-    enum { AT_ONCE = 16 };
-    const int height = e->scene.places.height;
-    for (struct rows r = {e, pixel, 0}; r.first < height; r.first += AT_ONCE) {
-        const int left = height - r.first;
-        thread_for(e->params.threads, (size_t)(left < AT_ONCE ? left : AT_ONCE), do_row, &r);
-        if (!log_progress(e->params.log, "gathering light", (double)r.first / height))
+    enum { AT_ONCE = 1 << 19, ITEMS = 64 };
+    const size_t pixels = (size_t)e->scene.places.width * (size_t)e->scene.places.height;
+    const size_t some = (size_t)(AT_ONCE / rays) + 2, each = (some + ITEMS - 1) / ITEMS;
+    for (struct run r = {e, pixel, 0, each, 0}; r.first < pixels; r.first = r.end) {
+        r.end = r.first + some < pixels ? r.first + some : pixels;
+        thread_for(e->params.threads, (r.end - r.first + each - 1) / each, do_run, &r);
+        if (!log_progress(e->params.log, "gathering light", (double)r.end / (double)pixels))
             return RELUME_ECANCEL;
     }
     return RELUME_OK;
@@ -179,18 +182,22 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
                               const struct relume_image *places,
                               const struct relume_render_params *params)
 {
-    struct exchange *e = mem_zeroed(1, sizeof *e);
+    enum { PIXEL_BYTES = 14 * 3 * sizeof(float) };  // images of three numbers, at once
     const int width = places->width, height = places->height;
     *out = NULL;
+    relume_status status =
+        limits_memory((uint64_t)width * (uint64_t)height * PIXEL_BYTES,
+                      "light between objects and a picture of this size", params->log);
+    struct exchange *e = status ? NULL : mem_zeroed(1, sizeof *e);
     if (!e)
-        return RELUME_ENOMEM;
+        return status ? status : RELUME_ENOMEM;
     *e = (struct exchange){.o = o,
                            .scenery = scenery,
                            .viewport = viewport,
                            .transport = params->transport,
                            .params = *params,
                            .eye = relume_viewport_eye(viewport)};
-    relume_status status = make_layer(&e->scene, width, height);
+    status = make_layer(&e->scene, width, height);
     if (!status)
         status = make_layer(&e->objects, width, height);
     if (!status)
@@ -201,7 +208,7 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
     if (!status) {
         memcpy(e->scene.places.data, places->data,
                3 * (size_t)width * (size_t)height * sizeof *places->data);
-        status = over_pixels(e, find_layers);
+        status = over_pixels(e, 2, find_layers);
     }
     if (status)
         exchange_destroy(&e);
@@ -525,18 +532,19 @@ static relume_status smooth_scene(struct exchange *e)
 static relume_status gather(struct exchange *e)
 {
     begin_world(e);
-    relume_status status = e->transport->screen ? over_pixels(e, show) : RELUME_OK;
+    const int lamps = e->lighting.light_samples + 1, rays = e->world.samples * 4;
+    relume_status status = e->transport->screen ? over_pixels(e, lamps, show) : RELUME_OK;
     if (!status)
-        status = over_pixels(e, gather_at_objects);
+        status = over_pixels(e, rays, gather_at_objects);
     if (!status)
         status = smooth_objects(e);
     if (!status)
-        status = over_pixels(e, light_objects);
+        status = over_pixels(e, 1, light_objects);
     if (!status)
-        status = over_pixels(e, gather_at_scene);
+        status = over_pixels(e, rays, gather_at_scene);
     if (!status)
         status = smooth_scene(e);
-    return status ? status : over_pixels(e, light_scene);
+    return status ? status : over_pixels(e, lamps, light_scene);
 }
 
 relume_status exchange_light(struct exchange *e, struct relume_image *scene,

@@ -10,8 +10,8 @@
 #include <string.h>
 
 // Where planes are coded with loss the preview is small, so that it is not most of the file: not
-// more pixels a side than these, each the mean of so many of the view.
-enum { SMALL = 64, MOST_ROWS = 16 };
+// more pixels a side than these, each the mean of so many of the view, to a 64th of itself.
+enum { SMALL = 64, MOST_ROWS = 16, SMALL_LEFT_OUT = 5 };
 
 // Of views that have reduced levels it is one of those, at most so many pixels a side.
 enum { MOST_SHOWN = 1024 };
@@ -36,12 +36,17 @@ static const struct relume_pack_view *first_view(const struct relume_pack_conten
     return c->view + (c->share ? c->share->first : 0);
 }
 
-// B, G, R as halves, none of which is infinite.
-static uint16_t *put_row(uint16_t *out, const float *rgb, size_t width)
+// B, G, R as halves, none of which is infinite, the lowest `left_out` of whose bits are 0.
+static uint16_t *put_row(uint16_t *out, const float *rgb, size_t width, int left_out)
 {
+    const unsigned largest = 0x7bff, step = 1u << left_out;
     for (size_t channel = 3; channel-- > 0;)
-        for (size_t x = 0; x < width; x++)
-            *out++ = half_from_float(fminf(rgb[3 * x + channel], 65504.0f));
+        for (size_t x = 0; x < width; x++) {
+            const unsigned half = half_from_float(fminf(rgb[3 * x + channel], 65504.0f));
+            const unsigned rounded = (half & 0x7fff) + step / 2;
+            const unsigned size = rounded < largest ? rounded : largest;
+            *out++ = (uint16_t)((half & 0x8000) | (size & ~(step - 1)));
+        }
     return out;
 }
 
@@ -74,7 +79,7 @@ static relume_status preview_rows(void *context, int row, int rows, void *sample
     const relume_status status =
         c->preview ? c->preview(c->preview_user, row, rows, rgb) : RELUME_OK;
     for (size_t y = 0; !status && y < (size_t)rows; y++)
-        out = put_row(out, rgb + 3 * y * width, width);
+        out = put_row(out, rgb + 3 * y * width, width, 0);
     mem_free(rgb);
     return status;
 }
@@ -118,7 +123,7 @@ static relume_status small_rows(void *context, int row, int rows, void *samples)
         memset(sum, 0, small * 3 * sizeof *sum);
         status = small_row(sum, rgb, c, (size_t)y);
         if (!status)
-            out = put_row(out, sum, small);
+            out = put_row(out, sum, small, SMALL_LEFT_OUT);
     }
     mem_free(rgb);
     mem_free(sum);

@@ -179,6 +179,30 @@ static void test_preview(void **state)
         }
 }
 
+// With loss five bits of each value are left out, rounded: 2^-6 of it, beside the file's own error.
+static void test_small_preview(void **state)
+{
+    (void)state;
+    struct relume_image want = {0}, found;
+    const struct relume_codes *codes;
+    const struct relume_light light = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+    relume_pack *pack;
+    fixture_write(&(struct fixture){.width = 24, .height = 20, .lights = 9, .views = 1}, folder);
+    CHECK_OK(fixture_encode(folder, path, &relume_basis_pca, 4,
+                            relume_pack_encode_params(.psnr_db = 45.0)));
+    CHECK_OK(relume_pack_open(&pack, path, NULL));
+    CHECK_OK(relume_pack_codes(&codes, pack, 0));
+    CHECK_OK(relume_relight(&want, codes, &light, 1, NULL));
+    read_preview(&found);
+    for (int i = 0; i < 3 * want.width * want.height; i++) {
+        assert_int_equal(half_from_float(found.data[i]) & 0x1f, 0);
+        CHECK_NEAR(found.data[i], want.data[i], 0x1p-6 * fabs((double)want.data[i]) + 0.05);
+    }
+    relume_image_destroy(&want);
+    relume_image_destroy(&found);
+    relume_pack_destroy(&pack);
+}
+
 static relume_status stripes(void *user, int row, int rows, float *rgb)
 {
     const int width = *(const int *)user;
@@ -389,10 +413,15 @@ static void test_functions_as_text(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trips), cmocka_unit_test(test_preview),
-        cmocka_unit_test(test_own_preview), cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_cancel),      cmocka_unit_test(test_progress_of_parts),
-        cmocka_unit_test(test_coded_depth), cmocka_unit_test(test_functions_as_text),
+        cmocka_unit_test(test_round_trips),
+        cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_small_preview),
+        cmocka_unit_test(test_own_preview),
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_progress_of_parts),
+        cmocka_unit_test(test_coded_depth),
+        cmocka_unit_test(test_functions_as_text),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -39,7 +39,6 @@ struct tiling {
     const char *list;  // of the whole
     const struct part_file **bad;
     struct arena *arena;
-    const struct relume_log *log;
 };
 
 static bool begin(struct place *p, const struct tiles_of_part *own)
@@ -58,7 +57,7 @@ static int count_views(const char *list, int views)
     return n;
 }
 
-// The head of the words at a place, `words` of which belong to the view.
+// The head of the words at a place, `words` of which belong to the view. Who joins names the part.
 static relume_status read_head(uint32_t **out, struct lossy_held *held, const struct tiling *t,
                                int i, size_t words)
 {
@@ -67,15 +66,15 @@ static relume_status read_head(uint32_t **out, struct lossy_held *held, const st
     if (words < LOSSY_HEAD)
         return RELUME_EDAMAGED;
     relume_status status =
-        words_read(few, own->part->file, own->exr, t->place[i].at, LOSSY_HEAD, 1, t->log);
+        words_read(few, own->part->file, own->exr, t->place[i].at, LOSSY_HEAD, 1, NULL);
     if (status)
         return status;
     if (lossy_head(few) > words)
         return RELUME_EDAMAGED;
     uint32_t *head = *out = arena_array(t->arena, lossy_head(few), sizeof *head);
-    status = head ? words_read(head, own->part->file, own->exr, t->place[i].at, lossy_head(few), 1,
-                               t->log)
-                  : RELUME_ENOMEM;
+    status =
+        head ? words_read(head, own->part->file, own->exr, t->place[i].at, lossy_head(few), 1, NULL)
+             : RELUME_ENOMEM;
     if (!status)
         status = lossy_look(held, head, words);
     if (!status && (held->first != own->tiles.first || held->end != own->tiles.end ||
@@ -153,7 +152,7 @@ relume_status join_tiles(struct exr_part *out, const struct tiles_of_part *own, 
                          const struct part_file **bad, struct arena *arena,
                          const struct relume_log *log)
 {
-    struct tiling t = {.own = own, .count = count, .bad = bad, .arena = arena, .log = log};
+    struct tiling t = {.own = own, .count = count, .bad = bad, .arena = arena};
     struct word_rows *words = arena_array(arena, 1, sizeof *words);
     t.place = arena_array(arena, (size_t)count, sizeof *t.place);
     if (!t.place || !words)

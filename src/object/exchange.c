@@ -389,7 +389,6 @@ static void gather_at_scene(struct exchange *e, int x, int y)
                               .normal = normal,
                               .start =
                                   e->scenery ? scenery_leave(e->scenery, place, normal) : place,
-                              .scenery = true,
                               .key = key_of(e, x, y)};
     e->transport->gather(&e->world, &site, arrive_at_scene, &at);
 }

@@ -209,7 +209,7 @@ static relume_status find_surround(struct surround *s, relume_renderer *renderer
     s->geometry = &renderer->info->geometry;
     s->filter = renderer->params.filter;
     const relume_status status = renderer_bare_frame(&s->panorama, renderer, &whole);
-    return status ? status : relume_renderer_places(&s->places, renderer, &whole);
+    return status ? status : find_places(&s->places, renderer, &whole);
 }
 
 static relume_status light_objects(struct lighting *lighting, relume_renderer *renderer,

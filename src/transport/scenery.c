@@ -54,8 +54,8 @@ static double distance_to(const struct scenery *c, vec3 place)
     return vec3_length(vec3_sub(place, c->eye));
 }
 
-// Renderers put the background a thousand times as far as the farthest surface.
-// Without any surface all is background.
+// Renderers put the background a thousand times as far as the farthest surface. Without any surface
+// all is background.
 static double find_farthest(const struct scenery *c, const struct relume_image *places)
 {
     const double BACKGROUND = 1000.0, NEAR = 0.5;

@@ -14,7 +14,6 @@
 struct site {
     vec3 position, normal;  // unit, towards the eye
     vec3 start;             // where rays begin: just off the surface
-    bool scenery;           // it is the scene's
     uint64_t key;           // of its random numbers
 };
 

@@ -32,6 +32,8 @@ expect_ok 'a slab' - "$RELUME" relight slab.exr --objects front.json -o slab-ssd
 "$RELUME" encode -q room -o far.exr --no-depth
 expect_ok 'a far panorama' - "$RELUME" relight far.exr --objects ball.json $look -o far.png --transport ssdo
 check 'is told' test "$(grep -c 'the panorama has no depth' err.txt)" = 1
+objects '0,-0.6,-1.4' '{"mirror":1}' >mirror.json
+expect_ok 'with a mirror in it' - "$RELUME" relight far.exr --objects mirror.json $look -o far.png --transport path -q
 expect_fail 'without light between it needs depth' 1 'how far the scene is' x.png "$RELUME" relight far.exr --objects ball.json -o x.png
 
 expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'\?" x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport sddo

@@ -333,6 +333,7 @@ static void begin_world(struct exchange *e)
         .bounces = p->bounces < 0 ? 0
                    : p->bounces   ? p->bounces
                                   : 1,
+        .threads = p->threads,
     };
     scenery_mean(e->world.mean, e->scenery);
 }
@@ -533,6 +534,8 @@ static relume_status gather(struct exchange *e)
     begin_world(e);
     const int lamps = e->lighting.light_samples + 1, rays = e->world.samples * 4;
     relume_status status = e->transport->screen ? over_pixels(e, lamps, show) : RELUME_OK;
+    if (!status && e->transport->begin)
+        status = e->transport->begin(&e->world, e->params.log);
     if (!status)
         status = over_pixels(e, rays, gather_at_objects);
     if (!status)
@@ -543,6 +546,8 @@ static relume_status gather(struct exchange *e)
         status = over_pixels(e, rays, gather_at_scene);
     if (!status)
         status = smooth_scene(e);
+    if (e->transport->end)
+        e->transport->end(&e->world);
     return status ? status : over_pixels(e, lamps, light_scene);
 }
 

@@ -50,6 +50,8 @@ struct world {
     double radius;             // of the ball about the objects
     int samples;               // directions at each site
     int bounces;               // off objects
+    int threads;
+    void *state;  // of the way: what its `begin` has made
 };
 
 typedef void take_arrival(void *context, const struct arrival *arrival);
@@ -59,6 +61,10 @@ struct relume_transport {
     int samples;  // at a site, by default
     int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
     bool screen;  // needs the frames
+    // NULL: there is nothing to prepare. What a light of the rig needs once before sites gather
+    // under it; RELUME_ENOMEM. `end` frees it, and takes a state of NULL.
+    relume_status (*begin)(struct world *w, const struct relume_log *log);
+    void (*end)(struct world *w);
     void (*gather)(const struct world *w, const struct site *site, take_arrival *arrive,
                    void *context);
 };

@@ -58,7 +58,8 @@ struct relume_look_at {
 };
 // Whether anything is not zero.
 RELUME_API bool relume_look_at_given(const struct relume_look_at *look_at);
-// False when the eye stands where it looks, looks along `up`, or something is not finite.
+// False when the eye stands where it looks, looks along `up`, or something is not finite. Where
+// `look_at` is aimed and has a field of view, slabs do not matter: they may be NULL.
 RELUME_API bool relume_slab_set_window(struct relume_window *out, const relume_slab_set *slabs,
                                        struct relume_vec3 eye, const struct relume_look_at *look_at,
                                        int width, int height);

@@ -144,11 +144,27 @@ static relume_status picture(const char *path, const char *out, const struct rel
     return still_write(path, out, p);
 }
 
+static bool is_scene(const char *path, const struct relume_log *log)
+{
+    static const char word[] = "\"relume-scene\"";
+    char head[HEAD];
+    FILE *f = path_ends(path, ".json") ? input_open(path, log) : NULL;
+    const size_t n = f ? fread(head, 1, sizeof head, f) : 0;
+    if (f)
+        fclose(f);
+    return memmem(head, n, word, strlen(word));
+}
+
 static relume_status unknown(const char *path, const struct relume_open_params *p)
 {
     const enum input_kind kind = input_kind(path, p->log);
     if (kind == INPUT_NONE)
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
+    if (kind != INPUT_FOLDER && is_scene(path, p->log))
+        return log_fail(p->log, RELUME_EFORMAT,
+                        "%s: a scene file, which 'relume relight' and 'relume info' open; expected "
+                        "one of the captures that it names",
+                        path);
     if (kind != INPUT_FOLDER)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "

@@ -73,9 +73,9 @@ static relume_status draw(relume_renderer *r, const struct relume_window *window
     if (status || r->shown == SHOWN_PLACES)
         return status;
     const size_t black = blacken(out, r->slabs, window);
-    if (black == pixels)
+    if (black == pixels && !r->is_part)
         return sees_nothing(r, window->eye);
-    if ((double)black > 0.005 * (double)pixels && !*r->note[NOTE_BESIDE])
+    if (!r->is_part && (double)black > 0.005 * (double)pixels && !*r->note[NOTE_BESIDE])
         renderer_note(r, NOTE_BESIDE,
                       "%.0f %% of the picture is black: no camera sees what is there%s",
                       100.0 * (double)black / (double)pixels,

@@ -26,7 +26,7 @@ struct layer {
 
 struct exchange {
     const relume_objects *o;
-    struct scenery *scenery;
+    const struct scenery *scenery;
     const struct relume_viewport *viewport;
     const struct relume_transport *transport;
     struct relume_render_params params;
@@ -178,7 +178,7 @@ void exchange_destroy(struct exchange **e)
 }
 
 relume_status exchange_create(struct exchange **out, const relume_objects *o,
-                              struct scenery *scenery, const struct relume_viewport *viewport,
+                              const struct scenery *scenery, const struct relume_viewport *viewport,
                               const struct relume_image *places,
                               const struct relume_render_params *params)
 {
@@ -560,7 +560,7 @@ relume_status exchange_light(struct exchange *e, struct relume_image *scene,
     enum { IMAGES = sizeof gathered / sizeof *gathered };
     e->lone = lone, e->lit = scene, e->reflected = reflected;
     relume_status status = lighting_create(&e->lighting, e->o, light, 1, &e->params);
-    e->lighting.scenery = e->scenery;
+    e->lighting.scenery = &e->scenery, e->lighting.sceneries = 1;
     for (int i = 0; i < IMAGES && !status; i++)
         status = relume_image_create(gathered[i], lone->width, lone->height, 3);
     if (!status)

@@ -65,14 +65,6 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
 
 // ---------------------------------------------------------------- both together
 
-struct layered {
-    const relume_objects *o;
-    const struct relume_viewport *viewport;
-    const struct relume_image *scene, *places;
-    const struct relume_image *reflected;  // light of the scene that objects show; empty: none
-    const struct lighting *lighting;
-};
-
 static struct ray ray_of(const struct relume_viewport *viewport, double x, double y)
 {
     struct ray ray;
@@ -99,8 +91,8 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
         rgb[c] += l->reflected->data[pixel + c];
 }
 
-static relume_status layer(struct relume_image *out, const struct layered *l,
-                           const struct relume_render_params *params)
+relume_status objects_layer(struct relume_image *out, const struct layered *l,
+                            const struct relume_render_params *params)
 {
     relume_status status = relume_image_create(out, l->scene->width, l->scene->height, 3);
     return status ? status : objects_trace(out, layered_value, l, params);
@@ -299,7 +291,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
         status = light_objects(&lighting, renderer, camera, lights, n);
     if (!status && exchanges_light(in)) {
         status = need_scenery(in, renderer, &whole);
-        lighting.scenery = in->scenery;
+        lighting.scenery = (const struct scenery *const *)&in->scenery, lighting.sceneries = 1;
         if (!status)
             status =
                 exchange_all(&scene, &reflected, &places, &viewport, renderer, camera, lights, n);
@@ -308,7 +300,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     }
     const struct layered layers = {objects, &viewport, &scene, &places, &reflected, &lighting};
     if (!status)
-        status = layer(out, &layers, params);
+        status = objects_layer(out, &layers, params);
     if (status)
         relume_image_destroy(out);
     relume_image_destroy(&scene);

@@ -56,6 +56,14 @@ relume_status objects_read_reflections(relume_objects *o, int object, const jval
                                        const char *path,
                                        const struct relume_reflection_params *params);
 
+// A pose: translate, rotate, scale; absent: as it is. RELUME_EFORMAT with a sentence.
+relume_status objects_read_pose(struct frame *out, const jvalue *value,
+                                const struct relume_log *log);
+// The objects of a list in the file `path`, finished, without those that are `left_out` (NULL:
+// none); of no list (NULL) none. Errors of relume_objects_open. `params` are filled in.
+relume_status objects_read(relume_objects **out, const jvalue *list, const char *path,
+                           const bool *left_out, const struct relume_objects_params *params);
+
 // Tangents, and what rays need. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status objects_finish(relume_objects *o, const struct relume_objects_params *params);
 
@@ -116,7 +124,8 @@ struct lighting {
     int skies;
     int materials;
     bool no_shadows;
-    const struct scenery *scenery;  // stands in the way of lamps; NULL: nothing does
+    const struct scenery *const *scenery;  // [sceneries]: they stand in the way of lamps
+    int sceneries;
     int every;     // of the samples of environments one in so many is looked for, ...
     uint64_t key;  // ... from any on
 };
@@ -153,6 +162,18 @@ typedef void pixel_value(float rgb[3], const void *context, double x, double y, 
 relume_status objects_trace(struct relume_image *out, pixel_value *value, const void *context,
                             const struct relume_render_params *params);
 
+// A scene and the objects, where they are before it.
+struct layered {
+    const relume_objects *o;
+    const struct relume_viewport *viewport;
+    const struct relume_image *scene, *places;
+    const struct relume_image *reflected;  // light of the scene that objects show; empty: none
+    const struct lighting *lighting;
+};
+// `*out` is created, of the scene's size. Errors of objects_trace.
+relume_status objects_layer(struct relume_image *out, const struct layered *l,
+                            const struct relume_render_params *params);
+
 // ---------------------------------------------------------------- the scene
 
 // Which way the scene faces in a pixel, from the places beside it; 0 where they are too far away.
@@ -166,7 +187,7 @@ double scene_share(const relume_objects *o, const struct relume_object_light *li
 struct exchange;
 // `captured` and what else is handed over is borrowed. RELUME_ENOMEM.
 relume_status exchange_create(struct exchange **out, const relume_objects *o,
-                              struct scenery *scenery, const struct relume_viewport *viewport,
+                              const struct scenery *scenery, const struct relume_viewport *viewport,
                               const struct relume_image *places,
                               const struct relume_render_params *params);
 void exchange_destroy(struct exchange **e);

@@ -415,8 +415,10 @@ static struct frame turn(const double axis_angle[4])
     return f;
 }
 
-static relume_status read_pose(const struct reader *r, const jvalue *value, struct frame *out)
+relume_status objects_read_pose(struct frame *out, const jvalue *value,
+                                const struct relume_log *log)
 {
+    const struct reader only = {.log = log}, *const r = &only;
     static const char *const known[] = {"translate", "rotate", "scale", NULL};
     double move[3] = {0}, axis[4] = {0, 1, 0, 0}, scale = 1.0;
     *out = frame_world;
@@ -459,7 +461,7 @@ static relume_status read_coverings(const struct reader *r, const jvalue *object
 
 static relume_status read_object(const struct reader *r, const jvalue *object)
 {
-    static const char *const known[] = {"mesh", "pose", "parts", "reflections", NULL};
+    static const char *const known[] = {"mesh", "name", "pose", "parts", "reflections", NULL};
     struct standing s = {.frame = frame_world};
     const char *mesh = jvalue_text(jvalue_member(object, "mesh"));
     if (!jvalue_is_object(object) || !mesh || !*mesh)
@@ -467,7 +469,7 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
     char *path = mesh_beside(r->path, mesh);
     relume_status status = path ? know(r, object, known) : RELUME_ENOMEM;
     if (!status)
-        status = read_pose(r, jvalue_member(object, "pose"), &s.frame);
+        status = objects_read_pose(&s.frame, jvalue_member(object, "pose"), r->log);
     if (!status)
         status = read_coverings(r, object, &s);
     if (!status)
@@ -477,20 +479,8 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
     return status;
 }
 
-static relume_status read_all(const struct reader *r, const jvalue *root)
+static relume_status read_list(const struct reader *r, const jvalue *list, const bool *left_out)
 {
-    static const char *const known[] = {"format", "version", "objects", NULL};
-    const char *format = jvalue_text(jvalue_member(root, "format"));
-    const jvalue *list = jvalue_member(root, "objects");
-    long long version = 0;
-    if (!format || strcmp(format, "relume-objects"))
-        return log_fail(r->log, RELUME_EFORMAT, "%s: format: expected \"relume-objects\"", r->path);
-    if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != VERSION)
-        return log_fail(r->log, RELUME_EUNSUPPORTED, "%s: expected version %d; found %lld", r->path,
-                        VERSION, version);
-    if (jvalue_unknown(root, known))
-        return log_fail(r->log, RELUME_EFORMAT, "%s: unknown member '%s'", r->path,
-                        jvalue_unknown(root, known));
     const size_t n = jvalue_is_array(list) ? jvalue_count(list) : 0;
     if (n < 1 || n > MOST_OBJECTS)
         return log_fail(r->log, RELUME_EFORMAT, "%s: objects: expected a list of 1 to %d", r->path,
@@ -500,43 +490,64 @@ static relume_status read_all(const struct reader *r, const jvalue *root)
         struct log_place place;
         struct reader one = *r;
         one.log = log_at(&place, r->log, "%s: object %zu: ", r->path, i);
-        status = read_object(&one, jvalue_item(list, i));
+        if (!left_out || !left_out[i])
+            status = read_object(&one, jvalue_item(list, i));
     }
     return status ? status : objects_finish(r->o, r->params);
 }
 
 // Of the finished objects: edits ask where their surface is.
-static relume_status read_edits(const struct reader *r, const jvalue *root)
+static relume_status read_edits(const struct reader *r, const jvalue *list, const bool *left_out)
 {
-    const jvalue *list = jvalue_member(root, "objects");
     relume_status status = RELUME_OK;
-    for (int i = 0; i < r->o->info.objects && !status; i++) {
-        const jvalue *edit = jvalue_member(jvalue_item(list, (size_t)i), "reflections");
+    int object = 0;
+    for (size_t i = 0; i < jvalue_count(list) && !status; i++) {
+        const jvalue *edit = jvalue_member(jvalue_item(list, i), "reflections");
+        if (left_out && left_out[i])
+            continue;
         if (edit)
             status = objects_read_reflections(
-                r->o, i, edit, r->path,
+                r->o, object, edit, r->path,
                 relume_reflection_params(.log = r->log, .threads = r->params->threads));
+        object++;
     }
+    return status;
+}
+
+relume_status objects_read(relume_objects **out, const jvalue *list, const char *path,
+                           const bool *left_out, const struct relume_objects_params *params)
+{
+    relume_objects *o = mem_zeroed(1, sizeof *o);
+    const struct reader r = {o, path, params, params->log};
+    *out = NULL;
+    relume_status status = o ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status =
+            list ? read_list(&r, list, left_out) : trace_create(&o->tracer, &o->mesh, params->log);
+    if (!status && list)
+        status = read_edits(&r, list, left_out);
+    if (status)
+        relume_objects_destroy(&o);
+    *out = o;
     return status;
 }
 
 relume_status relume_objects_open(relume_objects **out, const char *path,
                                   const struct relume_objects_params *params)
 {
+    static const char *const known[] = {"format", "version", "objects", NULL};
     const struct relume_objects_params own = PARAMS_WORK(relume_objects_params, params);
-    relume_objects *o = mem_zeroed(1, sizeof *o);
-    struct reader r = {o, path, &own, own.log};
     jvalue *root = NULL;
     *out = NULL;
-    relume_status status = o ? jvalue_load(&root, path, own.log) : RELUME_ENOMEM;
+    relume_status status = jvalue_load(&root, path, own.log);
     if (!status)
-        status = read_all(&r, root);
+        status = jvalue_check_format(root, path, "relume-objects", VERSION, own.log);
+    if (!status && jvalue_unknown(root, known))
+        status = log_fail(own.log, RELUME_EFORMAT, "%s: unknown member '%s'", path,
+                          jvalue_unknown(root, known));
     if (!status)
-        status = read_edits(&r, root);
+        status = objects_read(out, jvalue_member(root, "objects"), path, NULL, &own);
     jvalue_free(&root);
-    if (status)
-        relume_objects_destroy(&o);
-    *out = o;
     return status;
 }
 

@@ -179,10 +179,11 @@ static bool is_lit(const relume_objects *o, const struct surface_point *p, const
 {
     if (l->no_shadows)
         return true;
-    return objects_reached(o, p->lifted, p->geometric, towards, distance) &&
-           (!l->scenery ||
-            scenery_reached(l->scenery, scenery_leave(l->scenery, p->lifted, p->geometric), towards,
-                            distance));
+    bool is = objects_reached(o, p->lifted, p->geometric, towards, distance);
+    for (int i = 0; i < l->sceneries && is; i++)
+        is = scenery_reached(l->scenery[i], scenery_leave(l->scenery[i], p->lifted, p->geometric),
+                             towards, distance);
+    return is;
 }
 
 static void add_sample(float rgb[3], const relume_objects *o, const struct surface_point *p,

@@ -54,11 +54,23 @@ static double distance_to(const struct scenery *c, vec3 place)
     return vec3_length(vec3_sub(place, c->eye));
 }
 
-// Renderers put the background a thousand times as far as the farthest surface. Without any surface
-// all is background.
+// Of all pixels, the part that is about as far as `most`.
+static double part_at(const struct scenery *c, const struct relume_image *places, double most)
+{
+    const double ABOUT = 0.999;
+    size_t n = 0;
+    for (int y = 0; y < c->height; y++)
+        for (int x = 0; x < c->width; x++)
+            n += distance_to(c, place_at(places, x, y)) >= ABOUT * most;
+    return (double)n / ((double)c->width * c->height);
+}
+
+// Renderers put the background a thousand times as far as the farthest surface. Depth maps of
+// photographs end at the largest number that they can hold, and many pixels have that: the sky.
+// Without any surface all is background.
 static double find_farthest(const struct scenery *c, const struct relume_image *places)
 {
-    const double BACKGROUND = 1000.0, NEAR = 0.5;
+    const double BACKGROUND = 1000.0, NEAR = 0.5, MANY = 0.01, ALL = 0.9, BEFORE = 0.998;
     double least = INFINITY, most = 0.0;
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++) {
@@ -68,12 +80,20 @@ static double find_farthest(const struct scenery *c, const struct relume_image *
         }
     if (!(most > 0.0))
         return 0.0;
-    return most * NEAR > least * BACKGROUND ? most / BACKGROUND / NEAR : INFINITY;
+    if (most * NEAR > least * BACKGROUND)
+        return most / BACKGROUND / NEAR;
+    const double part = part_at(c, places, most);
+    return part > MANY && part < ALL ? BEFORE * most : INFINITY;
 }
 
 static bool is_surface(const struct scenery *c, vec3 place)
 {
     return distance_to(c, place) <= c->farthest;
+}
+
+bool scenery_holds(const struct scenery *c, vec3 place)
+{
+    return is_surface(c, place);
 }
 
 // ---------------------------------------------------------------- the mesh

@@ -42,6 +42,8 @@ vec3 scenery_leave(const struct scenery *c, vec3 place, vec3 normal);
 // Whether nothing of it lies on the way from where a ray begins to what shines there from
 // `distance` away.
 bool scenery_reached(const struct scenery *c, vec3 start, vec3 towards, double distance);
+// Whether a place is one of surfaces, not of the background.
+bool scenery_holds(const struct scenery *c, vec3 place);
 // The mean of what the eye sees over all directions; where it is no panorama, of the pixels.
 void scenery_mean(float rgb[3], const struct scenery *c);
 

@@ -119,7 +119,7 @@ struct relume_window relume_slab_window(const struct relume_geometry *g, vec3 ey
 static void find_half(double half[2], const relume_slab_set *slabs)
 {
     half[0] = half[1] = 0.0;
-    for (int i = 0; i < slabs->count; i++)
+    for (int i = 0; slabs && i < slabs->count; i++)
         for (int axis = 0; axis < 2; axis++) {
             const struct relume_geometry *g = &slabs->slab[i]->geometry;
             half[axis] = fmax(half[axis], 0.5 * (g->st_max[axis] - g->st_min[axis]));

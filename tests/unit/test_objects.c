@@ -578,7 +578,7 @@ static void bad_descriptions_are_told(void **state)
     static const struct {
         const char *text, *sentence;
     } list[] = {
-        {"{\"format\":\"other\"}", "format: expected"},
+        {"{\"format\":\"other\"}", "expected \"format\""},
         {"{\"format\":\"relume-objects\",\"version\":2}", "expected version 1; found 2"},
         {"{\"format\":\"relume-objects\",\"version\":1,\"objects\":[]}",
          "objects: expected a list"},

@@ -170,10 +170,79 @@ static void print_part(const struct relume_pack_part *p, bool json)
     printf("file          %llu bytes\n", (unsigned long long)p->file_bytes);
 }
 
+// ---------------------------------------------------------------- scene files
+
+static void print_scene_json(const struct relume_tableau_info *info)
+{
+    const struct relume_camera *c = &info->camera;
+    printf("{\"format\": \"relume scene\", \"captures\": %d, \"objects\": %d, \"entities\": [",
+           info->captures, info->entities - info->captures);
+    for (int i = 0; i < info->entities; i++) {
+        const struct relume_tableau_entity *e = &info->entity[i];
+        printf("%s{\"name\": ", i ? ", " : "");
+        json_text(stdout, e->name);
+        if (e->pack)
+            printf(", \"kind\": \"%s\", \"instead_of\": %d}",
+                   relume_projection_name(relume_pack_info(e->pack)->geometry.projection),
+                   e->instead_of);
+        else
+            printf(", \"kind\": \"mesh\", \"triangles\": %zu}", e->triangles);
+    }
+    printf("], \"eye\": [%.9g, %.9g, %.9g], \"look_at\": [%.9g, %.9g, %.9g], \"fov\": %.9g, "
+           "\"width\": %d, \"height\": %d}\n",
+           c->eye.x, c->eye.y, c->eye.z, c->look_at.at.x, c->look_at.at.y, c->look_at.at.z,
+           c->look_at.field_of_view_deg, c->width, c->height);
+}
+
+static void print_scene_text(const struct relume_tableau_info *info)
+{
+    const struct relume_camera *c = &info->camera;
+    struct shown text;
+    const int objects = info->entities - info->captures;
+    printf("scene         %d capture%s, %d object%s\n", info->captures,
+           relume_plural(info->captures), objects, relume_plural(objects));
+    for (int i = 0; i < info->entities; i++) {
+        const struct relume_tableau_entity *e = &info->entity[i];
+        printf("%-13s ", e->pack ? "capture" : "object");
+        if (e->pack) {
+            const struct relume_pack_info *p = relume_pack_info(e->pack);
+            printf("%s: %s, %d view%s of %d x %d pixels", shown(&text, e->name),
+                   relume_projection_name(p->geometry.projection), p->views,
+                   relume_plural(p->views), p->width, p->height);
+        } else {
+            printf("%s: %zu triangles", shown(&text, e->name), e->triangles);
+        }
+        if (e->instead_of >= 0)
+            printf(", from afar instead of %s", shown(&text, info->entity[e->instead_of].name));
+        printf("\n");
+    }
+    printf("camera        at %g,%g,%g, looks at %g,%g,%g, %.3g degrees, %d x %d pixels\n", c->eye.x,
+           c->eye.y, c->eye.z, c->look_at.at.x, c->look_at.at.y, c->look_at.at.z,
+           c->look_at.field_of_view_deg, c->width, c->height);
+}
+
+static relume_status tell_scene(const struct info_options *o)
+{
+    relume_tableau *tableau;
+    const relume_status status = relume_tableau_open(
+        &tableau, o->args.input[0],
+        relume_tableau_params(.log = o->args.log, .limits = &o->args.limits,
+                              .threads = o->args.threads, .allow_outside = o->allow_outside,
+                              .keep_going = o->keep_going));
+    if (!status)
+        (o->json ? print_scene_json : print_scene_text)(relume_tableau_info(tableau));
+    relume_tableau_destroy(&tableau);
+    return status;
+}
+
+// ---------------------------------------------------------------- the command
+
 static relume_status run(const struct args *args)
 {
     const struct info_options *o = (const void *)args;
     const char *path = o->args.input[0];
+    if (relume_tableau_is(path))
+        return tell_scene(o);
     struct relume_pack_part part;
     if (is_part(&part, path)) {
         print_part(&part, o->json);
@@ -197,7 +266,9 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_info = {
-    COMMAND("info", "FILE [--json]",
-            "show what a file holds: a relume file, .ptm, .rti, web folder, capture, HDR picture",
-            "relume info statue.exr --json", 1, 1),
+    COMMAND(
+        "info", "FILE [--json]",
+        "show what a file holds: a relume file, scene file, .ptm, .rti, web folder, capture, HDR "
+        "picture",
+        "relume info statue.exr --json", 1, 1),
 };

@@ -241,14 +241,11 @@ static void show_normals(struct relume_image *frame, const char *path)
     }
 }
 
-static relume_status set_objects(relume_objects **objects, relume_renderer *renderer,
-                                 const struct relight_options *o)
+static struct relume_render_params render_params(const struct relight_options *o)
 {
-    if (!o->objects)
-        return RELUME_OK;
     const bool gathers = o->transport && relume_transport_samples(o->transport);
-    const struct relume_render_params params = {
-        .struct_size = sizeof params,
+    return (struct relume_render_params){
+        .struct_size = sizeof(struct relume_render_params),
         .log = o->args.log,
         .samples = gathers ? ACROSS : o->samples,
         .threads = o->args.threads,
@@ -256,6 +253,14 @@ static relume_status set_objects(relume_objects **objects, relume_renderer *rend
         .transport_samples = given(o, &o->samples) && gathers ? o->samples : 0,
         .bounces = given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
     };
+}
+
+static relume_status set_objects(relume_objects **objects, relume_renderer *renderer,
+                                 const struct relight_options *o)
+{
+    const struct relume_render_params params = render_params(o);
+    if (!o->objects)
+        return RELUME_OK;
     const relume_status status = objects_open(objects, o->objects, o->reflections, &o->args);
     return status ? status : relume_renderer_set_objects(renderer, *objects, &params);
 }
@@ -440,6 +445,97 @@ static relume_status render(const struct relight_options *o, const struct relume
     return status;
 }
 
+// ---------------------------------------------------------------- scene files
+
+// Options that are of one file alone.
+static relume_status check_scene(const struct relight_options *o)
+{
+    const struct {
+        const char *option;
+        const void *member;
+    } of_files[] = {
+        {"--view", &o->view},
+        {"--crop", o->crop},
+        {"--pan", &o->pan},
+        {"--tilt", &o->tilt},
+        {"--zoom", &o->zoom},
+        {"--projection", &o->projection},
+        {"--aperture", &o->aperture},
+        {"--focus", &o->focus},
+        {"--objects", &o->objects},
+        {"--reflections", &o->reflections},
+        {"--reflection-at", o->reflection_at},
+        {"--pass", &o->pass},
+        {"--alpha", &o->alpha},
+        {"--interpolate", &o->interpolation},
+        {"--nearest", &o->nearest},
+        {"--filter", &o->filter},
+        {"--capture", &o->capture},
+        {"--assume-depth", &o->lighting.assume_depth},
+    };
+    for (size_t i = 0; i < sizeof of_files / sizeof *of_files; i++)
+        if (given(o, of_files[i].member))
+            return usage_error("%s: a scene file holds objects, captures and their places; leave "
+                               "out %s",
+                               o->args.input[0], of_files[i].option);
+    if (o->samples > MOST_ACROSS && !(o->transport && relume_transport_samples(o->transport)))
+        return usage_error("--samples: expected 1 to %d rays along each side of a pixel; found %d",
+                           MOST_ACROSS, o->samples);
+    return RELUME_OK;
+}
+
+static relume_status draw_scene(const struct relight_options *o, const struct relume_light *lights,
+                                int count)
+{
+    const struct relume_camera camera = {
+        .framing =
+            given(o, &o->eye) || given(o, &o->look_at) || given(o, &o->up) || given(o, &o->fov)
+                ? RELUME_FRAME_EYE
+                : RELUME_FRAME_DEFAULT,
+        .eye = o->eye,
+        .look_at = {given(o, &o->look_at), o->look_at, o->up, o->fov},
+        .width = o->size[0],
+        .height = o->size[1],
+    };
+    const struct relume_render_params params = render_params(o);
+    relume_tableau *tableau;
+    struct relume_image frame = {0};
+    relume_status status = relume_tableau_open(
+        &tableau, o->args.input[0],
+        relume_tableau_params(.log = o->args.log, .limits = &o->args.limits,
+                              .threads = o->args.threads, .allow_outside = o->allow_outside,
+                              .keep_going = o->keep_going));
+    if (!status && !o->lighting.rig && !o->lighting.light.count)
+        status = relume_rig_lights(&lights, &count, relume_tableau_rig(tableau));
+    if (!status)
+        status = relume_tableau_frame(&frame, tableau, &camera, lights, count, &params);
+    if (!status)
+        status = develop(&frame, &o->develop, o->output);
+    if (!status)
+        status = relume_image_save(&frame, o->output, relume_image_params(.log = o->args.log));
+    relume_image_destroy(&frame);
+    relume_tableau_destroy(&tableau);
+    return status;
+}
+
+static relume_status run_scene(const struct relight_options *o)
+{
+    relume_rig *rig = NULL;
+    const struct relume_light *lights;
+    int count;
+    relume_status status = check_scene(o);
+    if (!status)
+        status = parse_lights(&o->args, &o->lighting, &rig, &lights, &count);
+    if (!status)
+        status = draw_scene(o, lights, count);
+    if (!status)
+        status = save_lights(&o->args, &o->lighting, rig);
+    relume_rig_destroy(&rig);
+    return status;
+}
+
+// ---------------------------------------------------------------- the command
+
 static relume_status run(const struct args *args)
 {
     const struct relight_options *o = (const void *)args;
@@ -456,6 +552,8 @@ static relume_status run(const struct args *args)
     relume_rig *rig = NULL;
     const struct relume_light *lights;
     int count;
+    if (relume_tableau_is(args->input[0]))
+        return run_scene(o);
     if (o->alpha && !relume_image_saves_alpha(o->output))
         return usage_error("--alpha: expected an output that ends in .png or .exr; found '%s'",
                            o->output);

@@ -343,6 +343,21 @@ static void far_value(float rgb[3], const struct scenery *c, vec3 direction)
         rgb[0] = rgb[1] = rgb[2] = 0.0f;
 }
 
+size_t scenery_pieces(const struct scenery *c)
+{
+    return background_count(c);
+}
+
+double scenery_piece(vec3 *direction, float sent[3], const struct scenery *c, size_t piece,
+                     double x, double y)
+{
+    if (!is_background(c, piece))
+        return 0.0;
+    *direction = block_direction(c, piece, x, y);
+    far_value(sent, c, *direction);
+    return block_angle(c, piece);
+}
+
 static void background(struct scenery_hit *out, const struct scenery *c, vec3 direction)
 {
     double at[2];

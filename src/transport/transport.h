@@ -81,7 +81,8 @@ struct look {
 };
 void transport_look(struct look *out, const struct world *w, const struct site *site, int i, int n);
 
-extern const struct relume_transport transport_none, transport_ssao, transport_ssdo, transport_path;
+extern const struct relume_transport transport_none, transport_ssao, transport_ssdo, transport_ism,
+    transport_radiosity, transport_path;
 
 // ---------------------------------------------------------------- frames
 

@@ -10,8 +10,13 @@ const struct relume_transport transport_none = {
     .summary = "hard shadows of objects on the scene; no light goes between",
 };
 
-const struct relume_transport *const relume_transports[] = {&transport_none, &transport_ssao,
-                                                            &transport_ssdo, &transport_path, NULL};
+const struct relume_transport *const relume_transports[] = {&transport_none,
+                                                            &transport_ssao,
+                                                            &transport_ssdo,
+                                                            &transport_ism,
+                                                            &transport_radiosity,
+                                                            &transport_path,
+                                                            NULL};
 
 const struct relume_transport *relume_transport_find(const char *name)
 {

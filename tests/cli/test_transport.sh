@@ -12,7 +12,7 @@ objects '0,-0.6,-1.4' '{"diffuse":[0.8,0.4,0.2]}' >ball.json
 "$RELUME" synth attic -q -o room --projection spherical --size 32 --lights 6 --samples 1
 "$RELUME" encode -q room -o room.exr --shadows no
 look="--tilt -20 --size 48x32"
-for way in none ssao ssdo path; do
+for way in none ssao ssdo ism radiosity path; do
     expect_ok "$way" - "$RELUME" relight room.exr --objects ball.json $look -o $way.exr --light 'dir 0 1 0' --transport $way -q
 done
 expect_ok 'none is what is done without' - "$RELUME" relight room.exr --objects ball.json $look -o without.exr --light 'dir 0 1 0' -q
@@ -21,6 +21,20 @@ check 'light goes between' sh -c "'$RELUME' compare none.exr path.exr | awk '/ma
 expect_ok 'twice the same' - "$RELUME" relight room.exr --objects ball.json $look -o again.exr --light 'dir 0 1 0' --transport path --threads 1 -q
 check 'byte for byte' cmp path.exr again.exr
 expect_ok 'samples and bounces' - "$RELUME" relight room.exr --objects ball.json $look -o few.exr --transport path --samples 100 --bounces 0 -q
+
+check 'by virtual lights' sh -c "'$RELUME' compare none.exr ism.exr | awk '/max_abs/ { exit !(\$2 > 0.02) }'"
+check 'as exact shadows have it' sh -c "'$RELUME' compare radiosity.exr ism.exr | awk '/rms/ { exit !(\$2 < 0.02) }'"
+expect_ok 'one light a pixel' - "$RELUME" relight room.exr --objects ball.json $look -o few.exr --transport ism --samples 1 --bounces 0 -q
+expect_fail 'a million virtual lights' 1 'at most 4096 samples' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport ism --samples 15625
+# a sheet that is open, one that is turned round, and one without area
+corners='v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n'
+printf "${corners}vn 0 -1 0\nf 1/1/1 2/2/1 3/3/1 4/4/1\n" >up.obj
+printf "${corners}vn 0 1 0\nf 4/4/1 3/3/1 2/2/1 1/1/1\n" >down.obj
+for sheet in up down; do
+    objects '0,-0.6,-1.4' '{"diffuse":[0.8,0.4,0.2]}' | sed "s/ball.obj/$sheet.obj/" >$sheet.json
+    expect_ok "a sheet: $sheet" - "$RELUME" relight room.exr --objects $sheet.json $look -o $sheet.exr --transport ism -q
+done
+check 'whichever way it is turned' sh -c "'$RELUME' compare up.exr down.exr | awk '/rms/ { exit !(\$2 < 0.002) }'"
 
 # an object before the plane of a slab: it is lit from behind by what it stands before
 "$RELUME" synth teapot -q -o slab --views 2x2 --size 24 --lights 6 --samples 1

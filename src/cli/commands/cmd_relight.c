@@ -127,8 +127,8 @@ static const struct option options[] = {
             "--reflections",
             2),
     OWN("--transport", transport, "NAME",
-        "--objects: how light goes between them and the scene: none (default), ssao, ssdo, path "
-        "(docs/transport.md)",
+        "--objects: how light goes between them and the scene: none (default), ssao, ssdo, ism, "
+        "radiosity, path (docs/transport.md)",
         take_transport),
     INT("--bounces", bounces, "N", "--transport: of light off objects; default: 2", 0, 16),
     INT("--samples", samples, "N",

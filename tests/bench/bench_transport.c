@@ -1,0 +1,236 @@
+// bench_transport: imperfect shadow maps in numbers, on a room with a ball whose truth is traced:
+// the tables of docs/measurements/transport.md. Errors are RMS over all that the ball changes, over
+// the RMS there.
+//
+//   bench_transport [FOLDER]      the room is photographed into FOLDER, or found there
+#include "bench.h"
+
+#include "capture_fixture.h"
+#include "made_room.h"
+#include "transport/instant.h"
+
+#include <sys/stat.h>
+
+enum { HEIGHT = 96, WIDTH = 2 * HEIGHT, BOUNCES = 2 };
+
+static char folder[256];
+
+static const char *path_of(const char *name)
+{
+    static char path[4][512];
+    static int next;
+    char *p = path[next++ % 4];
+    snprintf(p, sizeof path[0], "%s/%s", folder, name);
+    return p;
+}
+
+static const struct relume_light sun = {.direction = {0.55, 0.75, 0.6}, .rgb = {1, 1, 1}};
+
+// ---------------------------------------------------------------- the room
+
+static void photograph(const struct relume_scene_kind *kind, const char *name, const char *file)
+{
+    struct stat is;
+    const struct relume_vec3 lights[] = {light_direction, {0, 1, 0.2}, {1, 1, 0}, {0, 0.2, 1}};
+    relume_scene *scene;
+    if (!stat(path_of(file), &is))
+        return;
+    bench_check(relume_scene_create(&scene, kind, NULL));
+    bench_check(
+        relume_scene_capture(scene, path_of(name),
+                             relume_synth_params(.size = HEIGHT, .lights = lights, .light_count = 4,
+                                                 .samples = 256, .bounces = BOUNCES + 2)));
+    relume_scene_destroy(&scene);
+    bench_check(fixture_encode(path_of(name), path_of(file), &relume_basis_table, 0,
+                               relume_pack_encode_params(.storage = RELUME_STORE_HALF)));
+}
+
+static relume_pack *open_pack(const char *file)
+{
+    relume_pack *pack;
+    bench_check(relume_pack_open(&pack, path_of(file), NULL));
+    return pack;
+}
+
+static relume_objects *open_ball(int segments)
+{
+    relume_objects *o;
+    char text[512];
+    ball_text(text, sizeof text, "ball.obj", ball_grey);
+    FILE *file = fopen(path_of("ball.json"), "w");
+    if (!file || !write_ball_mesh(path_of("ball.obj"), segments) || fputs(text, file) < 0 ||
+        fclose(file))
+        bench_check(RELUME_EIO);
+    bench_check(relume_objects_open(&o, path_of("ball.json"), NULL));
+    return o;
+}
+
+// ---------------------------------------------------------------- ways
+
+// A way of which every number can be chosen, and what its last light took.
+static struct instant_params chosen;
+static double seconds[INSTANT_STAGES];
+static size_t lights;
+
+static relume_status begin(struct world *w, const struct relume_log *log)
+{
+    return instant_begin(w, &chosen, log);
+}
+
+static void end(struct world *w)
+{
+    const struct instant *s = w->state;
+    memcpy(seconds, s->seconds, sizeof seconds);
+    lights = s->lights;
+    instant_end(w);
+}
+
+static struct relume_transport trial = {.name = "trial",
+                                        .summary = "",
+                                        .samples = INSTANT_SAMPLES,
+                                        .begin = begin,
+                                        .end = end,
+                                        .gather = instant_gather};
+
+struct shot {
+    struct relume_image image;
+    double seconds;
+};
+
+static const struct relume_camera unfolded = {.framing = RELUME_FRAME_VIEW};
+
+static struct shot frame_of(relume_pack *pack, const relume_objects *o,
+                            const struct relume_transport *way, int samples,
+                            const struct relume_camera *camera)
+{
+    struct shot f;
+    relume_renderer *renderer;
+    bench_check(relume_renderer_create(&renderer, pack, NULL));
+    bench_check(relume_renderer_set_lights(renderer, &sun, 1));
+    bench_check(relume_renderer_set_objects(renderer, o,
+                                            relume_render_params(.samples = 2, .transport = way,
+                                                                 .transport_samples = samples,
+                                                                 .bounces = BOUNCES)));
+    const double began = now_s();
+    bench_check(relume_renderer_frame(&f.image, renderer, camera));
+    f.seconds = now_s() - began;
+    relume_renderer_destroy(&renderer);
+    return f;
+}
+
+static struct shot trial_of(relume_pack *pack, const relume_objects *o, struct instant_params p,
+                            int samples, const struct relume_camera *camera)
+{
+    chosen = p;
+    trial.pattern = p.pattern;
+    return frame_of(pack, o, &trial, samples, camera);
+}
+
+// ---------------------------------------------------------------- errors
+
+struct judge {
+    relume_pack *room;
+    relume_objects *ball;
+    struct relume_image before, truth;
+};
+
+static double difference(const struct judge *j, const struct relume_image *got,
+                         const struct relume_image *want)
+{
+    double wrong = 0.0, all = 0.0;
+    for (size_t i = 0; i < 3 * (size_t)WIDTH * HEIGHT; i++) {
+        if (fabs((double)j->truth.data[i] - (double)j->before.data[i]) < 0.02)
+            continue;
+        wrong += pow((double)got->data[i] - (double)want->data[i], 2.0);
+        all += pow((double)want->data[i], 2.0);
+    }
+    return sqrt(wrong / all);
+}
+
+static void judge_ways(const struct judge *j)
+{
+    puts("\n| way | samples | error | seconds |\n|---|---|---|---|");
+    for (const struct relume_transport *const *t = relume_transports; *t; t++)
+        for (int samples = 4; samples <= 256; samples *= 4) {
+            struct shot f = frame_of(j->room, j->ball, *t, samples, &unfolded);
+            printf("| %s | %d | %.4f | %.3f |\n", relume_transport_name(*t), samples,
+                   difference(j, &f.image, &j->truth), f.seconds);
+            fflush(stdout);
+            relume_image_destroy(&f.image);
+        }
+}
+
+// Fig. 5.8 and 5.10: against exact shadows of the same virtual lights, and against the truth.
+static void judge_maps(const struct judge *j)
+{
+    static const int sizes[] = {32, 64, 128};
+    enum { SIZES = sizeof sizes / sizeof *sizes, SAMPLES = 8, PATTERN = 8 };
+    struct shot exact =
+        trial_of(j->room, j->ball, (struct instant_params){.pattern = PATTERN, .rays = true},
+                 SAMPLES, &unfolded);
+    printf("\n| size | points | from exact | unfilled | from truth (exact: %.4f) | unfilled | "
+           "maps, ms | "
+           "unfilled |\n|---|---|---|---|---|---|---|---|\n",
+           difference(j, &exact.image, &j->truth));
+    for (size_t s = 0; s < SIZES; s++)
+        for (size_t points = 256; points <= 4096; points *= 4) {
+            double from[2][2], took[2];
+            for (int unfilled = 0; unfilled < 2; unfilled++) {
+                struct shot f = trial_of(j->room, j->ball,
+                                         (struct instant_params){.pattern = PATTERN,
+                                                                 .size = sizes[s],
+                                                                 .points = points,
+                                                                 .unfilled = unfilled},
+                                         SAMPLES, &unfolded);
+                from[unfilled][0] = difference(j, &f.image, &exact.image);
+                from[unfilled][1] = difference(j, &f.image, &j->truth);
+                took[unfilled] = 1e3 * seconds[INSTANT_MAPS];
+                relume_image_destroy(&f.image);
+            }
+            printf("| %d | %zu | %.4f | %.4f | %.4f | %.4f | %.0f | %.0f |\n", sizes[s], points,
+                   from[0][0], from[1][0], from[0][1], from[1][1], took[0], took[1]);
+            fflush(stdout);
+        }
+    relume_image_destroy(&exact.image);
+}
+
+static void judge_patterns(const struct judge *j)
+{
+    puts("\n| lights | pattern | error | seconds |");
+    for (int rays = 0; rays < 2; rays++)
+        for (int n = 256; n <= 4096; n *= 4)
+            for (int pattern = 1; pattern <= 8; pattern *= 2) {
+                struct shot f = trial_of(j->room, j->ball,
+                                         (struct instant_params){.pattern = pattern, .rays = rays},
+                                         n / pattern / pattern, &unfolded);
+                printf("| %d | %d | %d | %.4f | %.3f | %.3f %.3f %.3f %.3f\n", rays, n, pattern,
+                       difference(j, &f.image, &j->truth), f.seconds, seconds[0], seconds[1],
+                       seconds[2], seconds[3]);
+                relume_image_destroy(&f.image);
+            }
+}
+
+int main(int argc, char **argv)
+{
+    struct judge j;
+    snprintf(folder, sizeof folder, "%s", argc > 1 ? argv[1] : "/tmp/bench-transport-XXXXXX");
+    if (argc > 1 ? mkdir(folder, 0777) && access(folder, W_OK) : !mkdtemp(folder))
+        bench_check(RELUME_EIO);
+    photograph(&room, "room", "room.exr");
+    photograph(&room_with_ball, "truth", "truth.exr");
+    relume_pack *truth = open_pack("truth.exr");
+    j.room = open_pack("room.exr");
+    j.ball = open_ball(64);
+    bench_check(relume_frame(&j.before, j.room, &unfolded, &sun, 1, NULL));
+    bench_check(relume_frame(&j.truth, truth, &unfolded, &sun, 1, NULL));
+    if (argc > 2)
+        judge_ways(&j);
+    judge_maps(&j);
+    judge_patterns(&j);
+    relume_image_destroy(&j.before);
+    relume_image_destroy(&j.truth);
+    relume_objects_destroy(&j.ball);
+    relume_pack_destroy(&j.room);
+    relume_pack_destroy(&truth);
+    return 0;
+}

@@ -321,6 +321,7 @@ static void begin_world(struct exchange *e)
     e->world = (struct world){
         .scenery = e->scenery,
         .objects = e->o->tracer,
+        .mesh = &e->o->mesh,
         .site = site_of,
         .sent = sent_by,
         .dimmed = dimmed,

@@ -381,6 +381,24 @@ void scenery_mean(float rgb[3], const struct scenery *c)
         rgb[k] = (float)sum[k];
 }
 
+vec3 scenery_eye(const struct scenery *c)
+{
+    return c->eye;
+}
+
+const struct mesh *scenery_mesh(const struct scenery *c)
+{
+    return &c->mesh;
+}
+
+void scenery_sent(float rgb[3], const struct scenery *c, size_t triangle, float u, float v)
+{
+    const uint32_t *vertex = c->mesh.triangles[triangle].vertex;
+    for (int k = 0; k < 3; k++)
+        rgb[k] = (1.0f - u - v) * c->sent[vertex[0]][k] + u * c->sent[vertex[1]][k] +
+                 v * c->sent[vertex[2]][k];
+}
+
 // ---------------------------------------------------------------- rays
 
 static void copy(float out[3], vec3 v)
@@ -407,15 +425,11 @@ bool scenery_meet(struct scenery_hit *out, const struct scenery *c, vec3 origin,
         background(out, c, direction);
         return false;
     }
-    const struct triangle *t = &c->mesh.triangles[hit.triangle];
-    const float weight[3] = {1.0f - hit.u - hit.v, hit.u, hit.v};
     out->source = hit.triangle;
     out->distance = (double)hit.distance;
     out->place = vec3_along(origin, direction, out->distance);
-    out->normal = normal_of(c, t, vec3_scale(direction, -1.0));
-    for (int k = 0; k < 3; k++)
-        out->sent[k] = weight[0] * c->sent[t->vertex[0]][k] + weight[1] * c->sent[t->vertex[1]][k] +
-                       weight[2] * c->sent[t->vertex[2]][k];
+    out->normal = normal_of(c, &c->mesh.triangles[hit.triangle], vec3_scale(direction, -1.0));
+    scenery_sent(out->sent, c, hit.triangle, hit.u, hit.v);
     return true;
 }
 

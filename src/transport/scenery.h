@@ -22,6 +22,12 @@ void scenery_destroy(struct scenery **c);
 // arrives at `middle`. RELUME_ENOMEM, RELUME_EINVAL (another size).
 relume_status scenery_light(struct scenery *c, const struct relume_image *relit, vec3 middle);
 
+// The eye, and the mesh, of which the eye sees one side of each triangle. Under the present light a
+// place of a triangle, of those weights of its second and third corner, sends that.
+vec3 scenery_eye(const struct scenery *c);
+const struct mesh *scenery_mesh(const struct scenery *c);
+void scenery_sent(float rgb[3], const struct scenery *c, size_t triangle, float u, float v);
+
 // Where a ray meets it.
 struct scenery_hit {
     vec3 place, normal;  // the normal is unit, towards the ray's origin

@@ -35,6 +35,7 @@ struct screen {
 struct world {
     const struct scenery *scenery;
     const tracer *objects;
+    const struct mesh *mesh;  // of the objects
     // Where a ray has met the objects; the light that they send back to its origin: what reaches
     // them from the lamps, and the arrivals, `n` of them.
     void (*site)(struct site *out, const void *context, const struct trace_hit *hit,

@@ -1,0 +1,178 @@
+// points.c - surfaces as points
+//
+// Point i lies at the i-th number of van der Corput's sequence in the running sum of the triangles'
+// areas, and within its triangle at Halton's (1960) next two.
+#include "transport/points.h"
+
+#include "base/memory.h"
+#include "base/thread.h"
+#include "math/random.h"
+#include "transport/bright.h"
+
+static vec3 vector(const float v[3])
+{
+    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
+}
+
+static void copy(float out[3], vec3 v)
+{
+    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
+}
+
+static void corners_of(vec3 corner[3], const struct mesh *mesh, size_t triangle)
+{
+    for (int k = 0; k < 3; k++)
+        corner[k] = vector(mesh->vertices[mesh->triangles[triangle].vertex[k]].position);
+}
+
+// Twice its area times its normal.
+static vec3 twice_area(const vec3 corner[3])
+{
+    return vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
+}
+
+// The digits of i in a base, mirrored at the point.
+static double mirrored(size_t i, size_t base)
+{
+    double sum = 0.0, digit = 1.0 / (double)base;
+    for (; i; i /= base, digit /= (double)base)
+        sum += digit * (double)(i % base);
+    return sum;
+}
+
+static void put(struct point *p, const struct mesh *mesh, const struct bright *areas, size_t i)
+{
+    vec3 corner[3];
+    size_t triangle = 0;
+    (void)bright_draw(&triangle, areas, mirrored(i, 2));
+    corners_of(corner, mesh, triangle);
+    const double r = sqrt(mirrored(i + 1, 3)), s = mirrored(i + 1, 5);  // (Turk 1990)
+    const double u = r * (1.0 - s), v = r * s;
+    p->place = vec3_add(vec3_scale(corner[0], 1.0 - u - v),
+                        vec3_add(vec3_scale(corner[1], u), vec3_scale(corner[2], v)));
+    p->normal = vec3_unit(twice_area(corner));
+    p->triangle = (uint32_t)triangle;
+    p->u = (float)u, p->v = (float)v;
+}
+
+static relume_status spread(struct points *out, const struct mesh *mesh, size_t count)
+{
+    struct bright areas = {0};
+    double *area = mem_array(mesh->triangle_count, sizeof *area), all = 0.0;
+    *out = (struct points){0};
+    if (!area)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        vec3 corner[3];
+        corners_of(corner, mesh, i);
+        const double twice = vec3_length(twice_area(corner));
+        area[i] = isfinite(twice) ? 0.5 * twice : 0.0;
+        all += area[i];
+    }
+    bright_take(&areas, area, mesh->triangle_count);
+    if (all > 0.0 && count > 0)
+        out->at = mem_zeroed(count, sizeof *out->at);
+    relume_status status = all > 0.0 && count > 0 && !out->at ? RELUME_ENOMEM : RELUME_OK;
+    out->count = out->at ? count : 0;
+    for (size_t i = 0; i < out->count; i++) {
+        put(&out->at[i], mesh, &areas, i);
+        out->at[i].area = all / (double)count;
+    }
+    bright_forget(&areas);
+    return status;
+}
+
+void points_forget(struct points *p)
+{
+    mem_free(p->at);
+    *p = (struct points){0};
+}
+
+// ---------------------------------------------------------------- the side that light gets to
+
+static bool leaves(const tracer *objects, const struct point *p, vec3 normal, vec3 direction)
+{
+    float at[3], off[3], from[3], along[3];
+    struct trace_hit hit;
+    copy(at, p->place);
+    copy(off, normal);
+    copy(along, direction);
+    trace_leave(at, off, from);
+    return !trace_closest(objects, from, along, &hit);
+}
+
+// Whether one of some rays around a normal leaves the objects: the first goes straight away.
+static bool is_open(const tracer *objects, const struct point *p, vec3 normal, uint64_t key)
+{
+    enum { RAYS = 6 };
+    struct random r = random_stream(3, key, normal.z < 0.0);
+    if (leaves(objects, p, normal, normal))
+        return true;
+    for (int i = 1; i < RAYS; i++) {
+        const double z = random_range(&r, -1.0, 1.0), turn = random_range(&r, 0.0, 2.0 * M_PI);
+        const double across = sqrt(1.0 - z * z);
+        const vec3 ball = vec3_of(across * cos(turn), across * sin(turn), z);  // about its end
+        const vec3 direction = vec3_add(normal, vec3_scale(ball, 0.99));
+        if (leaves(objects, p, normal, vec3_unit(direction)))
+            return true;
+    }
+    return false;
+}
+
+enum { AT_ONCE = 256 };
+
+struct sides {
+    struct points *points;
+    const tracer *objects;
+};
+
+static void find_sides(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct sides *s = context;
+    for (size_t i = item * AT_ONCE; i < (item + 1) * AT_ONCE && i < s->points->count; i++) {
+        struct point *p = &s->points->at[i];
+        const vec3 back = vec3_scale(p->normal, -1.0);
+        const bool before = is_open(s->objects, p, p->normal, i);
+        const bool behind = is_open(s->objects, p, back, i);
+        p->both = before && behind;
+        p->normal = behind && !before ? back : p->normal;
+    }
+}
+
+relume_status points_of_objects(struct points *out, const struct mesh *mesh, const tracer *objects,
+                                size_t count, int threads)
+{
+    const relume_status status = spread(out, mesh, count);
+    struct sides sides = {out, objects};
+    if (!status)
+        thread_for(threads, (out->count + AT_ONCE - 1) / AT_ONCE, find_sides, &sides);
+    return status;
+}
+
+relume_status points_of_scene(struct points *out, const struct scenery *c, size_t count)
+{
+    const vec3 eye = scenery_eye(c);
+    const relume_status status = spread(out, scenery_mesh(c), count);
+    for (size_t i = 0; i < out->count; i++) {
+        struct point *p = &out->at[i];
+        if (vec3_dot(p->normal, vec3_sub(eye, p->place)) < 0.0)
+            p->normal = vec3_scale(p->normal, -1.0);
+    }
+    return status;
+}
+
+// ---------------------------------------------------------------- light
+
+void points_scene_sent(float rgb[3], const struct scenery *c, const struct point *p)
+{
+    scenery_sent(rgb, c, p->triangle, p->u, p->v);
+}
+
+void points_object_sent(float rgb[3], const struct world *w, const struct point *p, uint64_t key,
+                        const struct arrival *arrivals, int n)
+{
+    const struct trace_hit hit = {p->triangle, p->u, p->v, 1.0f};
+    w->sent(rgb, w->context, &hit, vec3_add(p->place, p->normal), vec3_scale(p->normal, -1.0), key,
+            arrivals, n);
+}

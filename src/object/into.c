@@ -322,11 +322,12 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
 relume_status relume_renderer_set_objects(relume_renderer *renderer, const relume_objects *objects,
                                           const struct relume_render_params *params)
 {
-    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16 };
+    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16, MOST_SPACING = 16 };
     const struct standing_in in = {.objects = objects,
                                    .params = PARAMS_WORK(relume_render_params, params)};
     if (in.params.transport_samples < 0 || in.params.transport_samples > MOST_SAMPLES ||
-        in.params.bounces > MOST_BOUNCES)
+        in.params.bounces > MOST_BOUNCES || in.params.transport_spacing < 0 ||
+        in.params.transport_spacing > MOST_SPACING)
         return RELUME_EINVAL;
     struct standing_in *copy = objects ? mem_copy(&in, 1, sizeof in) : NULL;
     if (objects && !copy)

@@ -5,6 +5,7 @@
 #include "transport/bright.h"
 
 #include <relume/view.h>
+#include <string.h>
 
 // Neighbours are one surface where none is farther from the eye than the other by more than a
 // fifth: at 5 degrees, a pixel of half a degree of floor is farther than the one below by a tenth.
@@ -272,6 +273,22 @@ static bool is_background(const struct scenery *c, size_t block)
     const size_t x = column * (size_t)c->block + (size_t)c->block / 2,
                  y = row * (size_t)c->block + (size_t)c->block / 2;
     return c->far.data[3 * (y * (size_t)c->width + x)] > 0.0f;
+}
+
+size_t scenery_blocks(const struct scenery *c)
+{
+    return background_count(c);
+}
+
+bool scenery_block(vec3 *towards, double *solid_angle, float rgb[3], const struct scenery *c,
+                   size_t i)
+{
+    if (!is_background(c, i))
+        return false;
+    *towards = block_direction(c, i, 0.5, 0.5);
+    *solid_angle = block_angle(c, i);
+    memcpy(rgb, c->sent[i], 3 * sizeof *rgb);
+    return true;
 }
 
 static relume_status find_bright(struct scenery *c, vec3 middle)

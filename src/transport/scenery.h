@@ -28,6 +28,11 @@ vec3 scenery_eye(const struct scenery *c);
 const struct mesh *scenery_mesh(const struct scenery *c);
 void scenery_sent(float rgb[3], const struct scenery *c, size_t triangle, float u, float v);
 
+// What lies behind it, in blocks of directions; false where block `i` shows no background.
+size_t scenery_blocks(const struct scenery *c);
+bool scenery_block(vec3 *towards, double *solid_angle, float rgb[3], const struct scenery *c,
+                   size_t i);
+
 // Where a ray meets it.
 struct scenery_hit {
     vec3 place, normal;  // the normal is unit, towards the ray's origin

@@ -46,7 +46,7 @@ static const struct relume_scene_kind room = {.name = "room",
                                                         .build = build_room_with_ball};
 
 // As Wavefront OBJ, of radius 1 about the origin; false: it could not be written.
-static inline bool write_ball_mesh(const char *path, int segments)
+static inline bool write_ball_mesh(const char *path, int segments, bool flipped)
 {
     struct mesh m = {0};
     shape_sphere(&m, vec3_of(0, 0, 0), 1.0, segments);
@@ -58,22 +58,24 @@ static inline bool write_ball_mesh(const char *path, int segments)
                 (double)v->normal[1], (double)v->normal[2]);
     }
     for (size_t i = 0; i < m.triangle_count && file; i++) {
-        const uint32_t *v = m.triangles[i].vertex;
-        fprintf(file, "f %u//%u %u//%u %u//%u\n", v[0] + 1, v[0] + 1, v[1] + 1, v[1] + 1, v[2] + 1,
-                v[2] + 1);
+        const uint32_t *v = m.triangles[i].vertex, a = v[0] + 1, b = v[flipped ? 2 : 1] + 1,
+                       c = v[flipped ? 1 : 2] + 1;
+        fprintf(file, "f %u//%u %u//%u %u//%u\n", a, a, b, b, c, c);
     }
+    if (file && flipped)
+        fprintf(file, "f 1//1 1//1 2//2\n");
     mesh_free(&m);
     return file && !fclose(file);
 }
 
 // The description of a matte ball at its place.
-static inline void ball_text(char *text, size_t size, const char *mesh, float grey)
+static inline void ball_text(char *text, size_t size, const char *mesh, vec3 at, float grey)
 {
     snprintf(text, size,
              "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"%s\","
              "\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]},\"parts\":[{\"material\":"
              "{\"diffuse\":%g}}]}]}",
-             mesh, ball_radius, ball[0], ball[1], ball[2], (double)grey);
+             mesh, ball_radius, at.x, at.y, at.z, (double)grey);
 }
 
 #endif

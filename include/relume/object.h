@@ -198,6 +198,10 @@ struct relume_render_params {
     const struct relume_transport *transport;
     int transport_samples;  // directions at each pixel, [1, 65536]; default: the way's own
     int bounces;  // of light off objects, at most 16; default 2; below 0: objects only hide light
+    // Light is gathered at every so many pixels each way, [1, 16], and between them where what the
+    // pixels around show is no one surface or differs; default: the way's own. Ways whose
+    // directions are shared by neighbours gather at each.
+    int transport_spacing;
 };
 #define relume_render_params(...)                                                                  \
     (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})

@@ -31,6 +31,8 @@ RELUME_API const char *relume_transport_name(const struct relume_transport *tran
 RELUME_API const char *relume_transport_summary(const struct relume_transport *transport);
 // Directions that light is gathered from at each pixel, where nothing else is asked for; 0: none.
 RELUME_API int relume_transport_samples(const struct relume_transport *transport);
+// Pixels from one that gathers to the next, where nothing else is asked for; 0: always each.
+RELUME_API int relume_transport_spacing(const struct relume_transport *transport);
 
 #ifdef __cplusplus
 }

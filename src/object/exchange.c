@@ -20,6 +20,10 @@
 // Of the samples of an environment one in so many is looked for where light is on its way.
 enum { ON_THE_WAY = 8 };
 
+// What lamps show a white matte surface, without and with the objects: those that the scene lets
+// through, and all.
+enum { LET_THROUGH, LET_THROUGH_WITH, ALL, ALL_WITH, LAMPS };
+
 struct layer {
     struct relume_image places, normals;  // NaN: nothing is there
 };
@@ -30,6 +34,7 @@ struct exchange {
     const struct relume_viewport *viewport;
     const struct relume_transport *transport;
     struct relume_render_params params;
+    int spacing;  // pixels from one that gathers to the next
     struct layer scene, objects, frame;
     float *behind;  // [pixels]: how far off the eye the backs of objects are
     vec3 eye;
@@ -37,10 +42,12 @@ struct exchange {
     struct lighting lighting;
     struct world world;
     const struct relume_image *lone;
-    struct relume_image *lit, *reflected;
+    struct relume_image *lit, *reflected, *share;
     struct relume_image shown;            // what the frame shows, without light between
     struct relume_image without, with;    // gathered by the scene
     struct relume_image white, returned;  // by the objects: of white ones, and as they are
+    struct relume_image ahead;            // what objects return of light of 1 from straight ahead
+    struct relume_image lamps[LAMPS];     // before the scene, for lights of many samples
 };
 
 // ---------------------------------------------------------------- pixels
@@ -177,12 +184,18 @@ void exchange_destroy(struct exchange **e)
     *e = NULL;
 }
 
+static int spacing_of(const struct relume_render_params *params)
+{
+    const int own = params->transport->spacing;
+    return own && params->transport_spacing ? params->transport_spacing : own > 1 ? own : 1;
+}
+
 relume_status exchange_create(struct exchange **out, const relume_objects *o,
                               const struct scenery *scenery, const struct relume_viewport *viewport,
                               const struct relume_image *places,
                               const struct relume_render_params *params)
 {
-    enum { PIXEL_BYTES = 14 * 3 * sizeof(float) };  // images of three numbers, at once
+    enum { PIXEL_BYTES = 19 * 3 * sizeof(float) };  // images of three numbers, at once
     const int width = places->width, height = places->height;
     *out = NULL;
     relume_status status =
@@ -196,6 +209,7 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
                            .viewport = viewport,
                            .transport = params->transport,
                            .params = *params,
+                           .spacing = spacing_of(params),
                            .eye = relume_viewport_eye(viewport)};
     status = make_layer(&e->scene, width, height);
     if (!status)
@@ -253,6 +267,29 @@ static struct lit_by lamps_at(const struct exchange *e, vec3 place, vec3 normal,
         add_lamp(&lit.without, through, cosine, rgb);
         if (objects_reached(e->o, place, vec3_of(0, 0, 0), towards, distance))
             add_lamp(&lit.with, through, cosine, rgb);
+    }
+    return lit;
+}
+
+static void put_lamps(const struct exchange *e, size_t pixel, vec3 place, vec3 normal)
+{
+    const struct lit_by lit = lamps_at(e, place, normal, 1, 0);
+    for (size_t c = 0; c < 3; c++) {
+        e->lamps[LET_THROUGH].data[3 * pixel + c] = (float)lit.without.let_through[c];
+        e->lamps[LET_THROUGH_WITH].data[3 * pixel + c] = (float)lit.with.let_through[c];
+        e->lamps[ALL].data[3 * pixel + c] = (float)lit.without.all[c];
+        e->lamps[ALL_WITH].data[3 * pixel + c] = (float)lit.with.all[c];
+    }
+}
+
+static struct lit_by lamps_put(const struct exchange *e, size_t pixel)
+{
+    struct lit_by lit;
+    for (size_t c = 0; c < 3; c++) {
+        lit.without.let_through[c] = (double)e->lamps[LET_THROUGH].data[3 * pixel + c];
+        lit.with.let_through[c] = (double)e->lamps[LET_THROUGH_WITH].data[3 * pixel + c];
+        lit.without.all[c] = (double)e->lamps[ALL].data[3 * pixel + c];
+        lit.with.all[c] = (double)e->lamps[ALL_WITH].data[3 * pixel + c];
     }
     return lit;
 }
@@ -380,13 +417,11 @@ static void arrive_at_objects(void *context, const struct arrival *a)
     add(s->returned, 1.0, rgb);
 }
 
-static void gather_at_scene(struct exchange *e, int x, int y)
+static void gather_scene(struct exchange *e, int x, int y)
 {
     const size_t pixel = pixel_of(e, x, y);
     const vec3 place = three(&e->scene.places, pixel), normal = three(&e->scene.normals, pixel);
     struct at_scene at = {e->without.data + 3 * pixel, e->with.data + 3 * pixel};
-    if (!holds(&e->scene, pixel))
-        return;
     const struct site site = {.position = place,
                               .normal = normal,
                               .start =
@@ -395,20 +430,150 @@ static void gather_at_scene(struct exchange *e, int x, int y)
     e->transport->gather(&e->world, &site, arrive_at_scene, &at);
 }
 
+static void gather_objects(struct exchange *e, int x, int y, const struct surface_point *point)
+{
+    const size_t pixel = pixel_of(e, x, y);
+    const struct site site = {.position = point->position,
+                              .normal = point->normal,
+                              .start = point_leave(point),
+                              .key = key_of(e, x, y)};
+    const double middle[2] = {0.5, 0.5};
+    struct at_objects at = {e, point, ray_of(e, x, y, middle).origin, e->white.data + 3 * pixel,
+                            e->returned.data + 3 * pixel};
+    e->transport->gather(&e->world, &site, arrive_at_objects, &at);
+}
+
+// Shadows of one lamp are sharp; those of many samples are soft.
+static bool keeps_lamps(const struct exchange *e)
+{
+    return e->spacing > 1 && e->lighting.light_samples > 1;
+}
+
+static void gather_lamps(struct exchange *e, size_t pixel)
+{
+    put_lamps(e, pixel, three(&e->scene.places, pixel), three(&e->scene.normals, pixel));
+}
+
+static void gather_at_scene(struct exchange *e, int x, int y)
+{
+    const size_t pixel = pixel_of(e, x, y);
+    if (!transport_gathers(e->spacing, x, y) || !holds(&e->scene, pixel))
+        return;
+    gather_scene(e, x, y);
+    if (keeps_lamps(e))
+        gather_lamps(e, pixel);
+}
+
+static void look_ahead(float rgb[3], const struct exchange *e, const struct surface_point *point)
+{
+    const struct arrival a = {.towards = point->normal, .share = 1.0, .with = {1.0f, 1.0f, 1.0f}};
+    objects_return(rgb, e->o, point, e->eye, &a);
+}
+
+static void put_share(const struct exchange *e, size_t pixel, const struct surface_point *point)
+{
+    if (e->share)
+        share_of_sky(e->share->data + 3 * pixel, e->o, point, &e->lighting, 0);
+}
+
 static void gather_at_objects(struct exchange *e, int x, int y)
 {
     const size_t pixel = pixel_of(e, x, y);
     struct surface_point point;
-    if (!holds(&e->objects, pixel) || !objects_at(&point, e, x, y))
+    if (e->share)
+        put(e->share, pixel, vec3_of(NAN, NAN, NAN));
+    if (!transport_gathers(e->spacing, x, y) || !holds(&e->objects, pixel) ||
+        !objects_at(&point, e, x, y))
         return;
-    const struct site site = {.position = point.position,
-                              .normal = point.normal,
-                              .start = point_leave(&point),
-                              .key = key_of(e, x, y)};
-    const double middle[2] = {0.5, 0.5};
-    struct at_objects at = {e, &point, ray_of(e, x, y, middle).origin, e->white.data + 3 * pixel,
-                            e->returned.data + 3 * pixel};
-    e->transport->gather(&e->world, &site, arrive_at_objects, &at);
+    gather_objects(e, x, y, &point);
+    put_share(e, pixel, &point);
+    if (e->spacing > 1)
+        look_ahead(e->ahead.data + 3 * pixel, e, &point);
+}
+
+static void between(float out[3], const struct between *b, const struct relume_image *image)
+{
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int i = 0; i < b->count; i++)
+        for (size_t c = 0; c < 3; c++)
+            sum[c] += b->weight[i] * (double)image->data[3 * b->pixel[i] + c];
+    for (int c = 0; c < 3; c++)
+        out[c] = (float)sum[c];
+}
+
+// Whether what pixels have gathered, over what they would have, differs by more than a tenth: a
+// pixel between them shows a border.
+static bool differ(const struct between *b, const struct relume_image *over,
+                   const struct relume_image *under)
+{
+    const double SAME = 0.1;
+    double least = INFINITY, most = 0.0;
+    for (int i = 0; i < b->count; i++) {
+        const float *o = over->data + 3 * b->pixel[i],
+                    *u = under ? under->data + 3 * b->pixel[i] : NULL;
+        const double below = u ? (double)(u[0] + u[1] + u[2]) : 1.0;
+        const double part = below > 0.0 ? (double)(o[0] + o[1] + o[2]) / below : 1.0;
+        least = fmin(least, part);
+        most = fmax(most, part);
+    }
+    return most - least > SAME * most;
+}
+
+static void fill_lamps(struct exchange *e, size_t pixel, const struct between *b)
+{
+    if (!b->count || differ(b, &e->lamps[LET_THROUGH_WITH], &e->lamps[LET_THROUGH]) ||
+        differ(b, &e->lamps[ALL_WITH], &e->lamps[ALL])) {
+        gather_lamps(e, pixel);
+        return;
+    }
+    for (int k = 0; k < LAMPS; k++)
+        between(e->lamps[k].data + 3 * pixel, b, &e->lamps[k]);
+}
+
+static void fill_scene(struct exchange *e, int x, int y)
+{
+    const size_t pixel = pixel_of(e, x, y);
+    struct between b;
+    if (transport_gathers(e->spacing, x, y) || !holds(&e->scene, pixel))
+        return;
+    transport_between(&b, e->spacing, x, y, &e->scene.places, &e->scene.normals, e->eye);
+    if (!b.count || differ(&b, &e->with, &e->without)) {
+        gather_scene(e, x, y);
+    } else {
+        between(e->without.data + 3 * pixel, &b, &e->without);
+        between(e->with.data + 3 * pixel, &b, &e->with);
+    }
+    if (keeps_lamps(e))
+        fill_lamps(e, pixel, &b);
+}
+
+// Objects keep their texture: what is taken from the pixels around is what they return over what
+// they do of light from straight ahead.
+static void fill_objects(struct exchange *e, int x, int y)
+{
+    const size_t pixel = pixel_of(e, x, y);
+    struct surface_point point;
+    struct between b;
+    float own[3], ahead[3], *returned = e->returned.data + 3 * pixel;
+    if (transport_gathers(e->spacing, x, y) || !holds(&e->objects, pixel) ||
+        !objects_at(&point, e, x, y))
+        return;
+    transport_between(&b, e->spacing, x, y, &e->objects.places, &e->objects.normals, e->eye);
+    if (e->share && b.count && !differ(&b, e->share, NULL))
+        between(e->share->data + 3 * pixel, &b, e->share);
+    else
+        put_share(e, pixel, &point);
+    if (!b.count || differ(&b, &e->white, NULL)) {
+        gather_objects(e, x, y, &point);
+        return;
+    }
+    between(e->white.data + 3 * pixel, &b, &e->white);
+    between(returned, &b, &e->returned);
+    between(ahead, &b, &e->ahead);
+    look_ahead(own, e, &point);
+    for (size_t c = 0; c < 3; c++)
+        returned[c] = ahead[c] > 0.0f ? returned[c] * own[c] / ahead[c]
+                                      : own[c] * e->white.data[3 * pixel + c];
 }
 
 // What a screen shows under the light, for ways that go by it.
@@ -467,8 +632,11 @@ static void light_scene(struct exchange *e, int x, int y)
     const float *without = e->without.data + 3 * pixel, *with = e->with.data + 3 * pixel;
     const float *lone = e->lone->data + 3 * pixel;
     double part[3] = {1.0, 1.0, 1.0};
-    if (holds(&e->scene, pixel) &&
-        (memcmp(without, with, 3 * sizeof *with) || is_in_shadow(e, place, normal, 1, 0))) {
+    if (holds(&e->scene, pixel) && keeps_lamps(e)) {
+        const struct lit_by lit = lamps_put(e, pixel);
+        quotient(part, lone, &lit, without, with);
+    } else if (holds(&e->scene, pixel) &&
+               (memcmp(without, with, 3 * sizeof *with) || is_in_shadow(e, place, normal, 1, 0))) {
         const struct lit_by lit = lamps_at(e, place, normal, 1, 0);
         quotient(part, lone, &lit, without, with);
     }
@@ -534,17 +702,22 @@ static relume_status gather(struct exchange *e)
 {
     begin_world(e);
     const int lamps = e->lighting.light_samples + 1, rays = e->world.samples * 4;
+    const int few = rays / (e->spacing * e->spacing) + 1;
     relume_status status = e->transport->screen ? over_pixels(e, lamps, show) : RELUME_OK;
     if (!status && e->transport->begin)
         status = e->transport->begin(&e->world, e->params.log);
     if (!status)
-        status = over_pixels(e, rays, gather_at_objects);
+        status = over_pixels(e, few, gather_at_objects);
+    if (!status && e->spacing > 1)
+        status = over_pixels(e, few, fill_objects);
     if (!status)
         status = smooth_objects(e);
     if (!status)
         status = over_pixels(e, 1, light_objects);
     if (!status)
-        status = over_pixels(e, rays, gather_at_scene);
+        status = over_pixels(e, few, gather_at_scene);
+    if (!status && e->spacing > 1)
+        status = over_pixels(e, few, fill_scene);
     if (!status)
         status = smooth_scene(e);
     if (e->transport->end)
@@ -553,13 +726,14 @@ static relume_status gather(struct exchange *e)
 }
 
 relume_status exchange_light(struct exchange *e, struct relume_image *scene,
-                             struct relume_image *reflected, const struct relume_image *lone,
-                             const struct relume_light *light)
+                             struct relume_image *reflected, struct relume_image *share,
+                             const struct relume_image *lone, const struct relume_light *light)
 {
-    struct relume_image *const gathered[] = {&e->shown, &e->without, &e->with, &e->white,
-                                             &e->returned};
+    struct relume_image *const gathered[] = {&e->shown,    &e->without, &e->with,     &e->white,
+                                             &e->returned, &e->ahead,   &e->lamps[0], &e->lamps[1],
+                                             &e->lamps[2], &e->lamps[3]};
     enum { IMAGES = sizeof gathered / sizeof *gathered };
-    e->lone = lone, e->lit = scene, e->reflected = reflected;
+    e->lone = lone, e->lit = scene, e->reflected = reflected, e->share = share;
     relume_status status = lighting_create(&e->lighting, e->o, light, 1, &e->params);
     e->lighting.scenery = &e->scenery, e->lighting.sceneries = 1;
     for (int i = 0; i < IMAGES && !status; i++)

@@ -86,7 +86,10 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
         !(isnan(p[0]) || point.distance < vec3_dot(to, ray.direction)))
         return;
     objects_spread(&point, l->o, &ray, &right, &below);
-    objects_shade(rgb, l->o, &point, ray.origin, l->lighting);
+    struct lighting lighting = *l->lighting;
+    lighting.shares = l->shares;
+    lighting.pixel = pixel;
+    objects_shade(rgb, l->o, &point, ray.origin, &lighting);
     for (size_t c = 0; c < 3 && l->reflected->data; c++)
         rgb[c] += l->reflected->data[pixel + c];
 }
@@ -227,8 +230,8 @@ static vec3 middle_of(const relume_objects *o)
 
 // One light alone, and what it does between the scene and the objects.
 static relume_status exchange_one(struct exchange *e, struct relume_image *scene,
-                                  struct relume_image *reflected, relume_renderer *renderer,
-                                  const struct relume_camera *camera,
+                                  struct relume_image *reflected, struct relume_image *share,
+                                  relume_renderer *renderer, const struct relume_camera *camera,
                                   const struct relume_light *light)
 {
     struct standing_in *in = renderer->over;
@@ -242,7 +245,7 @@ static relume_status exchange_one(struct exchange *e, struct relume_image *scene
     if (!status)
         status = scenery_light(in->scenery, &relit, middle_of(in->objects));
     if (!status)
-        status = exchange_light(e, scene, reflected, &lone, light);
+        status = exchange_light(e, scene, reflected, share, &lone, light);
     relume_image_destroy(&lone);
     relume_image_destroy(&relit);
     return status;
@@ -250,7 +253,7 @@ static relume_status exchange_one(struct exchange *e, struct relume_image *scene
 
 // light_scene, with light between the scene and the objects, of which `reflected` is created, too.
 static relume_status exchange_all(struct relume_image *scene, struct relume_image *reflected,
-                                  const struct relume_image *places,
+                                  struct relume_image *shares, const struct relume_image *places,
                                   const struct relume_viewport *viewport, relume_renderer *renderer,
                                   const struct relume_camera *camera,
                                   const struct relume_light *lights, int n)
@@ -262,8 +265,13 @@ static relume_status exchange_all(struct relume_image *scene, struct relume_imag
         status = relume_image_create(reflected, places->width, places->height, 3);
     if (!status)
         status = exchange_create(&e, in->objects, in->scenery, viewport, places, &in->params);
-    for (int i = 0; i < n && !status; i++)
-        status = exchange_one(e, scene, reflected, renderer, camera, &lights[i]);
+    for (int i = 0; i < n && !status; i++) {
+        struct relume_image *share = lights[i].kind == RELUME_LIGHT_ENVIRONMENT ? shares++ : NULL;
+        if (share)
+            status = relume_image_create(share, places->width, places->height, 3);
+        if (!status)
+            status = exchange_one(e, scene, reflected, share, renderer, camera, &lights[i]);
+    }
     exchange_destroy(&e);
     const relume_status restored = relume_renderer_set_lights(renderer, lights, n);
     return status ? status : restored;
@@ -277,6 +285,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     const struct relume_render_params *params = &in->params;
     const struct relume_camera whole = whole_view(renderer, camera);
     struct relume_image places = {0}, scene = {0}, reflected = {0};
+    struct relume_image *shares = NULL;
     struct lighting lighting = {0};
     struct relume_viewport viewport;
     int n;
@@ -292,19 +301,26 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     if (!status && exchanges_light(in)) {
         status = need_scenery(in, renderer, &whole);
         lighting.scenery = (const struct scenery *const *)&in->scenery, lighting.sceneries = 1;
+        shares = mem_zeroed((size_t)n, sizeof *shares);
+        if (!status && !shares)
+            status = RELUME_ENOMEM;
         if (!status)
-            status =
-                exchange_all(&scene, &reflected, &places, &viewport, renderer, camera, lights, n);
+            status = exchange_all(&scene, &reflected, shares, &places, &viewport, renderer, camera,
+                                  lights, n);
     } else if (!status) {
         status = light_scene(&scene, &places, objects, renderer, camera, lights, n, params);
     }
-    const struct layered layers = {objects, &viewport, &scene, &places, &reflected, &lighting};
+    const struct layered layers = {objects,    &viewport, &scene,   &places,
+                                   &reflected, shares,    &lighting};
     if (!status)
         status = objects_layer(out, &layers, params);
     if (status)
         relume_image_destroy(out);
     relume_image_destroy(&scene);
     relume_image_destroy(&reflected);
+    for (int i = 0; i < n && shares; i++)
+        relume_image_destroy(&shares[i]);
+    mem_free(shares);
     relume_image_destroy(&places);
     lighting_destroy(&lighting);
     mem_free(lights);
@@ -314,11 +330,12 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
 relume_status relume_renderer_set_objects(relume_renderer *renderer, const relume_objects *objects,
                                           const struct relume_render_params *params)
 {
-    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16 };
+    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16, MOST_SPACING = 16 };
     const struct standing_in in = {.objects = objects,
                                    .params = PARAMS_WORK(relume_render_params, params)};
     if (in.params.transport_samples < 0 || in.params.transport_samples > MOST_SAMPLES ||
-        in.params.bounces > MOST_BOUNCES)
+        in.params.bounces > MOST_BOUNCES || in.params.transport_spacing < 0 ||
+        in.params.transport_spacing > MOST_SPACING)
         return RELUME_EINVAL;
     struct standing_in *copy = objects ? mem_copy(&in, 1, sizeof in) : NULL;
     if (objects && !copy)

@@ -128,6 +128,10 @@ struct lighting {
     int sceneries;
     int every;     // of the samples of environments one in so many is looked for, ...
     uint64_t key;  // ... from any on
+    // [skies]: which share of each reaches the objects, as share_of_sky has it, at value `pixel` of
+    // images of three channels; NaN: look. NULL: look always.
+    const struct relume_image *shares;
+    size_t pixel;
 };
 // RELUME_ENOMEM, RELUME_EINVAL. The caller destroys what is in `out`, whatever is returned.
 relume_status lighting_create(struct lighting *out, const relume_objects *o,
@@ -147,6 +151,9 @@ void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_po
 // What lies in a direction (unit) from a place.
 void surround_value(float rgb[3], const struct surround *surround, vec3 place, vec3 direction);
 
+// Of what the samples of environment number `sky` send, each by its cosine, the part that arrives.
+void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
+                  const struct lighting *l, int sky);
 // What the point throws back of light that arrives; nothing of a mirror.
 void objects_return(float rgb[3], const relume_objects *o, const struct surface_point *point,
                     vec3 eye, const struct arrival *arrival);
@@ -168,6 +175,7 @@ struct layered {
     const struct relume_viewport *viewport;
     const struct relume_image *scene, *places;
     const struct relume_image *reflected;  // light of the scene that objects show; empty: none
+    const struct relume_image *shares;     // of environments, that reach objects; NULL: not known
     const struct lighting *lighting;
 };
 // `*out` is created, of the scene's size. Errors of objects_trace.
@@ -193,9 +201,10 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
 void exchange_destroy(struct exchange **e);
 // Under one light, in which the scene alone shows `lone` and `captured` sends it: the scene as it
 // is with the objects is added to `scene`, what objects show of its light to `reflected`, at pixels
-// where objects are. RELUME_ENOMEM, RELUME_ECANCEL.
+// where objects are; `share` is filled with share_of_sky there, elsewhere with NaN (NULL: it is not asked for, or the light
+// is no environment). RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status exchange_light(struct exchange *e, struct relume_image *scene,
-                             struct relume_image *reflected, const struct relume_image *lone,
-                             const struct relume_light *light);
+                             struct relume_image *reflected, struct relume_image *share,
+                             const struct relume_image *lone, const struct relume_light *light);
 
 #endif

@@ -93,13 +93,24 @@ vec3 point_leave(const struct surface_point *p)
     return vector(from);
 }
 
+// Whether a ray comes near the objects at all: to the ball about them.
+static bool may_meet(const relume_objects *o, vec3 origin, vec3 direction)
+{
+    const double ROUNDING = 1.001;
+    const vec3 across = vec3_sub(o->info.max, o->info.min);
+    const vec3 to = vec3_sub(vec3_scale(vec3_add(o->info.max, o->info.min), 0.5), origin);
+    const double square = 0.25 * ROUNDING * vec3_dot(across, across), away = vec3_dot(to, to);
+    const double along = vec3_dot(to, direction);
+    return away <= square || (along > 0.0 && away - along * along <= square);
+}
+
 bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin, vec3 direction)
 {
     float from[3], along[3];
     struct trace_hit hit;
     copy(from, origin);
     copy(along, direction);
-    if (!trace_closest(o->tracer, from, along, &hit))
+    if (!may_meet(o, origin, direction) || !trace_closest(o->tracer, from, along, &hit))
         return false;
     objects_point(out, o, &hit, direction);
     return true;
@@ -145,6 +156,8 @@ bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towa
 {
     float at[3], off[3], from[3], along[3];
     struct trace_hit hit;
+    if (!may_meet(o, point, towards))
+        return true;
     copy(at, point);
     copy(off, normal);
     copy(along, towards);
@@ -205,10 +218,10 @@ static void add_sample(float rgb[3], const relume_objects *o, const struct surfa
         rgb[c] += arriving[c] * value[c];
 }
 
-// Of what the light samples send, each by its cosine, the part that arrives.
-static void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
-                         const struct lighting *l, const struct sky_light *sky)
+void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
+                  const struct lighting *l, int number)
 {
+    const struct sky_light *sky = &l->sky[number];
     float sent[3] = {0.0f, 0.0f, 0.0f}, arrived[3] = {0.0f, 0.0f, 0.0f};
     const int every = l->every > 1 ? l->every : 1, begin = (int)(l->key % (uint64_t)every);
     for (int i = begin; i < sky->light_samples && !l->no_shadows; i += every) {
@@ -227,14 +240,19 @@ static void share_of_sky(float share[3], const relume_objects *o, const struct s
 }
 
 static void add_sky(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 view,
-                    const struct lighting *l, const struct sky_light *sky)
+                    const struct lighting *l, int number)
 {
+    const struct sky_light *sky = &l->sky[number];
+    const float *known = l->shares ? l->shares[number].data + l->pixel : NULL;
     float value[3], share[3];
     ask(value, o, p,
         &(struct relume_btf_ray){.view = view,
                                  .sky = sky->sky[o->part[p->part].material],
                                  .frame = {p->tangent, p->bitangent, p->normal}});
-    share_of_sky(share, o, p, l, sky);
+    if (known && !isnan(known[0]))
+        memcpy(share, known, sizeof share);
+    else
+        share_of_sky(share, o, p, l, number);
     for (int c = 0; c < 3; c++)
         rgb[c] += share[c] * value[c];
 }
@@ -277,7 +295,7 @@ void objects_shade(float rgb[3], const relume_objects *o, const struct surface_p
         if (!lighting->light_sample[i].is_sky)
             add_sample(rgb, o, p, view, &lighting->light_sample[i], lighting);
     for (int i = 0; i < lighting->skies; i++)
-        add_sky(rgb, o, p, view, lighting, &lighting->sky[i]);
+        add_sky(rgb, o, p, view, lighting, i);
 }
 
 // ---------------------------------------------------------------- pictures

@@ -292,7 +292,7 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
     if (!status)
         thread_for(d->params.threads, rows, light_row, d);
     if (!status && d->exchange)
-        status = exchange_light(d->exchange, &d->scene, &d->reflected, &d->lone, light);
+        status = exchange_light(d->exchange, &d->scene, &d->reflected, NULL, &d->lone, light);
     else if (!status)
         thread_for(d->params.threads, rows, shade_row, d);
     mem_free(light_samples);
@@ -364,8 +364,12 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
         if (!status && !log_progress(d.params.log, "relighting the scene", (i + 1.0) / n))
             status = RELUME_ECANCEL;
     }
-    const struct layered layers = {tableau->objects, &d.viewport,  &d.scene,
-                                   &d.places,        &d.reflected, &d.lighting};
+    const struct layered layers = {.o = tableau->objects,
+                                   .viewport = &d.viewport,
+                                   .scene = &d.scene,
+                                   .places = &d.places,
+                                   .reflected = &d.reflected,
+                                   .lighting = &d.lighting};
     if (!status)
         status = objects_layer(out, &layers, &d.params);
     if (status)

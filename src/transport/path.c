@@ -88,6 +88,7 @@ const struct relume_transport transport_path = {
     .name = "path",
     .summary = "paths of light by random rays: the reference of the others",
     .samples = 64,
+    .spacing = 1,
     .pattern = 1,
     .gather = gather,
 };

@@ -5,6 +5,7 @@
 #include "transport/bright.h"
 
 #include <relume/view.h>
+#include <string.h>
 
 // Neighbours are one surface where none is farther from the eye than the other by more than a
 // fifth: at 5 degrees, a pixel of half a degree of floor is farther than the one below by a tenth.
@@ -374,7 +375,7 @@ double scenery_piece(vec3 *direction, float sent[3], const struct scenery *c, si
     if (!is_background(c, piece))
         return 0.0;
     *direction = block_direction(c, piece, x, y);
-    far_value(sent, c, *direction);
+    memcpy(sent, c->sent[piece], 3 * sizeof *sent);
     return block_angle(c, piece);
 }
 

@@ -28,8 +28,8 @@ vec3 scenery_eye(const struct scenery *c);
 const struct mesh *scenery_mesh(const struct scenery *c);
 void scenery_sent(float rgb[3], const struct scenery *c, size_t triangle, float u, float v);
 
-// The background lies in pieces: the solid angle of one, 0 where it is none, and the direction and
-// what comes from there at (x, y) of it, 0 to 1.
+// The background lies in pieces: the solid angle of one, 0 where it is none, what comes from there
+// on average, and the direction of (x, y) of it, 0 to 1.
 size_t scenery_pieces(const struct scenery *c);
 double scenery_piece(vec3 *direction, float sent[3], const struct scenery *c, size_t piece,
                      double x, double y);

@@ -16,9 +16,7 @@ static vec3 three(const struct relume_image *image, int x, int y)
     return vec3_of((double)p[0], (double)p[1], (double)p[2]);
 }
 
-// Whether the places lie on one surface: not off its plane by more than a part of what they are
-// apart, nor turned away.
-static bool is_same(vec3 place, vec3 normal, vec3 other, vec3 other_normal, double distance)
+bool transport_same(vec3 place, vec3 normal, vec3 other, vec3 other_normal, double distance)
 {
     const double FACING = 0.9, PLANE = 0.02;
     const vec3 step = vec3_sub(other, place);
@@ -41,8 +39,8 @@ static void smooth_row(void *context, size_t row, int worker)
         for (int j = y - before; j < y - before + s->size; j++)
             for (int i = x - before; i < x - before + s->size; i++) {
                 if (i < 0 || j < 0 || i >= width || j >= height ||
-                    !is_same(place, normal, three(s->places, i, j), three(s->normals, i, j),
-                             distance))
+                    !transport_same(place, normal, three(s->places, i, j), three(s->normals, i, j),
+                                    distance))
                     continue;
                 const float *v = s->from->data + 3 * ((size_t)j * (size_t)width + (size_t)i);
                 for (int c = 0; c < 3; c++)

@@ -10,13 +10,9 @@ const struct relume_transport transport_none = {
     .summary = "hard shadows of objects on the scene; no light goes between",
 };
 
-const struct relume_transport *const relume_transports[] = {&transport_none,
-                                                            &transport_ssao,
-                                                            &transport_ssdo,
-                                                            &transport_ism,
-                                                            &transport_radiosity,
-                                                            &transport_path,
-                                                            NULL};
+const struct relume_transport *const relume_transports[] = {
+    &transport_none,      &transport_ssao,  &transport_ssdo, &transport_ism,
+    &transport_radiosity, &transport_micro, &transport_path, NULL};
 
 const struct relume_transport *relume_transport_find(const char *name)
 {
@@ -39,6 +35,11 @@ const char *relume_transport_summary(const struct relume_transport *transport)
 int relume_transport_samples(const struct relume_transport *transport)
 {
     return transport->samples;
+}
+
+int relume_transport_spacing(const struct relume_transport *transport)
+{
+    return transport->spacing;
 }
 
 // The binary digits of i, mirrored at the point (van der Corput).

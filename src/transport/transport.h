@@ -60,6 +60,7 @@ typedef void take_arrival(void *context, const struct arrival *arrival);
 struct relume_transport {
     const char *name, *summary;
     int samples;  // at a site, by default
+    int spacing;  // sites gather at every so many pixels each way, by default; 0: always at each
     int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
     bool screen;  // needs the frames
     // NULL: there is nothing to prepare. What a light of the rig needs once before sites gather
@@ -82,9 +83,13 @@ struct look {
 void transport_look(struct look *out, const struct world *w, const struct site *site, int i, int n);
 
 extern const struct relume_transport transport_none, transport_ssao, transport_ssdo, transport_ism,
-    transport_radiosity, transport_path;
+    transport_radiosity, transport_micro, transport_path;
 
 // ---------------------------------------------------------------- frames
+
+// Whether places lie on one surface: not off its plane by more than a part of the distance that it
+// is seen from, nor turned away.
+bool transport_same(vec3 place, vec3 normal, vec3 other, vec3 other_normal, double distance);
 
 // A mean over `size` x `size` pixels of each image, of those pixels that are the same surface by
 // places and normals ("geometry-aware blur": Segovia et al. 2006); where a place is NaN nothing is
@@ -92,5 +97,18 @@ extern const struct relume_transport transport_none, transport_ssao, transport_s
 relume_status transport_smooth(struct relume_image *const *images, int count,
                                const struct relume_image *places,
                                const struct relume_image *normals, vec3 eye, int size, int threads);
+
+// Between pixels that have gathered, which are those where transport_gathers: the ones about a
+// pixel that show its surface, with weights that add up to 1 ("bilateral upsampling": Sloan et al.
+// 2007). `count` is 0 where they are too few to tell.
+struct between {
+    int count;
+    size_t pixel[4];
+    double weight[4];
+};
+bool transport_gathers(int spacing, int x, int y);
+void transport_between(struct between *out, int spacing, int x, int y,
+                       const struct relume_image *places, const struct relume_image *normals,
+                       vec3 eye);
 
 #endif

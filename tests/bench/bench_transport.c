@@ -56,9 +56,9 @@ static relume_objects *open_ball(int segments)
 {
     relume_objects *o;
     char text[512];
-    ball_text(text, sizeof text, "ball.obj", ball_grey);
+    ball_text(text, sizeof text, "ball.obj", vec3_of(ball[0], ball[1], ball[2]), ball_grey);
     FILE *file = fopen(path_of("ball.json"), "w");
-    if (!file || !write_ball_mesh(path_of("ball.obj"), segments) || fputs(text, file) < 0 ||
+    if (!file || !write_ball_mesh(path_of("ball.obj"), segments, false) || fputs(text, file) < 0 ||
         fclose(file))
         bench_check(RELUME_EIO);
     bench_check(relume_objects_open(&o, path_of("ball.json"), NULL));

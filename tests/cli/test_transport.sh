@@ -12,7 +12,7 @@ objects '0,-0.6,-1.4' '{"diffuse":[0.8,0.4,0.2]}' >ball.json
 "$RELUME" synth attic -q -o room --projection spherical --size 32 --lights 6 --samples 1
 "$RELUME" encode -q room -o room.exr --shadows no
 look="--tilt -20 --size 48x32"
-for way in none ssao ssdo ism radiosity path; do
+for way in none ssao ssdo ism radiosity micro path; do
     expect_ok "$way" - "$RELUME" relight room.exr --objects ball.json $look -o $way.exr --light 'dir 0 1 0' --transport $way -q
 done
 expect_ok 'none is what is done without' - "$RELUME" relight room.exr --objects ball.json $look -o without.exr --light 'dir 0 1 0' -q
@@ -21,6 +21,8 @@ check 'light goes between' sh -c "'$RELUME' compare none.exr path.exr | awk '/ma
 expect_ok 'twice the same' - "$RELUME" relight room.exr --objects ball.json $look -o again.exr --light 'dir 0 1 0' --transport path --threads 1 -q
 check 'byte for byte' cmp path.exr again.exr
 expect_ok 'samples and bounces' - "$RELUME" relight room.exr --objects ball.json $look -o few.exr --transport path --samples 100 --bounces 0 -q
+expect_ok 'at every pixel' - "$RELUME" relight room.exr --objects ball.json $look -o each.exr --light 'dir 0 1 0' --transport micro --spacing 1 --samples 100 -q
+check 'nearly the same as at every fourth' sh -c "'$RELUME' compare each.exr micro.exr | awk '/^rms/ { exit !(\$2 > 0 && \$2 < 0.02) }'"
 
 check 'by virtual lights' sh -c "'$RELUME' compare none.exr ism.exr | awk '/max_abs/ { exit !(\$2 > 0.02) }'"
 check 'as exact shadows have it' sh -c "'$RELUME' compare radiosity.exr ism.exr | awk '/rms/ { exit !(\$2 < 0.02) }'"
@@ -53,6 +55,8 @@ expect_fail 'without light between it needs depth' 1 'how far the scene is' x.pn
 expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'\?" x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport sddo
 expect_fail 'without objects' 2 'work only with --objects' x.png "$RELUME" relight room.exr -o x.png --transport path
 expect_fail 'many rays a pixel' 2 'expected 1 to 16 rays' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --samples 17
+expect_fail 'spacing of a way that shares directions' 2 '\-\-spacing works only with --transport micro and path' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport ssdo --spacing 2
+expect_fail 'far apart' 2 'spacing' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport micro --spacing 17
 expect_fail 'many bounces' 2 'bounces' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport path --bounces 17
 for material in '{"diffuse":1.5}' '{"diffuse":"red"}' '{"diffuse":0.5,"mirror":1}' '{"diffuse":[1,1]}'; do
     objects '0,0,0' "$material" >bad.json

@@ -22,7 +22,7 @@ struct relight_options {
     enum relume_interpolation interpolation;
     unsigned pass;
     const struct relume_transport *transport;  // NULL: none
-    int bounces;
+    int bounces, spacing;
     bool nearest, alpha, allow_outside, keep_going;
     struct light_options lighting;
     struct develop_options develop;
@@ -128,9 +128,13 @@ static const struct option options[] = {
             2),
     OWN("--transport", transport, "NAME",
         "--objects: how light goes between them and the scene: none (default), ssao, ssdo, ism, "
-        "radiosity, path (docs/transport.md)",
+        "radiosity, micro, path (docs/transport.md)",
         take_transport),
     INT("--bounces", bounces, "N", "--transport: of light off objects; default: 2", 0, 16),
+    INT("--spacing", spacing, "N",
+        "--transport micro, path: gather light at every N-th pixel each way, and at borders; "
+        "default: 4 (micro), 1 (path)",
+        1, 16),
     INT("--samples", samples, "N",
         "--objects: N x N rays a pixel, at most 16; default: 3; with --transport: directions that "
         "light is gathered from at a pixel",
@@ -213,6 +217,8 @@ static relume_status check_pass(const struct relight_options *o)
     if ((o->transport || given(o, &o->bounces)) && !o->objects)
         return usage_error("--transport and --bounces work only with --objects; add "
                            "--objects FILE");
+    if (given(o, &o->spacing) && !(o->transport && relume_transport_spacing(o->transport)))
+        return usage_error("--spacing works only with --transport micro and path");
     if (o->samples > MOST_ACROSS && !(o->transport && relume_transport_samples(o->transport)))
         return usage_error("--samples: expected 1 to %d rays along each side of a pixel; found %d",
                            MOST_ACROSS, o->samples);
@@ -252,6 +258,7 @@ static struct relume_render_params render_params(const struct relight_options *o
         .transport = o->transport,
         .transport_samples = given(o, &o->samples) && gathers ? o->samples : 0,
         .bounces = given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
+        .transport_spacing = o->spacing,
     };
 }
 

@@ -1,0 +1,448 @@
+// micro.c - a small picture of what surrounds each place (Ritschel, Engelhardt, Grosch, Seidel,
+// Kautz, Dachsbacher 2009, "Micro-rendering for scalable, parallel final gathering")
+//
+// Under each light the captured scene and the objects become trees of points that know what they
+// send. A place draws them (cut.h) and adds up the pixels. What objects cover lies before what the
+// scene shows. Pixels that points cover which are too near to be drawn, or that no points cover,
+// are looked for by a ray; of the paper's rays, which meet discs, these meet the triangles.
+// Points of objects gather in the same way, once for each bounce (Jacobi's iteration).
+#include "transport/cut.h"
+#include "transport/points.h"
+
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <string.h>
+
+enum { SCENE_LEAVES = 1 << 15, OBJECT_LEAVES = 1 << 12 };
+enum { SIDES = 2 };  // of objects: their points, and the backs of those that are lit on both sides
+
+struct micro {
+    struct cut_view view;
+    struct hierarchy scene;
+    struct points points;  // of objects
+    struct hierarchy side[SIDES];
+};
+
+static void copy(float out[3], vec3 v)
+{
+    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
+}
+
+// ---------------------------------------------------------------- gathering
+
+struct gathering {
+    const struct world *w;
+    const struct micro *m;
+    const struct site *site;
+    struct cut_place place;
+    struct cut_list scene, side[SIDES];
+    struct cut_cell cells[CUT_MOST * CUT_MOST];
+};
+
+static void draw(struct gathering *g)
+{
+    const struct micro *m = g->m;
+    memset(g->cells, 0, (size_t)(m->view.side * m->view.side) * sizeof *g->cells);
+    g->scene.count = 0;
+    cut_place_at(&g->place, &m->view, g->site->start, g->site->normal);
+    cut_scene(g->cells, &g->scene, &m->scene, &g->place);
+    for (int k = 0; k < SIDES; k++) {
+        g->side[k].count = 0;
+        cut_objects(g->cells, &g->side[k], &m->side[k], &g->place);
+    }
+}
+
+// Points that cover so much of a pixel fill it: a leaf more or less is chance.
+static const float FULL = 0.5f;
+
+// What a pixel shows of the scene, and how far that is.
+struct shown {
+    float without[3], with[3];
+    float depth, hides;  // where what is nearest lies, and the part that it hides
+    float deepest;       // behind this all is hidden
+};
+
+static void mix(struct shown *to, const struct cut_light *light, float part)
+{
+    const float weight = part / light->covers;
+    for (int c = 0; c < 3; c++) {
+        to->without[c] += weight * light->without[c];
+        to->with[c] += weight * light->with[c];
+    }
+}
+
+static void from_points(struct shown *out, const struct cut_cell *cell, float inside)
+{
+    const float covers = cell->near.covers / inside;
+    const bool full = covers > FULL || !(cell->far.covers > 0.0f);
+    *out = (struct shown){.depth = cell->depth,
+                          .hides = full ? 1.0f : covers,
+                          .deepest = full ? cell->depth : cell->far_depth};
+    if (cell->near.covers > 0.0f)
+        mix(out, &cell->near, out->hides);
+    if (!full)
+        mix(out, &cell->far, 1.0f - covers);
+}
+
+// By a ray. What of that the objects leave is as the points there have it.
+static void from_ray(struct shown *out, const struct gathering *g, const struct cut_cell *cell,
+                     vec3 towards)
+{
+    const struct hierarchy *h = &g->m->scene;
+    const struct cut_light *near = &cell->near;
+    const float *without = near->without, *with = near->with;
+    struct scenery_hit hit;
+    uint32_t node;
+    (void)scenery_meet(&hit, g->w->scenery, g->site->start, towards);
+    if (hit.distance < INFINITY &&
+        cut_nearest(&node, &g->scene, h, hit.place, vec3_of(0, 0, 0)) < INFINITY)
+        without = h->sent[node].without, with = h->sent[node].with;
+    out->depth = out->deepest = (float)hit.distance;
+    out->hides = 1.0f;
+    for (int c = 0; c < 3; c++) {
+        const float left = with[c] < without[c] ? with[c] / without[c] : 1.0f;
+        out->without[c] = hit.sent[c];
+        out->with[c] = left * hit.sent[c];
+    }
+}
+
+// Where a ray meets the objects before the scene, what they send; else `rgb` stays.
+static void from_objects(float rgb[3], const struct gathering *g, const struct cut_cell *cell,
+                         vec3 towards, float depth)
+{
+    float from[3], along[3], nearest = INFINITY;
+    struct trace_hit hit;
+    copy(from, g->site->start);
+    copy(along, towards);
+    if (!trace_closest(g->w->objects, from, along, &hit) || !(hit.distance < depth))
+        return;
+    const vec3 at = vec3_along(g->site->start, towards, (double)hit.distance);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = cell->object.covers > 0.0f ? cell->object.with[c] / cell->object.covers : 0.0f;
+    for (int k = 0; k < SIDES; k++) {
+        uint32_t node;
+        const float away = cut_nearest(&node, &g->side[k], &g->m->side[k], at, towards);
+        if (away < nearest)
+            memcpy(rgb, g->m->side[k].sent[node].with, 3 * sizeof *rgb);
+        nearest = fminf(nearest, away);
+    }
+}
+
+// The part of a pixel that objects cover, before what the scene shows there.
+static float part_of(const struct cut_cell *cell, const struct shown *scene, float inside)
+{
+    const float BEHIND = 1.05f;
+    const float part = fminf(cell->covered / inside, 1.0f);
+    if (cell->object_depth > BEHIND * scene->deepest)
+        return 0.0f;
+    return cell->object_depth > BEHIND * scene->depth ? part * (1.0f - scene->hides) : part;
+}
+
+static void resolve(struct arrival *out, const struct gathering *g, int i)
+{
+    const struct cut_cell *cell = &g->cells[i];
+    const struct cut_pixel *pixel = &g->m->view.pixel[i];
+    struct shown scene;
+    out->towards = cut_direction(&g->place, pixel);
+    out->share = (double)pixel->share;
+    if (cell->close || cell->near.covers + cell->far.covers < FULL * pixel->inside)
+        from_ray(&scene, g, cell, out->towards);
+    else
+        from_points(&scene, cell, pixel->inside);
+    memcpy(out->without, scene.without, sizeof out->without);
+    memcpy(out->with, scene.with, sizeof out->with);
+    if (cell->object_close) {
+        from_objects(out->with, g, cell, out->towards, scene.depth);
+    } else if (cell->object.covers > 0.0f) {
+        const float part = part_of(cell, &scene, pixel->inside);
+        for (int c = 0; c < 3 && part > 0.0f; c++)
+            out->with[c] =
+                part * cell->object.with[c] / cell->object.covers + (1.0f - part) * out->with[c];
+    }
+}
+
+static void gather(const struct world *w, const struct site *site, take_arrival *arrive,
+                   void *context)
+{
+    const struct micro *m = w->state;
+    struct gathering g;
+    g.w = w, g.m = m, g.site = site;
+    draw(&g);
+    for (int i = 0; i < m->view.side * m->view.side; i++) {
+        struct arrival arrival;
+        if (!(m->view.pixel[i].share > 0.0f))
+            continue;
+        resolve(&arrival, &g, i);
+        arrive(context, &arrival);
+    }
+}
+
+// ---------------------------------------------------------------- the scene's points
+
+// Of each triangle its middle, and of the background each block, so far away that it is in the
+// same direction from everywhere.
+static void put_scene_piece(struct piece *out, const struct world *w, size_t i, double far)
+{
+    const struct scenery *c = w->scenery;
+    const struct mesh *mesh = scenery_mesh(c);
+    const vec3 eye = scenery_eye(c);
+    if (i >= mesh->triangle_count) {
+        vec3 towards;
+        float unused[3];
+        const double angle = scenery_piece(&towards, unused, c, i - mesh->triangle_count, 0.5, 0.5);
+        *out = (struct piece){{0}, {0}};
+        if (!(angle > 0.0))
+            return;
+        copy(out->place, vec3_along(eye, towards, far));
+        copy(out->area, vec3_scale(towards, -angle * far * far));
+        return;
+    }
+    const uint32_t *v = mesh->triangles[i].vertex;
+    const vec3 a = vertex_position(&mesh->vertices[v[0]]),
+               b = vertex_position(&mesh->vertices[v[1]]),
+               d = vertex_position(&mesh->vertices[v[2]]);
+    const vec3 twice = vec3_cross(vec3_sub(b, a), vec3_sub(d, a));
+    const double side = vec3_dot(twice, vec3_sub(eye, a)) < 0.0 ? -0.5 : 0.5;
+    copy(out->place, vec3_scale(vec3_add(vec3_add(a, b), d), 1.0 / 3.0));
+    copy(out->area, vec3_scale(twice, side));
+}
+
+static double far_from(const struct world *w)
+{
+    const double FAR = 1000.0;
+    const struct mesh *mesh = scenery_mesh(w->scenery);
+    const vec3 eye = scenery_eye(w->scenery);
+    double most = w->radius;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        most = fmax(most, vec3_length(vec3_sub(vertex_position(&mesh->vertices[i]), eye)));
+    for (size_t i = 0; i < w->mesh->vertex_count; i++)
+        most = fmax(most, vec3_length(vec3_sub(vertex_position(&w->mesh->vertices[i]), eye)));
+    return FAR * most;
+}
+
+static void sent_of_piece(float rgb[3], const struct scenery *c, size_t i)
+{
+    const size_t triangles = scenery_mesh(c)->triangle_count;
+    vec3 unused;
+    if (i < triangles)
+        scenery_sent(rgb, c, i, 1.0f / 3.0f, 1.0f / 3.0f);
+    else
+        (void)scenery_piece(&unused, rgb, c, i - triangles, 0.5, 0.5);
+}
+
+struct lighting_scene {
+    const struct world *w;
+    struct hierarchy *h;
+    const struct piece *pieces;
+};
+
+static vec3 vector(const float v[3])
+{
+    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
+}
+
+// The part of a leaf's light that the objects leave.
+static double left_of(const struct lighting_scene *l, size_t leaf)
+{
+    const struct hierarchy *h = l->h;
+    const size_t middle = h->order[h->begins[leaf] + (h->begins[leaf + 1] - h->begins[leaf]) / 2];
+    const struct piece *p = &l->pieces[middle];
+    return middle < scenery_mesh(l->w->scenery)->triangle_count
+               ? l->w->dimmed(l->w->context, vector(p->place), vec3_unit(vector(p->area)), leaf)
+               : 1.0;
+}
+
+enum { AT_ONCE = 64 };
+
+static void light_leaves(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct lighting_scene *l = context;
+    const struct hierarchy *h = l->h;
+    for (size_t leaf = item * AT_ONCE; leaf < (item + 1) * AT_ONCE && leaf < h->leaves; leaf++) {
+        double sum[3] = {0.0, 0.0, 0.0}, areas = 0.0;
+        for (size_t i = h->begins[leaf]; i < h->begins[leaf + 1]; i++) {
+            const double area = vec3_length(vector(l->pieces[h->order[i]].area));
+            float rgb[3];
+            sent_of_piece(rgb, l->w->scenery, h->order[i]);
+            areas += area;
+            for (int c = 0; c < 3; c++)
+                sum[c] += area * (double)rgb[c];
+        }
+        struct sent *sent = &h->sent[hierarchy_leaf(h, leaf)];
+        const float left = (float)left_of(l, leaf);
+        for (int c = 0; c < 3; c++) {
+            sent->without[c] = (float)(sum[c] / areas);
+            sent->with[c] = left * sent->without[c];
+        }
+    }
+}
+
+static relume_status build_scene(struct micro *m, const struct world *w)
+{
+    const size_t count = scenery_mesh(w->scenery)->triangle_count + scenery_pieces(w->scenery);
+    struct piece *pieces = mem_array(count ? count : 1, sizeof *pieces);
+    if (!pieces)
+        return RELUME_ENOMEM;
+    const double far = far_from(w);
+    for (size_t i = 0; i < count; i++)
+        put_scene_piece(&pieces[i], w, i, far);
+    const relume_status status =
+        hierarchy_create(&m->scene, pieces, count, SCENE_LEAVES, w->threads);
+    struct lighting_scene l = {w, &m->scene, pieces};
+    if (!status) {
+        thread_for(w->threads, (m->scene.leaves + AT_ONCE - 1) / AT_ONCE, light_leaves, &l);
+        hierarchy_light(&m->scene);
+    }
+    mem_free(pieces);
+    return status;
+}
+
+// ---------------------------------------------------------------- the objects' points
+
+// The points once as they are, and those that light gets to from both sides once more, turned.
+static relume_status build_objects(struct micro *m, const struct world *w)
+{
+    relume_status status =
+        points_of_objects(&m->points, w->mesh, w->objects, OBJECT_LEAVES, w->threads);
+    for (int k = 0; k < 2 && !status; k++) {
+        struct piece *pieces = m->points.count ? mem_zeroed(m->points.count, sizeof *pieces) : NULL;
+        if (m->points.count && !pieces)
+            return RELUME_ENOMEM;
+        for (size_t i = 0; i < m->points.count; i++) {
+            const struct point *p = &m->points.at[i];
+            copy(pieces[i].place, p->place);
+            if (!k || p->both)
+                copy(pieces[i].area, vec3_scale(p->normal, k ? -p->area : p->area));
+        }
+        status = hierarchy_create(&m->side[k], pieces, m->points.count, OBJECT_LEAVES, w->threads);
+        mem_free(pieces);
+    }
+    return status;
+}
+
+// What arrives at a point, as light from one direction.
+struct arrived {
+    double rgb[3];
+    vec3 towards;
+};
+
+static void add_arrival(void *context, const struct arrival *a)
+{
+    struct arrived *all = context;
+    for (int c = 0; c < 3; c++)
+        all->rgb[c] += a->share * (double)a->with[c];
+    all->towards = vec3_along(all->towards, a->towards,
+                              a->share * (double)(a->with[0] + a->with[1] + a->with[2]));
+}
+
+struct lighting_objects {
+    const struct world *w;
+    const struct micro *m;
+    int side;
+    struct sent *next;  // [leaves]
+};
+
+static void light_point(const struct lighting_objects *l, size_t leaf)
+{
+    const struct hierarchy *h = &l->m->side[l->side];
+    struct point p = l->m->points.at[h->order[h->begins[leaf]]];
+    float at[3], off[3], start[3];
+    struct arrived all = {.towards = {0, 0, 0}};
+    struct arrival one = {.share = 1.0};
+    p.normal = l->side ? vec3_scale(p.normal, -1.0) : p.normal;
+    copy(at, p.place);
+    copy(off, p.normal);
+    trace_leave(at, off, start);
+    const struct site site = {
+        .position = p.place, .normal = p.normal, .start = vector(start), .key = leaf};
+    gather(l->w, &site, add_arrival, &all);
+    one.towards = vec3_length(all.towards) > 0.0 ? vec3_unit(all.towards) : p.normal;
+    for (int c = 0; c < 3; c++)
+        one.with[c] = (float)all.rgb[c];
+    float *rgb = l->next[leaf].with;
+    points_object_sent(rgb, l->w, &p, leaf, &one, 1);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = isfinite(rgb[c]) ? fmaxf(rgb[c], 0.0f) : 0.0f;
+}
+
+static void light_points(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct lighting_objects *l = context;
+    const size_t leaves = l->m->side[l->side].leaves;
+    for (size_t leaf = item * AT_ONCE; leaf < (item + 1) * AT_ONCE && leaf < leaves; leaf++)
+        light_point(l, leaf);
+}
+
+// One more bounce, of both sides at once.
+static void bounce(struct micro *m, const struct world *w, struct sent *const next[SIDES])
+{
+    for (int k = 0; k < SIDES; k++) {
+        struct lighting_objects l = {w, m, k, next[k]};
+        thread_for(w->threads, (m->side[k].leaves + AT_ONCE - 1) / AT_ONCE, light_points, &l);
+    }
+    for (int k = 0; k < SIDES; k++) {
+        struct hierarchy *h = &m->side[k];
+        if (h->leaves)
+            memcpy(&h->sent[hierarchy_leaf(h, 0)], next[k], h->leaves * sizeof *next[k]);
+        hierarchy_light(h);
+    }
+}
+
+static relume_status light_objects(struct micro *m, const struct world *w)
+{
+    struct sent *next[SIDES];
+    relume_status status = RELUME_OK;
+    for (int k = 0; k < SIDES; k++) {
+        next[k] = mem_zeroed(m->side[k].leaves ? m->side[k].leaves : 1, sizeof *next[k]);
+        status = next[k] ? status : RELUME_ENOMEM;
+    }
+    for (int i = 0; i < w->bounces && !status; i++)
+        bounce(m, w, next);
+    for (int k = 0; k < SIDES; k++)
+        mem_free(next[k]);
+    return status;
+}
+
+// ---------------------------------------------------------------- a light
+
+static void end(struct world *w)
+{
+    struct micro *m = w->state;
+    if (!m)
+        return;
+    hierarchy_forget(&m->scene);
+    for (int k = 0; k < SIDES; k++)
+        hierarchy_forget(&m->side[k]);
+    points_forget(&m->points);
+    mem_free(m);
+    w->state = NULL;
+}
+
+static relume_status begin(struct world *w, const struct relume_log *log)
+{
+    (void)log;
+    const int side = (int)sqrt((double)w->samples);
+    struct micro *m = mem_zeroed(1, sizeof *m);
+    w->state = m;
+    if (!m)
+        return RELUME_ENOMEM;
+    cut_view_create(&m->view, side < CUT_LEAST ? CUT_LEAST : side > CUT_MOST ? CUT_MOST : side);
+    relume_status status = build_scene(m, w);
+    if (!status)
+        status = build_objects(m, w);
+    return status ? status : light_objects(m, w);
+}
+
+const struct relume_transport transport_micro = {
+    .name = "micro",
+    .summary = "a small picture of the surroundings for each place, drawn from points",
+    .samples = 256,
+    .spacing = 4,
+    .pattern = 1,
+    .begin = begin,
+    .end = end,
+    .gather = gather,
+};

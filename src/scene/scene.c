@@ -8,7 +8,8 @@
 #include <string.h>
 
 const struct relume_scene_kind *const relume_scenes[] = {
-    &scene_box, &scene_teapot, &scene_bust, &scene_attic, &scene_chessboard, NULL,
+    &scene_box,        &scene_teapot,    &scene_bust,    &scene_attic,
+    &scene_chessboard, &scene_colonnade, &scene_cornell, NULL,
 };
 
 const struct relume_scene_kind *relume_scene_find(const char *name)

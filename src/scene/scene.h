@@ -13,6 +13,6 @@ struct relume_scene {
 };
 
 extern const struct relume_scene_kind scene_box, scene_teapot, scene_bust, scene_attic,
-    scene_chessboard;
+    scene_chessboard, scene_colonnade, scene_cornell;
 
 #endif

@@ -1,7 +1,7 @@
 #!/bin/sh
 # synth -> encode -> info -> relight -> eval, for every projection.
 . "$(dirname "$0")/lib.sh"
-for p in 'box planar' 'teapot slab' 'attic cylindrical' 'chessboard spherical' 'attic cube'; do
+for p in 'box planar' 'teapot slab' 'attic cylindrical' 'chessboard spherical' 'attic cube' 'colonnade spherical' 'cornell spherical'; do
     set -- $p
     v=
     [ "$2" = slab ] && v='--views 2x2'

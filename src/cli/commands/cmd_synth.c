@@ -255,7 +255,8 @@ static relume_status run(const struct args *args)
 
 const struct command command_synth = {
     COMMAND("synth", "SCENE|--btf MATERIAL -o DIR",
-            "render a built-in scene (box, teapot, bust, attic, chessboard) under many lights",
+            "render a built-in scene (box, teapot, bust, attic, chessboard, colonnade, cornell) "
+            "under many lights",
             "relume synth teapot -o teapot --views 5x5 --lights 100", 0, 1),
     .names_built_in = true,
     .defaults = &(const OPTIONS){.lights = 100, .directions = "bonn"},

@@ -16,7 +16,7 @@
 #include "math/random.h"
 
 // A map draws a point for so many of its texels.
-enum { POINTS = 8 };
+enum { POINTS = 4 };
 enum { SCENE_POINTS = 1 << 16, OBJECT_POINTS = 1 << 14 };
 
 // ---------------------------------------------------------------- what is in the way
@@ -70,15 +70,20 @@ static void gather_one(const struct world *w, const struct instant *s, const str
 
 enum { TOGETHER = 16 };
 
-static void find_near(float near[TOGETHER], const struct instant *s, const float at[3],
+// Which of some lights are near, as positive numbers; whether any is.
+static bool find_near(float near[TOGETHER], const struct instant *s, const float at[3],
                       size_t first)
 {
     const float *x = s->reach[0] + first, *y = s->reach[1] + first, *z = s->reach[2] + first,
                 *reach = s->reach[3] + first;
+    float most = 0.0f;
     for (size_t k = 0; k < TOGETHER; k++) {
         const float dx = x[k] - at[0], dy = y[k] - at[1], dz = z[k] - at[2];
         near[k] = reach[k] - (dx * dx + dy * dy + dz * dz);
     }
+    for (size_t k = 0; k < TOGETHER; k++)
+        most = near[k] > most ? near[k] : most;
+    return most > 0.0f;
 }
 
 void instant_gather(const struct world *w, const struct site *site, take_arrival *arrive,
@@ -86,16 +91,17 @@ void instant_gather(const struct world *w, const struct site *site, take_arrival
 {
     const struct instant *s = w->state;
     const size_t step = (size_t)s->params.pattern * (size_t)s->params.pattern;
-    const size_t own = site->key % step;
     const float at[3] = {(float)site->start.x, (float)site->start.y, (float)site->start.z};
+    size_t own = site->key % step;
     for (size_t first = 0; first < s->lights; first += TOGETHER) {
         float near[TOGETHER];
-        find_near(near, s, at, first);
-        for (size_t i = first; i < first + TOGETHER && i < s->lights; i++) {
-            const bool is_near = near[i - first] > 0.0f;
-            if (is_near || i % step == own)
-                gather_one(w, s, site, i, is_near ? 1.0 : (double)step, arrive, context);
-        }
+        const bool any = find_near(near, s, at, first);
+        for (size_t i = first; any && i < first + TOGETHER && i < s->lights; i++)
+            if (near[i - first] > 0.0f)
+                gather_one(w, s, site, i, 1.0, arrive, context);
+        for (; own < first + TOGETHER && own < s->lights; own += step)
+            if (!(near[own - first] > 0.0f))
+                gather_one(w, s, site, own, (double)step, arrive, context);
     }
 }
 
@@ -153,7 +159,7 @@ static void draw_some(struct maps *m, size_t first, size_t end, const struct poi
 
 static void draw_maps(struct instant *s, const struct world *w, size_t first, size_t end)
 {
-    const double began = now_s();
+    const double began = processor_s();
     if (s->params.rays || first == end)
         return;
     const vec3 middle = middle_of(w);
@@ -161,7 +167,7 @@ static void draw_maps(struct instant *s, const struct world *w, size_t first, si
         look(s, w, i, middle);
     draw_some(&s->of_scene, first, end, &s->scene, &s->params, w->threads);
     draw_some(&s->of_objects, first, end, &s->objects, &s->params, w->threads);
-    s->seconds[INSTANT_MAPS] += now_s() - began;
+    s->seconds[INSTANT_MAPS] += processor_s() - began;
 }
 
 static relume_status make_maps(struct maps *m, size_t lights, int size)
@@ -265,8 +271,9 @@ static relume_status light_objects(struct instant *s, const struct world *w, siz
 // ---------------------------------------------------------------- all of it
 
 // The atlas of the paper holds 1024 maps of 128 x 128; here there are as many maps again, and a
-// quarter of all that for lights on objects: 160 MB. More lights have smaller maps.
-enum { ATLAS = 4096 * 4096 / 4 * 5, USUAL = 128, LEAST = 8 };
+// quarter of all that for lights on objects: at most 160 MB. Maps of 64 x 64 show as much as larger
+// ones (docs/measurements/transport.md); many lights have smaller ones.
+enum { ATLAS = 4096 * 4096 / 4 * 5, USUAL = 64, LEAST = 8 };
 
 static int size_for(size_t lights)
 {
@@ -278,30 +285,30 @@ static int size_for(size_t lights)
 
 static relume_status make_points(struct instant *s, const struct world *w)
 {
-    const double began = now_s();
+    const double began = processor_s();
     relume_status status =
         s->params.rays ? RELUME_OK : points_of_scene(&s->scene, w->scenery, SCENE_POINTS);
     if (!status)
         status = points_of_objects(&s->objects, w->mesh, w->objects, OBJECT_POINTS, w->threads);
-    s->seconds[INSTANT_POINTS] += now_s() - began;
+    s->seconds[INSTANT_POINTS] += processor_s() - began;
     return status;
 }
 
 static relume_status make_lights(struct instant *s, const struct world *w, size_t count,
                                  size_t on_objects)
 {
-    double began = now_s();
+    double began = processor_s();
     relume_status status = virtual_of_scene(s->light, &s->on_scene, w, count);
     s->lights = s->on_scene;
-    s->seconds[INSTANT_LIGHTS] = now_s() - began;
+    s->seconds[INSTANT_LIGHTS] = processor_s() - began;
     if (status)
         return status;
     set_reach(s, 0, s->lights);
     draw_maps(s, w, 0, s->lights);
-    began = now_s() - s->seconds[INSTANT_MAPS];  // which go on there
+    began = processor_s() - s->seconds[INSTANT_MAPS];  // which go on there
     if (w->bounces > 0)
         status = light_objects(s, w, on_objects);
-    s->seconds[INSTANT_OBJECTS] = now_s() - s->seconds[INSTANT_MAPS] - began;
+    s->seconds[INSTANT_OBJECTS] = processor_s() - s->seconds[INSTANT_MAPS] - began;
     return status;
 }
 

@@ -111,9 +111,9 @@ static struct shot frame_of(relume_pack *pack, const relume_objects *o,
                                             relume_render_params(.samples = 2, .transport = way,
                                                                  .transport_samples = samples,
                                                                  .bounces = BOUNCES)));
-    const double began = now_s();
+    const double began = processor_s();
     bench_check(relume_renderer_frame(&f.image, renderer, camera));
-    f.seconds = now_s() - began;
+    f.seconds = processor_s() - began;
     relume_renderer_destroy(&renderer);
     return f;
 }
@@ -147,15 +147,35 @@ static double difference(const struct judge *j, const struct relume_image *got,
     return sqrt(wrong / all);
 }
 
+// The mean of what the ball's shadow shows: where it is black as lamps alone have it.
+static void print_shadow(const struct judge *j, const struct relume_image *alone,
+                         const struct relume_image *got)
+{
+    double sum[2] = {0.0, 0.0};
+    int n = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        if (!(alone->data[3 * i] < 0.02f && j->before.data[3 * i] > 0.1f))
+            continue;
+        sum[0] += (double)got->data[3 * i];
+        sum[1] += (double)got->data[3 * i + 1];
+        n++;
+    }
+    printf(" %.3f, %.3f |\n", sum[0] / n, sum[1] / n);
+    fflush(stdout);
+}
+
 static void judge_ways(const struct judge *j)
 {
-    puts("\n| way | samples | error | seconds |\n|---|---|---|---|");
+    struct shot alone = frame_of(j->room, j->ball, relume_transports[0], 1, &unfolded);
+    printf("\n| way | samples | error | CPU s | shadow |\n|---|---|---|---|---|\n"
+           "| truth | | | |");
+    print_shadow(j, &alone.image, &j->truth);
     for (const struct relume_transport *const *t = relume_transports; *t; t++)
-        for (int samples = 4; samples <= 256; samples *= 4) {
+        for (int samples = 4; samples <= 64; samples *= 4) {
             struct shot f = frame_of(j->room, j->ball, *t, samples, &unfolded);
-            printf("| %s | %d | %.4f | %.3f |\n", relume_transport_name(*t), samples,
+            printf("| %s | %d | %.4f | %.3f |", relume_transport_name(*t), samples,
                    difference(j, &f.image, &j->truth), f.seconds);
-            fflush(stdout);
+            print_shadow(j, &alone.image, &f.image);
             relume_image_destroy(&f.image);
         }
 }
@@ -203,7 +223,7 @@ static double median_of(const struct judge *j, const relume_objects *o, struct i
                         int samples, const struct relume_camera *camera)
 {
     struct times t = {.n = 0};
-    for (int i = 0; i < (camera->width < 640 ? 3 : 1); i++) {
+    for (int i = 0; i < (camera->width < 320 ? 3 : 1); i++) {
         struct shot s = trial_of(j->room, o, p, samples, camera);
         times_add(&t, s.seconds);
         relume_image_destroy(&s.image);

@@ -29,11 +29,11 @@ for scene in attic shore; do
     attic) look="--pan -8 --tilt -24 --zoom 2.2 --exposure 1.5" ;;
     shore) look="--pan 3 --tilt -18 --zoom 2" ;;
     esac
-    for way in none ssao ssdo path; do
+    for way in none ssao ssdo ism path; do
         "$relume" relight "$out/$scene.exr" --objects "$out/$scene.json" -o "$out/$scene-$way.exr" $look \
             --size 256x256 --light "dir .8 .5 0" --transport $way -q 2>/dev/null
         list="$list $out/$scene-$way.exr"
     done
 done
-"$draw" row "$pictures/transport.jpg" columns=4 $list
+"$draw" row "$pictures/transport.jpg" columns=5 $list
 echo "  $pictures/transport.jpg"

@@ -16,7 +16,7 @@
 #include "math/random.h"
 
 // A map draws a point for so many of its texels.
-enum { POINTS = 8 };
+enum { POINTS = 4 };
 enum { SCENE_POINTS = 1 << 16, OBJECT_POINTS = 1 << 14 };
 
 // ---------------------------------------------------------------- what is in the way
@@ -52,23 +52,38 @@ static bool is_open(bool *past_objects, const struct world *w, const struct inst
     return true;
 }
 
-// From every `step`-th of the lights `first` to `end`.
-static void gather_some(const struct world *w, const struct instant *s, const struct site *site,
-                        size_t first, size_t end, size_t step, take_arrival *arrive, void *context)
+static void gather_one(const struct world *w, const struct instant *s, const struct site *site,
+                       size_t i, double times, take_arrival *arrive, void *context)
 {
-    for (size_t i = first; i < end; i += step) {
-        const struct virtual_light *light = &s->light[i];
-        struct sight sight;
-        bool past = true;
-        if (!virtual_sight(&sight, light, site) || !is_open(&past, w, s, i, site, &sight))
-            continue;
-        struct arrival a = {.towards = sight.towards, .share = sight.share * (double)step};
-        for (int c = 0; c < 3; c++) {
-            a.without[c] = light->without[c];
-            a.with[c] = past ? light->with[c] : 0.0f;
-        }
-        arrive(context, &a);
+    const struct virtual_light *light = &s->light[i];
+    struct sight sight;
+    bool past = true;
+    if (!virtual_sight(&sight, light, site) || !is_open(&past, w, s, i, site, &sight))
+        return;
+    struct arrival a = {.towards = sight.towards, .share = sight.share * times};
+    for (int c = 0; c < 3; c++) {
+        a.without[c] = light->without[c];
+        a.with[c] = past ? light->with[c] : 0.0f;
     }
+    arrive(context, &a);
+}
+
+enum { TOGETHER = 16 };
+
+// Which of some lights are near, as positive numbers; whether any is.
+static bool find_near(float near[TOGETHER], const struct instant *s, const float at[3],
+                      size_t first)
+{
+    const float *x = s->reach[0] + first, *y = s->reach[1] + first, *z = s->reach[2] + first,
+                *reach = s->reach[3] + first;
+    float most = 0.0f;
+    for (size_t k = 0; k < TOGETHER; k++) {
+        const float dx = x[k] - at[0], dy = y[k] - at[1], dz = z[k] - at[2];
+        near[k] = reach[k] - (dx * dx + dy * dy + dz * dz);
+    }
+    for (size_t k = 0; k < TOGETHER; k++)
+        most = near[k] > most ? near[k] : most;
+    return most > 0.0f;
 }
 
 void instant_gather(const struct world *w, const struct site *site, take_arrival *arrive,
@@ -76,8 +91,38 @@ void instant_gather(const struct world *w, const struct site *site, take_arrival
 {
     const struct instant *s = w->state;
     const size_t step = (size_t)s->params.pattern * (size_t)s->params.pattern;
-    gather_some(w, s, site, site->key % step, s->on_scene, step, arrive, context);
-    gather_some(w, s, site, s->on_scene + site->key % step, s->lights, step, arrive, context);
+    const float at[3] = {(float)site->start.x, (float)site->start.y, (float)site->start.z};
+    size_t own = site->key % step;
+    for (size_t first = 0; first < s->lights; first += TOGETHER) {
+        float near[TOGETHER];
+        const bool any = find_near(near, s, at, first);
+        for (size_t i = first; any && i < first + TOGETHER && i < s->lights; i++)
+            if (near[i - first] > 0.0f)
+                gather_one(w, s, site, i, 1.0, arrive, context);
+        for (; own < first + TOGETHER && own < s->lights; own += step)
+            if (!(near[own - first] > 0.0f))
+                gather_one(w, s, site, own, (double)step, arrive, context);
+    }
+}
+
+static void set_reach(struct instant *s, size_t first, size_t end)
+{
+    const int step = s->params.pattern * s->params.pattern;
+    for (size_t i = first; i < end; i++) {
+        const struct virtual_light *v = &s->light[i];
+        s->reach[0][i] = (float)v->place.x;
+        s->reach[1][i] = (float)v->place.y;
+        s->reach[2][i] = (float)v->place.z;
+        s->reach[3][i] = v->far || step == 1 ? 0.0f : (float)(step * v->size / M_PI);
+    }
+}
+
+// Senders gather from every `step`-th of the lights from `first` on.
+static void gather_some(const struct world *w, const struct instant *s, const struct site *site,
+                        size_t first, size_t end, size_t step, take_arrival *arrive, void *context)
+{
+    for (size_t i = first; i < end; i += step)
+        gather_one(w, s, site, i, (double)step, arrive, context);
 }
 
 // ---------------------------------------------------------------- maps
@@ -88,10 +133,9 @@ static vec3 middle_of(const struct world *w)
     return vec3_scale(vec3_add(b.min, b.max), 0.5);
 }
 
-static void look(struct instant *s, const struct world *w, size_t i)
+static void look(struct instant *s, const struct world *w, size_t i, vec3 middle)
 {
     const struct virtual_light *v = &s->light[i];
-    const vec3 middle = middle_of(w);
     const double WIDER = 1.02;  // than the ball about the objects
     if (v->far) {
         s->of_scene.look[i] = map_of_far(v->normal, middle, 4.0 * w->radius);
@@ -115,14 +159,15 @@ static void draw_some(struct maps *m, size_t first, size_t end, const struct poi
 
 static void draw_maps(struct instant *s, const struct world *w, size_t first, size_t end)
 {
-    const double began = now_s();
+    const double began = processor_s();
     if (s->params.rays || first == end)
         return;
+    const vec3 middle = middle_of(w);
     for (size_t i = first; i < end; i++)
-        look(s, w, i);
+        look(s, w, i, middle);
     draw_some(&s->of_scene, first, end, &s->scene, &s->params, w->threads);
     draw_some(&s->of_objects, first, end, &s->objects, &s->params, w->threads);
-    s->seconds[INSTANT_MAPS] += now_s() - began;
+    s->seconds[INSTANT_MAPS] += processor_s() - began;
 }
 
 static relume_status make_maps(struct maps *m, size_t lights, int size)
@@ -211,6 +256,7 @@ static relume_status light_objects(struct instant *s, const struct world *w, siz
     if (!status && found) {
         s->lights += found;
         send(&b, s, number);
+        set_reach(s, s->on_scene, s->lights);
         draw_maps(s, w, s->on_scene, s->lights);
     }
     for (int i = 1; i < w->bounces && !status && found; i++) {
@@ -225,8 +271,9 @@ static relume_status light_objects(struct instant *s, const struct world *w, siz
 // ---------------------------------------------------------------- all of it
 
 // The atlas of the paper holds 1024 maps of 128 x 128; here there are as many maps again, and a
-// quarter of all that for lights on objects: 160 MB. More lights have smaller maps.
-enum { ATLAS = 4096 * 4096 / 4 * 5, USUAL = 128, LEAST = 8 };
+// quarter of all that for lights on objects: at most 160 MB. Maps of 64 x 64 show as much as larger
+// ones (docs/measurements/transport.md); many lights have smaller ones.
+enum { ATLAS = 4096 * 4096 / 4 * 5, USUAL = 64, LEAST = 8 };
 
 static int size_for(size_t lights)
 {
@@ -238,29 +285,30 @@ static int size_for(size_t lights)
 
 static relume_status make_points(struct instant *s, const struct world *w)
 {
-    const double began = now_s();
+    const double began = processor_s();
     relume_status status =
         s->params.rays ? RELUME_OK : points_of_scene(&s->scene, w->scenery, SCENE_POINTS);
     if (!status)
         status = points_of_objects(&s->objects, w->mesh, w->objects, OBJECT_POINTS, w->threads);
-    s->seconds[INSTANT_POINTS] += now_s() - began;
+    s->seconds[INSTANT_POINTS] += processor_s() - began;
     return status;
 }
 
 static relume_status make_lights(struct instant *s, const struct world *w, size_t count,
                                  size_t on_objects)
 {
-    double began = now_s();
+    double began = processor_s();
     relume_status status = virtual_of_scene(s->light, &s->on_scene, w, count);
     s->lights = s->on_scene;
-    s->seconds[INSTANT_LIGHTS] = now_s() - began;
+    s->seconds[INSTANT_LIGHTS] = processor_s() - began;
     if (status)
         return status;
+    set_reach(s, 0, s->lights);
     draw_maps(s, w, 0, s->lights);
-    began = now_s();
+    began = processor_s() - s->seconds[INSTANT_MAPS];  // which go on there
     if (w->bounces > 0)
         status = light_objects(s, w, on_objects);
-    s->seconds[INSTANT_OBJECTS] = now_s() - began;
+    s->seconds[INSTANT_OBJECTS] = processor_s() - s->seconds[INSTANT_MAPS] - began;
     return status;
 }
 
@@ -273,7 +321,13 @@ static relume_status make_room(struct instant *s, size_t lights, const struct re
     if (status)
         return status;
     s->light = mem_array(lights, sizeof *s->light);
-    status = s->light ? make_maps(&s->of_scene, maps, s->params.size) : RELUME_ENOMEM;
+    status = s->light ? RELUME_OK : RELUME_ENOMEM;
+    for (int k = 0; k < 4 && !status; k++) {
+        s->reach[k] = mem_zeroed(lights + TOGETHER, sizeof *s->reach[k]);
+        status = s->reach[k] ? RELUME_OK : RELUME_ENOMEM;
+    }
+    if (!status)
+        status = make_maps(&s->of_scene, maps, s->params.size);
     return status ? status : make_maps(&s->of_objects, maps, s->params.size);
 }
 
@@ -321,6 +375,8 @@ void instant_end(struct world *w)
     points_forget(&s->objects);
     forget_maps(&s->of_scene);
     forget_maps(&s->of_objects);
+    for (int k = 0; k < 4; k++)
+        mem_free(s->reach[k]);
     mem_free(s->light);
     mem_free(s);
 }

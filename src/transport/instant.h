@@ -28,8 +28,9 @@ struct instant {
     struct points scene, objects;
     struct virtual_light *light;  // those of the scene, and behind them those of the objects
     size_t lights, on_scene;
+    float *reach[4];  // [lights + more]: their places, and how near a site takes each, squared
     struct maps of_scene, of_objects;  // [lights]: what hides them
-    double seconds[INSTANT_STAGES];
+    double seconds[INSTANT_STAGES];    // of processor time
 };
 
 // World.samples are virtual lights of the scene at each site, of which pattern x pattern sites have

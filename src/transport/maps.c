@@ -2,9 +2,9 @@
 //
 // Each map draws a run of the points as squares of the area that a point stands for, seen from its
 // place. Few points leave holes. Levels of half the size are made of the nearest depths that belong
-// together; where two of four do, they are a surface ("pull"). Where three do, the fourth, which is
-// empty or shows something behind that surface, becomes it, from the coarsest level down ("push").
-// So outlines stay where they are; the paper fills wherever one texel is known.
+// together; where two of four do, they are a surface ("pull"). Where three do, the fourth becomes
+// it if it is empty or, at the finest level, shows something behind ("push"). So outlines stay
+// where they are; the paper fills wherever one texel is known.
 #include "transport/maps.h"
 
 #include "base/thread.h"
@@ -115,17 +115,18 @@ static void splat(float *depth, int size, const struct map_look *l, const struct
 // is infinite.
 static struct map_level together(const float depth[4], float apart)
 {
-    struct map_level best = {INFINITY, 0};
+    struct map_level best = {INFINITY, 0.0f, 0};
     for (int i = 0; i < 4; i++) {
-        float sum = 0.0f;
+        float sum = 0.0f, most = 0.0f;
         int n = 0;
         for (int k = 0; k < 4 && depth[i] < INFINITY; k++)
             if (depth[k] >= depth[i] && depth[k] - depth[i] <= apart) {
                 sum += depth[k];
+                most = fmaxf(most, depth[k] - depth[i]);
                 n++;
             }
         if (n > 1 && sum / (float)n < best.depth)
-            best = (struct map_level){sum / (float)n, n};
+            best = (struct map_level){sum / (float)n, most, n};
     }
     return best;
 }
@@ -134,7 +135,8 @@ static struct map_level together(const float depth[4], float apart)
 // is not enough.
 static float pushed(float depth, const struct map_level *over, float apart)
 {
-    const bool is_hole = !(depth < INFINITY), is_behind = depth - over->depth > apart;
+    const bool is_hole = !(depth < INFINITY);
+    const bool is_behind = depth - over->depth > apart + 2.0f * over->spread;
     return over->members > 2 && (is_hole || is_behind) ? over->depth : depth;
 }
 
@@ -166,10 +168,10 @@ void maps_fill(float *depth, int size, double apart, struct map_level *levels)
     for (size_t i = 0; i < half * half; i++)
         middle[i] = first[i].depth;
     pull(second, middle, half, 2.0f * near);
-    push(middle, second, half, 2.0f * near);
+    push(middle, second, half, INFINITY);  // rounded surfaces look as if they had leaks there
     for (size_t i = 0; i < half * half; i++)
         if (middle[i] != first[i].depth)
-            first[i] = (struct map_level){middle[i], 4};
+            first[i] = (struct map_level){middle[i], 0.0f, 4};
     push(depth, first, n, near);
 }
 

@@ -47,8 +47,8 @@ void maps_draw(struct maps *m, const struct points *points, const struct maps_pa
 // surface where they differ by less than `apart`, twice as much at each level. `levels` has room
 // for size^2 / 2.
 struct map_level {
-    float depth;  // the mean of the nearest of four that are one surface
-    int members;  // how many of them are: 2 to 4, or 0
+    float depth, spread;  // the mean of the nearest of four that are one surface, and their range
+    int members;          // how many of them are: 2 to 4, or 0
 };
 void maps_fill(float *depth, int size, double apart, struct map_level *levels);
 // Whether a map has nothing before a place on a surface of that normal.

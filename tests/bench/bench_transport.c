@@ -111,9 +111,9 @@ static struct shot frame_of(relume_pack *pack, const relume_objects *o,
                                             relume_render_params(.samples = 2, .transport = way,
                                                                  .transport_samples = samples,
                                                                  .bounces = BOUNCES)));
-    const double began = now_s();
+    const double began = processor_s();
     bench_check(relume_renderer_frame(&f.image, renderer, camera));
-    f.seconds = now_s() - began;
+    f.seconds = processor_s() - began;
     relume_renderer_destroy(&renderer);
     return f;
 }
@@ -147,15 +147,35 @@ static double difference(const struct judge *j, const struct relume_image *got,
     return sqrt(wrong / all);
 }
 
+// The mean of what the ball's shadow shows: where it is black as lamps alone have it.
+static void print_shadow(const struct judge *j, const struct relume_image *alone,
+                         const struct relume_image *got)
+{
+    double sum[2] = {0.0, 0.0};
+    int n = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        if (!(alone->data[3 * i] < 0.02f && j->before.data[3 * i] > 0.1f))
+            continue;
+        sum[0] += (double)got->data[3 * i];
+        sum[1] += (double)got->data[3 * i + 1];
+        n++;
+    }
+    printf(" %.3f, %.3f |\n", sum[0] / n, sum[1] / n);
+    fflush(stdout);
+}
+
 static void judge_ways(const struct judge *j)
 {
-    puts("\n| way | samples | error | seconds |\n|---|---|---|---|");
+    struct shot alone = frame_of(j->room, j->ball, relume_transports[0], 1, &unfolded);
+    printf("\n| way | samples | error | CPU s | shadow |\n|---|---|---|---|---|\n"
+           "| truth | | | |");
+    print_shadow(j, &alone.image, &j->truth);
     for (const struct relume_transport *const *t = relume_transports; *t; t++)
-        for (int samples = 4; samples <= 256; samples *= 4) {
+        for (int samples = 4; samples <= 64; samples *= 4) {
             struct shot f = frame_of(j->room, j->ball, *t, samples, &unfolded);
-            printf("| %s | %d | %.4f | %.3f |\n", relume_transport_name(*t), samples,
+            printf("| %s | %d | %.4f | %.3f |", relume_transport_name(*t), samples,
                    difference(j, &f.image, &j->truth), f.seconds);
-            fflush(stdout);
+            print_shadow(j, &alone.image, &f.image);
             relume_image_destroy(&f.image);
         }
 }
@@ -173,7 +193,7 @@ static void judge_maps(const struct judge *j)
            "unfilled |\n|---|---|---|---|---|---|---|---|\n",
            difference(j, &exact.image, &j->truth));
     for (size_t s = 0; s < SIZES; s++)
-        for (size_t points = 256; points <= 4096; points *= 4) {
+        for (size_t points = 64; points <= 4096; points *= 4) {
             double from[2][2], took[2];
             for (int unfilled = 0; unfilled < 2; unfilled++) {
                 struct shot f = trial_of(j->room, j->ball,
@@ -194,20 +214,116 @@ static void judge_maps(const struct judge *j)
     relume_image_destroy(&exact.image);
 }
 
-static void judge_patterns(const struct judge *j)
+// ---------------------------------------------------------------- times
+
+static const struct relume_camera perspective = {.framing = RELUME_FRAME_LOOK};
+
+// The median of three; of large pictures one.
+static double median_of(const struct judge *j, const relume_objects *o, struct instant_params p,
+                        int samples, const struct relume_camera *camera)
 {
-    puts("\n| lights | pattern | error | seconds |");
-    for (int rays = 0; rays < 2; rays++)
-        for (int n = 256; n <= 4096; n *= 4)
-            for (int pattern = 1; pattern <= 8; pattern *= 2) {
-                struct shot f = trial_of(j->room, j->ball,
-                                         (struct instant_params){.pattern = pattern, .rays = rays},
-                                         n / pattern / pattern, &unfolded);
-                printf("| %d | %d | %d | %.4f | %.3f | %.3f %.3f %.3f %.3f\n", rays, n, pattern,
-                       difference(j, &f.image, &j->truth), f.seconds, seconds[0], seconds[1],
-                       seconds[2], seconds[3]);
-                relume_image_destroy(&f.image);
-            }
+    struct times t = {.n = 0};
+    for (int i = 0; i < (camera->width < 320 ? 3 : 1); i++) {
+        struct shot s = trial_of(j->room, o, p, samples, camera);
+        times_add(&t, s.seconds);
+        relume_image_destroy(&s.image);
+    }
+    return times_median(&t);
+}
+
+static void print_stages(double all)
+{
+    double gather = all;
+    for (int i = 0; i < INSTANT_STAGES; i++) {
+        printf(" %.0f |", 1e3 * seconds[i]);
+        gather -= seconds[i];
+    }
+    printf(" %.0f | %.0f |\n", 1e3 * gather, 1e3 * all);
+    fflush(stdout);
+}
+
+// Table 5.1: the same pattern at all sizes, and one that grows with them.
+static void time_sizes(const struct judge *j)
+{
+    static const int sizes[][3] = {{320, 240, 4}, {640, 480, 4}, {1024, 768, 8}};
+    puts("\n| picture | 4 x 4, s | pattern | s | exact shadows, s |\n|---|---|---|---|---|");
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        const int pattern = sizes[i][2];
+        struct relume_camera camera = perspective;
+        camera.width = sizes[i][0], camera.height = sizes[i][1];
+        const struct instant_params four = {.pattern = 4, .points = 4096},
+                                    own = {.pattern = pattern, .points = 4096},
+                                    rays = {.pattern = pattern, .rays = true};
+        const double fixed = median_of(j, j->ball, four, 64, &camera);
+        const double grown = median_of(j, j->ball, own, 1024 / pattern / pattern, &camera);
+        printf("| %d x %d | %.2f | %d x %d | %.2f | %.2f |\n", camera.width, camera.height, fixed,
+               pattern, pattern, grown,
+               median_of(j, j->ball, rays, 1024 / pattern / pattern, &camera));
+        fflush(stdout);
+    }
+}
+
+#define STAGES                                                                                     \
+    "lights, ms | points | maps | objects | the rest | all |\n|---|---|---|---|---|---|---|"
+
+static void time_stages(const struct judge *j)
+{
+    static const struct instant_params p[] = {
+        {.pattern = 8, .size = 128, .points = 4096},
+        {.pattern = 8, .size = 256, .points = 8192},
+        {.pattern = 8, .size = 256, .points = 8192, .unfilled = true},
+        {.pattern = 8, .rays = true}};
+    static const char *const name[] = {"128 x 128, 4 k points", "256 x 256, 8 k points",
+                                       "the same, holes left", "exact shadows"};
+    struct relume_camera camera = perspective;
+    camera.width = 640, camera.height = 480;
+    puts("\n| 1024 lights, 640 x 480 | " STAGES);
+    for (size_t i = 0; i < sizeof p / sizeof *p; i++) {
+        const double all = median_of(j, j->ball, p[i], 16, &camera);
+        printf("| %s |", name[i]);
+        print_stages(all);
+    }
+}
+
+// Fig. 5.14: one number at a time.
+static void time_growth(const struct judge *j)
+{
+    const struct instant_params usual = {.pattern = 8, .size = 64, .points = 1024};
+    puts("\n| lights | " STAGES);
+    for (int samples = 4; samples <= 256; samples *= 4) {
+        const double all = median_of(j, j->ball, usual, samples, &unfolded);
+        printf("| %d |", 64 * samples);
+        print_stages(all);
+    }
+    puts("\n| points | " STAGES);
+    for (size_t points = 256; points <= 16384; points *= 4) {
+        struct instant_params p = usual;
+        p.points = points;
+        const double all = median_of(j, j->ball, p, 16, &unfolded);
+        printf("| %zu |", points);
+        print_stages(all);
+    }
+    puts("\n| maps | " STAGES);
+    for (int size = 32; size <= 256; size *= 2) {
+        struct instant_params p = usual;
+        p.size = size;
+        const double all = median_of(j, j->ball, p, 16, &unfolded);
+        printf("| %d x %d |", size, size);
+        print_stages(all);
+    }
+    puts("\n| triangles | " STAGES);
+    for (int segments = 16; segments <= 1024; segments *= 4) {
+        relume_objects *o = open_ball(segments);
+        for (int rays = 0; rays < 2; rays++) {
+            struct instant_params p = usual;
+            p.rays = rays;
+            const double all = median_of(j, o, p, 16, &unfolded);
+            printf("| %d%s |", (int)relume_objects_info(o)->triangle_count,
+                   rays ? ", exact shadows" : "");
+            print_stages(all);
+        }
+        relume_objects_destroy(&o);
+    }
 }
 
 int main(int argc, char **argv)
@@ -223,10 +339,11 @@ int main(int argc, char **argv)
     j.ball = open_ball(64);
     bench_check(relume_frame(&j.before, j.room, &unfolded, &sun, 1, NULL));
     bench_check(relume_frame(&j.truth, truth, &unfolded, &sun, 1, NULL));
-    if (argc > 2)
-        judge_ways(&j);
     judge_maps(&j);
-    judge_patterns(&j);
+    judge_ways(&j);
+    time_sizes(&j);
+    time_stages(&j);
+    time_growth(&j);
     relume_image_destroy(&j.before);
     relume_image_destroy(&j.truth);
     relume_objects_destroy(&j.ball);

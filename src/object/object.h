@@ -201,8 +201,8 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
 void exchange_destroy(struct exchange **e);
 // Under one light, in which the scene alone shows `lone` and `captured` sends it: the scene as it
 // is with the objects is added to `scene`, what objects show of its light to `reflected`, at pixels
-// where objects are; `share` is filled with share_of_sky there, elsewhere with NaN (NULL: it is not asked for, or the light
-// is no environment). RELUME_ENOMEM, RELUME_ECANCEL.
+// where objects are; `share` is filled with share_of_sky there, elsewhere with NaN (NULL: it is not
+// asked for, or the light is no environment). RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status exchange_light(struct exchange *e, struct relume_image *scene,
                              struct relume_image *reflected, struct relume_image *share,
                              const struct relume_image *lone, const struct relume_light *light);

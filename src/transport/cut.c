@@ -115,7 +115,8 @@ static void look(struct seen *s, const struct group *g, const struct cut_place *
 // What is nearer by a fifth hides the rest.
 static const float NEARER = 0.8f;
 
-static void add_light(struct cut_light *to, const struct cut_light *light, float weight)
+static inline void add_light(struct cut_light *restrict to, const struct cut_light *restrict light,
+                             float weight)
 {
     const float *from = &light->covers;
     float *sum = &to->covers;
@@ -123,8 +124,8 @@ static void add_light(struct cut_light *to, const struct cut_light *light, float
         sum[i] += weight * from[i];
 }
 
-static void put_scene(struct cut_cell *cell, const struct cut_light *light, float depth,
-                      float weight)
+static inline void put_scene(struct cut_cell *cell, const struct cut_light *light, float depth,
+                             float weight)
 {
     if (cell->near.covers > 0.0f && depth * NEARER > cell->depth) {
         add_light(&cell->far, light, weight);
@@ -136,19 +137,21 @@ static void put_scene(struct cut_cell *cell, const struct cut_light *light, floa
         cell->far_depth = fmaxf(cell->far_depth, cell->depth);
         cell->near = (struct cut_light){.covers = 0.0f};
     }
-    cell->depth = cell->near.covers > 0.0f ? fminf(cell->depth, depth) : depth;
+    cell->depth = cell->near.covers > 0.0f ? (cell->depth < depth ? cell->depth : depth) : depth;
     add_light(&cell->near, light, weight);
 }
 
-static void put_object(struct cut_cell *cell, const struct cut_light *light, float depth,
-                       float weight)
+static inline void put_object(struct cut_cell *cell, const struct cut_light *light, float depth,
+                              float weight)
 {
     cell->covered += weight * light->covers;
     if (cell->object.covers > 0.0f && depth * NEARER > cell->object_depth)
         return;
     if (cell->object.covers > 0.0f && depth < cell->object_depth * NEARER)
         cell->object = (struct cut_light){.covers = 0.0f};
-    cell->object_depth = cell->object.covers > 0.0f ? fminf(cell->object_depth, depth) : depth;
+    cell->object_depth = cell->object.covers > 0.0f
+                             ? (cell->object_depth < depth ? cell->object_depth : depth)
+                             : depth;
     add_light(&cell->object, light, weight);
 }
 
@@ -177,12 +180,14 @@ static inline void draw(struct cut_cell *cells, const struct cut_place *place,
     const float right = x - (float)i, down = y - (float)j;
     const int left = within(i - 1, side), next = within(i, side);
     const int top = within(j - 1, side) * side, bottom = within(j, side) * side;
-    void (*const put)(struct cut_cell *, const struct cut_light *, float, float) =
-        objects ? put_object : put_scene;
-    put(&cells[top + left], &light, depth, (1.0f - right) * (1.0f - down));
-    put(&cells[top + next], &light, depth, right * (1.0f - down));
-    put(&cells[bottom + left], &light, depth, (1.0f - right) * down);
-    put(&cells[bottom + next], &light, depth, right * down);
+    const int pixel[] = {top + left, top + next, bottom + left, bottom + next};
+    const float weight[] = {(1.0f - right) * (1.0f - down), right * (1.0f - down),
+                            (1.0f - right) * down, right * down};
+    for (int n = 0; n < 4; n++)
+        if (objects)
+            put_object(&cells[pixel[n]], &light, depth, weight[n]);
+        else
+            put_scene(&cells[pixel[n]], &light, depth, weight[n]);
 }
 
 // A leaf as a disc, in the frame of the place.
@@ -287,7 +292,7 @@ static inline void cut(struct cut_cell *cells, struct cut_list *close, const str
 void cut_scene(struct cut_cell *cells, struct cut_list *close, const struct hierarchy *h,
                const struct cut_place *place)
 {
-    cut(cells, close, h, place, 2.0f, false);
+    cut(cells, close, h, place, 4.0f, false);
 }
 
 // Of objects the border counts.

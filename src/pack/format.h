@@ -62,6 +62,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_MEASURED  "relume.part.measured"
 #define ATTR_BANDS     "relume.part.bands"
 #define ATTR_ERRORS    "relume.part.errors"
+#define ATTR_LIT       "relume.part.lit"
 #define ATTR_STORED    "relume.part.stored"
 #define ATTR_TILES     "relume.part.tiles"
 

@@ -5,24 +5,8 @@
 #include "pack/format.h"
 #include "base/half.h"
 #include "image/exr.h"
+#include "pack_in_folder.h"
 #include "pack_parts.h"
-
-static char folder[64], path[96];
-
-static int setup(void **state)
-{
-    (void)state;
-    test_folder(folder);
-    snprintf(path, sizeof path, "%s/pack.exr", folder);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    test_folder_remove(folder);
-    return 0;
-}
 
 static void check_planes(relume_pack *pack, const struct fixture *f, int view)
 {

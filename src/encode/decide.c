@@ -23,8 +23,12 @@ static const double WORTH_IT_DB = 0.5;
 enum { MANY_PIXELS = 512 * 512, MOST_PLANES = 1200 };
 static const double CLEARLY_DB = 1.5;
 
-// Of a number of the functions, as text in the header, twelve bits each.
-enum { BYTES_EACH = 2 };
+// Bytes are asked for to be relit from: a decibel of lights left out then counts as so many of the
+// captured ones, unless one of the two is ahead there by more than these.
+static const double LEFT_OUT_COUNTS = 8.0, FAR_DB = 6.0;
+
+// Of a number of the functions, as text in the header (pack/functions.h), about six bits each.
+static const double BYTES_EACH = 0.75;
 
 static double wanted(const struct relume_pack_encode_params *p)
 {
@@ -85,8 +89,8 @@ static relume_status look(double merit[2], double left_out[2], const struct choi
     const struct rate_target target = target_of_view(c->capture, c->p);
     const int views = relume_capture_manifest(c->capture)->views;
     const double header[2] = {header_bytes(c->coder[0], views), header_bytes(c->coder[1], views)};
-    return look_compare(merit, left_out, c->coder, c->capture, &target, header, CLEARLY_DB,
-                        c->encode);
+    return look_compare(merit, left_out, c->coder, c->capture, &target, header,
+                        c->p->psnr_db > 0.0 ? CLEARLY_DB : FAR_DB, c->encode);
 }
 
 // Two numbers for each, which are 0 where they are another's to say; of whole views the merits
@@ -122,10 +126,11 @@ static relume_status take_merits(void *context, int member, const struct relume_
     return RELUME_OK;
 }
 
-// How much better pictures are: as good as captured lights are, and those that were left out.
+// How much better pictures are, by the captured lights and by those that were left out.
 static double ahead(const struct choice *c)
 {
-    return c->merit[1] + c->left_out[1] - c->merit[0] - c->left_out[0];
+    const double counts = c->p->psnr_db > 0.0 ? 1.0 : LEFT_OUT_COUNTS;
+    return c->merit[1] - c->merit[0] + counts * (c->left_out[1] - c->left_out[0]);
 }
 
 // Components in *out or pictures, whichever are better, in *out; the others are destroyed, on

@@ -19,13 +19,13 @@ static inline void without_sums_attribute(struct exr_part *part)
     part->attributes = kept;
 }
 
-// The file `path` into `to`, which the caller destroys.
-static inline relume_status without_sums(struct relume_buffer *to, const char *path)
+// The file `file_path` into `to`, which the caller destroys.
+static inline relume_status without_sums(struct relume_buffer *to, const char *file_path)
 {
     const struct relume_writer writer = relume_buffer_writer(to);
     struct arena arena = {0};
     exr_file *file;
-    relume_status status = exr_open(&file, path, NULL, NULL, NULL);
+    relume_status status = exr_open(&file, file_path, NULL, NULL, NULL);
     const int count = status ? 0 : exr_part_count(file);
     struct exr_part *part = arena_array(&arena, (size_t)count, sizeof *part);
     for (int i = 0; !status && i < count; i++)

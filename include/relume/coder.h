@@ -313,6 +313,15 @@ RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct 
                                                const struct relume_coder_params *coder,
                                                const struct relume_encode_params *encode);
 
+// How values between the captured lights follow where the planes are the pictures themselves,
+// `table`: by `delaunay`, or by `chord` with the parameters that `choose` finds but no smoothing,
+// whichever foretells samples of lights left out better. It replaces interpolant, parameters and
+// choice in `coder`; `delaunay` of fewer than 8 lights or more than 400. Errors of
+// relume_coder_learn.
+RELUME_RESULT relume_status relume_coder_between(struct relume_coder_params *coder,
+                                                 const relume_capture *capture,
+                                                 const struct relume_encode_params *encode);
+
 // What the capture itself asks for: `pca` and an interpolant as in `coder` (default: chosen), with
 // as many coefficients and in the domain in which samples of the captured lights are reproduced at
 // `quality_db` (PSNR of display values as `relume eval` measures it; default 38), and the least

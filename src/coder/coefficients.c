@@ -25,6 +25,7 @@ void relume_coefficients_destroy(relume_coefficients **coefficients)
         close(c->fd);
     mem_free(c->scale);
     mem_free(c->offset);
+    mem_free(c->most);
     mem_free(c->band);
     mem_free(c->some.error);
     mem_free(c->some.shown_error);
@@ -43,6 +44,7 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
     c->bands = (height + BAND_ROWS - 1) / BAND_ROWS;
     c->scale = mem_zeroed(planes, sizeof *c->scale);
     c->offset = mem_zeroed(planes, sizeof *c->offset);
+    c->most = mem_zeroed(planes, sizeof *c->most);
     c->band = mem_zeroed((size_t)c->bands * planes, sizeof *c->band);
     c->fd = scratch_open(p->scratch);
     c->coarse = p->storage == RELUME_STORE_LOG;
@@ -62,7 +64,7 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
     if (c->fd < 0)
         return log_fail(p->log, RELUME_EIO, "%s: no temporary file can be made in its folder; %s",
                         p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
-    return c->scale && c->offset && c->band ? RELUME_OK : RELUME_ENOMEM;
+    return c->scale && c->offset && c->most && c->band ? RELUME_OK : RELUME_ENOMEM;
 }
 
 struct range range_join(struct range a, struct range b)
@@ -152,6 +154,8 @@ void coefficients_choose_steps(relume_coefficients *c, const struct range *total
         if (step == RELUME_STEP_COMMON && top && !colour)
             c->scale[p] = common;
         c->scale[p] = c->scale[p] > 0.0f ? c->scale[p] : 1.0f;
+        if (c->most)
+            c->most[p] = fmaxf(fabsf(r.min), fabsf(r.max));
         c->offset[p] = !top            ? 0.0f
                        : holds_zero(r) ? -ceilf(-r.min / c->scale[p]) * c->scale[p]
                                        : r.min;

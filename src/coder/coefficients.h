@@ -46,6 +46,7 @@ struct encode_stored {
 struct relume_coefficients {
     struct relume_coefficients_info info;
     float *scale, *offset;  // [planes]
+    float *most;            // [planes]: the largest size of a value, once steps are chosen; or NULL
     struct range *band;     // [bands][planes]: 65535 steps each, or a scale of halves
     int bands;
     bool coarse;  // `log`: halves of 8 significant bits

@@ -14,8 +14,8 @@
 enum { LEAST_COMPONENTS = 27, NUGGET = 2 };
 static const double SPARE_DB = 3.0, LEAST_SPARE_DB = 0.5, USUAL_DB = 40.0;
 
-// What pictures must be better by at the same size, since components predict unseen lights better
-// from planes that are as good.
+// What pictures must be better by at the same size where it is not known how lights left out are
+// shown: mostly components predict unseen lights better from planes that are as good.
 static const double WORTH_IT_DB = 0.5;
 
 // Windows of one view are looked at first. Of a view with more pixels than these that is all; else
@@ -23,8 +23,12 @@ static const double WORTH_IT_DB = 0.5;
 enum { MANY_PIXELS = 512 * 512, MOST_PLANES = 1200 };
 static const double CLEARLY_DB = 1.5;
 
-// Of a number of the functions, as text in the header, twelve bits each.
-enum { BYTES_EACH = 2 };
+// Bytes are asked for to be relit from: a decibel of lights left out then counts as so many of the
+// captured ones, unless one of the two is ahead there by more than these.
+static const double LEFT_OUT_COUNTS = 8.0, FAR_DB = 6.0;
+
+// Of a number of the functions, as text in the header (pack/functions.h), about six bits each.
+static const double BYTES_EACH = 0.75;
 
 static double wanted(const struct relume_pack_encode_params *p)
 {
@@ -71,7 +75,7 @@ struct choice {
     const struct relume_pack_encode_params *p;
     const struct relume_encode_params *encode;
     bool by_windows;  // by one member, else one each by two
-    double merit[2];
+    double merit[2], left_out[2];
 };
 
 static bool is_his(const struct choice *c, int member, int which)
@@ -80,25 +84,28 @@ static bool is_his(const struct choice *c, int member, int which)
     return which % members == member;
 }
 
-static relume_status look(double merit[2], const struct choice *c)
+static relume_status look(double merit[2], double left_out[2], const struct choice *c)
 {
     const struct rate_target target = target_of_view(c->capture, c->p);
     const int views = relume_capture_manifest(c->capture)->views;
     const double header[2] = {header_bytes(c->coder[0], views), header_bytes(c->coder[1], views)};
-    return look_compare(merit, c->coder, c->capture, &target, header, CLEARLY_DB, c->encode);
+    return look_compare(merit, left_out, c->coder, c->capture, &target, header,
+                        c->p->psnr_db > 0.0 ? CLEARLY_DB : FAR_DB, c->encode);
 }
 
-// A number for each, which is 0 where it is another's to say.
+// Two numbers for each, which are 0 where they are another's to say; of whole views the merits
+// alone.
 static relume_status make_merits(void *context, int member, struct relume_buffer *out)
 {
     const struct choice *c = context;
     const struct relume_writer writer = relume_buffer_writer(out);
-    double merit[2] = {0.0, 0.0};
-    relume_status status = c->by_windows && is_his(c, member, 0) ? look(merit, c) : RELUME_OK;
+    double number[4] = {0.0, 0.0, 0.0, 0.0};
+    relume_status status =
+        c->by_windows && is_his(c, member, 0) ? look(number, number + 2, c) : RELUME_OK;
     for (int i = 0; !status && i < 2; i++)
         if (is_his(c, member, i) && !c->by_windows)
-            status = merit_of(&merit[i], c->coder[i], c->capture, c->p, c->encode);
-    if (!status && !writer.write(writer.user, merit, sizeof merit, 0))
+            status = merit_of(&number[i], c->coder[i], c->capture, c->p, c->encode);
+    if (!status && !writer.write(writer.user, number, sizeof number, 0))
         status = RELUME_ENOMEM;
     return status;
 }
@@ -106,13 +113,24 @@ static relume_status make_merits(void *context, int member, struct relume_buffer
 static relume_status take_merits(void *context, int member, const struct relume_buffer *piece)
 {
     struct choice *c = context;
-    double merit[2];
-    if (piece->size != sizeof merit)
+    double number[4];
+    if (piece->size != sizeof number)
         return RELUME_EDAMAGED;
-    memcpy(merit, piece->data, sizeof merit);
-    for (int i = 0; i < 2; i++)
-        c->merit[i] = is_his(c, member, i) ? merit[i] : c->merit[i];
+    memcpy(number, piece->data, sizeof number);
+    for (int i = 0; i < 2; i++) {
+        if (!is_his(c, member, i))
+            continue;
+        c->merit[i] = number[i];
+        c->left_out[i] = c->by_windows ? number[2 + i] : c->left_out[i];
+    }
     return RELUME_OK;
+}
+
+// How much better pictures are, by the captured lights and by those that were left out.
+static double ahead(const struct choice *c)
+{
+    const double counts = c->p->psnr_db > 0.0 ? 1.0 : LEFT_OUT_COUNTS;
+    return c->merit[1] - c->merit[0] + counts * (c->left_out[1] - c->left_out[0]);
 }
 
 // Components in *out or pictures, whichever are better, in *out; the others are destroyed, on
@@ -122,15 +140,15 @@ static relume_status keep_better(relume_coder **out, relume_coder *pictures,
                                  const struct relume_pack_encode_params *p,
                                  const struct relume_encode_params *encode)
 {
-    const double least = p->psnr_db > 0.0 ? 0.0 : WORTH_IT_DB;
     const bool are_many =
         relume_capture_width(capture) > MANY_PIXELS / relume_capture_height(capture);
-    struct choice c = {{*out, pictures}, capture, p, encode, true, {0.0, 0.0}};
+    struct choice c = {{*out, pictures}, capture, p, encode, true, {0.0, 0.0}, {0.0, 0.0}};
     relume_status status = team_gather(p->team, "look", make_merits, take_merits, &c, p->log);
     c.by_windows = false;
-    if (!status && !are_many && fabs(c.merit[1] - c.merit[0]) < CLEARLY_DB)
+    if (!status && !are_many && fabs(ahead(&c)) < CLEARLY_DB)
         status = team_gather(p->team, "merits", make_merits, take_merits, &c, p->log);
-    if (!status && c.merit[1] > c.merit[0] + least) {
+    const bool known = c.left_out[0] > 0.0 && c.left_out[1] > 0.0;
+    if (!status && ahead(&c) > (p->psnr_db > 0.0 || known ? 0.0 : WORTH_IT_DB)) {
         relume_coder *const components = *out;
         *out = pictures;
         pictures = components;

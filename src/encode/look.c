@@ -27,10 +27,14 @@ struct look {
     uint16_t *before, *after;  // [planes][height][width]
 };
 
-// What all windows have taken, and missed: squared errors of display values.
+// What all windows have taken, and missed: squared errors of display values, of the lights and of
+// these as all others foretell them after loss.
 struct points {
-    double bytes[STEPS], square[STEPS];
+    double bytes[STEPS], square[STEPS], left_out[STEPS];
 };
+
+// Rows of a window by which foretelling is judged: one of so many.
+enum { EACH_ROW = 8 };
 
 static void look_away(struct look *l)
 {
@@ -107,10 +111,58 @@ static relume_status judge(double *square, const struct look *l, const struct lo
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
-// Of a step by both coders.
+// Lights as all others foretell them: they are missed by (B t)_i / B_ii, t what `l` shows
+// (basis.h).
+static double foretell(const float *want, const float *got, float *missed, const double *b,
+                       int lights, size_t width)
+{
+    double sum = 0.0;
+    for (int i = 0; i < lights; i++, b += lights, want += width) {
+        memset(missed, 0, width * sizeof *missed);
+        for (int k = 0; k < lights; k++) {
+            const float w = k == i ? 0.0f : (float)(-b[k] / b[i]);
+            for (size_t x = 0; x < width; x++)
+                missed[x] += w * got[(size_t)k * width + x];
+        }
+        for (size_t x = 0; x < width; x++) {
+            const double d = (double)fminf(fmaxf(want[x], 0.0f), 1.0f) -
+                             (double)fminf(fmaxf(missed[x], 0.0f), 1.0f);
+            sum += d * d;
+        }
+    }
+    return sum;
+}
+
+// The mean squared error of that, by some rows; `b` is the predictor of the lights.
+static relume_status judge_left_out(double *square, const struct look *l,
+                                    const struct look *pictures, const struct relume_rect *at,
+                                    const double *b)
+{
+    const size_t width = (size_t)at->width, n = (size_t)l->captured.lights * width;
+    const int most = relume_coefficients_info(pictures->coefficients)->planes,
+              own = relume_coefficients_info(l->coefficients)->planes;
+    float *work = mem_array((size_t)(own > most ? own : most) + 1, width * sizeof *work);
+    float *want = mem_array(n, sizeof *want), *got = mem_array(n, sizeof *got);
+    const bool good = work && want && got;
+    double sum = 0.0;
+    int rows = 0;
+    for (int row = EACH_ROW / 2 % at->height; good && row < at->height; row += EACH_ROW, rows++)
+        for (int c = 0; c < 3; c++) {
+            show(want, work, pictures, pictures->before, at, row, c);
+            show(got, work, l, l->after, at, row, c);
+            sum += foretell(want, got, work, b, l->captured.lights, width);
+        }
+    *square = good ? sum / (3.0 * (double)n * rows) : 0.0;
+    mem_free(work);
+    mem_free(want);
+    mem_free(got);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// Of a step by both coders; `b` NULL: without lights left out.
 static relume_status add_window(struct points points[2], const relume_coder *const coder[2],
                                 const relume_capture *capture, const struct relume_rect *at, int s,
-                                const struct relume_encode_params *encode)
+                                const double *b, const struct relume_encode_params *encode)
 {
     const struct av1_effort effort = {step[s], AV1_FAST};
     struct look look[2] = {{0}, {0}};
@@ -120,13 +172,16 @@ static relume_status add_window(struct points points[2], const relume_coder *con
     for (int i = 1; !status && i >= 0;
          i--) {  // the pictures first, which the other is compared with
         size_t bytes;
-        double square = 0.0;
+        double square = 0.0, left_out = 0.0;
         status = lossy_try(look[i].before, look[i].after, &bytes, look[i].coefficients, at, &effort,
                            encode->threads, encode->log);
         if (!status)
             status = judge(&square, &look[i], &look[1], at);
+        if (!status && b)
+            status = judge_left_out(&left_out, &look[i], &look[1], at, b);
         points[i].bytes[s] += (double)bytes;
         points[i].square[s] += square;
+        points[i].left_out[s] += left_out;
     }
     look_away(&look[0]);
     look_away(&look[1]);
@@ -151,7 +206,7 @@ static struct windows windows_of(const relume_coder *pictures, const relume_capt
 
 static relume_status add_windows(struct points points[2], const struct windows *w,
                                  const relume_coder *const coder[2], const relume_capture *capture,
-                                 int s, const struct relume_encode_params *encode)
+                                 int s, const double *b, const struct relume_encode_params *encode)
 {
     const int width = relume_capture_width(capture), height = relume_capture_height(capture);
     relume_status status = RELUME_OK;
@@ -159,7 +214,7 @@ static relume_status add_windows(struct points points[2], const struct windows *
         struct relume_rect at = {.width = w->width, .height = w->height};
         at.left = begin_of(i % w->across, w->across, width, w->width);
         at.top = begin_of(i / w->across, w->down, height, w->height) / BAND_ROWS * BAND_ROWS;
-        status = add_window(points, coder, capture, &at, s, encode);
+        status = add_window(points, coder, capture, &at, s, b, encode);
     }
     return status;
 }
@@ -202,18 +257,53 @@ static bool is_clear(double merit[2], const struct points points[2], const struc
     return merit[better] > merit[!better] + clearly;
 }
 
-relume_status look_compare(double merit[2], const relume_coder *const coder[2],
+// What lights left out are shown at about, at the target: on the line through both points, between
+// them.
+static double left_out_of(const struct points *p, const struct windows *w,
+                          const struct rate_target *target, double header)
+{
+    const double coarse = decibels(p->square[COARSE]), fine = decibels(p->square[FINE]);
+    const double left = fmax(target->bytes - header, 1.0) / w->scale;
+    const double t =
+        target->psnr_db > 0.0
+            ? (target->psnr_db - decibels(p->square[COARSE] / (w->across * w->down))) /
+                  fmax(fine - coarse, 1e-3)
+            : log2(left / p->bytes[COARSE]) / fmax(log2(p->bytes[FINE] / p->bytes[COARSE]), 1e-3);
+    const double from = decibels(p->left_out[COARSE] / (w->across * w->down)),
+                 to = decibels(p->left_out[FINE] / (w->across * w->down));
+    return from + (to - from) * fmin(fmax(t, 0.0), 1.0);
+}
+
+// Of the interpolant of the pictures, which is that of the components, too; NULL where there is
+// none or memory is short.
+static double *predictor_of(const relume_coder *pictures)
+{
+    const struct relume_interpolant *between = pictures->info.interpolant;
+    const size_t lights = (size_t)pictures->info.lights;
+    double *b =
+        between && between->predictor && lights > 3 ? mem_array(lights * lights, sizeof *b) : NULL;
+    if (b)
+        between->predictor(pictures->interpolant, b);
+    return b;
+}
+
+relume_status look_compare(double merit[2], double left_out[2], const relume_coder *const coder[2],
                            const relume_capture *capture, const struct rate_target *target,
                            const double header[2], double clearly,
                            const struct relume_encode_params *encode)
 {
     const struct windows w = windows_of(coder[1], capture);
-    struct points points[2] = {{{0.0}, {0.0}}, {{0.0}, {0.0}}};
-    relume_status status = add_windows(points, &w, coder, capture, COARSE, encode);
-    if (status || is_clear(merit, points, &w, target, header, clearly))
-        return status;
-    status = add_windows(points, &w, coder, capture, FINE, encode);
-    for (int i = 0; i < 2; i++)
-        merit[i] = merit_of(&points[i], &w, slope_of(&points[i]), target, header[i]);
+    struct points points[2] = {{{0.0}, {0.0}, {0.0}}, {{0.0}, {0.0}, {0.0}}};
+    double *b = predictor_of(coder[1]);
+    left_out[0] = left_out[1] = 0.0;
+    relume_status status = add_windows(points, &w, coder, capture, COARSE, b, encode);
+    if (!status && !is_clear(merit, points, &w, target, header, clearly)) {
+        status = add_windows(points, &w, coder, capture, FINE, b, encode);
+        for (int i = 0; i < 2; i++) {
+            merit[i] = merit_of(&points[i], &w, slope_of(&points[i]), target, header[i]);
+            left_out[i] = b ? left_out_of(&points[i], &w, target, header[i]) : 0.0;
+        }
+    }
+    mem_free(b);
     return status;
 }

@@ -58,65 +58,21 @@ static int context_of(struct around n, bool *mirrored)
 
 // ---------------------------------------------------------------- differences
 
-enum { MOST_EXPONENT = 16 };
-
-// Whether there is one, its sign, then how many bits its size has, and these as they are.
 struct model {
-    struct entropy_chance any[CONTEXTS], sign[CONTEXTS], more[2][MOST_EXPONENT + 1];
+    struct entropy_chance any[CONTEXTS], sign[CONTEXTS], more[2][ENTROPY_BITS + 1];
 };
 
 static void begin_model(struct model *m)
 {
     for (int i = 0; i < CONTEXTS; i++)
         m->any[i] = m->sign[i] = ENTROPY_EVEN;
-    for (int i = 0; i <= MOST_EXPONENT; i++)
+    for (int i = 0; i <= ENTROPY_BITS; i++)
         m->more[0][i] = m->more[1][i] = ENTROPY_EVEN;
 }
 
-static void put_plain(struct entropy_writer *w, unsigned value, int bits)
+static struct entropy_whole chances(struct model *m, int context)
 {
-    for (int i = bits; i-- > 0;) {
-        struct entropy_chance even = ENTROPY_EVEN;
-        entropy_put(w, &even, (int)(value >> i & 1));
-    }
-}
-
-static unsigned get_plain(struct entropy_reader *r, int bits)
-{
-    unsigned value = 0;
-    for (int i = 0; i < bits; i++) {
-        struct entropy_chance even = ENTROPY_EVEN;
-        value = 2 * value + (unsigned)entropy_get(r, &even);
-    }
-    return value;
-}
-
-static void put(struct entropy_writer *w, struct model *m, int context, int difference)
-{
-    struct entropy_chance *more = m->more[context != EVEN];
-    entropy_put(w, &m->any[context], difference != 0);
-    if (!difference)
-        return;
-    entropy_put(w, &m->sign[context], difference < 0);
-    const unsigned size = (unsigned)(difference < 0 ? -difference : difference);
-    int exponent = 0;
-    for (; size >> (exponent + 1); exponent++)
-        entropy_put(w, &more[exponent], 1);
-    entropy_put(w, &more[exponent], 0);
-    put_plain(w, size & ((1u << exponent) - 1), exponent);
-}
-
-static int get(struct entropy_reader *r, struct model *m, int context)
-{
-    struct entropy_chance *more = m->more[context != EVEN];
-    if (!entropy_get(r, &m->any[context]))
-        return 0;
-    const bool negative = entropy_get(r, &m->sign[context]);
-    int exponent = 0;
-    while (exponent < MOST_EXPONENT && entropy_get(r, &more[exponent]))
-        exponent++;
-    const int size = (int)(1u << exponent | get_plain(r, exponent));
-    return negative ? -size : size;
+    return (struct entropy_whole){&m->any[context], &m->sign[context], m->more[context != EVEN]};
 }
 
 // ---------------------------------------------------------------- maps
@@ -140,7 +96,8 @@ static void put_all(struct entropy_writer *w, struct model *m, const uint16_t *s
             bool mirrored;
             const int context = context_of(n, &mirrored);
             const int difference = row[x] - foretold(n);
-            put(w, m, context, mirrored ? -difference : difference);
+            const struct entropy_whole by = chances(m, context);
+            entropy_put_whole(w, &by, mirrored ? -difference : difference);
         }
     entropy_end(w);
 }
@@ -155,7 +112,8 @@ static void get_all(uint16_t *steps, struct entropy_reader *r, struct model *m,
         for (size_t x = 0; x < width; x++) {
             const struct around n = around(row, above, x, width);
             bool mirrored;
-            const int context = context_of(n, &mirrored), difference = get(r, m, context);
+            const struct entropy_whole by = chances(m, context_of(n, &mirrored));
+            const int difference = entropy_get_whole(r, &by);
             row[x] = (uint16_t)(foretold(n) + (mirrored ? -difference : difference));
         }
 }

@@ -96,3 +96,49 @@ int entropy_get(struct entropy_reader *r, struct entropy_chance *chance)
         r->code = r->code << 8 | next_byte(r);
     return bit;
 }
+
+// ---------------------------------------------------------------- whole numbers
+
+static void put_plain(struct entropy_writer *w, unsigned value, int bits)
+{
+    for (int i = bits; i-- > 0;) {
+        struct entropy_chance even = ENTROPY_EVEN;
+        entropy_put(w, &even, (int)(value >> i & 1));
+    }
+}
+
+static unsigned get_plain(struct entropy_reader *r, int bits)
+{
+    unsigned value = 0;
+    for (int i = 0; i < bits; i++) {
+        struct entropy_chance even = ENTROPY_EVEN;
+        value = 2 * value + (unsigned)entropy_get(r, &even);
+    }
+    return value;
+}
+
+void entropy_put_whole(struct entropy_writer *w, const struct entropy_whole *by, int number)
+{
+    entropy_put(w, by->any, number != 0);
+    if (!number)
+        return;
+    entropy_put(w, by->sign, number < 0);
+    const unsigned size = (unsigned)(number < 0 ? -number : number);
+    int exponent = 0;
+    for (; size >> (exponent + 1); exponent++)
+        entropy_put(w, &by->more[exponent], 1);
+    entropy_put(w, &by->more[exponent], 0);
+    put_plain(w, size & ((1u << exponent) - 1), exponent);
+}
+
+int entropy_get_whole(struct entropy_reader *r, const struct entropy_whole *by)
+{
+    if (!entropy_get(r, by->any))
+        return 0;
+    const bool negative = entropy_get(r, by->sign);
+    int exponent = 0;
+    while (exponent < ENTROPY_BITS && entropy_get(r, &by->more[exponent]))
+        exponent++;
+    const int size = (int)(1u << exponent | get_plain(r, exponent));
+    return negative ? -size : size;
+}

@@ -32,4 +32,13 @@ struct entropy_reader {
 struct entropy_reader entropy_read(const unsigned char *byte, size_t size);
 int entropy_get(struct entropy_reader *r, struct entropy_chance *chance);
 
+// A number that is mostly small: whether it is 0, its sign, then how many bits its size has, by the
+// chances of each, and these as they are. Sizes below 2^(ENTROPY_BITS + 1).
+enum { ENTROPY_BITS = 16 };
+struct entropy_whole {
+    struct entropy_chance *any, *sign, *more;  // more[ENTROPY_BITS + 1]
+};
+void entropy_put_whole(struct entropy_writer *w, const struct entropy_whole *by, int number);
+int entropy_get_whole(struct entropy_reader *r, const struct entropy_whole *by);
+
 #endif

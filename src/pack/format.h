@@ -47,6 +47,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_HEIGHT        "relume.height"
 #define ATTR_FUNCTIONS     "relume.functions"
 #define ATTR_MOST          "relume.functions.most"
+#define ATTR_STEPPED       "relume.functions.stepped"
 #define ATTR_SUMS          "relume.sums"
 
 // A part of the work (docs/format.md, "Parts"): format and attributes of the first part beside
@@ -61,6 +62,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_MEASURED  "relume.part.measured"
 #define ATTR_BANDS     "relume.part.bands"
 #define ATTR_ERRORS    "relume.part.errors"
+#define ATTR_LIT       "relume.part.lit"
 #define ATTR_STORED    "relume.part.stored"
 #define ATTR_TILES     "relume.part.tiles"
 
@@ -95,12 +97,6 @@ extern const char *const format_book_kinds[3];
 // Planes are in the order R, G, B; the file sorts channels by name, B, G, R. Which plane a channel
 // is, and which channel a plane.
 int format_plane(const struct relume_coder_info *info, int channel);
-
-// Learned functions as text where every byte counts: rows of numbers within -most .. most of their
-// row, two digits of 64 for each. False where one is no digit.
-void format_functions_text(char *text, const float *numbers, const float *most, int rows, int each);
-bool format_functions_of_text(float *numbers, const char *text, const float *most, int rows,
-                              int each);
 
 // Depth along the viewing rays becomes that along the axis of a slab, or back: its inverse is
 // linear where the surface is a plane. Of other projections it stays.

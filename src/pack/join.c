@@ -228,11 +228,11 @@ static relume_status add_rows_of_view(struct joining *j, int *i)
     struct encode_rows sums = {
         .error = arena_array(&j->arena, (size_t)height, sizeof *sums.error),
         .shown_error = arena_array(&j->arena, (size_t)lights, sizeof *sums.shown_error),
+        .lit = arena_array(&j->arena, (size_t)lights, sizeof *sums.lit),
         .stored = arena_array(&j->arena, (size_t)height, sizeof *sums.stored),
     };
-    struct relume_encode_report *measured =
-        arena_array(&j->arena, (size_t)j->count, sizeof *measured);
-    relume_status status = source && sums.error && sums.shown_error && sums.stored && measured
+    struct relume_encode_census census = {0};
+    relume_status status = source && sums.error && sums.shown_error && sums.lit && sums.stored
                                ? exr_part_again(to, first->file, 1, &j->arena)
                                : RELUME_ENOMEM;
     int n = 0;
@@ -242,7 +242,7 @@ static relume_status add_rows_of_view(struct joining *j, int *i)
         source[n] = (struct exr_copied){p->file, 1, p->info.row, 0};
         status = exr_part_again(&piece, p->file, 1, &j->arena);
         if (!status && (!is_piece(&piece, to, p) || !rows_add_errors(&sums, p, lights) ||
-                        !rows_add_stored(&sums, p) || !part_measured(&measured[n], p, 1)))
+                        !rows_add_stored(&sums, p) || !rows_add_census(&census, &sums, p, lights)))
             status = RELUME_EDAMAGED;
         if (status == RELUME_EDAMAGED)
             return damaged(j, p);
@@ -250,7 +250,7 @@ static relume_status add_rows_of_view(struct joining *j, int *i)
     if (status)
         return status;
     j->measured[view] = encode_rows_report(&sums, height, lights);
-    j->measured[view].census = encode_report_mean(measured, n).census;
+    j->measured[view].census = census;
     to->height = height;
     to->source = source;
     to->sources = n;

@@ -192,6 +192,27 @@ bool rows_add_errors(struct encode_rows *s, const struct part_file *part, int li
     return read_numbers(&text, s->error + part->info.row, (size_t)part->info.rows);
 }
 
+bool rows_add_census(struct relume_encode_census *to, struct encode_rows *s,
+                     const struct part_file *part, int lights)
+{
+    const char *text = exr_get_text(part->file, 1, ATTR_LIT);
+    struct relume_encode_report own;
+    if (!text || strlen(text) != (size_t)lights || strspn(text, "01") != (size_t)lights ||
+        !part_measured(&own, part, 1))
+        return false;
+    to->pixels += own.census.pixels;
+    to->black += own.census.black;
+    to->clipped += own.census.clipped;
+    to->always_clipped += own.census.always_clipped;
+    to->repaired += own.census.repaired;
+    to->black_images = 0;
+    for (int i = 0; i < lights; i++) {
+        s->lit[i] |= text[i] == '1';
+        to->black_images += !s->lit[i];
+    }
+    return true;
+}
+
 bool rows_add_stored(struct encode_rows *s, const struct part_file *part)
 {
     const char *text = exr_get_text(part->file, 1, ATTR_STORED);
@@ -251,10 +272,12 @@ static relume_status gather_view(struct rows_joining *j, int v, int *i)
         return status;
     c->some.error = mem_zeroed((size_t)info->height, sizeof *c->some.error);
     c->some.shown_error = mem_zeroed((size_t)lights, sizeof *c->some.shown_error);
-    if (!c->some.error || !c->some.shown_error)
+    c->some.lit = mem_zeroed((size_t)lights, sizeof *c->some.lit);
+    if (!c->some.error || !c->some.shown_error || !c->some.lit)
         return RELUME_ENOMEM;
     for (; !status && *i < j->count && j->part[*i]->info.first == v; ++*i) {
-        status = read_bands(j->part[*i], c) && rows_add_errors(&c->some, j->part[*i], lights)
+        status = read_bands(j->part[*i], c) && rows_add_errors(&c->some, j->part[*i], lights) &&
+                         rows_add_census(&c->report.census, &c->some, j->part[*i], lights)
                      ? read_rows(j, j->part[*i], c)
                      : damaged(j, j->part[*i]);
     }

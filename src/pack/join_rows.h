@@ -13,6 +13,10 @@ relume_status join_rows(const struct part_file *const *parts, int count, const c
 // What a part of rows has measured joins the sums of its view: errors of the model, and where its
 // steps are known those of storing. False: it is damaged.
 bool rows_add_errors(struct encode_rows *s, const struct part_file *part, int lights);
+// Pixels that it counted join `to`, and lights that shine on its rows those of its view: images are
+// black where none did. False where it does not say them.
+bool rows_add_census(struct relume_encode_census *to, struct encode_rows *s,
+                     const struct part_file *part, int lights);
 bool rows_add_stored(struct encode_rows *s, const struct part_file *part);
 
 #endif

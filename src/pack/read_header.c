@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "pack/format.h"
+#include "pack/functions.h"
 #include "pack/reader.h"
 
 #include <math.h>
@@ -161,25 +162,37 @@ static relume_status read_geometry(relume_pack *p)
     return read_uv(p);
 }
 
+// As text; of files of earlier states of this version digit by digit.
+static relume_status read_text(float *numbers, const relume_pack *p, int rows, int each)
+{
+    const char *stepped = exr_get_text(p->file, 0, ATTR_STEPPED);
+    if (stepped) {
+        const relume_status status =
+            rows % 3 ? RELUME_EDAMAGED : functions_of_text(numbers, stepped, rows / 3, each);
+        return status == RELUME_EDAMAGED
+                   ? reader_bad(p, ATTR_STEPPED,
+                                "digits A-Z a-z 0-9 + /, one for every coefficient")
+                   : status;
+    }
+    const char *text = exr_get_text(p->file, 0, ATTR_FUNCTIONS);
+    const float *most = reader_floats(p, 0, ATTR_MOST, rows);
+    if (!most || strlen(text) != 2 * (size_t)rows * (size_t)each)
+        return reader_bad(p, ATTR_FUNCTIONS, "two digits for every number, and " ATTR_MOST);
+    return functions_of_digits(numbers, text, most, rows, each)
+               ? RELUME_OK
+               : reader_bad(p, ATTR_FUNCTIONS, "digits A-Z a-z 0-9 + /");
+}
+
 // What decodes the coefficients, [rows][each]; NULL where there is none.
 static relume_status read_functions(const float **out, relume_pack *p, int rows, int each)
 {
-    const char *text = exr_get_text(p->file, 0, ATTR_FUNCTIONS);
-    if (!text)
+    if (!exr_get_text(p->file, 0, ATTR_STEPPED) && !exr_get_text(p->file, 0, ATTR_FUNCTIONS))
         return optional_floats(p, ATTR_TRANSFORM, (long long)rows * each, out)
                    ? RELUME_OK
                    : reader_bad(p, ATTR_TRANSFORM, "coefficients x functions finite numbers");
-    const float *most = reader_floats(p, 0, ATTR_MOST, rows);
-    *out = NULL;
-    if (!most || strlen(text) != 2 * (size_t)rows * (size_t)each)
-        return reader_bad(p, ATTR_FUNCTIONS, "two digits for every number, and " ATTR_MOST);
     float *numbers = arena_array(&p->arena, (size_t)rows * (size_t)each, sizeof *numbers);
     *out = numbers;
-    if (!numbers)
-        return RELUME_ENOMEM;
-    return format_functions_of_text(numbers, text, most, rows, each)
-               ? RELUME_OK
-               : reader_bad(p, ATTR_FUNCTIONS, "digits A-Z a-z 0-9 + /");
+    return numbers ? read_text(numbers, p, rows, each) : RELUME_ENOMEM;
 }
 
 static relume_status read_coder(relume_pack *p)

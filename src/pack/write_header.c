@@ -2,16 +2,19 @@
 #include "base/memory.h"
 #include "base/half.h"
 #include "image/exr_sums.h"
+#include "coder/coefficients.h"
 #include "pack/format.h"
+#include "pack/functions.h"
 #include "pack/writer.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-// Where planes are coded with loss the preview is small, so that it is not most of the file: not
-// more pixels a side than these, each the mean of so many of the view, to a 64th of itself.
-enum { SMALL = 64, MOST_ROWS = 16, SMALL_LEFT_OUT = 5 };
+// Where planes are coded with loss the preview is small, so that it is not most of the file: at
+// most SMALL pixels a side, each the mean of MEAN x MEAN of the view or more unless it had fewer
+// than LEAST a side then; to a 64th of itself.
+enum { SMALL = 64, LEAST = 32, MEAN = 8, MOST_ROWS = 16, SMALL_LEFT_OUT = 5 };
 
 // Of views that have reduced levels it is one of those, at most so many pixels a side.
 enum { MOST_SHOWN = 1024 };
@@ -19,7 +22,8 @@ enum { MOST_SHOWN = 1024 };
 static size_t coarseness(const struct relume_coefficients_info *info)
 {
     const int side = info->width > info->height ? info->width : info->height;
-    return ((size_t)side + SMALL - 1) / SMALL;
+    const int least = (side + SMALL - 1) / SMALL, most = side < LEAST ? 1 : side / LEAST;
+    return (size_t)(least > MEAN ? least : most < MEAN ? most : MEAN);
 }
 
 // Rows of the view join the sums of a row of the preview.
@@ -185,30 +189,26 @@ static void describe_geometry(struct writer *w, struct exr_part *part)
     }
 }
 
-// Those that were learned take two bytes for four in a file where planes are coded: what rounding
-// them loses is far below what coding does.
+// What rounding of functions may change where planes are coded: this part of what coding them does,
+// which is no less than the other where the file is only weighed so far.
+static const double OF_CODING = 0.5, LEAST_CODING = 1.0 / 1024.0;
+
 static void describe_functions(struct writer *w, struct exr_part *part, bool coded)
 {
+    const struct relume_pack_contents *c = w->contents;
     const struct relume_coder_info *info = w->coder;
     const int rows = (info->basis->joint ? 3 : 1) * info->coefficients, each = info->functions;
-    const float *numbers = info->transform;
     if (!coded || !info->basis->joint) {
-        writer_floats(w, part, ATTR_TRANSFORM, numbers, rows * each);
+        writer_floats(w, part, ATTR_TRANSFORM, info->transform, rows * each);
         return;
     }
-    float *most = arena_array(&w->arena, (size_t)rows, sizeof *most);
-    char *text = arena_array(&w->arena, 2 * (size_t)rows * (size_t)each + 1, 1);
-    w->failed |= !most || !text;
-    if (w->failed)
-        return;
-    for (int r = 0; r < rows; r++) {
-        most[r] = 0.0f;
-        for (int i = 0; i < each; i++)
-            most[r] = fmaxf(most[r], fabsf(numbers[r * each + i]));
-    }
-    format_functions_text(text, numbers, most, rows, each);
-    writer_text(part, ATTR_FUNCTIONS, text);
-    writer_floats(w, part, ATTR_MOST, most, rows);
+    const double coding = c->report.store_rms > LEAST_CODING ? c->report.store_rms : LEAST_CODING;
+    char *made = functions_text(info->transform, info->coefficients, each,
+                                first_view(c)->coefficients->most, OF_CODING * coding);
+    const char *text = made ? arena_format(&w->arena, "%s", made) : NULL;
+    mem_free(made);
+    w->failed |= !text;
+    writer_text(part, ATTR_STEPPED, text);
 }
 
 static void describe_coder(struct writer *w, struct exr_part *part, bool coded)

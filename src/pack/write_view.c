@@ -161,6 +161,17 @@ static const char *errors_text(struct writer *w, const relume_coefficients *c)
     return text;
 }
 
+// A digit for each light.
+static const char *lit_text(struct writer *w, const struct encode_rows *s)
+{
+    const size_t lights = (size_t)w->coder->lights;
+    char *text = arena_array(&w->arena, lights + 1, 1);
+    w->failed |= !text;
+    for (size_t i = 0; text && i < lights; i++)
+        text[i] = s->lit && s->lit[i] ? '1' : '0';
+    return text;
+}
+
 // Rows that wait for those of other parts, without which they have no steps.
 static void fill_with_waiting(struct writer *w, struct exr_part *part,
                               const struct relume_pack_view *view)
@@ -202,6 +213,7 @@ static void add_codes(struct writer *w, int index, bool shared)
     if (some->rows) {
         part->height = some->rows;
         writer_text(part, ATTR_ERRORS, errors_text(w, view->coefficients));
+        writer_text(part, ATTR_LIT, lit_text(w, some));
     }
     if (some->rows && some->stored)
         writer_text(part, ATTR_STORED, stored_text(w, some));

@@ -2,7 +2,7 @@
 """Bytes at equal quality of lights that were not captured: relume's files and web folders against
 video and still codecs of all captured pictures (docs/measurements/compression.md).
 
-    bench_codecs.py BUILD DATA WORK [CAPTURE ...]     CAPTURE: single multi item1 teapot chess attic
+    bench_codecs.py BUILD DATA WORK [CAPTURE ...]     CAPTURE: single multi item1 teapot slab chess attic
 
 Codecs keep the captured pictures; a light between them is interpolated from the decoded ones, by
 whatever `relume encode --basis table` does best on pictures without loss: moving highlights are
@@ -14,7 +14,8 @@ Needs Python 3 alone, ffmpeg with libaom and libx265, djpeg and cjpeg; without f
 skipped, without an encoder its rows.
 DATA is a folder with synthrti, realrti and lf-stanford-chess-9x9; a capture that is not there is
 skipped. Results stay in WORK/points.csv: a run that was stopped goes on, points there are not
-measured again. One or two hours on two cores.
+measured again. One or two hours on two cores; slab, 8100 pictures at one level, takes as long again
+and 20 GB, and is measured where it is named only.
 """
 import csv
 import glob
@@ -29,7 +30,8 @@ import time
 
 SURFACES = {"single": "synthrti/Single/Object2/material3", "multi": "synthrti/Multi/Object1/material3"}
 TEAPOT = ["--views", "5x5", "--size", "128", "--hemisphere"]
-EYES = ["--eye", "0,0,3", "--eye", "0.25,-0.25,3", "--eye=-0.5,0.5,3"]  # cameras of that slab
+SLAB = ["--views", "9x9", "--size", "256", "--hemisphere"]
+EYES = ["--eye", "0,0,3", "--eye", "0.25,-0.25,3", "--eye=-0.5,0.5,3"]  # cameras of these slabs
 ATTIC = ["--projection", "cylindrical", "--size", "192"]
 # what is tried of each: PSNR of `encode --psnr`, crf of AV1 and x265, quality of JPEG, bytes a pixel of a
 # web folder; None where it cannot be made
@@ -38,11 +40,13 @@ RATES = {
     "multi": ([38, 42, 45], [38, 24, 12, 5], [30, 22, 15, 9], [50, 90], [0.25, 1, 2]),
     "item1": ([36, 38, 39], [44, 32, 22, 10], [34, 26, 19, 12], [40, 80, 93], [0.3, 1]),
     "teapot": ([36], [46, 32], [34, 26], [30], [0.5]),
+    "slab": ([36], [46, 38], [32, 26], [40, 75], None),
     "chess": ([37], [48, 38], [32, 26], [15, 40], None),
     "attic": ([25, 36], [62, 56, 48, 38], [46, 40, 34, 26], [5, 20, 60], None),
 }
 NEEDS = {**SURFACES, "item1": "realrti/item1", "chess": "lf-stanford-chess-9x9"}
 LEVELS = {"chess": (36.95,)}
+DOMAINS = {"slab": ("display",)}  # what decoded pictures are interpolated in: of others both
 LOWER = (0.25, 1.0)  # the levels: so much below the best that both relume and the pictures reach
 
 SWS = "accurate_rnd+full_chroma_int+full_chroma_inp"
@@ -55,7 +59,7 @@ VIDEO = {
 
 
 # libaom 3.6 stops at an assertion in long videos of this capture: it has runs of so many pictures
-RUN, LOOK_AHEAD = {"teapot": 500}, {"teapot": ["-lag-in-frames", "19"]}
+RUN, LOOK_AHEAD = {"teapot": 500, "slab": 500}, ["-lag-in-frames", "19"]
 PNG = ["-compression_level", "1"]
 
 
@@ -101,13 +105,19 @@ class Capture:
     def _synth(self, name, *options):
         path = os.path.join(self.folder, name)
         if not os.path.exists(path):
-            run(self.relume, "synth", self.name, "-o", path, *options, "-q")
+            run(self.relume, "synth", "attic" if self.name == "attic" else "teapot", "-o", path, *options, "-q")
         return path
 
-    def _teapot(self, data):
-        self.path = self._synth("capture", *TEAPOT, "--lights", "100")
+    def _slab_of(self, options, size):
+        self.path = self._synth("capture", *options, "--lights", "100")
         random = ["--lights", "16", "--pattern", "random", "--seed", "7", "--hemisphere"]
-        self._synth("unseen", *random, "--projection", "slab", "--size", "128", *EYES)
+        self._synth("unseen", *random, "--projection", "slab", "--size", size, *EYES)
+
+    def _teapot(self, data):
+        self._slab_of(TEAPOT, "128")
+
+    def _slab(self, data):
+        self._slab_of(SLAB, "256")
 
     def _attic(self, data):
         self.path = self._synth("capture", *ATTIC, "--lights", "64")
@@ -248,7 +258,7 @@ class Bench:
         muxer, codec, options = VIDEO[kind]
         pictures, run_of, size = len(self.capture.order), len(self.capture.order), 0
         if kind == "AV1" and self.capture.name in RUN:
-            run_of, options = RUN[self.capture.name], options + LOOK_AHEAD[self.capture.name]
+            run_of, options = RUN[self.capture.name], options + LOOK_AHEAD
         out, decoded = os.path.join(self.scratch, "video." + muxer), os.path.join(self.scratch, "decoded")
         os.makedirs(decoded)
         for first in range(0, pictures, run_of):
@@ -357,9 +367,10 @@ def measure(bench, rates, part, missing):
             bench.point("lossy", rate, bench.lossy)
         return
     bench.point("relume", "default", bench.default)
-    for domain in ("display", "linear"):
+    domains = DOMAINS.get(capture.name, ("display", "linear"))
+    for domain in domains:
         bench.point("pictures", domain, bench.lossless)
-    domain = max(("display", "linear"), key=lambda d: known[capture.name, "pictures", d][2])
+    domain = max(domains, key=lambda d: known[capture.name, "pictures", d][2])
     for crf in av1 if "AV1" not in missing else ():
         bench.point("AV1", crf, lambda r: bench.video("AV1", domain, r))
     for crf in x265 if "x265" not in missing else ():
@@ -418,7 +429,7 @@ def main():
         print("%s: skipped: %s" % (method, "no cjpeg" if method == "JPEG" else "ffmpeg has no " + VIDEO[method][1]))
     os.makedirs(work, exist_ok=True)
     points, benches = Points(os.path.join(work, "points.csv")), []
-    for name in sys.argv[4:] or list(RATES):
+    for name in sys.argv[4:] or [n for n in RATES if n != "slab"]:
         needed = NEEDS.get(name)
         if needed and not os.path.exists(os.path.join(data, needed)):
             print("%s: skipped: no %s" % (name, os.path.join(data, needed)))

@@ -5,24 +5,8 @@
 #include "base/memory.h"
 #include "capture_fixture.h"
 #include "image/exr_sums.h"
+#include "pack_in_folder.h"
 #include "without_sums.h"
-
-static char folder[64], path[96];
-
-static int setup(void **state)
-{
-    (void)state;
-    test_folder(folder);
-    snprintf(path, sizeof path, "%s/pack.exr", folder);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    test_folder_remove(folder);
-    return 0;
-}
 
 static relume_status check_bytes(const void *bytes, size_t size, bool *has_sums)
 {

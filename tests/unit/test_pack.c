@@ -5,24 +5,8 @@
 #include "pack/format.h"
 #include "base/half.h"
 #include "image/exr.h"
+#include "pack_in_folder.h"
 #include "pack_parts.h"
-
-static char folder[64], path[96];
-
-static int setup(void **state)
-{
-    (void)state;
-    test_folder(folder);
-    snprintf(path, sizeof path, "%s/pack.exr", folder);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    test_folder_remove(folder);
-    return 0;
-}
 
 static void check_planes(relume_pack *pack, const struct fixture *f, int view)
 {
@@ -391,25 +375,6 @@ static void test_coded_depth(void **state)
     check_coded_depth(3, 20.0, 2.0);
 }
 
-// Half a digit of the largest of the row, and no digit but one of the 64.
-static void test_functions_as_text(void **state)
-{
-    enum { ROWS = 3, EACH = 50 };
-    const float most[ROWS] = {0.7f, 0.0f, 1e-20f};
-    float numbers[ROWS * EACH], back[ROWS * EACH];
-    char text[2 * ROWS * EACH + 1];
-    (void)state;
-    for (int i = 0; i < ROWS * EACH; i++)
-        numbers[i] = most[i / EACH] * sinf(0.7f * (float)i);
-    format_functions_text(text, numbers, most, ROWS, EACH);
-    assert_int_equal(strlen(text), 2 * ROWS * EACH);
-    assert_true(format_functions_of_text(back, text, most, ROWS, EACH));
-    for (int i = 0; i < ROWS * EACH; i++)
-        CHECK_NEAR(back[i], numbers[i], (double)most[i / EACH] * (0.5 / 2047 + 1e-6));
-    text[77] = '-';
-    assert_false(format_functions_of_text(back, text, most, ROWS, EACH));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -421,7 +386,6 @@ int main(void)
         cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_progress_of_parts),
         cmocka_unit_test(test_coded_depth),
-        cmocka_unit_test(test_functions_as_text),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -133,6 +133,25 @@ static void discrepancy_falls_with_n_and_order(void **state)
     }
 }
 
+// As when the directions around every centre were sorted.
+static void discrepancy_is_that_of_all_caps(void **state)
+{
+    static const struct {
+        const char *pattern;
+        double sphere, hemisphere;
+    } known[] = {{"hammersley", 0.0115882298, 0.0104588664},
+                 {"grid", 0.113120009, 0.218223328},
+                 {"random", 0.0349091355, 0.0358972453}};
+    static vec3 v[MOST];
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        for (int hemisphere = 0; hemisphere < 2; hemisphere++) {
+            make(v, MOST, known[i].pattern, 7, hemisphere, false);
+            check_near(discrepancy(v, MOST, hemisphere),
+                       hemisphere ? known[i].hemisphere : known[i].sphere, 1e-9);
+        }
+}
+
 static void pole_crowding_of_the_grid_shows(void **state)
 {
     (void)state;
@@ -283,6 +302,7 @@ int main(void)
         cmocka_unit_test(poisson_keeps_its_distance),
         cmocka_unit_test(discrepancy_of_few_points_is_known),
         cmocka_unit_test(discrepancy_falls_with_n_and_order),
+        cmocka_unit_test(discrepancy_is_that_of_all_caps),
         cmocka_unit_test(pole_crowding_of_the_grid_shows),
         cmocka_unit_test(directions_are_read_and_normalised),
         cmocka_unit_test(broken_direction_files_are_refused),

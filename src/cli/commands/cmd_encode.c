@@ -141,6 +141,13 @@ static bool is_coded(const struct request *r)
     return r->pack.psnr_db > 0.0 || r->pack.bytes_per_pixel > 0.0;
 }
 
+// What is between the pictures is left open, and they are kept with loss.
+static bool is_table(const struct request *r)
+{
+    return is_coded(r) && !r->decide && r->basis == &relume_basis_table && !r->coder.interpolant &&
+           !r->coder.choose;
+}
+
 // Parts of it need to know of each other what their pixels say.
 static bool has_steps(const struct request *r, const relume_capture *capture)
 {
@@ -151,7 +158,7 @@ static bool has_steps(const struct request *r, const relume_capture *capture)
 // The capture is looked at before it is encoded.
 static bool learns_first(const struct request *r)
 {
-    return r->basis->learned || r->coder.choose;
+    return r->basis->learned || r->coder.choose || is_table(r);
 }
 
 static const char *storage_words(enum relume_storage storage)
@@ -278,10 +285,12 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
     struct relume_decision decision;
     if (is_coded(r) && r->decide)
         return relume_pack_decide(coder, capture, &r->coder, &r->pack);
-    if (!r->decide)
-        return relume_coder_learn(coder, r->basis, capture, &r->coder, &encode);
-    const relume_status status =
-        relume_coder_decide(coder, &decision, capture, r->quality, &r->coder, &encode);
+    relume_status status = RELUME_OK;
+    if (is_table(r))
+        status = relume_coder_between(&r->coder, capture, &encode);
+    if (status || !r->decide)
+        return status ? status : relume_coder_learn(coder, r->basis, capture, &r->coder, &encode);
+    status = relume_coder_decide(coder, &decision, capture, r->quality, &r->coder, &encode);
     r->pack.domain = decision.domain;
     r->pack.storage = decision.storage;
     if (!r->unseen)
@@ -714,7 +723,7 @@ static relume_status encode(const struct args *args, struct request *r)
     relume_capture *capture;
     relume_team_files *team = NULL;
     struct prefix_log about;
-    r->open.keep_bytes = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
+    r->open.keep_bytes = learns_first(r) ? KEEP_BYTES : 0;
     relume_status status = relume_capture_open(&capture, r->input, &r->open);
     if (status)
         return status;

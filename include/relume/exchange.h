@@ -79,9 +79,10 @@ enum relume_exchange {
     RELUME_EXCHANGE_DEEPZOOM,     // as RELIGHT, the planes as DeepZoom tiles
     RELUME_EXCHANGE_BC1,          // DDS textures of 4 bits a pixel and term, for shaders
     RELUME_EXCHANGE_BC7,          // the same of 8 bits
+    RELUME_EXCHANGE_BC6H,         // the same as half floats
 };
-// "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7". RELUME_EINVAL when `name` is none of
-// these.
+// "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h". RELUME_EINVAL when `name` is
+// none of these.
 RELUME_RESULT relume_status relume_exchange_parse(enum relume_exchange *out, const char *name);
 
 // How the planes of RELIGHT and DEEPZOOM follow the light.

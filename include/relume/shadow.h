@@ -146,6 +146,54 @@ RELUME_RESULT relume_status relume_shadows_add_sun(struct relume_image *picture,
                                                    const relume_coder *coder,
                                                    const struct relume_light *sun, int threads);
 
+// ---- for programs that trace and add by means of their own, as shaders do
+
+// The captured lights around a direction, by which the sums above go: `light` and `weight` have
+// room for all lights of the coder, the first *count are in use; at most 4 of traced shadows, none
+// where the direction is a captured light's. `direction` is unit, as relume_coder_clamp gives it;
+// `summed`: for the sun of an environment. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_around(int *light, float *weight, int *count,
+                                                  relume_shadows *shadows,
+                                                  const relume_coder *coder,
+                                                  struct relume_vec3 direction, bool summed);
+
+// How the rays of a view lie in its coordinates, whose origin is the eye, or of parallel rays the
+// middle of the plane; the axis is -z, the pole of panoramas y. A pixel is scale x + shift, of x
+// and y for parallel rays, x / z and y / z, or of azimuth (from -z to x) and tangent of the
+// elevation, or elevation.
+enum relume_shadows_rays {
+    RELUME_RAYS_PARALLEL,
+    RELUME_RAYS_EYE,
+    RELUME_RAYS_CYLINDER,
+    RELUME_RAYS_SPHERE
+};
+
+enum { RELUME_SHADOW_TILE = 8 };  // pixels, along a side
+
+// What is kept of a view, as long as the shadows are.
+struct relume_shadows_stage {
+    int width, height;
+    const float *gloss;  // [height][width][RELUME_GLOSS_CHANNELS]: of highlights; the rest is of
+                         // traced shadows, where this is NULL
+    const float *matte;  // [height][width][RELUME_SHADOW_CHANNELS - 1]: colour, a, b
+    enum relume_shadows_rays rays;
+    struct relume_pose pose;       // directions of the view in the world
+    double scale[2], shift[2];     // pixels of coordinates
+    double axis;                   // z of rays: -1, or 1 where the eye is behind its window
+    double pixel;                  // the side of a pixel at distance 1, of parallel rays anywhere
+    double least_side;             // at least that, of a pixel at any distance
+    struct relume_vec3 low, high;  // a box around the surface
+    const float *far;    // [height][width]: distance along the axis, from the pole's axis or from
+                         // the eye; infinite: background
+    const float *thick;  // [height][width]: behind it, where light is stopped
+    const float
+        *front;         // [rows][columns] of tiles: what is nearest in a tile or in those beside it
+    const float *span;  // [height + 1][width + 1][2]: nearest and farthest of the pixels around a
+                        // corner
+};
+RELUME_API void relume_shadows_look(struct relume_shadows_stage *out,
+                                    const relume_shadows *shadows);
+
 #ifdef __cplusplus
 }
 #endif

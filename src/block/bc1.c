@@ -64,7 +64,7 @@ static void take_better(struct choice *best, const struct ends *ends, const uint
         *best = other;
 }
 
-static void take_turns(struct choice *best, const uint8_t (*rgb)[3])
+static void take_turns(struct choice *best, const uint8_t (*rgb)[3], const float (*value)[3])
 {
     for (int turn = 0; turn < TURNS && best->error; turn++) {
         const int before = best->error;
@@ -72,7 +72,7 @@ static void take_turns(struct choice *best, const uint8_t (*rgb)[3])
         float at[BLOCK_PIXELS];
         for (int i = 0; i < BLOCK_PIXELS; i++)
             at[i] = parts[best->index[i]];
-        if (!line_refit(&line, rgb, at))
+        if (!line_refit(&line, value, at, 255.0f))
             return;
         const struct ends ends = quantise(&line);
         take_better(best, &ends, rgb);
@@ -119,10 +119,12 @@ static void write(uint8_t *out, const struct choice *best)
 
 static void encode(uint8_t *out, const uint8_t (*rgb)[3])
 {
-    const struct line line = line_fit(rgb);
+    float value[BLOCK_PIXELS][3];
+    line_values(value, rgb);
+    const struct line line = line_fit((const float(*)[3])value, 255.0f);
     const struct ends ends = quantise(&line);
     struct choice best = choose(&ends, rgb);
-    take_turns(&best, rgb);
+    take_turns(&best, rgb, (const float(*)[3])value);
     try_neighbours(&best, rgb);
     write(out, &best);
 }
@@ -143,4 +145,5 @@ static void decode(uint8_t (*rgb)[3], const uint8_t *in)
             rgb[i][c] = (uint8_t)palette[in[4 + i / 4] >> 2 * (i % 4) & 3][c];
 }
 
-const struct block_format block_bc1 = {"bc1", 8, encode, decode, 71};
+const struct block_format block_bc1 = {
+    .name = "bc1", .bytes = 8, .dxgi = 71, .encode = encode, .decode = decode};

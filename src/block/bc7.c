@@ -2,6 +2,7 @@
 //
 // One line through a block, as BC1 has it, with colours 8 times and steps 5 times as fine. The
 // modes that divide a block are left out: eigenimages are smooth, and one mode is short.
+#include "block/bits.h"
 #include "block/line.h"
 
 #include <limits.h>
@@ -46,55 +47,37 @@ static void take_better(struct choice *best, const struct line *line, const uint
     }
 }
 
-// Bits are filled from the lowest of the first byte on.
-struct bits {
-    uint8_t *byte;
-    int at;
-};
-
-static void put(struct bits *b, int value, int count)
-{
-    for (int i = 0; i < count; i++, b->at++)
-        b->byte[b->at / 8] |= (uint8_t)((value >> i & 1) << b->at % 8);
-}
-
-static int get(struct bits *b, int count)
-{
-    int value = 0;
-    for (int i = 0; i < count; i++, b->at++)
-        value |= (b->byte[b->at / 8] >> b->at % 8 & 1) << i;
-    return value;
-}
-
 // The first pixel's index has its highest bit left out: it is 0, else the ends change places.
 static void write(uint8_t *out, const struct choice *c)
 {
     const int turn = c->index[0] >= STEPS / 2;
     struct bits b = {out, 0};
     memset(out, 0, BLOCK_MOST_BYTES);
-    put(&b, 1 << 6, 7);
+    bits_put(&b, 1 << 6, 7);
     for (int i = 0; i < 3; i++)
         for (int e = 0; e < 2; e++)
-            put(&b, c->end[e ^ turn][i] >> 1, 7);
-    put(&b, 127, 7);  // alpha: all there is
-    put(&b, 127, 7);
+            bits_put(&b, c->end[e ^ turn][i] >> 1, 7);
+    bits_put(&b, 127, 7);  // alpha: all there is
+    bits_put(&b, 127, 7);
     for (int e = 0; e < 2; e++)
-        put(&b, c->end[e ^ turn][0] & 1, 1);
+        bits_put(&b, c->end[e ^ turn][0] & 1, 1);
     for (int i = 0; i < BLOCK_PIXELS; i++)
-        put(&b, turn ? STEPS - 1 - c->index[i] : c->index[i], i ? 4 : 3);
+        bits_put(&b, turn ? STEPS - 1 - c->index[i] : c->index[i], i ? 4 : 3);
 }
 
 static void encode(uint8_t *out, const uint8_t (*rgb)[3])
 {
     struct choice best = {.error = INT_MAX};
-    struct line line = line_fit(rgb);
+    float value[BLOCK_PIXELS][3];
+    line_values(value, rgb);
+    struct line line = line_fit((const float(*)[3])value, 255.0f);
     take_better(&best, &line, rgb);
     for (int turn = 0; turn < TURNS && best.error; turn++) {
         const int before = best.error;
         float at[BLOCK_PIXELS];
         for (int i = 0; i < BLOCK_PIXELS; i++)
             at[i] = (float)parts[best.index[i]] / 64.0f;
-        if (!line_refit(&line, rgb, at))
+        if (!line_refit(&line, (const float(*)[3])value, at, 255.0f))
             break;
         take_better(&best, &line, rgb);
         if (best.error == before)
@@ -110,18 +93,19 @@ static void decode(uint8_t (*rgb)[3], const uint8_t *in)
     int end[2][3];
     for (int i = 0; i < 3; i++)
         for (int e = 0; e < 2; e++)
-            end[e][i] = get(&b, 7) << 1;
-    (void)get(&b, 14);
+            end[e][i] = bits_get(&b, 7) << 1;
+    (void)bits_get(&b, 14);
     for (int e = 0; e < 2; e++) {
-        const int last = get(&b, 1);
+        const int last = bits_get(&b, 1);
         for (int i = 0; i < 3; i++)
             end[e][i] |= last;
     }
     for (int i = 0; i < BLOCK_PIXELS; i++) {
-        const int part = parts[get(&b, i ? 4 : 3)];
+        const int part = parts[bits_get(&b, i ? 4 : 3)];
         for (int c = 0; c < 3; c++)
             rgb[i][c] = (uint8_t)(((64 - part) * end[0][c] + part * end[1][c] + 32) >> 6);
     }
 }
 
-const struct block_format block_bc7 = {"bc7", 16, encode, decode, 98};
+const struct block_format block_bc7 = {
+    .name = "bc7", .bytes = 16, .dxgi = 98, .encode = encode, .decode = decode};

@@ -6,29 +6,36 @@
 
 enum { ROUNDS = 8 };
 
-static float clip(float v)
+static float clip(float v, float most)
 {
-    return fminf(fmaxf(v, 0.0f), 255.0f);
+    return fminf(fmaxf(v, 0.0f), most);
 }
 
-static void find_mean(float mean[3], const uint8_t (*rgb)[3])
+void line_values(float out[BLOCK_PIXELS][3], const uint8_t (*rgb)[3])
+{
+    for (int i = 0; i < BLOCK_PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            out[i][c] = (float)rgb[i][c];
+}
+
+static void find_mean(float mean[3], const float (*rgb)[3])
 {
     for (int c = 0; c < 3; c++) {
         mean[c] = 0.0f;
         for (int i = 0; i < BLOCK_PIXELS; i++)
-            mean[c] += (float)rgb[i][c] / BLOCK_PIXELS;
+            mean[c] += rgb[i][c] / BLOCK_PIXELS;
     }
 }
 
 // By repeated products with the covariance, from its longest row on.
-static void find_axis(float axis[3], const uint8_t (*rgb)[3], const float mean[3])
+static void find_axis(float axis[3], const float (*rgb)[3], const float mean[3])
 {
     float m[3][3] = {{0.0f}};
     int longest = 0;
     for (int i = 0; i < BLOCK_PIXELS; i++)
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++)
-                m[a][b] += ((float)rgb[i][a] - mean[a]) * ((float)rgb[i][b] - mean[b]);
+                m[a][b] += (rgb[i][a] - mean[a]) * (rgb[i][b] - mean[b]);
     for (int c = 1; c < 3; c++)
         longest = m[c][c] > m[longest][longest] ? c : longest;
     for (int c = 0; c < 3; c++)
@@ -45,7 +52,7 @@ static void find_axis(float axis[3], const uint8_t (*rgb)[3], const float mean[3
     }
 }
 
-struct line line_fit(const uint8_t (*rgb)[3])
+struct line line_fit(const float (*rgb)[3], float highest)
 {
     float mean[3], axis[3], least = 0.0f, most = 0.0f;
     struct line line;
@@ -54,18 +61,18 @@ struct line line_fit(const uint8_t (*rgb)[3])
     for (int i = 0; i < BLOCK_PIXELS; i++) {
         float at = 0.0f;
         for (int c = 0; c < 3; c++)
-            at += axis[c] * ((float)rgb[i][c] - mean[c]);
+            at += axis[c] * (rgb[i][c] - mean[c]);
         least = fminf(least, at);
         most = fmaxf(most, at);
     }
     for (int c = 0; c < 3; c++) {
-        line.end[0][c] = clip(mean[c] + least * axis[c]);
-        line.end[1][c] = clip(mean[c] + most * axis[c]);
+        line.end[0][c] = clip(mean[c] + least * axis[c], highest);
+        line.end[1][c] = clip(mean[c] + most * axis[c], highest);
     }
     return line;
 }
 
-int line_refit(struct line *out, const uint8_t (*rgb)[3], const float at[BLOCK_PIXELS])
+int line_refit(struct line *out, const float (*rgb)[3], const float at[BLOCK_PIXELS], float highest)
 {
     float aa = 0.0f, ab = 0.0f, bb = 0.0f;
     for (int i = 0; i < BLOCK_PIXELS; i++) {
@@ -80,11 +87,11 @@ int line_refit(struct line *out, const uint8_t (*rgb)[3], const float at[BLOCK_P
     for (int c = 0; c < 3; c++) {
         float a = 0.0f, b = 0.0f;
         for (int i = 0; i < BLOCK_PIXELS; i++) {
-            a += (1.0f - at[i]) * (float)rgb[i][c];
-            b += at[i] * (float)rgb[i][c];
+            a += (1.0f - at[i]) * rgb[i][c];
+            b += at[i] * rgb[i][c];
         }
-        out->end[0][c] = clip((a * bb - b * ab) / determinant);
-        out->end[1][c] = clip((b * aa - a * ab) / determinant);
+        out->end[0][c] = clip((a * bb - b * ab) / determinant, highest);
+        out->end[1][c] = clip((b * aa - a * ab) / determinant, highest);
     }
     return 1;
 }

@@ -25,9 +25,11 @@ const struct relume_basis *relume_basis_find(const char *name)
 }
 
 const struct relume_interpolant *const relume_interpolants[] = {
-    &interpolant_chord,    &interpolant_angular,    &interpolant_tps,
-    &interpolant_rbf,      &interpolant_natural,    &interpolant_hsh,
-    &interpolant_delaunay, &interpolant_octahedral, NULL,
+    &interpolant_chord,      &interpolant_angular,
+    &interpolant_tps,        &interpolant_rbf,
+    &interpolant_natural,    &interpolant_hsh,
+    &interpolant_delaunay,   &interpolant_gaussian,
+    &interpolant_octahedral, NULL,
 };
 
 const struct relume_interpolant *relume_interpolant_find(const char *name)

@@ -44,6 +44,15 @@ static double thin_plate(const double *parameter, vec3 a, vec3 b)
     return square > 0.0 ? 0.5 * square * log(square) : 0.0;
 }
 
+enum { WIDTH };  // of Gaussians, among the parameters
+
+// Gaussians of the chord.
+static double gaussian(const double *parameter, vec3 a, vec3 b)
+{
+    const vec3 d = vec3_sub(a, b);
+    return exp(-vec3_dot(d, d) / (parameter[WIDTH] * parameter[WIDTH]));
+}
+
 // The five harmonics of degree 2, without their common factor.
 static void second_degree(vec3 d, double *q)
 {
@@ -199,6 +208,17 @@ static relume_status prepare_thin_plate(void **data, const struct relume_vec3 *l
     return prepare(data, kind, 1e-9, lights, n, log);
 }
 
+// Menzel 2011, 4.5, with a constant, for what is far from all lights, and a width that goes with
+// them: his is 1, for 253 over the sphere.
+static relume_status prepare_gaussian(void **data, const struct relume_vec3 *lights, int n,
+                                      const double *parameter, const struct relume_log *log)
+{
+    struct kernel kind = {.phi = gaussian, .trend = 1};
+    kind.parameter[WIDTH] =
+        parameter[0] > 0.0 ? parameter[0] : 2.0 * interpolant_spacing(lights, n);
+    return prepare(data, kind, 1e-6, lights, n, log);
+}
+
 static relume_status prepare_chord(void **data, const struct relume_vec3 *lights, int n,
                                    const double *parameter, const struct relume_log *log)
 {
@@ -231,6 +251,16 @@ const struct relume_interpolant interpolant_chord = {
         "kernel of a power of the chord between lights, with a trend; the best on most captures",
     .extrapolates = true,
     .prepare = prepare_chord,
+    .evaluate = evaluate,
+    .release = release,
+    .predictor = predictor,
+};
+
+const struct relume_interpolant interpolant_gaussian = {
+    .name = "gaussian",
+    .summary = "Gaussians around the lights, weighed so that these are reproduced",
+    .extrapolates = false,
+    .prepare = prepare_gaussian,
     .evaluate = evaluate,
     .release = release,
     .predictor = predictor,

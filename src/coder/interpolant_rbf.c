@@ -20,8 +20,7 @@ static void release(void *data)
     mem_free(g);
 }
 
-// The mean distance to the nearest other light.
-static double spacing(const struct relume_vec3 *lights, int n)
+double interpolant_spacing(const struct relume_vec3 *lights, int n)
 {
     double sum = 0.0;
     for (int i = 0; i < n; i++) {
@@ -45,7 +44,7 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
         return RELUME_ENOMEM;
     *g = (struct gaussians){
         .lights = n,
-        .sigma = parameter[0] > 0.0 ? parameter[0] : spacing(lights, n),
+        .sigma = parameter[0] > 0.0 ? parameter[0] : interpolant_spacing(lights, n),
         .light = mem_copy(lights, (size_t)n, sizeof *lights),
     };
     if (g->light)

@@ -13,7 +13,8 @@
 
 relume_status relume_exchange_parse(enum relume_exchange *out, const char *name)
 {
-    static const char *const names[] = {"relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7"};
+    static const char *const names[] = {"relight",  "ptm", "lptm", "rti",
+                                        "deepzoom", "bc1", "bc7",  "bc6h"};
     const int i = name_find(name, names, sizeof names / sizeof *names);
     *out = (enum relume_exchange)(i < 0 ? 0 : i);
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
@@ -47,7 +48,7 @@ double export_light_spacing(const struct source *s)
 
 static bool is_blocks(enum relume_exchange format)
 {
-    return format == RELUME_EXCHANGE_BC1 || format == RELUME_EXCHANGE_BC7;
+    return format >= RELUME_EXCHANGE_BC1 && format <= RELUME_EXCHANGE_BC6H;
 }
 
 static bool is_folder(enum relume_exchange format)

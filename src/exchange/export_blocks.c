@@ -1,11 +1,13 @@
 // export_blocks.c - eigenimages as compressed textures, their weights as cube maps
 //
 // Menzel 2011, 4.3 to 4.5: each coefficient is a picture in three colours, each colour of it scaled
-// from its own range to 0 .. 255 and coded in blocks; its weight is one number a direction, in 8
-// bits on a cube map. What a shader does with them is written beside them. Any basis fits whose
-// coefficients are in three colours: what is missing below, the range, stands in the JSON.
+// from its own range to 0 .. 255, or to half floats, and coded in blocks; its weight is one number
+// a direction, in 8 bits on a cube map. What a shader does with them is written beside them. Any
+// basis fits whose coefficients are in three colours: what is missing below, the range, stands in
+// the JSON.
 #include "exchange/export.h"
 
+#include "base/half.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outdir.h"
@@ -21,17 +23,25 @@
 
 enum { FACES = 6, JUDGED = 16 };
 
+// Half floats are the finer, the nearer to 0: where the least of a range is put, its greatest being
+// 1. That which costs least on some rows of blocks is taken.
+static const float feet[] = {0.5f, 0.25f, 0.0625f, 0.0f};
+enum { FEET = sizeof feet / sizeof *feet, TRIED = 8 };
+
 struct blocks {
     const struct export *e;
     const struct relume_codes *codes;
     const struct block_format *format;
     int terms, side;
-    float *least, *most;  // [planes]: of the coefficients
-    uint8_t **plane;      // [planes]: as a graphics card sees them
+    size_t texel;         // bytes of a colour that is coded
+    float *least, *most;  // [planes]: what the texels 0 and 1 mean
+    uint8_t **plane;      // [planes]: texels as a graphics card sees them
     float *low, *high;    // [terms]: of the weights
     uint8_t *coded;       // of one term
-    uint8_t *rgb;         // likewise, what is coded
+    float *value;         // likewise, [pixels][3]: 0 to 1
+    uint8_t *rgb;         // likewise, [pixels][3]: what is coded
     int term;
+    int step;  // of the rows of blocks that are coded
 };
 
 // ---------------------------------------------------------------- pictures
@@ -55,12 +65,28 @@ static relume_status read_term(struct blocks *b, int term)
         }
         const float range = b->most[p] - b->least[p];
         for (size_t i = 0; i < n; i++)
-            b->rgb[3 * i + c] =
-                (uint8_t)(range > 0.0f ? 255.0f * (value[i] - b->least[p]) / range + 0.5f : 0.0f);
+            b->value[3 * i + c] = range > 0.0f ? (value[i] - b->least[p]) / range : 0.0f;
     }
     mem_free(value);
     b->term = term;
     return value ? RELUME_OK : RELUME_ENOMEM;
+}
+
+union texels {
+    uint8_t byte[BLOCK_PIXELS][3];
+    uint16_t half[BLOCK_PIXELS][3];
+};
+
+// Through a block and back.
+static void code_block(const struct block_format *f, uint8_t *out, union texels *t)
+{
+    if (f->encode) {
+        f->encode(out, (const uint8_t(*)[3])t->byte);
+        f->decode(t->byte, out);
+    } else {
+        f->encode_halves(out, (const uint16_t(*)[3])t->half);
+        f->decode_halves(t->half, out);
+    }
 }
 
 // A row of blocks, coded and looked at; at the end of a side the last pixel is repeated.
@@ -69,24 +95,94 @@ static void code_row(void *context, size_t item, int worker)
     (void)worker;
     struct blocks *b = context;
     const int width = b->codes->width, height = b->codes->height;
-    const int across = (width + 3) / BLOCK_SIDE, top = (int)item * BLOCK_SIDE;
+    const int across = (width + 3) / BLOCK_SIDE, block = (int)item * b->step;
+    const int top = block * BLOCK_SIDE;
+    const size_t texel = b->texel;
     for (int x = 0; x < across; x++) {
-        uint8_t rgb[BLOCK_PIXELS][3];
-        uint8_t *out = b->coded + (item * (size_t)across + (size_t)x) * b->format->bytes;
+        union texels rgb;
+        uint8_t *bytes = rgb.byte[0];
+        uint8_t *out = b->coded + ((size_t)block * (size_t)across + (size_t)x) * b->format->bytes;
         for (int i = 0; i < BLOCK_PIXELS; i++) {
             const int column = x * BLOCK_SIDE + i % BLOCK_SIDE, row = top + i / BLOCK_SIDE;
             const size_t at = (size_t)(row < height ? row : height - 1) * (size_t)width +
                               (size_t)(column < width ? column : width - 1);
-            memcpy(rgb[i], b->rgb + 3 * at, 3);
+            memcpy(bytes + 3 * texel * (size_t)i, b->rgb + 3 * texel * at, 3 * texel);
         }
-        b->format->encode(out, (const uint8_t(*)[3])rgb);
-        b->format->decode(rgb, out);
+        code_block(b->format, out, &rgb);
         for (int i = 0; i < BLOCK_PIXELS; i++) {
             const int column = x * BLOCK_SIDE + i % BLOCK_SIDE, row = top + i / BLOCK_SIDE;
-            for (int c = 0; c < 3 && column < width && row < height; c++)
-                b->plane[3 * b->term + c][(size_t)row * (size_t)width + (size_t)column] = rgb[i][c];
+            const size_t at = (size_t)row * (size_t)width + (size_t)column;
+            for (size_t c = 0; c < 3 && column < width && row < height; c++)
+                memcpy(b->plane[3 * (size_t)b->term + c] + texel * at,
+                       bytes + texel * (3 * (size_t)i + c), texel);
         }
     }
+}
+
+// Every `step`th row of blocks.
+static void code_rows(struct blocks *b, int step)
+{
+    const int rows = (b->codes->height + 3) / BLOCK_SIDE;
+    b->step = step;
+    thread_for(b->e->params->threads, (size_t)((rows + step - 1) / step), code_row, b);
+}
+
+static void round_bytes(struct blocks *b)
+{
+    for (size_t i = 0; i < 3 * pixels_of(b); i++)
+        b->rgb[i] = (uint8_t)(255.0f * b->value[i] + 0.5f);
+}
+
+static void round_halves(struct blocks *b, float foot)
+{
+    uint16_t *half = (void *)b->rgb;
+    for (size_t i = 0; i < 3 * pixels_of(b); i++)
+        half[i] = half_from_float(foot + (1.0f - foot) * b->value[i]);
+}
+
+static double missed(const struct blocks *b, float foot, int step)
+{
+    const size_t width = (size_t)b->codes->width;
+    double sum = 0.0;
+    for (int y = 0; y < b->codes->height; y++)
+        for (size_t x = 0; y / BLOCK_SIDE % step == 0 && x < width; x++)
+            for (size_t c = 0; c < 3; c++) {
+                const size_t at = (size_t)y * width + x;
+                const uint16_t *plane = (void *)b->plane[3 * (size_t)b->term + c];
+                const double seen = (double)((float_from_half(plane[at]) - foot) / (1.0f - foot));
+                sum +=
+                    (seen - (double)b->value[3 * at + c]) * (seen - (double)b->value[3 * at + c]);
+            }
+    return sum;
+}
+
+static float choose_foot(struct blocks *b)
+{
+    const int rows = (b->codes->height + 3) / BLOCK_SIDE, step = rows > TRIED ? rows / TRIED : 1;
+    float best = feet[0];
+    double least = INFINITY;
+    for (int i = 0; i < FEET; i++) {
+        round_halves(b, feet[i]);
+        code_rows(b, step);
+        const double miss = missed(b, feet[i], step);
+        if (miss < least)
+            best = feet[i];
+        least = fmin(least, miss);
+    }
+    return best;
+}
+
+static void code_term(struct blocks *b)
+{
+    if (b->format->encode) {
+        round_bytes(b);
+    } else {
+        const float foot = choose_foot(b);
+        for (size_t p = 3 * (size_t)b->term; p < 3 * (size_t)b->term + 3; p++)
+            b->least[p] -= (b->most[p] - b->least[p]) * foot / (1.0f - foot);
+        round_halves(b, foot);
+    }
+    code_rows(b, 1);
 }
 
 static relume_status save(const struct blocks *b, const outdir *dir, const char *name,
@@ -111,7 +207,7 @@ static relume_status write_term(struct blocks *b, const outdir *dir, int term)
     relume_status status = read_term(b, term);
     if (status)
         return status;
-    thread_for(b->e->params->threads, (size_t)(height + 3) / BLOCK_SIDE, code_row, b);
+    code_term(b);
     dds_head(head, width, height, b->format);
     return save(b, dir, "eigenimage", head, b->coded, block_bytes(width, height, b->format));
 }
@@ -272,7 +368,7 @@ static double squared_difference(const struct relume_image *a, const struct relu
     return sum / (65025.0 * (double)n);
 }
 
-// Under some of the lights, against the file itself: what ranges of 8 bits and blocks cost.
+// Under some of the lights, against the file itself: what ranges and blocks cost.
 static relume_status judge(double *psnr_db, const struct blocks *b, const float *step)
 {
     const struct relume_coder_info *info = relume_coder_info(b->codes->coder);
@@ -280,7 +376,7 @@ static relume_status judge(double *psnr_db, const struct blocks *b, const float 
     struct relume_image file = {0}, blocks = {0};
     const int n = info->lights < JUDGED ? info->lights : JUDGED;
     relume_status status = RELUME_OK;
-    seen.storage = RELUME_STORE_8;
+    seen.storage = b->texel == 1 ? RELUME_STORE_8 : RELUME_STORE_HALF;
     seen.plane = (const void *const *)b->plane;
     seen.scale = step;
     seen.offset = b->least;
@@ -324,11 +420,13 @@ static relume_status create(struct blocks *b)
     b->low = mem_array((size_t)b->terms, sizeof *b->low);
     b->high = mem_array((size_t)b->terms, sizeof *b->high);
     b->plane = mem_zeroed(planes, sizeof *b->plane);
-    b->rgb = mem_array(n, 3);
+    b->value = mem_array(n, 3 * sizeof *b->value);
+    b->rgb = mem_array(n, 3 * b->texel);
     b->coded = mem_array(block_bytes(b->codes->width, b->codes->height, b->format), 1);
-    bool good = b->least && b->most && b->low && b->high && b->plane && b->rgb && b->coded;
+    bool good =
+        b->least && b->most && b->low && b->high && b->plane && b->value && b->rgb && b->coded;
     for (size_t p = 0; good && p < planes; p++)
-        good = (b->plane[p] = mem_array(n, 1)) != NULL;
+        good = (b->plane[p] = mem_array(n, b->texel)) != NULL;
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -341,6 +439,7 @@ static void destroy(struct blocks *b)
     mem_free(b->most);
     mem_free(b->low);
     mem_free(b->high);
+    mem_free(b->value);
     mem_free(b->rgb);
     mem_free(b->coded);
 }
@@ -370,7 +469,7 @@ static relume_status report_on(const struct blocks *b, struct relume_export_repo
     if (!step)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
-        step[p] = (b->most[p] - b->least[p]) / 255.0f;
+        step[p] = (b->most[p] - b->least[p]) / (b->texel == 1 ? 255.0f : 1.0f);
     *report = (struct relume_export_report){
         .planes = (int)planes,
         .bytes_per_pixel = (double)b->terms *
@@ -399,9 +498,12 @@ relume_status export_blocks(const struct export *e, const char *path, enum relum
                                             "textures");
     struct blocks b = {.e = e,
                        .codes = codes,
-                       .format = format == RELUME_EXCHANGE_BC1 ? &block_bc1 : &block_bc7,
+                       .format = format == RELUME_EXCHANGE_BC1   ? &block_bc1
+                                 : format == RELUME_EXCHANGE_BC7 ? &block_bc7
+                                                                 : &block_bc6h,
                        .terms = info->coefficients,
                        .side = SIDE};
+    b.texel = b.format->encode ? 1 : sizeof(uint16_t);
     relume_status status = create(&b);
     if (!status)
         status = write_all(&b, path);

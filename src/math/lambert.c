@@ -122,10 +122,11 @@ struct lambert_sample *lambert_fit(vec3 *g, const vec3 *direction, struct lamber
     if (!plain && !fit_robustly(g, direction, s, *n))
         return NULL;
     if (!plain && given <= FEW) {
+        const vec3 middle = *g;
         s = all;
         *n = given;
         if (!fit_robustly(g, direction, s, *n))
-            return NULL;
+            *g = middle;  // of the lights that it faces too few are left
     }
     return vec3_length(*g) > black ? s : NULL;
 }

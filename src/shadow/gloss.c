@@ -1,13 +1,11 @@
 // gloss.c - highlights that wander, added to a relit picture
 #include "shadow/gloss.h"
 
-#include "base/memory.h"
 #include "base/thread.h"
 
 #include <math.h>
 
 static const float LEAST_ROUGHNESS = 0.05f;  // as src/appearance/ggx.h
-static const float LEAST_WEIGHT = 1e-4f;     // of a captured light that counts
 
 void gloss_shown(float rgb[3], const float *pixel, vec3 light)
 {
@@ -35,8 +33,6 @@ void gloss_wanders(float rgb[3], const float *pixel, const struct gloss_light *l
 {
     float between[3] = {0.0f, 0.0f, 0.0f}, known[3];
     for (int i = 0; i < l->captured; i++) {
-        if (fabsf(l->weight[i]) < LEAST_WEIGHT)
-            continue;
         gloss_shown(known, pixel, l->from[i]);
         for (int c = 0; c < 3; c++)
             between[c] += l->weight[i] *
@@ -51,8 +47,8 @@ struct adding {
     struct relume_image *more;
     int left, top;
     const struct relume_image *model;
-    struct gloss_light light;
-    float rgb[3];
+    const struct gloss_light *light;
+    const float *rgb;
 };
 
 static void add_row(void *context, size_t row, int worker)
@@ -69,47 +65,16 @@ static void add_row(void *context, size_t row, int worker)
         float more[3];
         if (!(share > 0.0f))
             continue;
-        gloss_wanders(more, pixel, &a->light);
+        gloss_wanders(more, pixel, a->light);
         for (int c = 0; c < 3; c++)
             out[c] += a->rgb[c] * share * more[c];
     }
 }
 
-// The captured lights, of the interpolant of the codes; in a sum of lights that of environments,
-// whose weights are never negative.
-static relume_status know(relume_coder **out, const struct relume_coder_info *info, bool summed)
+void gloss_add(struct relume_image *more, int left, int top, const struct relume_image *model,
+               const struct gloss_light *light, const float rgb[3], int threads)
 {
-    struct relume_coder_params p = *relume_coder_params(.hemispherical = info->hemispherical,
-                                                        .pole_y = info->pole_y, .decode = true);
-    p.interpolant = summed ? relume_interpolant_find("delaunay") : info->interpolant;
-    for (int i = 0; !summed && i < 4; i++)
-        p.parameter[i] = info->parameter[i];
-    return relume_coder_create(out, relume_basis_find("table"), info->directions, info->lights, &p);
-}
-
-relume_status gloss_add(struct relume_image *more, int left, int top,
-                        const struct relume_image *model, const relume_coder *coder,
-                        const struct relume_transfer *display, const struct relume_light *light,
-                        bool summed, int threads)
-{
-    const struct relume_coder_info *info = relume_coder_info(coder);
-    relume_coder *between = NULL;
-    float *weights = mem_array(3 * (size_t)info->lights, sizeof *weights), constant[3];
-    struct adding a = {.more = more, .left = left, .top = top, .model = model};
-    const float share =
-        (float)relume_coder_clamp(&a.light.light, coder, vec3_unit(light->direction));
-    relume_status status = weights ? know(&between, info, summed) : RELUME_ENOMEM;
-    if (!status) {
-        relume_coder_weights(between, a.light.light, weights, constant);
-        a.light.captured = info->lights;
-        a.light.from = info->directions;
-        a.light.weight = weights;
-        a.light.display = display;
-        for (int c = 0; c < 3; c++)
-            a.rgb[c] = share * light->rgb[c];
-        thread_for(threads, (size_t)more->height, add_row, &a);
-    }
-    relume_coder_destroy(&between);
-    mem_free(weights);
-    return status;
+    struct adding a = {
+        .more = more, .left = left, .top = top, .model = model, .light = light, .rgb = rgb};
+    thread_for(threads, (size_t)more->height, add_row, &a);
 }

@@ -27,11 +27,8 @@ struct gloss_light {
 };
 void gloss_wanders(float rgb[3], const float *pixel, const struct gloss_light *l);
 
-// What relume_shadows_add adds for a directional light, or for one of those that an environment is
-// the sum of (`summed`).
-relume_status gloss_add(struct relume_image *more, int left, int top,
-                        const struct relume_image *model, const relume_coder *coder,
-                        const struct relume_transfer *display, const struct relume_light *light,
-                        bool summed, int threads);
+// Adds what wanders under a light of value `rgb` to a picture of `model` from (left, top) on.
+void gloss_add(struct relume_image *more, int left, int top, const struct relume_image *model,
+               const struct gloss_light *light, const float rgb[3], int threads);
 
 #endif

@@ -79,6 +79,7 @@ void relume_shadows_destroy(relume_shadows **shadows)
         mem_free(s->reached[i]);
     mem_free(s->reached);
     relume_coder_destroy(&s->between);
+    relume_coder_destroy(&s->summed);
     stage_destroy(&s->stage);
     relume_image_destroy(&s->gloss);
     mem_free(s->matte);
@@ -182,7 +183,7 @@ relume_status relume_shadows_trace(uint8_t *out, const relume_shadows *s, vec3 d
 
 // ---------------------------------------------------------------- what it adds
 
-enum { AROUND = 4 };  // captured lights around a direction, at most
+enum { AROUND = SHADOWS_AROUND };
 static const float SHARE = 1.0f / RELUME_SHADOW_REACHED;
 
 struct adding {
@@ -247,25 +248,13 @@ static void add_row(void *context, size_t row, int worker)
     }
 }
 
-// A table of the same lights, asked for their weights.
-static relume_status need_between(relume_shadows *s, const struct relume_coder_info *info)
-{
-    if (s->between)
-        return RELUME_OK;
-    s->lights = info->lights;
-    if (!s->reached)
-        s->reached = mem_zeroed((size_t)info->lights, sizeof *s->reached);
-    return !s->reached
-               ? RELUME_ENOMEM
-               : relume_coder_create(&s->between, relume_basis_find("table"), info->directions,
-                                     info->lights,
-                                     relume_coder_params(.hemispherical = info->hemispherical,
-                                                         .pole_y = info->pole_y, .decode = true));
-}
-
 static relume_status need_reached(struct adding *a, relume_shadows *s, int light, float weight,
                                   vec3 direction, int threads)
 {
+    if (!s->reached)
+        s->reached = mem_zeroed((size_t)s->lights, sizeof *s->reached);
+    if (!s->reached)
+        return RELUME_ENOMEM;
     if (!s->reached[light]) {
         if (!(s->reached[light] = mem_array(pixels_of(s), 1)))
             return RELUME_ENOMEM;
@@ -283,24 +272,23 @@ static relume_status need_reached(struct adding *a, relume_shadows *s, int light
 }
 
 // The captured lights around a->light.
-static relume_status look_around(struct adding *a, relume_shadows *s, int threads)
+static relume_status look_around(struct adding *a, relume_shadows *s, const relume_coder *coder,
+                                 int threads)
 {
-    const struct relume_coder_info *info = relume_coder_info(s->between);
-    float *weights = mem_array(3 * (size_t)info->lights, sizeof *weights), constant[3];
-    relume_status status = weights ? RELUME_OK : RELUME_ENOMEM;
-    if (!status)
-        relume_coder_weights(s->between, a->light, weights, constant);
-    for (int i = 0; !status && i < info->lights && a->around < AROUND; i++)
-        if (weights[i] != 0.0f)
-            status = need_reached(a, s, i, weights[i], info->directions[i], threads);
-    mem_free(weights);
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    int light[AROUND], n;
+    float weight[AROUND];
+    relume_status status = relume_shadows_around(light, weight, &n, s, coder, a->light, false);
+    for (int i = 0; !status && i < n; i++)
+        status = need_reached(a, s, light[i], weight[i], info->directions[light[i]], threads);
     return status;
 }
 
-static relume_status add_distant(struct adding *a, relume_shadows *s, int threads)
+static relume_status add_distant(struct adding *a, relume_shadows *s, const relume_coder *coder,
+                                 int threads)
 {
-    relume_status status = look_around(a, s, threads);
-    if (status || a->weight[0] > 0.9999f)  // it is a photograph
+    relume_status status = look_around(a, s, coder, threads);
+    if (status || !a->around)
         return status;
     a->arrives = mem_array((size_t)a->rect.width, (size_t)a->rect.height);
     status = a->arrives ? trace(a->arrives, &s->stage, a->light, &a->rect, threads) : RELUME_ENOMEM;
@@ -464,16 +452,37 @@ relume_status relume_shadows_suns(struct relume_light *lamp, int *suns,
     return status;
 }
 
+static relume_status add_highlights(struct adding *a, relume_shadows *s, const relume_coder *coder,
+                                    int threads)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const size_t most = (size_t)info->lights;
+    int *which = mem_array(most, sizeof *which);
+    float *weight = mem_array(most, sizeof *weight);
+    vec3 *from = mem_array(most, sizeof *from);
+    struct gloss_light light = {
+        .light = a->light, .from = from, .weight = weight, .display = a->display};
+    relume_status status = which && weight && from ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status =
+            relume_shadows_around(which, weight, &light.captured, s, coder, a->light, a->summed);
+    for (int i = 0; !status && i < light.captured; i++)
+        from[i] = info->directions[which[i]];
+    if (!status)
+        gloss_add(a->more, a->rect.left, a->rect.top, &s->gloss, &light, a->rgb, threads);
+    mem_free(which);
+    mem_free(weight);
+    mem_free(from);
+    return status;
+}
+
 static relume_status add_lamp(struct adding *a, relume_shadows *s, const relume_coder *coder,
                               const struct relume_light *lamp, int threads)
 {
-    if (s->gloss.data)
-        return gloss_add(a->more, a->rect.left, a->rect.top, &s->gloss, coder, a->display, lamp,
-                         a->summed, threads);
     const float share = (float)relume_coder_clamp(&a->light, coder, vec3_unit(lamp->direction));
     for (int c = 0; c < 3; c++)
         a->rgb[c] = share * lamp->rgb[c];
-    return add_distant(a, s, threads);
+    return (s->gloss.data ? add_highlights : add_distant)(a, s, coder, threads);
 }
 
 static relume_status add_light(struct adding *a, relume_shadows *s, const relume_coder *coder,
@@ -498,7 +507,7 @@ static relume_status add(struct relume_image *picture, int left, int top, relume
                        .display = display,
                        .summed = summed};
     if (!status && !shadows->gloss.data)
-        status = need_between(shadows, relume_coder_info(coder));
+        status = shadows_need_between(shadows, relume_coder_info(coder), false);
     if (!status)
         status = add_light(&a, shadows, coder, light, threads);
     for (size_t i = 0; !status && i < n; i++)

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <relume/shadow.h>
 #include <string.h>
 
 // In pixels: how far rays go at once, how far from the surface they start and are behind it before
@@ -20,7 +21,7 @@ static const double STEP = 0.7, START = 1.0, NEAR = 0.25, SAME = 12.0, MARGIN = 
 static const double DEEPEST = 16.0;
 
 // Rays that are in front of all that is seen nearby go by tiles.
-enum { TILE = 8 };
+enum { TILE = RELUME_SHADOW_TILE };
 
 bool stage_suits(const struct relume_geometry *g)
 {

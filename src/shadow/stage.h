@@ -7,6 +7,7 @@
 #include <relume/capture.h>
 #include <relume/image.h>
 
+// As relume_shadows_rays.
 enum stage_kind { STAGE_FLAT, STAGE_EYE, STAGE_CYLINDER, STAGE_SPHERE };
 
 // How far four neighbours are, at least and at most.

@@ -40,7 +40,8 @@ RELUME_RESULT relume_status stereo_field_learn(struct stereo_field *field);
 
 // The values of a worker's pixel are set here, as above; those behind the last light are below 0.
 float *stereo_field_values(struct stereo_field *field, int worker);
-// Improve a normal; how sure it is, 0 where the pixel is too dark.
+// Improve a matte surface's normal, of few lights a part of the way; how sure it is, 0 where the
+// pixel is too dark.
 float stereo_field_solve(struct stereo_field *field, int worker, const vec3 *direction, vec3 eye,
                          vec3 *normal);
 

@@ -57,6 +57,10 @@ expect_fail 'no flat field' 1 'light0000.*evenly lit' out "$RELUME" capture phot
 expect_fail 'too many flat fields' 1 '12 photographs|expected 1, or 12' out "$RELUME" capture photos \
     --lights lights.txt --flat "$(find photos -name '*0000*')" --flat "$(find photos -name '*0001*')" -o out
 expect_fail 'grey outside' 2 'white region 90,90' out "$RELUME" capture photos --lights lights.txt --white 90,90,9,9 -o out
+cp lights.txt photos/all.lp
+expect_fail 'a list of photographs in place of these' 1 'photos/all.lp: this lists lights .* relume capture photos --lights photos/all.lp -o DIR' out \
+    "$RELUME" capture photos/all.lp -o out
+rm photos/all.lp
 expect_fail 'no grey region' 2 'four numbers x,y,w,h' out "$RELUME" capture photos --lights lights.txt --white 9,9 -o out
 expect_fail 'an integrable surface of given lights' 2 'needs --refine-lights' out "$RELUME" capture photos \
     --lights lights.txt --integrable -o out

@@ -27,6 +27,46 @@ for f in traced faded; do "$RELUME" relight $f.exr -o $f.png --light "$sun" -q; 
 above 'the viewer shows what relight shows' "$(alike traced.png window.png)" 45
 below 'which are other shadows' "$(alike traced.png faded.png)" 30
 
+# ---- passes of the graphics card: a light that moves, near ones, environments, several, parts of views, rooms
+awk 'BEGIN { print "P3 32 16 255"; for (i = 0; i < 512; i++) print i == 107 ? "255 255 255" : i == 148 ? "255 200 100" : "3 3 4" }' >suns.ppm
+passes() { # name, file, options of both...: the root of the mean square is more than the mean
+    name=$1 file=$2
+    shift 2
+    "$RELUME" relight "$file" -o cpu.exr -q "$@" && "$VIEWER" "$file" --relight passes --offscreen gpu.exr --vram "${vram:-1024}" "$@" 2>err.txt ||
+        not_ok "$name" "a program failed; $(cat err.txt)"
+    off=$("$RELUME" compare cpu.exr gpu.exr | awk '$1 == "rms" { print $2 * 255 }')
+    below "$name: off by $off of 255" "$off" 1
+}
+"$RELUME" relight faded.exr -o cpu.exr --light "$sun" -q
+"$VIEWER" traced.exr --relight passes --offscreen gpu.exr --size 48x48 --light "$sun"
+below 'by passes shadows move' "$(alike cpu.exr gpu.exr)" 30
+{ echo 'size 48 48' && for i in 0 1 2 3; do printf 'light dir 0.%d 0.5 0.7\nframe moved%d.exr\n' $i $i; done; } >film.txt
+"$VIEWER" traced.exr --relight passes --script film.txt || not_ok 'a film by passes' 'the viewer failed'
+for i in 0 1 2 3; do
+    "$RELUME" relight traced.exr -o cpu.exr --light "dir 0.$i 0.5 0.7" -q
+    off=$("$RELUME" compare cpu.exr moved$i.exr | awk '$1 == "rms" { print $2 * 255 }')
+    below "light $i of a film by passes: off by $off of 255" "$off" 1
+done
+passes 'a lamp that was captured' traced.exr --light "dir $(tr -d ' \n' <box/capture.json | sed 's/.*"directions":\[\[[^]]*\],\[\([^]]*\)\].*/\1/; s/,/ /g')"
+passes 'a near lamp' traced.exr --light "point 0.3 0.6 1.4"
+passes 'suns of an environment and a lamp' traced.exr --light "env suns.ppm 10" --light "dir 0.3 0.2 0.8"
+"$RELUME" encode box -o linear.exr --shadows yes --domain linear --basis table --bits half -q
+passes 'linear light' linear.exr --light "$sun" --light "dir -0.5 0.1 0.7 rgb .5 .4 .2"
+"$RELUME" encode box -o books.exr --shadows yes --basis pca --codebook 256 -q
+passes 'a codebook' books.exr --light "$sun"
+"$RELUME" synth teapot -o teapot --views 2x2 --size 96 --lights 12 --samples 1 -q
+"$RELUME" encode teapot -o teapot.exr --shadows yes -q
+passes 'an eye of a slab' teapot.exr --eye 0.1,-0.2,3 --size 60x60 --light "$sun"
+vram=1
+passes 'parts of its views' teapot.exr --eye 0.1,-0.2,3 --size 150x150 --light "$sun"
+vram=
+for p in cylindrical spherical; do
+    "$RELUME" synth attic -o room --projection $p --size 32 --lights 16 --samples 1 -q
+    "$RELUME" encode room -o room.exr --shadows yes -q
+    passes "a room, $p" room.exr --pan 160 --size 60x40 --light "dir 0.2 0.8 0.5"
+    rm -r room
+done
+
 # ---- with loss
 "$RELUME" encode box -o fewer.exr --psnr 36 -q
 check 'who asks for few bytes gets none unasked' has fewer.exr false

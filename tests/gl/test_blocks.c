@@ -1,10 +1,10 @@
-// BC1 and BC7 as the graphics card decodes them, beside our own decoders
+// BC1, BC6H and BC7 as the graphics card decodes them, beside our own decoders
 #include "fixture.h"
 
 #include "block/block.h"
 
 enum { ACROSS = 16, SIDE = ACROSS * BLOCK_SIDE };
-enum { DXT1 = 0x83f0, BPTC = 0x8e8c };
+enum { DXT1 = 0x83f0, BPTC = 0x8e8c, BPTC_HALF = 0x8e8f };
 
 typedef void compressed(GLenum, GLint, GLenum, GLsizei, GLsizei, GLint, GLsizei, const void *);
 typedef void get_image(GLenum, GLint, GLenum, GLenum, void *);
@@ -71,12 +71,50 @@ static void compare(const struct block_format *f, GLenum internal)
     gl->DeleteTextures(1, &texture);
 }
 
+// The same of half floats, which cards decode to the bit.
+static void compare_halves(void)
+{
+    enum { BLOCKS = ACROSS * ACROSS };
+    static uint8_t coded[BLOCKS * BLOCK_MOST_BYTES];
+    static uint16_t ours[SIDE * SIDE][3], theirs[SIDE * SIDE][3];
+    uint64_t random = 5;
+    for (int b = 0; b < BLOCKS; b++) {
+        uint16_t rgb[BLOCK_PIXELS][3];
+        for (int i = 0; i < BLOCK_PIXELS; i++)
+            for (int c = 0; c < 3; c++)
+                rgb[i][c] = (uint16_t)(b % 3 == 0   ? 0x7bff * uniform(&random)
+                                       : b % 3 == 1 ? 0x3c00 + 20 * c + i * b / 4
+                                                    : 0x2c00 + 9 * b + (i + c) % 3);
+        block_bc6h.encode_halves(coded + 16 * b, (const uint16_t(*)[3])rgb);
+        block_bc6h.decode_halves(rgb, coded + 16 * b);
+        for (int i = 0; i < BLOCK_PIXELS; i++)
+            memcpy(ours[(b / ACROSS * BLOCK_SIDE + i / 4) * SIDE + b % ACROSS * 4 + i % 4], rgb[i],
+                   sizeof rgb[i]);
+    }
+    compressed *upload = (compressed *)context_osmesa.get_proc("glCompressedTexImage2D");
+    get_image *download = (get_image *)context_osmesa.get_proc("glGetTexImage");
+    GLuint texture;
+    fixture_gl.GenTextures(1, &texture);
+    fixture_gl.BindTexture(GL_TEXTURE_2D, texture);
+    upload(GL_TEXTURE_2D, 0, BPTC_HALF, SIDE, SIDE, 0, sizeof coded, coded);
+    if (gl_check(&fixture_gl, "uploading blocks", &fixture_log)) {
+        print_message("skipped: bc6h: this driver has no such textures\n");
+    } else {
+        fixture_gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+        download(GL_TEXTURE_2D, 0, GL_RGB, GL_HALF_FLOAT, theirs);
+        assert_int_equal(gl_check(&fixture_gl, "reading blocks", &fixture_log), RELUME_OK);
+        assert_memory_equal(ours, theirs, sizeof ours);
+    }
+    fixture_gl.DeleteTextures(1, &texture);
+}
+
 static void blocks_are_read_as_we_read_them(void **state)
 {
     (void)state;
     paint();
     compare(&block_bc1, DXT1);
     compare(&block_bc7, BPTC);
+    compare_halves();
 }
 
 int main(void)

@@ -263,6 +263,27 @@ static void test_rbf_closed_form(void **state)
     rbf->release(data);
 }
 
+// Two lights and a place between: by hand, a Gaussian each and a constant.
+static void test_gaussian_closed_form(void **state)
+{
+    (void)state;
+    const struct set s = {2, {{0, 0, 1}, {0.6, 0, 0.8}}};
+    const double sigma = 0.5, parameter[4] = {sigma};
+    const struct relume_interpolant *gaussian = relume_interpolant_find("gaussian");
+    const vec3 d = vec3_of(0.28, 0, 0.96), ends = vec3_sub(s.light[0], s.light[1]);
+    const vec3 to[2] = {vec3_sub(d, s.light[0]), vec3_sub(d, s.light[1])};
+    const double across = exp(-vec3_dot(ends, ends) / (sigma * sigma));
+    const double a = exp(-vec3_dot(to[0], to[0]) / (sigma * sigma));
+    const double b = exp(-vec3_dot(to[1], to[1]) / (sigma * sigma));
+    void *data;
+    double w[2];
+    CHECK_OK(gaussian->prepare(&data, s.light, 2, parameter, NULL));
+    gaussian->evaluate(data, d, w);
+    CHECK_NEAR(w[0], 0.5 + 0.5 * (a - b) / (1.0 - across), 1e-5);
+    CHECK_NEAR(w[0] + w[1], 1.0, 1e-8);
+    gaussian->release(data);
+}
+
 // The nodes are reproduced, the middle of four weighs them alike, other lights are refused.
 static void test_octahedral_grid(void **state)
 {
@@ -325,6 +346,7 @@ int main(void)
         cmocka_unit_test(test_continuous),
         cmocka_unit_test(test_poor_light_sets),
         cmocka_unit_test(test_rbf_closed_form),
+        cmocka_unit_test(test_gaussian_closed_form),
         cmocka_unit_test(test_octahedral_grid),
         cmocka_unit_test(test_parameters_are_bounded),
     };

@@ -342,6 +342,11 @@ static double thin_plate(const double *parameter, struct vector a, struct vector
     return r > 0.0 ? r * r * log(r) : 0.0;
 }
 
+static double gaussian(const double *parameter, struct vector a, struct vector b)
+{
+    return exp(-dot(minus(a, b), minus(a, b)) / (parameter[0] * parameter[0]));
+}
+
 static double chord(const double *parameter, struct vector a, struct vector b)
 {
     const struct vector d = minus(a, b);
@@ -407,10 +412,11 @@ static void kernel(const struct set *s, double (*phi)(const double *, struct vec
     memcpy(value, b, (size_t)s->n * sizeof *value);
 }
 
-static void rbf(const struct set *s, double sigma, struct vector d, double *value)
+// The mean distance to the nearest other light.
+static double spacing(const struct set *s)
 {
     double sum = 0.0;
-    for (int i = 0; i < s->n && !(sigma > 0.0); i++) {
+    for (int i = 0; i < s->n; i++) {
         double nearest = 2.0;
         for (int j = 0; j < s->n; j++) {
             const struct vector e = minus(s->light[i], s->light[j]);
@@ -419,7 +425,12 @@ static void rbf(const struct set *s, double sigma, struct vector d, double *valu
         }
         sum += nearest;
     }
-    const double width = sigma > 0.0 ? sigma : sum / s->n;
+    return sum / s->n;
+}
+
+static void rbf(const struct set *s, double sigma, struct vector d, double *value)
+{
+    const double width = sigma > 0.0 ? sigma : spacing(s);
     for (int round = 0; round < 2; round++) {
         double total = 0.0;
         for (int i = 0; i < s->n; i++) {
@@ -516,6 +527,9 @@ static void interpolate(struct vector d, double *value)
         kernel(&s, angular, p, both ? 4 : 3, 1e-9, d, value);
     else if (!strcmp(name, "tps"))
         kernel(&s, thin_plate, p, both ? 4 : 3, 1e-9, d, value);
+    else if (!strcmp(name, "gaussian"))
+        kernel(&s, gaussian, (const double[]){p[0] > 0.0 ? p[0] : 2.0 * spacing(&s)}, 1, 1e-6, d,
+               value);
     else if (!strcmp(name, "rbf"))
         rbf(&s, p[0], d, value);
     else if (!strcmp(name, "natural"))
@@ -573,7 +587,8 @@ static double captured(struct vector *d)
     if (!int_of("relume.hemispherical") || strcmp(text_of("relume.pole"), "z") || n / 3 < 4)
         return 1.0;
     const int bounded = !strcmp(name, "delaunay") || !strcmp(name, "natural") ||
-                        !strcmp(name, "rbf") || !strcmp(name, "octahedral");
+                        !strcmp(name, "gaussian") || !strcmp(name, "rbf") ||
+                        !strcmp(name, "octahedral");
     find_reach(reach, bounded ? 0.25 : 0.5);
     const double at = (atan2(d->y, d->x) / (2.0 * M_PI) + 1.0) * 256.0;
     double border = 0.0;

@@ -1,7 +1,9 @@
-// BC1 and BC7: blocks worked out by hand, and how far coded ones are from what went in
+// BC1, BC6H and BC7: blocks worked out by hand, and how far coded ones are from what went in
 #include "test.h"
 
 #include "block/dds.h"
+
+#include "base/half.h"
 
 static const struct block_format *const formats[] = {&block_bc1, &block_bc7};
 
@@ -57,6 +59,79 @@ static void test_blocks_by_hand(void **state)
     for (int i = 1; i < BLOCK_PIXELS; i++)
         for (int c = 0; c < 3; c++)
             assert_int_equal(rgb[i][c], 255);
+}
+
+static void put(uint8_t *block, int at, int value, int count)
+{
+    for (int i = 0; i < count; i++)
+        block[(at + i) / 8] |= (uint8_t)((value >> i & 1) << (at + i) % 8);
+}
+
+// BC6H of the same specification; indices 0, then 15 fifteen times.
+static void test_halves_by_hand(void **state)
+{
+    (void)state;
+    uint16_t rgb[BLOCK_PIXELS][3];
+    // mode 00011: ends of 10 bits, 512 and 1023 of red: ((512 << 15) + 2^14 >> 9) * 31 >> 6, and
+    // the largest
+    uint8_t ten[16] = {3};
+    put(ten, 5, 512, 10);
+    put(ten, 35, 1023, 10);
+    for (int i = 68; i < 128; i++)
+        put(ten, i, 1, 1);
+    block_bc6h.decode_halves(rgb, ten);
+    assert_int_equal(rgb[0][0], (32768 + 32) * 31 / 64);
+    assert_int_equal(rgb[1][0], 0x7bff);
+    assert_int_equal(rgb[1][1], 0);
+    // mode 01111: 16 bits, of which the upper six stand behind the difference, highest first:
+    // 0x8c21 of green, and 3 less
+    uint8_t sixteen[16] = {15};
+    put(sixteen, 15, 0x21, 10);
+    put(sixteen, 45, 13, 4);
+    put(sixteen, 49, 1, 1);  // bit 15
+    put(sixteen, 53, 1, 1);  // bit 11
+    put(sixteen, 54, 1, 1);  // bit 10
+    for (int i = 68; i < 128; i++)
+        put(sixteen, i, 1, 1);
+    block_bc6h.decode_halves(rgb, sixteen);
+    assert_int_equal(rgb[0][1], 0x8c21 * 31 >> 6);
+    assert_int_equal(rgb[1][1], (0x8c21 - 3) * 31 >> 6);
+    assert_int_equal(rgb[1][0], 0);
+}
+
+static double halves_error(const float (*rgb)[3])
+{
+    uint8_t coded[BLOCK_MOST_BYTES];
+    uint16_t half[BLOCK_PIXELS][3];
+    double sum = 0.0;
+    for (int i = 0; i < BLOCK_PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            half[i][c] = half_from_float(rgb[i][c]);
+    block_bc6h.encode_halves(coded, (const uint16_t(*)[3])half);
+    block_bc6h.decode_halves(half, coded);
+    for (int i = 0; i < BLOCK_PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            sum += pow((double)(float_from_half(half[i][c]) - rgb[i][c]), 2.0) / 48.0;
+    return sqrt(sum);
+}
+
+// Even blocks take ends of 16 bits: within steps of half floats. Ramps as those below, of less than
+// two octaves: half a step of fifteen, which is up to 1.4 times as wide as the mean of them, and
+// ends of 11 bits or more. Of very different sizes too: half a step in proportion.
+static void test_halves(void **state)
+{
+    (void)state;
+    float rgb[BLOCK_PIXELS][3];
+    for (float v = 1e-3f; v < 6e4f; v *= 7.3f) {
+        for (int i = 0; i < BLOCK_PIXELS; i++)
+            rgb[i][0] = v, rgb[i][1] = 0.5f * v, rgb[i][2] = 0.3f * v;
+        assert_true(halves_error((const float(*)[3])rgb) < (double)v * 0x1p-10);
+        for (int i = 0; i < BLOCK_PIXELS; i++)
+            for (int c = 0; c < 3; c++)
+                rgb[i][c] *= 0.4f + 0.6f * (float)i / 15.0f;
+        assert_true(halves_error((const float(*)[3])rgb) <
+                    (double)v * (0.6 * 1.4 / 15.0 / sqrt(12.0) + 0x1p-7));
+    }
 }
 
 static void test_even_blocks(void **state)
@@ -129,6 +204,7 @@ static void test_sizes(void **state)
     assert_int_equal(1024 * 1024 * 6 / each, 12);
     CHECK_NEAR(253.0 * 1024 * 1024 * 6 / (16.0 * (double)each), 189.75, 1e-12);
     assert_int_equal(block_bytes(1024, 1024, &block_bc7), 1024 * 1024);
+    assert_int_equal(block_bytes(1024, 1024, &block_bc6h), 1024 * 1024);
     assert_int_equal(block_bytes(5, 9, &block_bc1), 2 * 3 * 8);
     dds_head(head, 5, 9, &block_bc1);
     assert_memory_equal(head, "DDS ", 4);
@@ -144,7 +220,8 @@ static void test_sizes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_blocks_by_hand), cmocka_unit_test(test_even_blocks),
+        cmocka_unit_test(test_blocks_by_hand), cmocka_unit_test(test_halves_by_hand),
+        cmocka_unit_test(test_halves),         cmocka_unit_test(test_even_blocks),
         cmocka_unit_test(test_ramps),          cmocka_unit_test(test_no_guess_is_better),
         cmocka_unit_test(test_sizes),
     };

@@ -178,7 +178,9 @@ struct depth_source pack_source_places(struct pack_source *source)
 
 struct code_source pack_source_codes(struct pack_source *source)
 {
-    return (struct code_source){read_codes, drop_codes, source, find_surface, find_shadows};
+    const struct relume_pack_info *info = relume_pack_info(source->pack);
+    return (struct code_source){read_codes, drop_codes, source, find_surface,
+                                info->has_shadow || info->has_gloss ? find_shadows : NULL};
 }
 
 struct code_source pack_source_tiles(struct pack_source *source)

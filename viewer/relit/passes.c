@@ -209,30 +209,59 @@ static relume_status add_linear(struct relighter *r, struct relit_view *v, struc
     return RELUME_OK;
 }
 
-static relume_status add_displayed(struct relighter *r, struct relit_view *v, struct weights *w)
+// What a directional light shows, alone, in r->coded; it becomes linear by *curve and *times.
+static relume_status relight_one(struct relume_transfer *curve, float times[3], struct relighter *r,
+                                 const struct relit_view *v, struct weights *w,
+                                 const struct relume_light *light, struct relume_vec3 from,
+                                 const float rgb[3])
 {
     static const float one[3] = {1, 1, 1};
-    relume_status status = passes_scratch(r, v);
-    for (int i = 0; !status && i < r->lights; i++) {
-        if (r->light[i].kind != RELUME_LIGHT_DIRECTIONAL)
-            continue;
-        struct relume_vec3 from;
-        const float share =
-            (float)relume_coder_clamp(&from, v->codes.coder, vec3_unit(r->light[i].direction));
-        float rgb[3];
-        for (int c = 0; c < 3; c++)
-            rgb[c] = share * r->light[i].rgb[c];
-        target_begin(&r->coded, r->gl);
-        if (v->codes.books) {
-            status = pass_lookup(r, v, &r->light[i], 1, &r->coded);
-        } else {
-            weights_clear(w);
-            weights_add(w, &v->codes, code_format_of(&v->codes)->unit, from, one);
-            pass_dot(r, v, w, &r->coded);
-        }
+    const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
+    const bool whole = v->codes.books && (!display || v->codes.books == 1);
+    *curve = display && !whole ? v->codes.display
+                               : (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
+    for (int c = 0; c < 3; c++)
+        times[c] = whole ? 1.0f : rgb[c];
+    target_begin(&r->coded, r->gl);
+    if (v->codes.books)
+        return pass_lookup(r, v, light, 1, &r->coded);
+    weights_clear(w);
+    weights_add(w, &v->codes, code_format_of(&v->codes)->unit, from, one);
+    pass_dot(r, v, w, &r->coded);
+    return RELUME_OK;
+}
+
+static relume_status add_alone(struct relighter *r, struct relit_view *v, struct weights *w,
+                               const struct relume_light *light)
+{
+    struct moving_picture p = {.coded = &r->coded,
+                               .coder = v->codes.coder,
+                               .display = {.curve = RELUME_CURVE_LINEAR},
+                               .left = v->at.left,
+                               .top = v->at.top};
+    const float share =
+        (float)relume_coder_clamp(&p.direction, v->codes.coder, vec3_unit(light->direction));
+    for (int c = 0; c < 3; c++)
+        p.rgb[c] = share * light->rgb[c];
+    if (v->codes.domain == RELUME_DOMAIN_DISPLAY)
+        p.display = v->codes.display;
+    relume_status status = relight_one(&p.picture, p.times, r, v, w, light, p.direction, p.rgb);
+    if (!status && v->moving.shadows)
+        return moving_draw(&r->moving, &v->moving, &p, &v->relit);
+    if (!status) {
         target_resume(&v->relit, r->gl);
-        passes_develop(r, v, &r->coded, v->codes.display, rgb);
+        passes_develop(r, v, &r->coded, p.picture, p.times);
     }
+    return status;
+}
+
+// Directional lights that are decoded one by one.
+static relume_status add_one_by_one(struct relighter *r, struct relit_view *v, struct weights *w)
+{
+    relume_status status = passes_scratch(r, v);
+    for (int i = 0; !status && i < r->lights; i++)
+        if (r->light[i].kind == RELUME_LIGHT_DIRECTIONAL)
+            status = add_alone(r, v, w, &r->light[i]);
     return status;
 }
 
@@ -266,13 +295,13 @@ static relume_status add_books(struct relighter *r, struct relit_view *v)
 relume_status passes_distant(struct relighter *r, struct relit_view *v)
 {
     const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
-    if (v->codes.books && (!display || v->codes.books == 1))
+    if (v->codes.books && !v->moving.shadows && (!display || v->codes.books == 1))
         return add_books(r, v);
     struct weights w;
     relume_status status = weights_create(&w, v->codes.coder, v->codes.planes);
     if (status)
         return status;
-    status = (display ? add_displayed : add_linear)(r, v, &w);
+    status = (display || v->moving.shadows ? add_one_by_one : add_linear)(r, v, &w);
     weights_destroy(&w);
     return status;
 }

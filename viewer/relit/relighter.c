@@ -32,6 +32,7 @@ static void release(struct relighter *r, struct relit_view *v)
     free(v->array);
     free(v->scale);
     nearby_view_destroy(&v->near, r->gl);
+    moving_view_destroy(&v->moving, r->gl);
     stop_lending(r, v);
     if (v->codes.books)
         books_forget(&v->codes);
@@ -169,6 +170,13 @@ static relume_status load_part(struct relighter *r, int view, const struct relum
     return RELUME_OK;
 }
 
+static relume_status need_shadows(struct relighter *r, struct relit_view *v)
+{
+    return v->shadows || !r->source.shadows
+               ? RELUME_OK
+               : r->source.shadows(&v->shadows, r->source.user, (int)(v - r->view));
+}
+
 static relume_status relight_by_library(struct relighter *r, struct relit_view *v,
                                         const struct relume_light *lights, int n,
                                         const struct target *into)
@@ -183,8 +191,8 @@ static relume_status relight_by_library(struct relighter *r, struct relit_view *
                                                               .threads = r->threads));
     if (!status && has_near(lights, n) && !v->surface.data)
         status = find_surface(&v->surface, r, view);
-    if (!status && !v->shadows && r->source.shadows)
-        status = r->source.shadows(&v->shadows, r->source.user, view);
+    if (!status)
+        status = need_shadows(r, v);
     if (!status)
         status = relume_relighter_picture(&image, r->library,
                                           &(struct relume_relit){.view = view,
@@ -206,24 +214,36 @@ static relume_status relight_by_library(struct relighter *r, struct relit_view *
     return RELUME_OK;
 }
 
-// Near lights on planes that take several array textures, which the shader does not read.
-static relume_status add_near_by_library(struct relighter *r, struct relit_view *v)
+// Those of passes are gone.
+static relume_status need_lent(struct relighter *r, struct relit_view *v)
+{
+    const int view = (int)(v - r->view);
+    if (v->lent)
+        return RELUME_OK;
+    if (!v->at.width)
+        return r->source.codes(&v->lent, r->source.user, view);
+    const relume_status status = r->parts.part(&v->part, r->parts.user, view, &v->at);
+    v->lent = status ? NULL : &v->part.codes;
+    return status;
+}
+
+// Lights of some kinds, beside passes.
+static relume_status add_by_library(struct relighter *r, struct relit_view *v,
+                                    bool (*is)(enum relume_light_kind))
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1.0f, 1.0f, 1.0f};
-    const int view = (int)(v - r->view);
-    const struct relume_codes *codes;
-    struct relume_light *near = malloc((size_t)r->lights * sizeof *near);
-    relume_status status = near ? passes_scratch(r, v) : RELUME_ENOMEM;
+    struct relume_light *light = malloc((size_t)r->lights * sizeof *light);
+    relume_status status = light ? passes_scratch(r, v) : RELUME_ENOMEM;
     int n = 0;
     for (int i = 0; !status && i < r->lights; i++)
-        if (relume_light_is_near(r->light[i].kind))
-            near[n++] = r->light[i];
-    if (!status && !v->lent && !(status = r->source.codes(&codes, r->source.user, view)))
-        v->lent = codes;
+        if (is(r->light[i].kind))
+            light[n++] = r->light[i];
     if (!status)
-        status = relight_by_library(r, v, near, n, &r->coded);
-    free(near);
+        status = need_lent(r, v);
+    if (!status)
+        status = relight_by_library(r, v, light, n, &r->coded);
+    free(light);
     if (status)
         return status;
     target_resume(&v->relit, r->gl);
@@ -249,10 +269,17 @@ static relume_status need_surface(struct relighter *r, struct relit_view *v)
     return status ? status : nearby_view_create(&v->near, &r->near, &codes, &surface);
 }
 
+// Highlights move under distant lights alone.
+static bool moves_shadows(const struct relit_view *v)
+{
+    return v->moving.shadows && !v->moving.stage.gloss;
+}
+
+// Array textures that are several the shader does not read.
 static relume_status add_near(struct relighter *r, struct relit_view *v)
 {
-    if (v->arrays > 1)
-        return add_near_by_library(r, v);
+    if (v->arrays > 1 || moves_shadows(v))
+        return add_by_library(r, v, relume_light_is_near);
     const struct nearby_codes codes = nearby_codes_of(v);
     relume_status status = need_surface(r, v);
     target_resume(&v->relit, r->gl);
@@ -270,14 +297,43 @@ bool relighter_has_kind(const struct relighter *r, bool (*is)(enum relume_light_
     return false;
 }
 
+static relume_status need_moving(struct relighter *r, struct relit_view *v)
+{
+    relume_status status = need_shadows(r, v);
+    if (!status && v->shadows && !v->moving.shadows)
+        status = moving_view_create(&v->moving, &r->moving, v->shadows, v->codes.coder);
+    return status;
+}
+
+static void count_moving(struct relighter *r, struct relit_view *v, size_t before)
+{
+    const size_t more = v->moving.bytes - before;
+    r->bytes += more;
+    v->bytes += more;
+}
+
+// What moves by the suns of environments is left to the library.
+static relume_status add_environments(struct relighter *r, struct relit_view *v)
+{
+    if (!relighter_has_kind(r, relighter_is_environment))
+        return RELUME_OK;
+    if (v->moving.shadows)
+        return add_by_library(r, v, relighter_is_environment);
+    return v->codes.domain == RELUME_DOMAIN_DISPLAY ? linear_copy_relight(r, v) : RELUME_OK;
+}
+
 static relume_status relight_by_passes(struct relighter *r, struct relit_view *v)
 {
+    const size_t before = v->moving.bytes;
+    relume_status status = need_moving(r, v);
+    if (status)
+        return status;
     target_begin(&v->relit, r->gl);
     passes_begin(r);
-    relume_status status = passes_distant(r, v);
-    if (!status && v->codes.domain == RELUME_DOMAIN_DISPLAY &&
-        relighter_has_kind(r, relighter_is_environment))
-        status = linear_copy_relight(r, v);
+    status = passes_distant(r, v);
+    count_moving(r, v, before);
+    if (!status)
+        status = add_environments(r, v);
     if (!status && relighter_has_kind(r, relume_light_is_near))
         status = add_near(r, v);
     r->gl->Disable(GL_BLEND);
@@ -302,6 +358,7 @@ relume_status relighter_create(struct relighter *r, const struct gl *gl,
 {
     *r = (struct relighter){
         .gl = gl, .log = log, .source = *source, .views = views, .budget = (size_t)1 << 30};
+    r->moving = (struct moving){.gl = gl, .log = log};
     r->view = calloc((size_t)views, sizeof *r->view);
     relume_status status = r->view ? passes_create(r) : RELUME_ENOMEM;
     if (!status)
@@ -322,6 +379,7 @@ void relighter_destroy(struct relighter *r)
     linear_copy_destroy(r);
     passes_destroy(r);
     nearby_destroy(&r->near);
+    moving_destroy(&r->moving);
     free(r->view);
     free(r->light);
     *r = (struct relighter){0};

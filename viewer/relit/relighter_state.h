@@ -5,6 +5,7 @@
 #include "gl/program.h"
 #include "gl/target.h"
 #include "relit/loader.h"
+#include "relit/moving.h"
 #include "relit/nearby.h"
 
 #include <relume/relight.h>
@@ -25,9 +26,10 @@ struct relit_view {
     struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;
     struct nearby_view near;
+    struct moving_view moving;        // of `shadows`, where passes relight it
     const struct relume_codes *lent;  // by the source, where the library relights it; else NULL
     struct relume_image surface;      // then; empty: not known yet
-    relume_shadows *shadows;          // then; NULL: not asked for yet, or none
+    relume_shadows *shadows;          // NULL: not asked for yet, or none
 };
 
 // The codes of the linear copy come from those of the file.
@@ -47,6 +49,7 @@ struct relighter {
     bool pending;              // this frame asked for a view that is still being read
     struct program dot, develop, lookup;
     struct nearby near;
+    struct moving moving;
     bool by_library;  // not by passes: where OpenGL is software. May be set before the first
                       // view is asked for
     relume_relighter *library;  // NULL: not needed yet

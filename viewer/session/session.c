@@ -247,8 +247,7 @@ static relume_status make_renderer(struct session *s)
     s->renderer.relighter.budget = s->vram_bytes;
     s->renderer.relighter.threads = s->threads;
     s->renderer.relighter.by_library =
-        s->relight == SESSION_LIBRARY ||
-        (s->relight == SESSION_AUTO && (s->gl.software || info->has_shadow || info->has_gloss));
+        s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
     s->renderer.glare.subject = s->subject;
     s->renderer.glare.threads = s->threads;
     s->renderer.glare.size = s->glare_size;

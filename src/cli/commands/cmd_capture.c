@@ -112,9 +112,29 @@ static relume_status list(struct relume_photographs *out, const char *const *pat
     return status;
 }
 
+static bool is_lp(const char *path)
+{
+    const size_t length = strlen(path);
+    return length > 3 && !strcasecmp(path + length - 3, ".lp");
+}
+
+// A list of lights that names its photographs is a capture already.
+static relume_status refuse_list(const struct capture_options *o)
+{
+    const char *path = o->args.input[0], *slash = strrchr(path, '/');
+    if (o->args.inputs != 1 || !is_lp(path))
+        return RELUME_OK;
+    return say(o->args.log, RELUME_EUNFIT,
+               "%s: this lists lights and photographs, which encode and maps take as it is; for "
+               "capture give the photographs: relume capture %.*s --lights %s -o DIR",
+               path, slash ? (int)(slash - path) : 1, slash ? path : ".", path);
+}
+
 static relume_status gather(const struct capture_options *o, struct job *job)
 {
-    relume_status status = list(&job->photos, o->args.input, o->args.inputs, 3, o);
+    relume_status status = refuse_list(o);
+    if (!status)
+        status = list(&job->photos, o->args.input, o->args.inputs, 3, o);
     if (!status && o->ball_photos.count)
         status = list(&job->balls, o->ball_photos.text, o->ball_photos.count, 0, o);
     if (!status && o->flat.count)
@@ -127,8 +147,7 @@ static relume_status gather(const struct capture_options *o, struct job *job)
 static bool fits(const char *path, const struct job *job)
 {
     struct relume_captured_lights list;
-    const size_t length = strlen(path);
-    const bool names = length > 3 && !strcasecmp(path + length - 3, ".lp");
+    const bool names = is_lp(path);
     const bool good = !relume_captured_lights_load(&list, path, false, NULL);
     const bool fits =
         good && (names ? list.count >= job->photos.count : list.count == job->photos.count);

@@ -60,7 +60,7 @@ static const struct option options[] = {
            "this PSNR; default: 38",
            10, 60),
     ENTRY("--interpolant", interpolant, "NAME",
-          "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay", relume_interpolants,
+          "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay, gaussian", relume_interpolants,
           NAMES("auto")),
     NAME("--colour", luminance, "C",
          "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb", 0,

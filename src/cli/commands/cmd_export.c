@@ -15,7 +15,7 @@ struct export_options {
     bool force, allow_outside, keep_going;
 };
 #define OPTIONS struct export_options
-#define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7"
+#define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h"
 
 static const struct option options[] = {
     GROUP("output"),
@@ -23,7 +23,7 @@ static const struct option options[] = {
     FLAG("--force", force, "replace a folder that relume made"),
     GROUP("model"),
     NAME("--to", to, "FORMAT",
-         "relight, ptm, lptm, rti, deepzoom, or bc1, bc7: eigenimages as DDS textures with a "
+         "relight, ptm, lptm, rti, deepzoom, or bc1, bc7, bc6h: eigenimages as DDS textures with a "
          "shader; "
          "default: by OUT's ending (.ptm, .lptm, .rti), else relight",
          RELUME_EXCHANGE_RELIGHT, FORMATS),
@@ -121,7 +121,7 @@ static relume_status choose_format(enum relume_exchange *to, const struct export
 
 static relume_status check(const struct export_options *o, enum relume_exchange to)
 {
-    const bool blocks = to == RELUME_EXCHANGE_BC1 || to == RELUME_EXCHANGE_BC7;
+    const bool blocks = to >= RELUME_EXCHANGE_BC1 && to <= RELUME_EXCHANGE_BC6H;
     const bool folder = to == RELUME_EXCHANGE_RELIGHT || to == RELUME_EXCHANGE_DEEPZOOM;
     const bool bytes = given(o, &o->bytes_per_pixel), psnr = given(o, &o->psnr);
     const char *only_folders = given(o, &o->type)         ? "--type"

@@ -50,6 +50,63 @@ objects '0,-0.6,-1.4' '{"mirror":1}' >mirror.json
 expect_ok 'with a mirror in it' - "$RELUME" relight far.exr --objects mirror.json $look -o far.png --transport path -q
 expect_fail 'without light between it needs depth' 1 'how far the scene is' x.png "$RELUME" relight far.exr --objects ball.json -o x.png
 
+# the viewer draws what relight does, two ways beside each other, and how far they are apart
+viewed() { # name, way, file, options...
+    name=$1 way=$2 file=$3
+    shift 3
+    "$VIEWER" "$file" --objects ball.json --size 48x32 --offscreen viewed.exr --light 'dir 0 1 0' --transport "$way" "$@" 2>err.txt &&
+        "$RELUME" relight "$file" --objects ball.json --size 48x32 -o cpu.exr --light 'dir 0 1 0' --transport "$way" "$@" -q || {
+        not_ok "$name" "a program failed"
+        return
+    }
+    check "$name" cmp viewed.exr cpu.exr
+}
+for way in ssao ssdo path; do viewed "the viewer shows $way" $way room.exr --tilt -20; done
+viewed 'the viewer takes samples and bounces' path room.exr --tilt -20 --samples 10 --bounces 0
+viewed 'the viewer shows a far panorama' ssdo far.exr --tilt -20
+check 'and says so once' test "$(grep -c 'the panorama has no depth' err.txt)" = 1
+viewed 'the viewer shows a slab' ssdo slab.exr
+cat >ways.txt <<'END'
+size 48 32
+frame none.exr
+transport ssdo
+frame one.exr
+transport beside path
+frame sides.exr
+transport difference path
+frame apart.exr
+transport difference ssdo
+frame same.exr
+transport alone
+key ctrl+t
+frame next.exr
+transport path
+key tab
+shot panel.png
+END
+expect_ok 'ways in a script' - "$VIEWER" room.exr --objects ball.json --tilt -20 --script ways.txt
+for pair in none:one one:sides sides:apart apart:same one:next; do
+    differ "ways: ${pair%:*} and ${pair#*:}" "${pair%:*}.exr" "${pair#*:}.exr"
+done
+check 'a way is not apart from itself' sh -c "'$RELUME' relight room.exr --objects ball.json $look -o black.exr --light 'dir 0 1 0 rgb 0 0 0' -q; '$RELUME' compare same.exr black.exr | awk '\$1 == \"max_abs\" { exit !(\$2 == 0) }'"
+refuse() { # name, status, pattern, command...
+    name=$1 want=$2 pattern=$3
+    shift 3
+    "$@" >out.txt 2>err.txt
+    status=$?
+    [ "$(grep -cE "^relume-view: .*$pattern" err.txt)/$(wc -l <err.txt)/$status" = "1/1/$want" ] && ok "$name" ||
+        not_ok "$name" "status $status, $(cat err.txt)"
+}
+echo 'transport sdo' >bad.txt
+refuse 'a way in a script that is none' 1 "column 11; expected WAY, beside WAY, .*ssdo or path; found 'sdo'" "$VIEWER" room.exr --objects ball.json --script bad.txt
+echo 'transport ssdo' >bad.txt
+refuse 'a way without objects' 1 'expected objects in a scene' "$VIEWER" room.exr --script bad.txt
+refuse 'a way in a script beside objects alone' 1 'expected objects in a scene' "$VIEWER" ball.json --script bad.txt
+refuse 'a way for objects alone' 2 'only with objects in a scene' "$VIEWER" ball.json --offscreen x.png --transport ssdo
+refuse 'a way for a scene alone' 2 'only with objects in a scene' "$VIEWER" room.exr --offscreen x.png --transport ssdo
+refuse 'a way of the viewer that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'" "$VIEWER" room.exr --objects ball.json --offscreen x.png --transport sddo
+refuse 'the viewer without depth and a way' 1 'how far the scene is' "$VIEWER" far.exr --objects ball.json --offscreen x.png
+
 expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'\?" x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport sddo
 expect_fail 'without objects' 2 'work only with --objects' x.png "$RELUME" relight room.exr -o x.png --transport path
 expect_fail 'many rays a pixel' 2 'expected 1 to 16 rays' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --samples 17

@@ -27,4 +27,10 @@ relume_status renderer_draw_objects(struct renderer *r, const struct frame_reque
                                     int count);
 void renderer_objects_destroy(struct renderer *r);
 
+// The same with light between the scene and them, in the ways that the frame asks for.
+relume_status renderer_draw_ways(struct renderer *r, const struct frame_request *request,
+                                 const struct place *place, const struct relume_light *lights,
+                                 int count);
+void renderer_ways_destroy(struct renderer *r);
+
 #endif

@@ -66,6 +66,30 @@ viewed 'the viewer takes samples and bounces' path room.exr --tilt -20 --samples
 viewed 'the viewer shows a far panorama' ssdo far.exr --tilt -20
 check 'and says so once' test "$(grep -c 'the panorama has no depth' err.txt)" = 1
 viewed 'the viewer shows a slab' ssdo slab.exr
+# passes of the graphics card: nearer to the library's picture than hard shadows are by far
+"$RELUME" synth attic -q -o hall --projection spherical --size 96 --lights 12 --samples 2
+"$RELUME" encode -q hall -o hall.exr --shadows no
+passes() { # name, way, most error over that of hard shadows, lights and options...
+    name=$1 way=$2 most=$3
+    shift 3
+    "$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight passes --offscreen passes.exr --transport "$way" "$@" &&
+        "$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight library --offscreen library.exr --transport "$way" "$@" &&
+        "$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --offscreen hard.exr $1 "$2" || {
+        not_ok "$name" "a program failed"
+        return
+    }
+    off=$("$RELUME" compare library.exr passes.exr | awk '$1 == "rms" { print $2 }')
+    below "$name" "$(awk -v a="$off" -v b="$("$RELUME" compare library.exr hard.exr | awk '$1 == "rms" { print $2 }')" 'BEGIN { print a / b }')" "$most"
+}
+# what is left are borders of shadows, and outlines, which software draws without means
+passes 'ssdo by passes' ssdo 0.35 --light 'dir 0 1 0'
+passes 'ssao by passes' ssao 0.35 --light 'dir 0 1 0'
+passes 'a sun through the window by passes' ssdo 0.35 --light 'dir .3 .3 1'
+passes 'no bounces by passes' ssdo 0.35 --light 'dir .3 .3 1' --bounces 0
+"$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight passes --offscreen both.exr --transport ssdo --light 'dir 0 1 0' --light 'dir .3 .3 1 rgb 1 .5 .2'
+"$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight library --offscreen want.exr --transport ssdo --light 'dir 0 1 0' --light 'dir .3 .3 1 rgb 1 .5 .2'
+below 'two lights by passes' "$("$RELUME" compare want.exr both.exr | awk '$1 == "rms" { print $2 }')" 0.03
+
 cat >ways.txt <<'END'
 size 48 32
 frame none.exr

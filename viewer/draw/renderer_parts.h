@@ -32,5 +32,15 @@ relume_status renderer_draw_ways(struct renderer *r, const struct frame_request 
                                  const struct place *place, const struct relume_light *lights,
                                  int count);
 void renderer_ways_destroy(struct renderer *r);
+// By passes, `directional` or by even light; false in *drawn where there are none for it.
+relume_status renderer_draw_between(bool *drawn, struct renderer *r,
+                                    const struct frame_request *request, const struct place *place,
+                                    const struct relume_light *lights, int count, bool directional);
+// How objects appear in the frame; false where it is not flat.
+bool renderer_projection(struct frame_projection *out, const struct renderer *r,
+                         const struct frame_request *request, const struct place *place);
+// Where the frame sees the scene, into r->scene.
+relume_status renderer_find_scene(struct renderer *r, const struct frame_request *request,
+                                  struct place place);
 
 #endif

@@ -3,6 +3,7 @@
 #define VIEWER_RENDERER_STATE_H
 
 #include "app/frame_request.h"
+#include "draw/between.h"
 #include "draw/draw.h"
 #include "draw/objects_drawer.h"
 #include "glare/glare.h"
@@ -71,7 +72,12 @@ struct renderer {
     struct exchange_source exchange;  // file NULL: it does not go between
     struct exchanger *exchanger;
     struct target way[EXCHANGER_SLOTS], beside_way;
-    bool waits;  // for finished pictures of it
+    bool waits;                         // for finished pictures of it
+    bool ways_by_library;               // all of them
+    bool with_depth;                    // a panorama
+    double passes_ms[EXCHANGER_SLOTS];  // that own passes of a way took in the last frame; 0: there
+                                        // are none
+    struct between between;             // those that are passes; made when first needed
 };
 
 #endif

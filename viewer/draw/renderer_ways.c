@@ -3,8 +3,10 @@
 #include "app/way.h"
 #include "draw/renderer.h"
 #include "draw/renderer_parts.h"
+#include "program/clock.h"
 
 #include <math.h>
+#include <string.h>
 
 void renderer_use_exchange(struct renderer *r, const struct exchange_source *exchange)
 {
@@ -17,6 +19,7 @@ void renderer_ways_destroy(struct renderer *r)
     for (int i = 0; i < EXCHANGER_SLOTS; i++)
         target_destroy(&r->way[i], r->gl);
     target_destroy(&r->beside_way, r->gl);
+    between_destroy(&r->between);
 }
 
 void renderer_let_go(struct renderer *r)
@@ -42,6 +45,21 @@ relume_status renderer_wait(struct renderer *r)
 
 // ---------------------------------------------------------------- asking
 
+// Ways that are passes, too (renderer_between.c).
+static const struct passes {
+    const char *way;
+    bool directional;
+} passes[] = {{"ssdo", true}, {"ssao", false}};
+
+// NULL: there are none of that way; for any of them (NULL), what stands in for it.
+static const struct passes *passes_of(const struct renderer *r, const char *way)
+{
+    for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
+        if (!way || !strcmp(passes[i].way, way))
+            return &passes[i];
+    return NULL;
+}
+
 // Two ways, or two materials; the latter are compared in hard shadows.
 static bool goes_between(const struct renderer *r, const struct frame_request *q, int way)
 {
@@ -61,6 +79,12 @@ static void find_size(struct relume_camera *camera, const struct frame_request *
     camera->height = (int)fmax(1.0, lround(scale * high));
 }
 
+static bool is_drawn_by_passes(const struct renderer *r, const struct frame_request *q, int way)
+{
+    return passes_of(r, way_name(way)) && r->with_depth && q->camera.framing == RELUME_FRAME_LOOK &&
+           !q->camera.look.stereographic && r->views == 1;
+}
+
 static relume_status ask(struct renderer *r, const struct frame_request *q, int slot, int way,
                          const struct relume_light *lights, int count)
 {
@@ -77,7 +101,7 @@ static relume_status ask(struct renderer *r, const struct frame_request *q, int 
         .moves = q->moves,
         .waits = r->waits,
     };
-    if (!goes_between(r, q, way))
+    if (!goes_between(r, q, way) || is_drawn_by_passes(r, q, way))
         return r->exchanger ? exchanger_ask(r->exchanger, slot, NULL) : RELUME_OK;
     find_size(&request.camera, q);
     const relume_status status =
@@ -119,14 +143,36 @@ static relume_status show(bool *shown, struct renderer *r, const struct place *p
     return RELUME_OK;
 }
 
+static relume_status draw_passes(bool *drawn, struct renderer *r, const struct frame_request *q,
+                                 const struct place *place, const struct relume_light *lights,
+                                 int count, double *ms, const struct passes *by)
+{
+    if (q->timed)
+        r->gl->Finish();
+    const double start = now_s();
+    const relume_status status =
+        renderer_draw_between(drawn, r, q, place, lights, count, by->directional);
+    if (q->timed)
+        r->gl->Finish();
+    *ms = *drawn ? 1e3 * (now_s() - start) : 0.0;
+    return status;
+}
+
 static relume_status draw_way(struct renderer *r, const struct frame_request *q,
                               const struct place *place, const struct relume_light *lights,
                               int count, int slot, int way)
 {
+    const struct passes *own = passes_of(r, way_name(way)), *stand_in = passes_of(r, NULL);
+    const bool between = goes_between(r, q, way);
+    const bool by_passes = between && is_drawn_by_passes(r, q, way);
     bool shown = false;
     relume_status status = RELUME_OK;
-    if (goes_between(r, q, way))
+    if (between && !by_passes)
         status = show(&shown, r, place, slot);
+    double ms = 0.0;
+    if (!status && !shown && between && stand_in)
+        status = draw_passes(&shown, r, q, place, lights, count, &ms, own ? own : stand_in);
+    r->passes_ms[slot] = by_passes ? ms : 0.0;
     return status || shown ? status : renderer_draw_objects(r, q, place, lights, count);
 }
 

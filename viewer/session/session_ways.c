@@ -20,6 +20,9 @@ void session_add_ways(struct session *s)
                                            .log = s->log,
                                            .threads = s->threads};
     renderer_use_exchange(&s->renderer, &source);
+    s->renderer.with_depth = relume_pack_info(s->pack)->has_depth;
+    s->renderer.ways_by_library =
+        s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
     s->app.lookers = (struct app_lookers){s, let_go};
 }
 
@@ -33,19 +36,31 @@ void session_hear_ways(struct session *s, const struct app_state *before)
         session_say(s, "light between objects and scene: %s", way_name(now->way));
 }
 
-static void describe(char text[SESSION_TEXT], struct exchanger *e, int slot, int way)
+static void describe_exchange(char text[SESSION_TEXT], struct exchanger *e, int slot)
 {
     struct exchange_state state;
     exchanger_state(&state, e, slot);
-    int n = snprintf(text, SESSION_TEXT, "%s: ", way_name(way));
+    int n = 0;
     if (state.status)
-        n += snprintf(text + n, (size_t)(SESSION_TEXT - n), "cannot be drawn here");
+        n = snprintf(text, SESSION_TEXT, "cannot be drawn here");
     else if (state.width)
-        n += snprintf(text + n, (size_t)(SESSION_TEXT - n), "%d x %d in %.2g s", state.width,
-                      state.height, state.seconds);
+        n = snprintf(text, SESSION_TEXT, "%d x %d in %.2g s", state.width, state.height,
+                     state.seconds);
     if (state.works)
-        snprintf(text + n, (size_t)(SESSION_TEXT - n), "%sgathering light, %.0f %%",
-                 state.width ? "; " : "", 100.0 * state.done);
+        snprintf(text + n, (size_t)(SESSION_TEXT - n), "%sgathering light, %.0f %%", n ? "; " : "",
+                 100.0 * state.done);
+}
+
+static void describe(char text[SESSION_TEXT], const struct renderer *r, int slot, int way)
+{
+    char more[SESSION_TEXT] = "";
+    if (r->passes_ms[slot] > 0.0)
+        snprintf(more, sizeof more, "by passes, %.1f ms a frame", r->passes_ms[slot]);
+    else if (r->exchanger)
+        describe_exchange(more, r->exchanger, slot);
+    text[0] = '\0';
+    if (more[0])
+        snprintf(text, SESSION_TEXT, "%s: %.200s", way_name(way), more);
 }
 
 void session_describe_ways(struct session *s)
@@ -55,7 +70,7 @@ void session_describe_ways(struct session *s)
     for (int i = 0; i < EXCHANGER_SLOTS; i++) {
         const bool shown = i == 0 || now->ways != APP_SPLIT_NONE;
         s->way[i][0] = '\0';
-        if (s->renderer.exchanger && shown && way_gathers(way[i]))
-            describe(s->way[i], s->renderer.exchanger, i, way[i]);
+        if (shown && way_gathers(way[i]))
+            describe(s->way[i], &s->renderer, i, way[i]);
     }
 }

@@ -90,6 +90,17 @@ passes 'no bounces by passes' ssdo 0.35 --light 'dir .3 .3 1' --bounces 0
 "$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight library --offscreen want.exr --transport ssdo --light 'dir 0 1 0' --light 'dir .3 .3 1 rgb 1 .5 .2'
 below 'two lights by passes' "$("$RELUME" compare want.exr both.exr | awk '$1 == "rms" { print $2 }')" 0.03
 
+# in a furnace, all of it 1, a white ball vanishes
+awk 'BEGIN { printf "P3\n64 32\n255\n"; for (i = 0; i < 3 * 64 * 32; i++) print 255 }' >white.ppm
+awk 'BEGIN { printf "P2\n64 32\n255\n"; for (i = 0; i < 64 * 32; i++) print 128 }' >even.pgm
+"$RELUME" panorama white.ppm --transfer linear --depth even.pgm --depth-range 2,3 -o white -q
+"$RELUME" encode -q white -o white.exr
+objects '0,-0.6,-1.4' '{"diffuse":1}' >white.json
+for way in ssao ssdo; do
+    "$VIEWER" white.exr --objects white.json --tilt -20 --size 96x64 --relight passes --offscreen furnace.pfm --transport $way
+    below "a furnace: $way by passes" "$(tail -n +4 furnace.pfm | od -An -v -tf4 | awk '{ for (i = 1; i <= NF; i++) { d = $i > 1 ? $i - 1 : 1 - $i; if (d > most) most = d } } END { print most }')" 0.03
+done
+
 cat >ways.txt <<'END'
 size 48 32
 frame none.exr

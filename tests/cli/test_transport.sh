@@ -61,7 +61,9 @@ viewed() { # name, way, file, options...
     }
     check "$name" cmp viewed.exr cpu.exr
 }
-for way in ssao ssdo path; do viewed "the viewer shows $way" $way room.exr --tilt -20; done
+ways=$("$VIEWER" room.exr --objects ball.json --transport x 2>&1 | sed -n 's/.*one of: none //p')
+check 'the viewer has all ways' test "$(echo $ways | wc -w)" -ge 3
+for way in $ways; do viewed "the viewer shows $way" $way room.exr --tilt -20; done
 viewed 'the viewer takes samples and bounces' path room.exr --tilt -20 --samples 10 --bounces 0
 viewed 'the viewer shows a far panorama' ssdo far.exr --tilt -20
 check 'and says so once' test "$(grep -c 'the panorama has no depth' err.txt)" = 1
@@ -133,7 +135,7 @@ refuse() { # name, status, pattern, command...
         not_ok "$name" "status $status, $(cat err.txt)"
 }
 echo 'transport sdo' >bad.txt
-refuse 'a way in a script that is none' 1 "column 11; expected WAY, beside WAY, .*ssdo or path; found 'sdo'" "$VIEWER" room.exr --objects ball.json --script bad.txt
+refuse 'a way in a script that is none' 1 "column 11; expected WAY, beside WAY, .*ssdo, .*or path; found 'sdo'" "$VIEWER" room.exr --objects ball.json --script bad.txt
 echo 'transport ssdo' >bad.txt
 refuse 'a way without objects' 1 'expected objects in a scene' "$VIEWER" room.exr --script bad.txt
 refuse 'a way in a script beside objects alone' 1 'expected objects in a scene' "$VIEWER" ball.json --script bad.txt

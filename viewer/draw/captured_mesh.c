@@ -10,23 +10,43 @@ static const char *const uniforms[] = {"places",   "centre",       "block", "wra
 // Where OpenGL is software, fewer vertices.
 enum { MOST_VERTICES = 1 << 19, MOST_SOFTWARE = 1 << 18 };
 
-// Renderers put the background a thousand times as far as the farthest surface.
-static relume_status find_farthest(struct captured_mesh *m)
+static double distance_to(const struct captured_mesh *m, const struct relume_image *places,
+                          size_t i)
 {
-    const double BACKGROUND = 1000.0, NEAR = 0.5, ALL = 1e30;
-    struct relume_image image;
-    const relume_status status = target_read(&image, m->places, m->gl);
+    const float *p = places->data + 3 * i;
+    const struct relume_vec3 place = {(double)p[0], (double)p[1], (double)p[2]};
+    return vec3_length(vec3_sub(place, m->centre));
+}
+
+// Renderers put the background a thousand times as far as the farthest surface; depth maps of
+// photographs end at the sky, which many pixels show.
+static double farthest_of(const struct captured_mesh *m, const struct relume_image *places)
+{
+    const double BACKGROUND = 1000.0, NEAR = 0.5, NOWHERE = 1e30;
+    const double ABOUT = 0.999, BEFORE = 0.998, MANY = 0.01, MOST = 0.9;
+    const size_t pixels = (size_t)places->width * (size_t)places->height;
     double least = INFINITY, most = 0.0;
-    const size_t pixels = status ? 0 : (size_t)image.width * (size_t)image.height;
+    size_t at_most = 0;
     for (size_t i = 0; i < pixels; i++) {
-        const float *p = image.data + 3 * i;
-        const struct relume_vec3 place = {(double)p[0], (double)p[1], (double)p[2]};
-        const double away = vec3_length(vec3_sub(place, m->centre));
+        const double away = distance_to(m, places, i);
         least = fmin(least, away);
         most = fmax(most, away);
     }
-    m->farthest = most * NEAR > least * BACKGROUND ? most / BACKGROUND / NEAR : ALL;
-    relume_image_destroy(&image);
+    if (most * NEAR > least * BACKGROUND)
+        return most / BACKGROUND / NEAR;
+    for (size_t i = 0; i < pixels; i++)
+        at_most += distance_to(m, places, i) >= ABOUT * most;
+    const double part = (double)at_most / (double)pixels;
+    return part > MANY && part < MOST ? BEFORE * most : NOWHERE;
+}
+
+static relume_status find_farthest(struct captured_mesh *m)
+{
+    struct relume_image places;
+    const relume_status status = target_read(&places, m->places, m->gl);
+    if (!status)
+        m->farthest = farthest_of(m, &places);
+    relume_image_destroy(&places);
     return status;
 }
 

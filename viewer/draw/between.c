@@ -148,29 +148,6 @@ static relume_status make_white_sky(struct between *b)
     return status ? status : relume_environment_create(&b->white_sky, &b->white_map, NULL);
 }
 
-relume_status between_create(struct between *b, const struct gl *gl,
-                             const struct relume_geometry *geometry, const struct target *places,
-                             const struct relume_log *log)
-{
-    const int side = gl->software ? CAPTURED_SIDE_SOFTWARE : CAPTURED_SIDE;
-    *b = (struct between){.gl = gl, .log = log, .uniforms = {.gl = gl, .log = log}};
-    gl->GenVertexArrays(1, &b->array);
-    relume_status status = create_programs(b, geometry);
-    if (!status)
-        status = program_create_fragment(&b->picture, gl, &draw_picture_fragment, log);
-    if (!status)
-        status = captured_mesh_create(&b->mesh, gl, geometry, places, log);
-    if (!status)
-        status = shadow_map_create(&b->captured, gl, side, log);
-    if (!status)
-        status = target_create(&b->even, gl, 1, 1, log);
-    if (!status)
-        status = make_white_sky(b);
-    if (status)
-        between_destroy(b);
-    return status;
-}
-
 // ---------------------------------------------------------------- targets
 
 static void joined_destroy(struct joined *j, const struct gl *gl)
@@ -286,6 +263,31 @@ void between_destroy(struct between *b)
     relume_environment_destroy(&b->white_sky);
     relume_image_destroy(&b->white_map);
     *b = (struct between){.gl = NULL};
+}
+
+relume_status between_create(struct between *b, const struct gl *gl,
+                             const struct relume_geometry *geometry, const struct target *places,
+                             const struct relume_log *log)
+{
+    const int side = gl->software ? CAPTURED_SIDE_SOFTWARE : CAPTURED_SIDE;
+    *b = (struct between){.gl = gl, .log = log, .uniforms = {.gl = gl, .log = log}};
+    gl->GenVertexArrays(1, &b->array);
+    relume_status status = create_programs(b, geometry);
+    if (!status)
+        status = program_create_fragment(&b->picture, gl, &draw_picture_fragment, log);
+    if (!status)
+        status = captured_mesh_create(&b->mesh, gl, geometry, places, log);
+    if (!status)
+        status = shadow_map_create(&b->captured, gl, side, log);
+    if (!status)
+        status = target_create(&b->even, gl, 1, 1, log);
+    if (!status)
+        status = make_white_sky(b);
+    if (!status)  // whether so many can be drawn at once
+        status = joined_create(&b->by_lamps, b, BETWEEN_JOINED, 1, 1);
+    if (status)
+        between_destroy(b);
+    return status;
 }
 
 // ---------------------------------------------------------------- passes

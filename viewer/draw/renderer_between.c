@@ -17,11 +17,16 @@ static relume_status prepare(struct renderer *r, const struct place *place)
     return status ? status : renderer_prepare(&r->lit, r, place->width, place->height);
 }
 
-// r->place is known from renderer_find_scene.
-static relume_status need_between(struct renderer *r)
+relume_status renderer_need_between(struct renderer *r, const struct frame_request *q,
+                                    const struct place *place)
 {
-    return r->between.gl ? RELUME_OK
-                         : between_create(&r->between, r->gl, &r->geometry, &r->place[0], r->log);
+    if (r->between.gl)
+        return RELUME_OK;
+    r->gl->BindVertexArray(r->vertices);
+    relume_status status = prepare(r, place);
+    if (!status)
+        status = renderer_find_scene(r, q, *place);  // r->place is known then
+    return status ? status : between_create(&r->between, r->gl, &r->geometry, &r->place[0], r->log);
 }
 
 static relume_status add_light(struct renderer *r, const struct frame_request *q,
@@ -69,12 +74,12 @@ relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struc
              renderer_projection(&projection, r, q, place);
     if (!*drawn)
         return RELUME_OK;
+    relume_status status = renderer_need_between(r, q, place);
     r->gl->BindVertexArray(r->vertices);
-    relume_status status = prepare(r, place);
+    if (!status)
+        status = prepare(r, place);
     if (!status)
         status = renderer_find_scene(r, q, *place);
-    if (!status)
-        status = need_between(r);
     if (status)
         return status;
     const int bounces = q->bounces ? q->bounces : 2;

@@ -32,6 +32,9 @@ relume_status renderer_draw_ways(struct renderer *r, const struct frame_request 
                                  const struct place *place, const struct relume_light *lights,
                                  int count);
 void renderer_ways_destroy(struct renderer *r);
+// What they are drawn with, of a panorama with depth. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status renderer_need_between(struct renderer *r, const struct frame_request *request,
+                                    const struct place *place);
 // By passes, `directional` or by even light; false in *drawn where there are none for it.
 relume_status renderer_draw_between(bool *drawn, struct renderer *r,
                                     const struct frame_request *request, const struct place *place,

@@ -79,10 +79,37 @@ static void find_size(struct relume_camera *camera, const struct frame_request *
     camera->height = (int)fmax(1.0, lround(scale * high));
 }
 
+// Looks into a panorama with depth.
+static bool takes_passes(const struct renderer *r, const struct frame_request *q)
+{
+    return !r->ways_by_library && r->with_depth && q->camera.framing == RELUME_FRAME_LOOK &&
+           !q->camera.look.stereographic && r->views == 1;
+}
+
 static bool is_drawn_by_passes(const struct renderer *r, const struct frame_request *q, int way)
 {
-    return passes_of(r, way_name(way)) && r->with_depth && q->camera.framing == RELUME_FRAME_LOOK &&
-           !q->camera.look.stereographic && r->views == 1;
+    return takes_passes(r, q) && passes_of(r, way_name(way));
+}
+
+// Own passes, or some that stand in until the library is done.
+static bool wants_passes(const struct renderer *r, const struct frame_request *q, int way)
+{
+    return goes_between(r, q, way) && takes_passes(r, q) &&
+           (!r->waits || is_drawn_by_passes(r, q, way));
+}
+
+// Where OpenGL cannot do it, as it has said then, the library does.
+static relume_status check_passes(struct renderer *r, const struct frame_request *q,
+                                  const struct place *place)
+{
+    const bool wanted = wants_passes(r, q, q->way) || wants_passes(r, q, q->other_way);
+    const relume_status status = wanted ? renderer_need_between(r, q, place) : RELUME_OK;
+    if (status != RELUME_ESYSTEM)
+        return status;
+    r->log->message(r->log->user, RELUME_NOTE,
+                    "light between objects and scene is gathered by the library, not by passes");
+    r->ways_by_library = true;
+    return RELUME_OK;
 }
 
 static relume_status ask(struct renderer *r, const struct frame_request *q, int slot, int way,
@@ -219,7 +246,9 @@ relume_status renderer_draw_ways(struct renderer *r, const struct frame_request 
                                  int count)
 {
     const bool both = q->ways != APP_SPLIT_NONE && !r->stage;
-    relume_status status = ask(r, q, 0, q->way, lights, count);
+    relume_status status = check_passes(r, q, place);
+    if (!status)
+        status = ask(r, q, 0, q->way, lights, count);
     if (!status)
         status = ask(r, q, 1, both ? q->other_way : 0, lights, count);
     if (!status && r->exchanger && r->waits)

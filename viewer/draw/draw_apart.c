@@ -4,7 +4,7 @@
 enum { FRAME = DRAW_OWN, OTHER, COUNT };
 static const char *const uniforms[] = {"rectangle", "frame_size", "frame", "other"};
 
-const struct fragment draw_apart_fragment = {"apart.frag", uniforms, COUNT};
+const struct fragment draw_apart_fragment = {"between_apart.frag", uniforms, COUNT};
 
 void draw_apart(const struct program *program, const struct gl *gl, const struct place *place,
                 const struct target *frame, const struct target *other)

@@ -2,7 +2,7 @@
 // What one light sample alone shows of a scene, where no object keeps it off. Twin: share (into.c).
 #include "cube.glsl"
 #include "shadow.glsl"
-#include "scene_normal.glsl"
+#include "between/scene_normal.glsl"
 uniform sampler2D lone;
 uniform vec4 light_samples[64];  // of the light: direction times value, 0; or place, value
 uniform int count, light_sample;  // 0: the light is one sample

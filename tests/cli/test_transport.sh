@@ -96,7 +96,7 @@ below 'two lights by passes' "$("$RELUME" compare want.exr both.exr | awk '$1 ==
 awk 'BEGIN { printf "P3\n64 32\n255\n"; for (i = 0; i < 3 * 64 * 32; i++) print 255 }' >white.ppm
 awk 'BEGIN { printf "P2\n64 32\n255\n"; for (i = 0; i < 64 * 32; i++) print 128 }' >even.pgm
 "$RELUME" panorama white.ppm --transfer linear --depth even.pgm --depth-range 2,3 -o white -q 2>/dev/null
-"$RELUME" encode -q white -o white.exr
+"$RELUME" encode -q white -o white.exr 2>/dev/null
 objects '0,-0.6,-1.4' '{"diffuse":1}' >white.json
 for way in ssao ssdo; do
     "$VIEWER" white.exr --objects white.json --tilt -20 --size 96x64 --relight passes --offscreen furnace.pfm --transport $way

@@ -1,9 +1,9 @@
 #!/bin/sh
-# The picture of docs/transport.md.
+# The pictures of docs/transport.md.
 # transport.sh BUILD_FOLDER WORK_FOLDER PICTURES_FOLDER
 # Scenes stay in the work folder and are used again. The cow and the shore are those of ../shared/data.
 set -eu
-relume=$1/relume draw=$1/samples/figures out=$2 pictures=$3 data=$PWD/../shared/data
+relume=$1/relume viewer=$1/relume-view draw=$1/samples/figures out=$2 pictures=$3 data=$PWD/../shared/data
 mkdir -p "$out" "$pictures"
 
 cow() { # angle, translate, scale
@@ -37,3 +37,10 @@ for scene in attic shore; do
 done
 "$draw" row "$pictures/transport.jpg" columns=5 $list
 echo "  $pictures/transport.jpg"
+
+# in the viewer: one way beside hard shadows, and the panel
+printf 'size 900 520\ndock left\nclick 100 26\ntransport ssdo\ntransport beside none\nmove 600 510\nwait\nshot %s\n' "$out/ways.exr" >"$out/ways.txt"
+"$viewer" "$out/attic.exr" --objects "$out/attic.json" --pan -12.5 --tilt -24 --zoom 2.2 --exposure 1.5 \
+    --light "dir .8 .5 0" --script "$out/ways.txt"
+"$draw" row "$pictures/viewer-ways.jpg" columns=1 "$out/ways.exr"
+echo "  $pictures/viewer-ways.jpg"

@@ -52,6 +52,100 @@ objects '0,-0.6,-1.4' '{"mirror":1}' >mirror.json
 expect_ok 'with a mirror in it' - "$RELUME" relight far.exr --objects mirror.json $look -o far.png --transport path -q
 expect_fail 'without light between it needs depth' 1 'how far the scene is' x.png "$RELUME" relight far.exr --objects ball.json -o x.png
 
+# the viewer draws what relight does, two ways beside each other, and how far they are apart
+viewed() { # name, way, file, options...
+    name=$1 way=$2 file=$3
+    shift 3
+    "$VIEWER" "$file" --objects ball.json --size 48x32 --offscreen viewed.exr --light 'dir 0 1 0' --transport "$way" "$@" 2>err.txt &&
+        "$RELUME" relight "$file" --objects ball.json --size 48x32 -o cpu.exr --light 'dir 0 1 0' --transport "$way" "$@" -q || {
+        not_ok "$name" "a program failed"
+        return
+    }
+    check "$name" cmp viewed.exr cpu.exr
+}
+ways=$("$VIEWER" room.exr --objects ball.json --transport x 2>&1 | sed -n 's/.*one of: none //p')
+check 'the viewer has all ways' test "$(echo $ways | wc -w)" -ge 3
+for way in $ways; do viewed "the viewer shows $way" $way room.exr --tilt -20; done
+viewed 'the viewer takes samples and bounces' path room.exr --tilt -20 --samples 10 --bounces 0
+viewed 'the viewer shows a far panorama' ssdo far.exr --tilt -20
+check 'and says so once' test "$(grep -c 'the panorama has no depth' err.txt)" = 1
+viewed 'the viewer shows a slab' ssdo slab.exr
+# passes of the graphics card: nearer to the library's picture than hard shadows are by far
+"$RELUME" synth attic -q -o hall --projection spherical --size 96 --lights 12 --samples 2
+"$RELUME" encode -q hall -o hall.exr --shadows no
+passes() { # name, way, most error over that of hard shadows, lights and options...
+    name=$1 way=$2 most=$3
+    shift 3
+    "$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight passes --offscreen passes.exr --transport "$way" "$@" &&
+        "$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight library --offscreen library.exr --transport "$way" "$@" &&
+        "$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --offscreen hard.exr $1 "$2" || {
+        not_ok "$name" "a program failed"
+        return
+    }
+    off=$("$RELUME" compare library.exr passes.exr | awk '$1 == "rms" { print $2 }')
+    below "$name" "$(awk -v a="$off" -v b="$("$RELUME" compare library.exr hard.exr | awk '$1 == "rms" { print $2 }')" 'BEGIN { print a / b }')" "$most"
+}
+# what is left are borders of shadows, and outlines, which software draws without means
+passes 'ssdo by passes' ssdo 0.35 --light 'dir 0 1 0'
+passes 'ssao by passes' ssao 0.35 --light 'dir 0 1 0'
+passes 'a sun through the window by passes' ssdo 0.35 --light 'dir .3 .3 1'
+passes 'no bounces by passes' ssdo 0.35 --light 'dir .3 .3 1' --bounces 0
+"$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight passes --offscreen both.exr --transport ssdo --light 'dir 0 1 0' --light 'dir .3 .3 1 rgb 1 .5 .2'
+"$VIEWER" hall.exr --objects ball.json --tilt -20 --size 96x64 --relight library --offscreen want.exr --transport ssdo --light 'dir 0 1 0' --light 'dir .3 .3 1 rgb 1 .5 .2'
+below 'two lights by passes' "$("$RELUME" compare want.exr both.exr | awk '$1 == "rms" { print $2 }')" 0.03
+
+# in a furnace, all of it 1, a white ball vanishes
+awk 'BEGIN { printf "P3\n64 32\n255\n"; for (i = 0; i < 3 * 64 * 32; i++) print 255 }' >white.ppm
+awk 'BEGIN { printf "P2\n64 32\n255\n"; for (i = 0; i < 64 * 32; i++) print 128 }' >even.pgm
+"$RELUME" panorama white.ppm --transfer linear --depth even.pgm --depth-range 2,3 -o white -q 2>/dev/null
+"$RELUME" encode -q white -o white.exr 2>/dev/null
+objects '0,-0.6,-1.4' '{"diffuse":1}' >white.json
+for way in ssao ssdo; do
+    "$VIEWER" white.exr --objects white.json --tilt -20 --size 96x64 --relight passes --offscreen furnace.pfm --transport $way
+    below "a furnace: $way by passes" "$(tail -n +4 furnace.pfm | od -An -v -tf4 | awk '{ for (i = 1; i <= NF; i++) { d = $i > 1 ? $i - 1 : 1 - $i; if (d > most) most = d } } END { print most }')" 0.03
+done
+
+cat >ways.txt <<'END'
+size 48 32
+frame none.exr
+transport ssdo
+frame one.exr
+transport beside path
+frame sides.exr
+transport difference path
+frame apart.exr
+transport difference ssdo
+frame same.exr
+transport alone
+key ctrl+t
+frame next.exr
+transport path
+key tab
+shot panel.png
+END
+expect_ok 'ways in a script' - "$VIEWER" room.exr --objects ball.json --tilt -20 --script ways.txt
+for pair in none:one one:sides sides:apart apart:same one:next; do
+    differ "ways: ${pair%:*} and ${pair#*:}" "${pair%:*}.exr" "${pair#*:}.exr"
+done
+check 'a way is not apart from itself' sh -c "'$RELUME' relight room.exr --objects ball.json $look -o black.exr --light 'dir 0 1 0 rgb 0 0 0' -q; '$RELUME' compare same.exr black.exr | awk '\$1 == \"max_abs\" { exit !(\$2 == 0) }'"
+refuse() { # name, status, pattern, command...
+    name=$1 want=$2 pattern=$3
+    shift 3
+    "$@" >out.txt 2>err.txt
+    status=$?
+    [ "$(grep -cE "^relume-view: .*$pattern" err.txt)/$(wc -l <err.txt)/$status" = "1/1/$want" ] && ok "$name" ||
+        not_ok "$name" "status $status, $(cat err.txt)"
+}
+echo 'transport sdo' >bad.txt
+refuse 'a way in a script that is none' 1 "column 11; expected WAY, beside WAY, .*ssdo, .*or path; found 'sdo'" "$VIEWER" room.exr --objects ball.json --script bad.txt
+echo 'transport ssdo' >bad.txt
+refuse 'a way without objects' 1 'expected objects in a scene' "$VIEWER" room.exr --script bad.txt
+refuse 'a way in a script beside objects alone' 1 'expected objects in a scene' "$VIEWER" ball.json --script bad.txt
+refuse 'a way for objects alone' 2 'only with objects in a scene' "$VIEWER" ball.json --offscreen x.png --transport ssdo
+refuse 'a way for a scene alone' 2 'only with objects in a scene' "$VIEWER" room.exr --offscreen x.png --transport ssdo
+refuse 'a way of the viewer that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'" "$VIEWER" room.exr --objects ball.json --offscreen x.png --transport sddo
+refuse 'the viewer without depth and a way' 1 'how far the scene is' "$VIEWER" far.exr --objects ball.json --offscreen x.png
+
 expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'\?" x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport sddo
 expect_fail 'without objects' 2 'work only with --objects' x.png "$RELUME" relight room.exr -o x.png --transport path
 expect_fail 'many rays a pixel' 2 'expected 1 to 16 rays' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --samples 17

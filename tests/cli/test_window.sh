@@ -141,6 +141,17 @@ printf 'wait 0.1\nkey ctrl+o\nwait 0.1\ntype ball.exr\nkey enter\nwait 0.1\nkey 
 timeout 60 "$VIEWER" --size 256x256 --no-config --script empty.txt --window >view.txt 2>&1
 check 'a window without a file opens one' test -s ball-0007.png
 
+# light between objects and scene is gathered beside the frames, begun anew and cancelled; what is saved is finished
+awk -v n=12 -f "$TOP/scripts/ball.awk" >sphere.obj
+echo '{"format":"relume-objects","version":1,"objects":[{"mesh":"sphere.obj","parts":[{"material":[{"diffuse":0.8},{"diffuse":[1,0.2,0.2]}]}],
+    "pose":{"scale":0.3,"translate":[0.3,0.3,0.4]}}]}' >sphere.json
+printf 'transport path\nwait 0.1\ndrag right 60 40 90 44 0.3\nkey c\nwait 0.1\nlight dir 0.3 0.5 0.8\nkey c\nwait\nkey s\nkey ctrl+t\nkey ctrl+d\nwait\nkey esc\n' >ways.txt
+mkdir ways
+(cd ways && timeout 100 "$VIEWER" ../ball.exr --objects ../sphere.json --size 120x120 --no-config --script ../ways.txt --window >view.txt 2>&1)
+check 'light between in a window' test $? -eq 0 -a ! -s ways/view.txt
+"$VIEWER" ball.exr --objects sphere.json --size 120x120 --light 'dir 0.3 0.5 0.8' --transport path --offscreen path.png
+check 'is what a picture shows' cmp path.png ways/ball-0001.png
+
 # the window remembers; settings that cannot be read or written are no reason to fail
 remembers() { # name, folder for settings, size that is wanted, options...
     name=$1 settings=$2 want=$3

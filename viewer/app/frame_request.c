@@ -57,6 +57,11 @@ void frame_request_look(struct frame_request *q, const struct app *app)
         .fov_deg = app_fov_deg(app),
         .split = now->split,
         .other = now->other,
+        .way = now->way,
+        .ways = now->ways,
+        .other_way = now->other_way,
+        .way_samples = now->way_samples,
+        .bounces = now->bounces,
         .timed = app->panel,
     };
     q->has_window = orbit_is(app) && app_window(app, &q->window);

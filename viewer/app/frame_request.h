@@ -26,7 +26,10 @@ struct frame_request {
     double eye_s;    // that the eye has lived
     double fov_deg;  // of the frame, as app_fov_deg
     enum app_split split;
-    int other;   // material, of a split
+    int other;  // material, of a split
+    int way;    // of light between objects and scene, as app_state ...
+    enum app_split ways;
+    int other_way, way_samples, bounces;
     bool timed;  // somebody looks at how long objects take
     // the ball that shows where the selected light comes from
     bool ball;

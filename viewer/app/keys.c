@@ -5,6 +5,7 @@
 #include "app/handles.h"
 #include "app/handles_say.h"
 #include "app/light_list.h"
+#include "app/way.h"
 
 #include <relume/tone.h>
 
@@ -228,6 +229,7 @@ static bool press_material(struct app *app, int key)
         return false;
     const struct relume_objects_info *info = relume_objects_info(app->file.objects);
     const int next = next_material(app, info->part[0].material);
+    way_let_go(app);
     for (int i = 0; i < info->parts; i++)
         (void)!relume_objects_choose(app->file.objects, i, next);
     return true;
@@ -252,6 +254,25 @@ static bool press_split(struct app *app, int key)
     if (app->now.split == APP_SPLIT_NONE && app->now.other == shown)
         app->now.other = next_material(app, shown);
     app->now.split = (enum app_split)((app->now.split + 1) % APP_SPLITS);
+    app->now.ways = APP_SPLIT_NONE;
+    return true;
+}
+
+static bool press_way(struct app *app, int key)
+{
+    (void)key;
+    if (!way_matters(app))
+        return false;
+    app->now.way = (app->now.way + 1) % way_count();
+    return true;
+}
+
+static bool press_ways(struct app *app, int key)
+{
+    (void)key;
+    if (!way_matters(app))
+        return false;
+    way_compare(app, (enum app_split)((app->now.ways + 1) % APP_SPLITS));
     return true;
 }
 
@@ -421,6 +442,10 @@ const struct key_binding key_bindings[] = {
     {'c', "C", "objects: next material", press_material, false},
     {'q', "Q", "objects: compare with another material, show the difference", press_split, false},
     {'u', "U", "objects: the next material to compare with", press_other, false},
+    {APP_CONTROL | 't', "Ctrl+T", "objects: next way of light between them and the scene",
+     press_way, false},
+    {APP_CONTROL | 'd', "Ctrl+D", "objects: compare with another way, show the difference",
+     press_ways, false},
     {APP_CONTROL | 'r', "Ctrl+R", "objects: edit what mirrors reflect", press_reflections, false},
     {APP_CONTROL | 'z', "Ctrl+Z Ctrl+Y", "undo, redo an edited reflection", press_undo, true},
     {APP_CONTROL | 'y', NULL, NULL, press_undo, true},

@@ -3,6 +3,7 @@
 
 #include "app/adjust.h"
 #include "app/app.h"
+#include "app/way.h"
 #include "program/say.h"
 
 #include <errno.h>
@@ -383,6 +384,13 @@ static relume_status play_set(struct script *s)
                                                                         : wrong(s, expected);
 }
 
+static relume_status play_transport(struct script *s)
+{
+    char copy[LINE], expected[WAY_WORDS];
+    const char *words = take_rest(s, copy);
+    return way_say(s->host.app, words ? words : "", expected) ? RELUME_OK : wrong(s, expected);
+}
+
 static relume_status play_pass(struct script *s)
 {
     char copy[LINE];
@@ -435,19 +443,33 @@ static const struct word {
     relume_status (*play)(struct script *s);
     bool whole;  // takes the rest of the line
 } words[] = {
-    {"size", play_size, false},   {"drag", play_drag, false},
-    {"click", play_click, false}, {"press", play_press, false},
-    {"move", play_move, false},   {"release", play_release, false},
-    {"wheel", play_wheel, false}, {"key", play_key, false},
-    {"hold", play_hold, false},   {"let", play_let, false},
-    {"type", play_type, true},    {"light", play_light, true},
-    {"add", play_add, true},      {"rig", play_rig, true},
-    {"wait", play_wait, false},   {"frame", play_frame, true},
-    {"shot", play_shot, true},    {"open", play_open, true},
-    {"glare", play_glare, true},  {"hint", play_hint, false},
-    {"quit", play_quit, false},   {"dock", play_dock, false},
-    {"set", play_set, true},      {"pass", play_pass, true},
-    {"edit", play_edit, true},    {"reflection", play_reflection, true},
+    {"size", play_size, false},
+    {"drag", play_drag, false},
+    {"click", play_click, false},
+    {"press", play_press, false},
+    {"move", play_move, false},
+    {"release", play_release, false},
+    {"wheel", play_wheel, false},
+    {"key", play_key, false},
+    {"hold", play_hold, false},
+    {"let", play_let, false},
+    {"type", play_type, true},
+    {"light", play_light, true},
+    {"add", play_add, true},
+    {"rig", play_rig, true},
+    {"wait", play_wait, false},
+    {"frame", play_frame, true},
+    {"shot", play_shot, true},
+    {"open", play_open, true},
+    {"glare", play_glare, true},
+    {"hint", play_hint, false},
+    {"quit", play_quit, false},
+    {"dock", play_dock, false},
+    {"set", play_set, true},
+    {"pass", play_pass, true},
+    {"edit", play_edit, true},
+    {"reflection", play_reflection, true},
+    {"transport", play_transport, true},
 };
 
 static relume_status play_line(struct script *s)
@@ -462,9 +484,11 @@ static relume_status play_line(struct script *s)
         const relume_status status = words[i].play(s);
         return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
     }
-    return wrong(s, "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
-                    "add, rig, open, edit, reflection, glare, dock, hint, set, pass, wait, frame, "
-                    "shot or quit");
+    return wrong(
+        s,
+        "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
+        "add, rig, open, edit, reflection, transport, glare, dock, hint, set, pass, wait, frame, "
+        "shot or quit");
 }
 
 relume_status script_open(struct script **out, const char *path, const struct script_host *host)

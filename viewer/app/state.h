@@ -68,6 +68,7 @@ struct app_file {
     const relume_slab_set *around;  // several slabs, about whose middle the eye goes; NULL: none
     relume_objects *objects;        // in the scene, or all that there is; NULL: none
     const struct relume_captured_region *zone;  // where its light was captured; NULL: not known
+    bool stage;                                 // there are objects alone
     bool empty;                                 // no file is open yet
     bool only_colour;                           // nothing else can be shown of it
 };
@@ -84,7 +85,7 @@ enum app_dock { APP_DOCK_OVER = 0, APP_DOCK_LEFT, APP_DOCK_RIGHT, APP_DOCKS };
 
 extern const char *const app_dock_names[APP_DOCKS + 1];  // "over", "left", "right", NULL
 
-// How objects are shown in two materials at once.
+// How two are shown at once: materials of objects, or ways of light between them and the scene.
 enum app_split {
     APP_SPLIT_NONE = 0,
     APP_SPLIT_SIDES,       // the other one in the right half
@@ -115,6 +116,10 @@ struct app_state {
         enhance;               // of it: gain, specular, exponent, radius, low, top; 0: usual
     enum app_split split;      // objects ...
     int other;                 // ... in this of their materials as well
+    int way;                   // of light between objects and scene: place in relume_transports ...
+    enum app_split ways;       // ... shown ...
+    int other_way;             // ... with this one as well
+    int way_samples, bounces;  // of them, as relume_render_params
     struct observer observer;  // how an eye sees the frame
 };
 
@@ -157,6 +162,12 @@ struct app_scene {
 };
 struct handles;
 
+// Who looks at the objects from other threads lets go of them before they change. NULL: nobody.
+struct app_lookers {
+    void *user;
+    void (*let_go)(void *user);
+};
+
 // Owns its lists of lights, and handles. Thread-safety: plain data.
 struct app {
     struct app_file file;
@@ -176,6 +187,7 @@ struct app {
     bool reflects;                      // handles of edited reflections are shown ...
     struct handles *handles;            // ... and kept; NULL: not asked for yet
     struct app_scene scene;
+    struct app_lookers lookers;
     bool recording;  // every frame becomes a picture
     double toast_s,
         hint_s;           // how long what was last said, and what the mouse does, stay to be seen

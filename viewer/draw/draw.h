@@ -91,6 +91,11 @@ extern const struct fragment draw_mean_fragment;
 void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
                const struct target *sum);
 
+// How far a frame is from another one of its size, absolute.
+extern const struct fragment draw_apart_fragment;
+void draw_apart(const struct program *program, const struct gl *gl, const struct place *place,
+                const struct target *frame, const struct target *other);
+
 // The shader that knows how a panorama is laid out.
 const char *draw_panorama_shader(const struct relume_geometry *geometry);
 // A perspective look into a panorama.

@@ -58,14 +58,16 @@ enum {
     DIFFERENCE,
     OVER_SCENE,
     IN_SCENE,
+    OVER_RETURNED,
+    HAS_RETURNED,
     GRID,
     OVER_EYE,
     EXPOSURE,
     OVER_COUNT
 };
-static const char *const over_uniforms[] = {"rectangle", "frame_size", "place",   "shaded",
-                                            "other",     "difference", "scene",   "in_scene",
-                                            "grid",      "eye",        "exposure"};
+static const char *const over_uniforms[] = {
+    "rectangle", "frame_size", "place",        "shaded", "other", "difference", "scene",
+    "in_scene",  "returned",   "has_returned", "grid",   "eye",   "exposure"};
 enum {
     CAST_SCENE = DRAW_OWN,
     CAST_LONE,
@@ -312,6 +314,11 @@ static void draw_all(void *context, const float clip[16])
     t->gl->DrawElements(GL_TRIANGLES,
                         (GLsizei)(3 * relume_objects_info(t->objects)->triangle_count),
                         GL_UNSIGNED_INT, NULL);
+    if (!t->captured)
+        return;
+    captured_mesh_draw(t->captured, clip);
+    t->gl->UseProgram(t->depth.id);
+    t->gl->BindVertexArray(t->array);
 }
 
 void objects_drawer_draw_shadow(struct objects_drawer *t, int light_sample)
@@ -424,8 +431,7 @@ static void draw_levels(const struct objects_drawer *t, const struct program *pr
     }
 }
 
-// A light sample as a light: a patch is an area light's piece, its normal the axis.
-static struct relume_light light_of(const struct relume_object_light *light_sample)
+struct relume_light objects_drawer_light_of(const struct relume_object_light *light_sample)
 {
     struct relume_light light = light_sample->light;
     if (!light_sample->is_patch)
@@ -458,7 +464,7 @@ static relume_status shade_part(struct objects_drawer *t, int part, int material
     relume_status status = use_material(&program, t, part, material, false);
     if (status)
         return status;
-    const struct relume_light light = light_of(&t->light_sample[light_sample]);
+    const struct relume_light light = objects_drawer_light_of(&t->light_sample[light_sample]);
     gl->Uniform1i(program->at[PICTURE], BTF_UNIT_PICTURE);
     status = light_uniforms_set(&t->uniforms, program->at + LIGHT, BTF_UNIT_PICTURE, &light);
     if (t->light_sample[light_sample].is_patch) {
@@ -584,6 +590,9 @@ void objects_drawer_over(const struct objects_drawer *t, const struct place *pla
     gl->Uniform1i(at[OVER_SHADED], 1);
     gl->Uniform1i(at[OVER_SCENE], 2);
     gl->Uniform1i(at[IN_SCENE], scene != 0);
+    texture_use(gl, 4, GL_TEXTURE_2D, t->returned);
+    gl->Uniform1i(at[OVER_RETURNED], 4);
+    gl->Uniform1i(at[HAS_RETURNED], t->returned != 0);
     gl->Uniform1i(at[GRID], t->grid);
     gl->Uniform4f(at[OVER_EYE], t->projection.eye[0], t->projection.eye[1], t->projection.eye[2],
                   t->projection.eye[3]);

@@ -41,12 +41,17 @@ enum {
 void objects_drawer_draw_shadow(struct objects_drawer *t, int light_sample);
 void objects_drawer_draw_whole(const struct gl *gl, const struct program *program,
                                const struct place *place);
+// A light sample as a light: a patch is an area light's piece, its normal the axis.
+struct relume_light objects_drawer_light_of(const struct relume_object_light *light_sample);
 // What a part shows of an environment, into the target in use.
 relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int material,
                                        const struct relume_light *light);
 
 // objects_drawer_sky.c
 relume_status objects_drawer_create_sky(struct objects_drawer *t);
+// What an environment shows on the surface where nothing hides it, into t->shown.
+relume_status objects_drawer_show_sky(struct objects_drawer *t, const struct relume_light *light,
+                                      int only);
 // Light number `number`, an environment, onto what is shaded.
 relume_status objects_drawer_add_sky(struct objects_drawer *t, int number, int only);
 

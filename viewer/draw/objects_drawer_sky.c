@@ -23,7 +23,8 @@ relume_status objects_drawer_create_sky(struct objects_drawer *t)
                   : program_create(&t->sky, t->gl, "btf_sky.frag", sky_uniforms, SKY_COUNT, t->log);
 }
 
-static relume_status show(struct objects_drawer *t, const struct relume_light *light, int only)
+relume_status objects_drawer_show_sky(struct objects_drawer *t, const struct relume_light *light,
+                                      int only)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
@@ -76,7 +77,7 @@ relume_status objects_drawer_add_sky(struct objects_drawer *t, int number, int o
 {
     const struct gl *gl = t->gl;
     const struct place whole = {.width = t->shown.width, .height = t->shown.height};
-    const relume_status status = show(t, &t->light[number], only);
+    const relume_status status = objects_drawer_show_sky(t, &t->light[number], only);
     if (status)
         return status;
     find_share(t, number);

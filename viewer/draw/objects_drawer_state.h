@@ -3,6 +3,7 @@
 #define VIEWER_OBJECTS_DRAWER_STATE_H
 
 #include "draw/btf_upload.h"
+#include "draw/captured_mesh.h"
 #include "draw/draw.h"
 #include "draw/shadow_map.h"
 #include "draw/frame_projection.h"
@@ -35,6 +36,8 @@ struct objects_drawer {
     GLuint surface_buffer, depth_texture, share_buffer;
     int grid;
     bool no_shadows;
+    const struct captured_mesh *captured;  // that throws shadows on objects as well; NULL: none
+    GLuint returned;  // light of the scene that objects show, a texture of the frame; 0: none
     struct relume_object_light *light_sample;  // of the present frame, and its lights
     int light_samples;
     struct relume_light *light;

@@ -28,6 +28,7 @@ static relume_status create_programs(struct renderer *r)
         {&r->ball, &draw_ball_fragment},
         {&r->source, &draw_source_fragment},
         {&r->present, &draw_present_fragment},
+        {&r->apart, &draw_apart_fragment},
     };
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
@@ -118,7 +119,7 @@ void renderer_destroy(struct renderer *r)
         return;
     struct program *const programs[] = {&r->picture, &r->slab,        &r->slab_depth, &r->slab_lens,
                                         &r->slabs,   &r->slabs_depth, &r->mean,       &r->panorama,
-                                        &r->ball,    &r->source,      &r->present};
+                                        &r->ball,    &r->source,      &r->present,    &r->apart};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
@@ -133,6 +134,7 @@ void renderer_destroy(struct renderer *r)
     target_destroy(&r->sum, r->gl);
     target_destroy(&r->beside, r->gl);
     target_destroy(&r->pinholes, r->gl);
+    renderer_ways_destroy(r);
     renderer_objects_destroy(r);
     if (r->depths.views)
         depths_destroy(&r->depths);
@@ -557,7 +559,7 @@ relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
     if (!status && r->empty)
         target_begin(&r->frame, r->gl);
     else if (!status && r->drawer.gl)
-        status = renderer_draw_objects(r, q, &place, q->light, q->lights);
+        status = renderer_draw_ways(r, q, &place, q->light, q->lights);
     else if (!status)
         status = renderer_relight_views(r, q, q->light, q->lights);
     if (!status && !r->drawer.gl && !r->empty)

@@ -43,6 +43,17 @@ relume_status renderer_use_objects(struct renderer *renderer, relume_objects *ob
 // Others on the same stage, before the old ones are destroyed.
 relume_status renderer_replace_objects(struct renderer *r, relume_objects *objects);
 
+// Light may go between the scene and the objects, as `exchange` has them, which is copied.
+void renderer_use_exchange(struct renderer *renderer, const struct exchange_source *exchange);
+// Nobody looks at the objects from another thread until the next frame.
+void renderer_let_go(struct renderer *renderer);
+// Whether a picture that is made in another thread will change what the last frame shows, and
+// whether there is one.
+bool renderer_expects(const struct renderer *renderer);
+bool renderer_has_news(const struct renderer *renderer);
+// Until none is expected. RELUME_ECANCEL when the log's progress asks for it.
+relume_status renderer_wait(struct renderer *renderer);
+
 // Draw that frame, linear, into renderer->frame. After renderer_stream, views
 // that are still being read are stood in for by their nearest neighbours, and renderer_is_pending
 // is then true: another frame would be better.

@@ -100,8 +100,8 @@ static bool find_window(struct relume_window *w, const struct renderer *r,
     return r->geometry.projection <= RELUME_SLAB;
 }
 
-static bool find_projection(struct frame_projection *out, const struct renderer *r,
-                            const struct frame_request *q, const struct place *place)
+bool renderer_projection(struct frame_projection *out, const struct renderer *r,
+                         const struct frame_request *q, const struct place *place)
 {
     const struct relume_objects_info *info = relume_objects_info(r->drawer.objects);
     const struct relume_geometry *g = &r->geometry;
@@ -147,8 +147,8 @@ static relume_status use_places(struct renderer *r)
     return status;
 }
 
-static relume_status find_scene(struct renderer *r, const struct frame_request *q,
-                                struct place place)
+relume_status renderer_find_scene(struct renderer *r, const struct frame_request *q,
+                                  struct place place)
 {
     relume_status status = use_places(r);
     place.exposure = 1.0f;
@@ -209,7 +209,7 @@ static relume_status draw_scene(struct renderer *r, const struct frame_request *
         return status ? status : renderer_frame(r, q, place);
     }
     if (!status)
-        status = find_scene(r, q, *place);
+        status = renderer_find_scene(r, q, *place);
     if (!status)
         status = light_scene(r, q, place, lights, count);
     return status ? status : find_surround(r, q, lights, count);
@@ -275,7 +275,7 @@ relume_status renderer_draw_objects(struct renderer *r, const struct frame_reque
                                     int count)
 {
     struct frame_projection projection;
-    const bool seen = find_projection(&projection, r, q, place);
+    const bool seen = renderer_projection(&projection, r, q, place);
     r->gl->BindVertexArray(r->vertices);
     relume_status status = draw_scene(r, q, place, lights, count, seen);
     if (status || !seen || q->pass != RELUME_PASS_COLOUR)

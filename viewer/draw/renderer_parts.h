@@ -27,4 +27,23 @@ relume_status renderer_draw_objects(struct renderer *r, const struct frame_reque
                                     int count);
 void renderer_objects_destroy(struct renderer *r);
 
+// The same with light between the scene and them, in the ways that the frame asks for.
+relume_status renderer_draw_ways(struct renderer *r, const struct frame_request *request,
+                                 const struct place *place, const struct relume_light *lights,
+                                 int count);
+void renderer_ways_destroy(struct renderer *r);
+// What they are drawn with, of a panorama with depth. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status renderer_need_between(struct renderer *r, const struct frame_request *request,
+                                    const struct place *place);
+// By passes, `directional` or by even light; false in *drawn where there are none for it.
+relume_status renderer_draw_between(bool *drawn, struct renderer *r,
+                                    const struct frame_request *request, const struct place *place,
+                                    const struct relume_light *lights, int count, bool directional);
+// How objects appear in the frame; false where it is not flat.
+bool renderer_projection(struct frame_projection *out, const struct renderer *r,
+                         const struct frame_request *request, const struct place *place);
+// Where the frame sees the scene, into r->scene.
+relume_status renderer_find_scene(struct renderer *r, const struct frame_request *request,
+                                  struct place place);
+
 #endif

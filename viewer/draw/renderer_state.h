@@ -3,11 +3,13 @@
 #define VIEWER_RENDERER_STATE_H
 
 #include "app/frame_request.h"
+#include "draw/between.h"
 #include "draw/draw.h"
 #include "draw/objects_drawer.h"
 #include "glare/glare.h"
 #include "relit/depths.h"
 #include "relit/enhancer.h"
+#include "relit/exchanger.h"
 #include "relit/relighter.h"
 #include "relit/tile_map.h"
 
@@ -28,7 +30,7 @@ struct renderer {
     struct enhancer enhancer;
     struct glare glare;
     struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,
-        source, present;
+        source, present, apart;
     GLuint vertices;
     struct target frame;
     const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
@@ -66,6 +68,16 @@ struct renderer {
     double
         objects_drawer_ms[2];  // what the objects took in the last frame, and in another material
     struct hiding_scene backdrop;  // that hides lights
+    // Light between scene and objects, of two ways that are compared; made when first needed.
+    struct exchange_source exchange;  // file NULL: it does not go between
+    struct exchanger *exchanger;
+    struct target way[EXCHANGER_SLOTS], beside_way;
+    bool waits;                         // for finished pictures of it
+    bool ways_by_library;               // all of them
+    bool with_depth;                    // a panorama
+    double passes_ms[EXCHANGER_SLOTS];  // that own passes of a way took in the last frame; 0: there
+                                        // are none
+    struct between between;             // those that are passes; made when first needed
 };
 
 #endif

@@ -243,6 +243,9 @@ static bool sections(panel *panel, app *app, const panel_facts *facts)
         changed |= panel_lights(panel, app, facts);
     if (app->file.objects && section("Objects", "the materials of the objects"))
         changed |= panel_objects(app, facts);
+    if (way_matters(app) &&
+        section("Light between objects and scene", "how light goes from one to the other"))
+        changed |= panel_ways(app, facts);
     if (facts->reflections &&
         section("Reflections", "edit what mirrors reflect, by hand", app->reflects))
         panel_reflections(panel, app, facts);

@@ -26,6 +26,7 @@ struct panel_facts {
     const size_t *material_bytes;
     int materials;
     const double *objects_ms;
+    const char *ways[2];      // how far each way of light is, or NULL
     const char *edits;        // of the g-BRDF or maps shown, one a line; NULL: none can be ...
     bool edits_maps;          // ... of maps ...
     int edited_materials;     // ... and how many materials a g-BRDF has

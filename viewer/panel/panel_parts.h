@@ -8,6 +8,7 @@ extern "C" {
 #include "app/gizmo.h"
 #include "app/keys.h"
 #include "app/light_list.h"
+#include "app/way.h"
 }
 
 #include <imgui.h>
@@ -71,6 +72,7 @@ bool panel_enhancement(app *app, const panel_facts *facts);
 bool panel_camera(app *app);
 bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
+bool panel_ways(app *app, const panel_facts *facts);
 void panel_reflections(panel *panel, app *app, const panel_facts *facts);
 void panel_edits(panel *panel, app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);

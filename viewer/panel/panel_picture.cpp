@@ -156,6 +156,7 @@ bool panel_objects(app *app, const panel_facts *facts)
         int material = info->part[i].material;
         ImGui::PushID(i);
         if (choose_material(info->part[i].name, info, &material)) {
+            way_let_go(app);
             (void)!relume_objects_choose(app->file.objects, i, material);
             changed = true;
         }
@@ -176,6 +177,31 @@ bool panel_objects(app *app, const panel_facts *facts)
     material_cost(info, facts, info->part[0].material, facts->objects_ms[0]);
     if (app->now.split != APP_SPLIT_NONE)
         material_cost(info, facts, app->now.other, facts->objects_ms[1]);
+    return changed;
+}
+
+bool panel_ways(app *app, const panel_facts *facts)
+{
+    static const char *const splits[APP_SPLITS] = {"one", "side by side", "difference"};
+    const auto name = [](int i) { return way_name(i); };
+    bool changed = panel_choice("way", &app->now.way, way_count(), name,
+                                "how light goes between the objects and the scene; also by Ctrl+T");
+    for (int i = 0; i < APP_SPLITS; i++) {
+        if (i)
+            ImGui::SameLine();
+        const bool chosen = ImGui::RadioButton(splits[i], app->now.ways == i);
+        panel_tip("compare two ways; also by Ctrl+D");
+        if (chosen && app->now.ways != i) {
+            way_compare(app, (app_split)i);
+            changed = true;
+        }
+    }
+    if (app->now.ways != APP_SPLIT_NONE)
+        changed |= panel_choice("other", &app->now.other_way, way_count(), name,
+                                "the way that it is compared with");
+    for (const char *state : facts->ways)
+        if (state && state[0])
+            ImGui::TextWrapped("%s", state);
     return changed;
 }
 

@@ -161,9 +161,13 @@ static relume_status find_places(struct relume_image *out, void *user, int view)
 {
     struct pack_source *s = user;
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .view = view};
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    const bool is_far = !info->has_depth && info->geometry.projection >= RELUME_CYLINDRICAL;
+    const double FAR = 1e6;  // panoramas without depth
     relume_renderer *renderer;
     pthread_mutex_lock(&s->lock);
-    relume_status status = relume_renderer_create(&renderer, s->pack, NULL);
+    relume_status status = relume_renderer_create(
+        &renderer, s->pack, relume_frame_params(.assume_depth = is_far ? FAR : 0.0));
     if (!status)
         status = relume_renderer_places(out, renderer, &camera);
     relume_renderer_destroy(&renderer);

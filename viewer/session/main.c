@@ -145,6 +145,11 @@ static relume_status host_wait(void *user, double seconds)
         else if (moves || until_idle || observer_lives(&s->app.now.observer))
             status = (s->streams ? show_frame : session_draw)(s);
     }
+    if (!status && until_idle && renderer_expects(&s->renderer)) {
+        status = renderer_wait(&s->renderer);
+        if (!status)
+            status = show_frame(s);
+    }
     return status;
 }
 
@@ -246,13 +251,21 @@ static bool is_over(const struct session *s)
     return s->app.quit || stopping_asked();
 }
 
+// How long nothing changes by itself, seconds: a picture that another thread makes is looked for
+// now and then.
+static double still_s(const struct session *s)
+{
+    const double LOOK_S = 0.05, steady = app_steady_s(&s->app);
+    return renderer_expects(&s->renderer) ? fmin(steady, LOOK_S) : steady;
+}
+
 static relume_status take_events(struct session *s, bool *changed, double *time_ms)
 {
     relume_status status = RELUME_OK;
     struct context_event event;
     *changed |= session_pass(s, time_passed(time_ms));
     while (!status && !is_over(s) &&
-           s->backend->next(s->context, &event, *changed ? 0 : app_steady_s(&s->app))) {
+           s->backend->next(s->context, &event, *changed ? 0 : still_s(s))) {
         *changed |= session_pass(s, time_passed(time_ms));
         status = take_event(s, &event, changed);
     }
@@ -275,8 +288,9 @@ static relume_status live(struct session *s, struct script *script)
             status = take_events(s, &changed, &time_ms);
         if (!status && changed && !is_over(s))
             status = show_frame(s);
-        changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
-                              observer_lives(&s->app.now.observer));
+        changed =
+            !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
+                        renderer_has_news(&s->renderer) || observer_lives(&s->app.now.observer));
     }
     return status || !stopping_asked() ? status : RELUME_ECANCEL;
 }

@@ -3,10 +3,12 @@
 
 #include "app/keys.h"
 #include "app/light_list.h"
+#include "app/way.h"
 #include "program/options.h"
 #include "program/say.h"
 
 #include <relume/tone.h>
+#include <relume/transport.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -64,6 +66,20 @@ static relume_status take_material(void *objects, const struct option *o, const 
     return RELUME_OK;
 }
 
+static relume_status take_transport(void *place, const struct option *o, const char *text,
+                                    const struct relume_log *log)
+{
+    enum { MOST = 16 };
+    const char *names[MOST];
+    int n = 0;
+    for (; n < MOST - 1 && n < way_count(); n++)
+        names[n] = way_name(n);
+    names[n] = NULL;
+    const struct relume_transport *found = relume_transport_find(text);
+    memcpy(place, &found, sizeof found);
+    return found ? RELUME_OK : unknown_word(log, o->name, text, names);
+}
+
 enum { PERSPECTIVE, STEREOGRAPHIC, PLANET };
 static const char *const backends[] = {"auto", "osmesa", "egl", NULL};
 #define PLACES "auto", "passes", "library"
@@ -116,6 +132,14 @@ static const struct option options[] = {
          "objects covered with BTFs (docs/objects.md), in the scene or alone"),
     TEXT("--reflections", objects.reflections, "FILE",
          "what their mirrors shall reflect where (docs/reflections.md)"),
+    OWN("--transport", transport, "NAME",
+        "--objects: how light goes between them and the scene: none (default), ssao, ssdo, path, "
+        "... "
+        "(docs/transport.md)",
+        take_transport),
+    INT("--bounces", bounces, "N", "--transport: of light off objects; default: 2", 0, 16),
+    INT("--samples", samples, "N", "--transport: directions that light is gathered from at a pixel",
+        1, 65536),
     TEXT("--mesh", objects.mesh, "FILE",
          "one mesh instead, covered with --material: .obj, .ply, .gltf, .glb, ..."),
     OWN("--material", objects, "DIR",
@@ -225,6 +249,7 @@ void options_help(void)
         "        reflection unfreeze|view|distance straight|geodesic, reflection save [FILE]\n"
         "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
         "        glare sources on|off: visible lights\n"
+        "        transport WAY|beside WAY|difference WAY|alone: light between objects and scene\n"
         "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
         "        set gain|highlight|exponent|radius|exposure|aperture|focus|pan|tilt|zoom X\n"
         "        set eye X Y Z         set range LOW HIGH               pass NAME\n"
@@ -275,6 +300,23 @@ static relume_status choose_objects(struct options *o, const struct relume_log *
         return say(log, RELUME_EINVAL,
                    "--reflections: expected a description of objects; add --objects FILE");
     o->stage = !o->file && (w->materials || w->description);
+    return RELUME_OK;
+}
+
+// Light between objects and the scene that they stand in.
+static relume_status choose_way(struct options *o, const struct command_line *line,
+                                const struct relume_log *log)
+{
+    const bool bounces = option_given(line, &o->bounces);
+    const bool in_scene = o->file && (o->objects.description || o->objects.mesh);
+    if ((o->transport || bounces || o->samples) && !in_scene)
+        return say(log, RELUME_EINVAL,
+                   "--transport, --bounces and --samples work only with objects in a scene; open a "
+                   "FILE with --objects FILE");
+    for (int i = 0; o->transport && i < way_count(); i++)
+        o->start.way = relume_transports[i] == o->transport ? i : o->start.way;
+    o->start.way_samples = o->samples;
+    o->start.bounces = bounces && !o->bounces ? -1 : o->bounces;
     return RELUME_OK;
 }
 
@@ -340,7 +382,8 @@ static relume_status choose(struct options *o, const struct command_line *line,
         return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
     if (o->record && o->kind == RECORD_SCRIPT && !o->script)
         return say(log, RELUME_EINVAL, "--record script: expected --script EVENTS as well");
-    return choose_objects(o, log);
+    const relume_status objects = choose_objects(o, log);
+    return objects ? objects : choose_way(o, line, log);
 }
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)

@@ -32,7 +32,9 @@ struct options {
     relume_rig *rig;  // of --rig and --light, NULL without either
     int size[2];      // of --size, 0: not given
     const struct relume_tone *tone;
-    int projection;  // of a look into a panorama
+    const struct relume_transport *transport;  // NULL: not given
+    int samples, bounces;                      // of it
+    int projection;                            // of a look into a panorama
     int backend;
     const char *gl;  // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;     // that read files; 0: all cores

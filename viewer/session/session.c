@@ -3,6 +3,7 @@
 
 #include "app/events.h"
 #include "app/light_list.h"
+#include "app/way.h"
 #include "program/say.h"
 
 #include <math.h>
@@ -127,10 +128,17 @@ static bool has_surface(const relume_pack *pack)
     return info->has_depth || info->geometry.projection == RELUME_PLANAR;
 }
 
+// What light goes to and from may be far away on all sides.
+static bool may_be_far(const relume_pack *pack, const struct app_state *start)
+{
+    return way_gathers(start->way) &&
+           relume_pack_info(pack)->geometry.projection >= RELUME_CYLINDRICAL;
+}
+
 static relume_status check_depth(const relume_pack *pack, const struct app_state *start,
                                  const relume_objects *objects, const struct relume_log *log)
 {
-    if (objects && !has_surface(pack))
+    if (objects && !has_surface(pack) && !may_be_far(pack, start))
         return say(log, RELUME_EUNFIT,
                    "objects need to know how far the scene is; open a file with depth");
     if (start->interpolation != RELUME_INTERPOLATE_DEPTH || relume_pack_info(pack)->has_depth)
@@ -195,6 +203,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
     s->app = app;
     s->app.compared = s->capture != NULL;
     s->app.near_lights = has_surface(pack);
+    s->sphere = start->camera.framing == RELUME_FRAME_LOOK;
+    snprintf(s->file, sizeof s->file, "%s", path);
     session_set_name(s, path);
     describe_lines(s);
     warn_below_horizon(s);
@@ -348,6 +358,9 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         .tone = was.now.tone,
         .white = was.now.white,
         .observer = was.now.observer,
+        .way = was.now.way,
+        .way_samples = was.now.way_samples,
+        .bounces = was.now.bounces,
     };
     relume_status status = was.keep_lights ? keep_lights(&start, &was.now) : RELUME_OK;
     s->notice[0] = '\0';
@@ -441,6 +454,7 @@ static void warn_beside(struct session *s)
 relume_status session_render(struct session *s)
 {
     relume_status status = frame_request_make(&s->request, &s->app);
+    s->renderer.waits = !s->streams || s->finishes || session_records(s);
     if (!status)
         status = renderer_draw(&s->renderer, &s->request);
     if (!status)
@@ -469,6 +483,11 @@ static bool passes_recording(struct session *s, const struct app_event *event)
     return event->kind == APP_SIZE || event->kind == APP_RELEASE || event->kind == APP_KEY_UP;
 }
 
+static bool may_edit_reflections(const struct app *app, const struct app_event *event)
+{
+    return app->reflects && (app->drag == APP_DRAG_HANDLE || event->kind != APP_MOVE);
+}
+
 // A panel that has just appeared is made at once, so that the next click finds it. One that has
 // gone still hears of releases: it may have had the press.
 bool session_send(struct session *s, const struct app_event *event)
@@ -479,8 +498,12 @@ bool session_send(struct session *s, const struct app_event *event)
     if ((shown || event->kind == APP_RELEASE) && panel_takes(s->panel, event))
         return true;
     session_lend_scene(s);
+    const struct app_state before = s->app.now;
+    if (may_edit_reflections(&s->app, event))
+        renderer_let_go(&s->renderer);
     const bool changed = app_handle(&s->app, event);
     session_hear_handles(s);
+    session_hear_ways(s, &before);
     if (!shown && panel_shown(&s->app) && session_build_panel(s, false))
         return true;  // what went wrong goes wrong again when it is drawn, and is reported there
     return changed || shown || s->app.wish;

@@ -73,11 +73,14 @@ struct session {
     struct target screen;  // of shots without a window
     float histogram[256][3];
     char name[SESSION_TEXT];                   // of the file, for the title
+    char file[APP_SPEC];                       // as it was opened ...
+    bool sphere;                               // ... as a panorama
     char folder[APP_SPEC];                     // that it is in
     size_t material_bytes[SESSION_MATERIALS];  // of graphics memory
     char line[SESSION_LINES][SESSION_TEXT];
-    const char *lines[SESSION_LINES + 1];  // what the panel says of the file
-    char message[SESSION_TEXT];            // what was said last
+    char way[EXCHANGER_SLOTS][SESSION_TEXT];  // how far their pictures are
+    const char *lines[SESSION_LINES + 1];     // what the panel says of the file
+    char message[SESSION_TEXT];               // what was said last
     bool full_screen;
     double ui_scale;            // of the panel, as context_backend.scale; 0: what that says
     char font[PATH_MAX];        // of the panel
@@ -91,6 +94,7 @@ struct session {
     enum session_relight glare;            // by passes or by the library, likewise
     int glare_size;                        // as glare.size
     const struct relume_subject *subject;  // whose eye looks; NULL: the default one
+    bool finishes;                         // draws a picture that is kept
     bool streams;                          // frames are drawn with the views that are there
     const struct relume_log *log;          // lasts as long: files and renderers keep it
     const struct relume_log *listener;     // hears what `log` would say, for a while; or NULL
@@ -134,6 +138,11 @@ void session_set_name(struct session *s, const char *path);
 // The renderer of a stage, and objects in the renderer of a file. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status session_make_stage(struct session *s);
 relume_status session_add_objects(struct session *s);
+// Light between them and the scene, from session_add_objects on; what is said of a way that was
+// chosen, where it was another one `before`; what the panel says of the pictures.
+void session_add_ways(struct session *s);
+void session_hear_ways(struct session *s, const struct app_state *before);
+void session_describe_ways(struct session *s);
 // Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, an input status.
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
                             int height);

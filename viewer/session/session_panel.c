@@ -119,6 +119,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
                     i < SESSION_MATERIALS;
          i++)
         s->material_bytes[i] = objects_drawer_bytes(&s->renderer.drawer, i);
+    session_describe_ways(s);
     const struct panel_facts facts = {
         .file = s->name,
         .line = s->lines,
@@ -139,6 +140,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .round_s = (double)s->recording.frames / RECORD_RATE,
         .reflections =
             s->app.file.objects && handles_mirror(s->app.file.objects) ? reflections : NULL,
+        .ways = {s->way[0], s->way[1]},
         .edits_maps = s->found.width > 0,
         .edits = session_can_edit(s) ? s->edits : NULL,
         .edited_materials = s->edited_materials,

@@ -33,10 +33,18 @@ relume_status session_read(struct relume_image *image, struct session *s, bool l
     return status;
 }
 
+static relume_status draw_finished(struct session *s)
+{
+    s->finishes = true;
+    const relume_status status = session_draw(s);
+    s->finishes = false;
+    return status;
+}
+
 relume_status session_frame(struct session *s, const char *path)
 {
     struct relume_image image;
-    relume_status status = session_draw(s);
+    relume_status status = draw_finished(s);
     if (!status)
         status = session_read(&image, s, relume_image_saves_linear(path));
     return status ? status : save(s, &image, path);
@@ -73,7 +81,7 @@ static void turn_over_and_decode(struct relume_image *image)
 // Linear, as the screen would show it.
 static relume_status read_screen(struct relume_image *image, struct session *s)
 {
-    relume_status status = session_draw(s);
+    relume_status status = draw_finished(s);
     if (!status)
         status = prepare_screen(s);
     if (status)

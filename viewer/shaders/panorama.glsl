@@ -7,7 +7,9 @@ uniform vec3 look;           // pan and tilt in radians, 1 / zoom
 uniform bool stereographic;
 uniform vec2 look_size;      // pixels of the frame
 uniform float exposure;
+#ifndef BETWEEN
 out vec4 color;
+#endif
 
 const float PI = 3.14159265358979;
 
@@ -52,7 +54,7 @@ float azimuth_column(vec3 d)
     return (atan(d.x, -d.z) + PI) / (2.0 * PI) * float(textureSize(view, 0).x);
 }
 
-#ifndef MIRROR
+#if !defined(MIRROR) && !defined(BETWEEN)
 void main()
 {
     vec3 ray = look_ray(look, look_size, gl_FragCoord.xy);

@@ -62,3 +62,6 @@ bool panorama_pixel(out vec2 xy, out int face, vec3 d)
 #ifdef MIRROR
 #include "mirror.glsl"
 #endif
+#ifdef BETWEEN
+#include "between/gather.glsl"
+#endif

@@ -34,3 +34,6 @@ vec3 panorama_texel(int face, int x, int y)
 #ifdef MIRROR
 #include "mirror.glsl"
 #endif
+#ifdef BETWEEN
+#include "between/gather.glsl"
+#endif

@@ -111,3 +111,6 @@ vec3 panorama_sample(vec3 d)
 #ifdef MIRROR
 #include "mirror.glsl"
 #endif
+#ifdef BETWEEN
+#include "between/gather.glsl"
+#endif

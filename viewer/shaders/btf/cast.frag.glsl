@@ -2,32 +2,11 @@
 // What one light sample alone shows of a scene, where no object keeps it off. Twin: share (into.c).
 #include "cube.glsl"
 #include "shadow.glsl"
-uniform sampler2D scene;  // positions
+#include "between/scene_normal.glsl"
 uniform sampler2D lone;
 uniform vec4 light_samples[64];  // of the light: direction times value, 0; or place, value
 uniform int count, light_sample;  // 0: the light is one sample
 out vec4 color;
-
-vec3 place_at(ivec2 pixel)
-{
-    return texelFetch(scene, clamp(pixel, ivec2(0), textureSize(scene, 0) - 1), 0).xyz;
-}
-
-// Twin: step_across.
-vec3 step_across(ivec2 pixel, ivec2 way)
-{
-    vec3 at = place_at(pixel), back = at - place_at(pixel - way), on = place_at(pixel + way) - at;
-    float b = length(back), o = length(on);
-    return o > 0.0 && !(b > 0.0 && b < o) ? on : back;
-}
-
-// Twin: scene_normal.
-vec3 scene_normal(ivec2 pixel)
-{
-    vec3 normal = cross(step_across(pixel, ivec2(0, 1)), step_across(pixel, ivec2(1, 0)));
-    float size = length(normal);
-    return size > 0.0 ? normal / size : vec3(0.0);
-}
 
 // Twin: counts_for.
 float counts_for(vec4 by, vec3 point, vec3 normal)

@@ -5,6 +5,8 @@ uniform sampler2D other;          // the same in another material
 uniform bool difference;          // show how far it is from that
 uniform sampler2D scene;          // positions of the frame's own size; alpha 0: nothing is there
 uniform bool in_scene;
+uniform sampler2D returned;       // light of the scene that objects show, likewise
+uniform bool has_returned;
 uniform int grid;
 uniform vec4 eye;
 uniform float exposure;
@@ -29,6 +31,8 @@ void main()
         vec3 value = texelFetch(shaded, at, 0).rgb;
         if (difference)
             value = abs(value - texelFetch(other, at, 0).rgb);
+        if (has_returned)
+            value += texelFetch(returned, pixel, 0).rgb;
         sum += vec4(exposure * value, 1.0);
     }
     color = sum / float(grid * grid);

@@ -1,0 +1,75 @@
+// between.h - light between a captured panorama and the objects in it, by passes over the frame:
+// the ways of transport/screen.c on the graphics card
+//
+// They differ from that file in this: all directions are spread as the cosine (none by what is
+// bright), rays end in the panorama where a march through its depth finds a surface, what is
+// captured throws shadows by maps of the ball about the objects and a little more, and objects
+// return light as their material shows a white sky.
+#ifndef VIEWER_BETWEEN_H
+#define VIEWER_BETWEEN_H
+
+#include "draw/objects_drawer.h"
+
+// Targets that are drawn at once.
+enum { BETWEEN_JOINED = 4 };
+struct joined {
+    struct target target[BETWEEN_JOINED];
+    int count;
+    GLuint framebuffer;
+};
+
+// Zeroed it holds nothing.
+struct between {
+    const struct gl *gl;
+    const struct relume_log *log;
+    struct captured_mesh mesh;
+    struct shadow_map captured;  // of a light sample
+    struct program back, front, lamps, mean, shown, gather, smooth, returned, scene, picture;
+    GLuint array;
+    struct light_uniforms uniforms;
+    struct relume_image white_map;
+    relume_environment *white_sky;
+    // Of the frame.
+    struct joined nearest;   // the scene's normals; places and normals of what is nearest
+    struct joined by_lamps;  // let through without the objects and with them, all likewise
+    struct joined gathered, smoothed;  // without the objects, with them
+    struct target behind, show, thrown;
+    GLuint behind_depth;
+    struct target even;  // the mean of the panorama, a texel
+    struct target white,
+        sum;            // `grid` times finer: the objects under a white sky; all lights so far
+    uint64_t white_of;  // materials, 0: not known; seen by
+    float white_clip[16];
+    int lights;  // that are summed
+};
+
+// What all passes of a frame know.
+struct between_view {
+    const struct relume_geometry *geometry;
+    const struct target *panorama_places;
+    const struct target *scene;  // places in the frame
+    const struct frame_projection *projection;
+    int width, height;
+    bool directional, bounces, on;  // with light off objects, and on from there
+    int samples, pattern;
+};
+
+// RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status between_create(struct between *b, const struct gl *gl,
+                             const struct relume_geometry *geometry, const struct target *places,
+                             const struct relume_log *log);
+void between_destroy(struct between *b);
+
+// A frame: between_begin, for each light between_light, between_end. `drawer` has the surface of
+// the objects when it has begun; what it has shaded in the end are all lights.
+relume_status between_begin(struct between *b, struct objects_drawer *drawer,
+                            const struct between_view *view);
+// The scene alone shows `lone` under the light, the panorama `panorama`. Adds the scene as it is
+// with the objects to `lit`.
+relume_status between_light(struct between *b, struct objects_drawer *drawer,
+                            const struct between_view *view, const struct relume_light *light,
+                            const struct target *panorama, const struct target *lone,
+                            const struct target *lit, float exposure);
+void between_end(struct between *b, struct objects_drawer *drawer);
+
+#endif

@@ -1,0 +1,273 @@
+// renderer_ways.c - frames with light between the scene and the objects in it: as the library makes
+// them in a thread of its own, and until then with the hard shadows of renderer_objects.c
+#include "app/way.h"
+#include "draw/renderer.h"
+#include "draw/renderer_parts.h"
+#include "program/clock.h"
+
+#include <math.h>
+#include <string.h>
+
+void renderer_use_exchange(struct renderer *r, const struct exchange_source *exchange)
+{
+    r->exchange = *exchange;
+}
+
+void renderer_ways_destroy(struct renderer *r)
+{
+    exchanger_destroy(&r->exchanger);
+    for (int i = 0; i < EXCHANGER_SLOTS; i++)
+        target_destroy(&r->way[i], r->gl);
+    target_destroy(&r->beside_way, r->gl);
+    between_destroy(&r->between);
+}
+
+void renderer_let_go(struct renderer *r)
+{
+    if (r->exchanger)
+        exchanger_rest(r->exchanger);
+}
+
+bool renderer_expects(const struct renderer *r)
+{
+    return r->exchanger && exchanger_is_busy(r->exchanger);
+}
+
+bool renderer_has_news(const struct renderer *r)
+{
+    return r->exchanger && exchanger_has_news(r->exchanger);
+}
+
+relume_status renderer_wait(struct renderer *r)
+{
+    return exchanger_wait(r->exchanger);
+}
+
+// ---------------------------------------------------------------- asking
+
+// Ways that are passes, too (renderer_between.c).
+static const struct passes {
+    const char *way;
+    bool directional;
+} passes[] = {{"ssdo", true}, {"ssao", false}};
+
+// NULL: there are none of that way; for any of them (NULL), what stands in for it.
+static const struct passes *passes_of(const struct renderer *r, const char *way)
+{
+    for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
+        if (!way || !strcmp(passes[i].way, way))
+            return &passes[i];
+    return NULL;
+}
+
+// Two ways, or two materials; the latter are compared in hard shadows.
+static bool goes_between(const struct renderer *r, const struct frame_request *q, int way)
+{
+    return r->exchange.file && way_gathers(way) && q->pass == RELUME_PASS_COLOUR &&
+           q->split == APP_SPLIT_NONE;
+}
+
+// Pixels of the whole picture: as the frame shows them, but of an enlarged one no more than four
+// frames would have.
+static void find_size(struct relume_camera *camera, const struct frame_request *q)
+{
+    const double wide = q->picture.right - q->picture.left,
+                 high = q->picture.bottom - q->picture.top;
+    const double most = 4.0 * q->width * q->height;
+    const double scale = fmin(1.0, sqrt(most / fmax(wide * high, 1.0)));
+    camera->width = (int)fmax(1.0, lround(scale * wide));
+    camera->height = (int)fmax(1.0, lround(scale * high));
+}
+
+// Looks into a panorama with depth.
+static bool takes_passes(const struct renderer *r, const struct frame_request *q)
+{
+    return !r->ways_by_library && r->with_depth && q->camera.framing == RELUME_FRAME_LOOK &&
+           !q->camera.look.stereographic && r->views == 1;
+}
+
+static bool is_drawn_by_passes(const struct renderer *r, const struct frame_request *q, int way)
+{
+    return takes_passes(r, q) && passes_of(r, way_name(way));
+}
+
+// Own passes, or some that stand in until the library is done.
+static bool wants_passes(const struct renderer *r, const struct frame_request *q, int way)
+{
+    return goes_between(r, q, way) && takes_passes(r, q) &&
+           (!r->waits || is_drawn_by_passes(r, q, way));
+}
+
+// Where OpenGL cannot do it, as it has said then, the library does.
+static relume_status check_passes(struct renderer *r, const struct frame_request *q,
+                                  const struct place *place)
+{
+    const bool wanted = wants_passes(r, q, q->way) || wants_passes(r, q, q->other_way);
+    const relume_status status = wanted ? renderer_need_between(r, q, place) : RELUME_OK;
+    if (status != RELUME_ESYSTEM)
+        return status;
+    r->log->message(r->log->user, RELUME_NOTE,
+                    "light between objects and scene is gathered by the library, not by passes");
+    r->ways_by_library = true;
+    return RELUME_OK;
+}
+
+static relume_status ask(struct renderer *r, const struct frame_request *q, int slot, int way,
+                         const struct relume_light *lights, int count)
+{
+    struct exchange_request request = {
+        .transport = relume_transports[way],
+        .samples = q->way_samples,
+        .bounces = q->bounces,
+        .camera = q->camera,
+        .interpolation = q->view.interpolation,
+        .aperture = q->view.aperture,
+        .focus = q->view.focus,
+        .lights = lights,
+        .count = count,
+        .moves = q->moves,
+        .waits = r->waits,
+    };
+    if (!goes_between(r, q, way) || is_drawn_by_passes(r, q, way))
+        return r->exchanger ? exchanger_ask(r->exchanger, slot, NULL) : RELUME_OK;
+    find_size(&request.camera, q);
+    const relume_status status =
+        r->exchanger ? RELUME_OK : exchanger_create(&r->exchanger, &r->exchange);
+    return status ? status : exchanger_ask(r->exchanger, slot, &request);
+}
+
+// Where somebody waits, a way that cannot be drawn is an error.
+static relume_status wait_for_all(struct renderer *r)
+{
+    struct exchange_state state[EXCHANGER_SLOTS];
+    relume_status status = exchanger_wait(r->exchanger);
+    for (int i = 0; i < EXCHANGER_SLOTS && !status; i++) {
+        exchanger_state(&state[i], r->exchanger, i);
+        status = state[i].status;
+    }
+    return status;
+}
+
+// ---------------------------------------------------------------- drawing
+
+static relume_status show(bool *shown, struct renderer *r, const struct place *place, int slot)
+{
+    const struct relume_image *image;
+    struct target *target = &r->way[slot];
+    bool fresh;
+    *shown = exchanger_show(&image, &fresh, r->exchanger, slot) != EXCHANGE_NONE;
+    if (!*shown)
+        return RELUME_OK;
+    const bool other = target->width != image->width || target->height != image->height;
+    const relume_status status = renderer_prepare(target, r, image->width, image->height);
+    if (status)
+        return status;
+    if (fresh || other)
+        target_write(target, r->gl, image);
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->frame, r->gl);
+    draw_picture(&r->picture, r->gl, place, target);
+    return RELUME_OK;
+}
+
+static relume_status draw_passes(bool *drawn, struct renderer *r, const struct frame_request *q,
+                                 const struct place *place, const struct relume_light *lights,
+                                 int count, double *ms, const struct passes *by)
+{
+    if (q->timed)
+        r->gl->Finish();
+    const double start = now_s();
+    const relume_status status =
+        renderer_draw_between(drawn, r, q, place, lights, count, by->directional);
+    if (q->timed)
+        r->gl->Finish();
+    *ms = *drawn ? 1e3 * (now_s() - start) : 0.0;
+    return status;
+}
+
+static relume_status draw_way(struct renderer *r, const struct frame_request *q,
+                              const struct place *place, const struct relume_light *lights,
+                              int count, int slot, int way)
+{
+    const struct passes *own = passes_of(r, way_name(way)), *stand_in = passes_of(r, NULL);
+    const bool between = goes_between(r, q, way);
+    const bool by_passes = between && is_drawn_by_passes(r, q, way);
+    bool shown = false;
+    relume_status status = RELUME_OK;
+    if (between && !by_passes)
+        status = show(&shown, r, place, slot);
+    double ms = 0.0;
+    if (!status && !shown && between && stand_in)
+        status = draw_passes(&shown, r, q, place, lights, count, &ms, own ? own : stand_in);
+    r->passes_ms[slot] = by_passes ? ms : 0.0;
+    return status || shown ? status : renderer_draw_objects(r, q, place, lights, count);
+}
+
+static void swap(struct target *a, struct target *b)
+{
+    const struct target was = *a;
+    *a = *b;
+    *b = was;
+}
+
+// r->frame is the other way. The first one comes into its left half, with a line between.
+static void draw_sides(const struct renderer *r, const struct place *place)
+{
+    const struct gl *gl = r->gl;
+    const int middle = place->width / 2;
+    const struct place whole = {
+        place->width, place->height, {0, 0, place->width, place->height}, 1};
+    gl->BindVertexArray(r->vertices);
+    target_resume(&r->frame, gl);
+    draw_picture_within(&r->picture, gl, &whole, &r->beside_way,
+                        (struct app_rectangle){0, 0, middle, place->height});
+    gl->Enable(GL_SCISSOR_TEST);
+    gl->Scissor(middle - 1, 0, 2, place->height);
+    gl->ClearColor(0.5f, 0.5f, 0.5f, 1.0f);
+    gl->Clear(GL_COLOR_BUFFER_BIT);
+    gl->Disable(GL_SCISSOR_TEST);
+}
+
+// A frame cannot be drawn from itself: what becomes of both is r->lit, which takes its place.
+static relume_status draw_difference(struct renderer *r, const struct place *place)
+{
+    const relume_status status = renderer_prepare(&r->lit, r, place->width, place->height);
+    if (status)
+        return status;
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->lit, r->gl);
+    draw_apart(&r->apart, r->gl, place, &r->frame, &r->beside_way);
+    swap(&r->frame, &r->lit);
+    return RELUME_OK;
+}
+
+relume_status renderer_draw_ways(struct renderer *r, const struct frame_request *q,
+                                 const struct place *place, const struct relume_light *lights,
+                                 int count)
+{
+    const bool both = q->ways != APP_SPLIT_NONE && !r->stage;
+    relume_status status = check_passes(r, q, place);
+    if (!status)
+        status = ask(r, q, 0, q->way, lights, count);
+    if (!status)
+        status = ask(r, q, 1, both ? q->other_way : 0, lights, count);
+    if (!status && r->exchanger && r->waits)
+        status = wait_for_all(r);
+    if (r->exchanger)
+        exchanger_speak(r->exchanger);
+    if (!status)
+        status = draw_way(r, q, place, lights, count, 0, q->way);
+    if (status || !both)
+        return status;
+    status = renderer_prepare(&r->beside_way, r, place->width, place->height);
+    if (status)
+        return status;
+    swap(&r->frame, &r->beside_way);
+    status = draw_way(r, q, place, lights, count, 1, q->other_way);
+    if (status)
+        return status;
+    if (q->ways == APP_SPLIT_DIFFERENCE)
+        return draw_difference(r, place);
+    draw_sides(r, place);
+    return RELUME_OK;
+}

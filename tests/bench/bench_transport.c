@@ -171,7 +171,7 @@ static void judge_ways(const struct judge *j)
            "| truth | | | |");
     print_shadow(j, &alone.image, &j->truth);
     for (const struct relume_transport *const *t = relume_transports; *t; t++)
-        for (int samples = 4; samples <= 64; samples *= 4) {
+        for (int samples = 4; samples <= 256; samples *= 4) {
             struct shot f = frame_of(j->room, j->ball, *t, samples, &unfolded);
             printf("| %s | %d | %.4f | %.3f |", relume_transport_name(*t), samples,
                    difference(j, &f.image, &j->truth), f.seconds);

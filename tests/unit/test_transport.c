@@ -98,7 +98,7 @@ static double error(const struct relume_image *got, const struct relume_image *w
     return sqrt(wrong / all);
 }
 
-// Measured here: none .239, ssao .110, ssdo .098, ism .077, radiosity .082, micro .077 (of each
+// Measured here: none .239, ssao .110, ssdo .098, ism .077, radiosity .082, micro .078 (of each
 // pixel .070), path .074. What is left of the last are borders of shadows, which one ray a pixel
 // draws hard, and noise of 64 directions.
 static void ways_come_near_the_truth(void **state)
@@ -175,7 +175,7 @@ static void a_furnace_hides_what_is_white(void **state)
 {
     (void)state;
     static const char *const ways[] = {"ssdo", "path", "micro", "ism", "radiosity"};
-    static const double most[] = {0.12, 0.03, 0.03, 0.05,
+    static const double most[] = {0.12, 0.03, 0.005, 0.05,
                                   0.05};  // ssdo: from hidden pixels is none
     enum { WAYS = sizeof ways / sizeof *ways };
     const struct relume_light light = {.direction = {0, 1, 0}, .rgb = {1, 1, 1}};

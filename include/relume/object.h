@@ -86,6 +86,9 @@ struct relume_object_material {
     // rendering").
     bool mirror;
     float reflectance[3];  // F, of a mirror, or of a matte surface; in [0, 1]
+    // Light goes into it and leaves elsewhere, where ray tracing shows it. `fitted` is a matte
+    // surface that is as bright in even light.
+    bool translucent;
 };
 
 // Triangles of one mesh that show one material.

@@ -35,6 +35,7 @@ struct exchange {
     const struct relume_transport *transport;
     struct relume_render_params params;
     int spacing;  // pixels from one that gathers to the next
+    const struct bodies *bodies;
     struct layer scene, objects, frame;
     float *behind;  // [pixels]: how far off the eye the backs of objects are
     vec3 eye;
@@ -191,7 +192,8 @@ static int spacing_of(const struct relume_render_params *params)
 }
 
 relume_status exchange_create(struct exchange **out, const relume_objects *o,
-                              const struct scenery *scenery, const struct relume_viewport *viewport,
+                              const struct bodies *bodies, const struct scenery *scenery,
+                              const struct relume_viewport *viewport,
                               const struct relume_image *places,
                               const struct relume_render_params *params)
 {
@@ -205,6 +207,7 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
     if (!e)
         return status ? status : RELUME_ENOMEM;
     *e = (struct exchange){.o = o,
+                           .bodies = bodies,
                            .scenery = scenery,
                            .viewport = viewport,
                            .transport = params->transport,
@@ -430,17 +433,39 @@ static void gather_scene(struct exchange *e, int x, int y)
     e->transport->gather(&e->world, &site, arrive_at_scene, &at);
 }
 
-static void gather_objects(struct exchange *e, int x, int y, const struct surface_point *point)
+static void gather_at_point(struct exchange *e, const struct surface_point *point,
+                            struct at_objects *at, uint64_t key)
 {
-    const size_t pixel = pixel_of(e, x, y);
+    if (translucent_return(at->returned, &e->lighting, point, at->eye)) {
+        at->white[0] = at->white[1] = at->white[2] = 1.0f;  // has been smoothed below its surface
+        return;
+    }
     const struct site site = {.position = point->position,
                               .normal = point->normal,
                               .start = point_leave(point),
-                              .key = key_of(e, x, y)};
+                              .key = key};
+    e->transport->gather(&e->world, &site, arrive_at_objects, at);
+}
+
+// Of a mirror, what is seen in it.
+static void gather_objects(struct exchange *e, int x, int y, const struct surface_point *point)
+{
+    const size_t pixel = pixel_of(e, x, y);
     const double middle[2] = {0.5, 0.5};
-    struct at_objects at = {e, point, ray_of(e, x, y, middle).origin, e->white.data + 3 * pixel,
+    struct surface_point seen = *point;
+    struct mirrored mirrored = {.part = {1.0f, 1.0f, 1.0f}};
+    struct at_objects at = {e, &seen, ray_of(e, x, y, middle).origin, e->white.data + 3 * pixel,
                             e->returned.data + 3 * pixel};
-    e->transport->gather(&e->world, &site, arrive_at_objects, &at);
+    if (objects_mirror_at(e->o, point)) {
+        mirror_follow(&mirrored, e->o, point, at.eye, &e->lighting);
+        if (!mirrored.meets)
+            return;
+        seen = mirrored.point;
+        at.eye = mirrored.from;
+    }
+    gather_at_point(e, &seen, &at, key_of(e, x, y));
+    for (int c = 0; c < 3; c++)
+        at.returned[c] *= mirrored.part[c];
 }
 
 // Shadows of one lamp are sharp; those of many samples are soft.
@@ -563,7 +588,8 @@ static void fill_objects(struct exchange *e, int x, int y)
         between(e->share->data + 3 * pixel, &b, e->share);
     else
         put_share(e, pixel, &point);
-    if (!b.count || differ(&b, &e->white, NULL)) {
+    if (!b.count || differ(&b, &e->white, NULL) || objects_mirror_at(e->o, &point) ||
+        translucent_body(&e->lighting, point.part) >= 0) {
         gather_objects(e, x, y, &point);
         return;
     }
@@ -650,7 +676,8 @@ static void light_objects(struct exchange *e, int x, int y)
     const size_t pixel = 3 * pixel_of(e, x, y);
     const bool goes_on = e->world.bounces > 1;
     for (size_t c = pixel; c < pixel + 3; c++) {
-        e->reflected->data[c] += e->returned.data[c];
+        if (e->reflected)
+            e->reflected->data[c] += e->returned.data[c];
         e->shown.data[c] += goes_on ? e->returned.data[c] : 0.0f;
     }
 }
@@ -698,6 +725,19 @@ static relume_status smooth_scene(struct exchange *e)
                             e->transport->pattern, e->params.threads);
 }
 
+static relume_status gather_at_all_objects(struct exchange *e, int rays)
+{
+    relume_status status =
+        lighting_gathers(&e->lighting, e->o, &e->world, e->transport, e->params.log);
+    if (!status)
+        status = over_pixels(e, rays, gather_at_objects);
+    if (!status && e->spacing > 1)
+        status = over_pixels(e, rays, fill_objects);
+    if (!status)
+        status = smooth_objects(e);
+    return status ? status : over_pixels(e, 1, light_objects);
+}
+
 static relume_status gather(struct exchange *e)
 {
     begin_world(e);
@@ -706,14 +746,8 @@ static relume_status gather(struct exchange *e)
     relume_status status = e->transport->screen ? over_pixels(e, lamps, show) : RELUME_OK;
     if (!status && e->transport->begin)
         status = e->transport->begin(&e->world, e->params.log);
-    if (!status)
-        status = over_pixels(e, few, gather_at_objects);
-    if (!status && e->spacing > 1)
-        status = over_pixels(e, few, fill_objects);
-    if (!status)
-        status = smooth_objects(e);
-    if (!status)
-        status = over_pixels(e, 1, light_objects);
+    if (!status && (e->reflected || e->transport->screen))
+        status = gather_at_all_objects(e, few);
     if (!status)
         status = over_pixels(e, few, gather_at_scene);
     if (!status && e->spacing > 1)
@@ -736,6 +770,9 @@ relume_status exchange_light(struct exchange *e, struct relume_image *scene,
     e->lone = lone, e->lit = scene, e->reflected = reflected, e->share = share;
     relume_status status = lighting_create(&e->lighting, e->o, light, 1, &e->params);
     e->lighting.scenery = &e->scenery, e->lighting.sceneries = 1;
+    e->lighting.surround.scenery = scenery_is_around(e->scenery) ? e->scenery : NULL;
+    if (!status)
+        status = lighting_enters(&e->lighting, e->o, e->bodies, e->params.threads, e->params.log);
     for (int i = 0; i < IMAGES && !status; i++)
         status = relume_image_create(gathered[i], lone->width, lone->height, 3);
     if (!status)

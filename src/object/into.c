@@ -65,16 +65,22 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
 
 // ---------------------------------------------------------------- both together
 
-static struct ray ray_of(const struct relume_viewport *viewport, double x, double y)
+static struct ray ray_of(const void *viewport, double x, double y)
 {
     struct ray ray;
     relume_viewport_ray(&ray.origin, &ray.direction, viewport, x, y);
     return ray;
 }
 
+struct both {
+    const struct layered *layers;
+    struct seen *seen;
+};
+
 static void layered_value(float rgb[3], const void *context, double x, double y, double step)
 {
-    const struct layered *l = context;
+    const struct both *both = context;
+    const struct layered *l = both->layers;
     const size_t pixel = 3 * ((size_t)y * (size_t)l->scene->width + (size_t)x);
     const float *p = l->places->data + pixel;
     struct surface_point point;
@@ -89,7 +95,8 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
     struct lighting lighting = *l->lighting;
     lighting.shares = l->shares;
     lighting.pixel = pixel;
-    objects_shade(rgb, l->o, &point, ray.origin, &lighting);
+    if (!seen_shade(rgb, both->seen, &point, ray.origin, x, y))
+        objects_shade(rgb, l->o, &point, ray.origin, &lighting);
     for (size_t c = 0; c < 3 && l->reflected->data; c++)
         rgb[c] += l->reflected->data[pixel + c];
 }
@@ -97,8 +104,16 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
 relume_status objects_layer(struct relume_image *out, const struct layered *l,
                             const struct relume_render_params *params)
 {
-    relume_status status = relume_image_create(out, l->scene->width, l->scene->height, 3);
-    return status ? status : objects_trace(out, layered_value, l, params);
+    const int width = l->scene->width, height = l->scene->height;
+    struct both both = {.layers = l};
+    relume_status status = relume_image_create(out, width, height, 3);
+    if (!status)
+        status =
+            seen_create(&both.seen, l->o, l->lighting, width, height, ray_of, l->viewport, params);
+    if (!status)
+        status = objects_trace(out, layered_value, &both, params);
+    seen_destroy(&both.seen);
+    return status;
 }
 
 // What a renderer has been given.
@@ -109,13 +124,16 @@ struct standing_in {
     bool said_far;            // that the scene is taken to be far away
     struct scenery *scenery;  // the scene as light meets it, of a view; NULL: not needed yet
     int view;                 // ... which one
+    struct bodies *bodies;    // of translucent material; NULL: not needed yet
 };
 
 static void free_standing_in(void *over)
 {
     struct standing_in *in = over;
-    if (in)
+    if (in) {
         scenery_destroy(&in->scenery);
+        bodies_destroy(&in->bodies);
+    }
     mem_free(in);
 }
 
@@ -207,14 +225,19 @@ static relume_status find_surround(struct surround *s, relume_renderer *renderer
     return status ? status : find_places(&s->places, renderer, &whole);
 }
 
+static bool mirrors_surroundings(const relume_renderer *renderer, const struct standing_in *in)
+{
+    return renderer->info->geometry.projection >= RELUME_CYLINDRICAL &&
+           objects_have_mirrors(in->objects);
+}
+
 static relume_status light_objects(struct lighting *lighting, relume_renderer *renderer,
                                    const struct relume_camera *camera,
                                    const struct relume_light *lights, int n)
 {
     struct standing_in *in = renderer->over;
-    const bool around = renderer->info->geometry.projection >= RELUME_CYLINDRICAL;
     relume_status status = lighting_create(lighting, in->objects, lights, n, &in->params);
-    if (!status && around && objects_have_mirrors(in->objects))
+    if (!status && mirrors_surroundings(renderer, in))
         status = find_surround(&lighting->surround, renderer, camera);
     if (!status && !in->said && surround_lacks(&lighting->surround, in->objects)) {
         log_line(in->params.log, RELUME_WARNING, "%s", SURROUND_LACKS);
@@ -228,11 +251,29 @@ static vec3 middle_of(const relume_objects *o)
     return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
 }
 
-// One light alone, and what it does between the scene and the objects.
+// Means of `fewer` x `fewer` pixels, in place; what is left over at the ends goes.
+static void reduce(struct relume_image *image, int fewer)
+{
+    const struct relume_image from = *image;
+    image->width /= fewer, image->height /= fewer;
+    for (int y = 0; y < image->height && fewer > 1; y++)
+        for (int x = 0; x < image->width; x++)
+            for (int c = 0; c < 3; c++) {
+                float sum = 0.0f;
+                for (int k = 0; k < fewer * fewer; k++)
+                    sum += from.data[3 * ((size_t)(y * fewer + k / fewer) * (size_t)from.width +
+                                          (size_t)(x * fewer + k % fewer)) +
+                                     (size_t)c];
+                image->data[3 * ((size_t)y * (size_t)image->width + (size_t)x) + (size_t)c] =
+                    sum / (float)(fewer * fewer);
+            }
+}
+
+// One light alone, and what it does between the scene and the objects, in a frame of fewer pixels.
 static relume_status exchange_one(struct exchange *e, struct relume_image *scene,
                                   struct relume_image *reflected, struct relume_image *share,
                                   relume_renderer *renderer, const struct relume_camera *camera,
-                                  const struct relume_light *light)
+                                  const struct relume_light *light, int fewer)
 {
     struct standing_in *in = renderer->over;
     const struct relume_camera whole = whole_view(renderer, camera);
@@ -244,37 +285,130 @@ static relume_status exchange_one(struct exchange *e, struct relume_image *scene
         status = renderer_bare_frame(&relit, renderer, &whole);
     if (!status)
         status = scenery_light(in->scenery, &relit, middle_of(in->objects));
-    if (!status)
+    if (!status) {
+        reduce(&lone, fewer);
         status = exchange_light(e, scene, reflected, share, &lone, light);
+    }
     relume_image_destroy(&lone);
     relume_image_destroy(&relit);
     return status;
 }
 
-// light_scene, with light between the scene and the objects, of which `reflected` is created, too.
+// light_scene, with light between the scene and the objects, of which `reflected` is created, too,
+// unless it is NULL. `fewer`: as exchange_one.
 static relume_status exchange_all(struct relume_image *scene, struct relume_image *reflected,
                                   struct relume_image *shares, const struct relume_image *places,
                                   const struct relume_viewport *viewport, relume_renderer *renderer,
                                   const struct relume_camera *camera,
-                                  const struct relume_light *lights, int n)
+                                  const struct relume_light *lights, int n, int fewer)
 {
     struct standing_in *in = renderer->over;
     struct exchange *e = NULL;
     relume_status status = relume_image_create(scene, places->width, places->height, 3);
-    if (!status)
+    if (!status && reflected)
         status = relume_image_create(reflected, places->width, places->height, 3);
     if (!status)
-        status = exchange_create(&e, in->objects, in->scenery, viewport, places, &in->params);
+        status = exchange_create(&e, in->objects, in->bodies, in->scenery, viewport, places,
+                                 &in->params);
     for (int i = 0; i < n && !status; i++) {
-        struct relume_image *share = lights[i].kind == RELUME_LIGHT_ENVIRONMENT ? shares++ : NULL;
+        struct relume_image *share =
+            shares && lights[i].kind == RELUME_LIGHT_ENVIRONMENT ? shares++ : NULL;
         if (share)
             status = relume_image_create(share, places->width, places->height, 3);
         if (!status)
-            status = exchange_one(e, scene, reflected, share, renderer, camera, &lights[i]);
+            status = exchange_one(e, scene, reflected, share, renderer, camera, &lights[i], fewer);
     }
     exchange_destroy(&e);
     const relume_status restored = relume_renderer_set_lights(renderer, lights, n);
     return status ? status : restored;
+}
+
+// The middle one of `fewer` x `fewer` places each.
+static relume_status pick_places(struct relume_image *out, const struct relume_image *places,
+                                 int fewer)
+{
+    const relume_status status =
+        relume_image_create(out, places->width / fewer, places->height / fewer, 3);
+    for (int y = 0; !status && y < out->height; y++)
+        for (int x = 0; x < out->width; x++)
+            memcpy(out->data + 3 * ((size_t)y * (size_t)out->width + (size_t)x),
+                   places->data + 3 * ((size_t)(y * fewer + fewer / 2) * (size_t)places->width +
+                                       (size_t)(x * fewer + fewer / 2)),
+                   3 * sizeof *out->data);
+    return status;
+}
+
+// The quotient at a place of the panorama of fewer pixels, between their centres.
+static double quotient_at(const struct relume_image *with, const struct relume_image *without,
+                          double x, double y, int channel)
+{
+    const int width = with->width, height = with->height, left = (int)floor(x), top = (int)floor(y);
+    double sum = 0.0;
+    for (int i = 0; i < 4; i++) {
+        const int u = left + i % 2, v = top + i / 2;
+        const size_t at = 3 * ((size_t)(v < 0        ? 0
+                                        : v < height ? v
+                                                     : height - 1) *
+                                   (size_t)width +
+                               (size_t)(u < 0       ? 0
+                                        : u < width ? u
+                                                    : width - 1)) +
+                          (size_t)channel;
+        const double weight = (1.0 - fabs(x - u)) * (1.0 - fabs(y - v));
+        sum +=
+            weight *
+            (without->data[at] > 0.0f ? (double)with->data[at] / (double)without->data[at] : 1.0);
+    }
+    return sum;
+}
+
+struct quotient {
+    struct relume_image *panorama;
+    const struct relume_image *with, *without;
+    int fewer;
+};
+
+static void multiply_row(void *context, size_t row, int worker)
+{
+    (void)worker;
+    const struct quotient *q = context;
+    float *to = q->panorama->data + 3 * row * (size_t)q->panorama->width;
+    for (int x = 0; x < q->panorama->width; x++)
+        for (int c = 0; c < 3; c++)
+            *to++ *= (float)quotient_at(q->with, q->without, (x + 0.5) / q->fewer - 0.5,
+                                        ((double)row + 0.5) / q->fewer - 0.5, c);
+}
+
+// What mirrors see of the scene becomes what it is with the objects, found in fewer pixels.
+static relume_status exchange_surround(struct surround *s, relume_renderer *renderer,
+                                       const struct relume_camera *whole,
+                                       const struct relume_light *lights, int n)
+{
+    enum { ACROSS = 320 };
+    const int fewer = (s->panorama.width + ACROSS - 1) / ACROSS;
+    struct relume_image places = {0}, with = {0}, without = {0};
+    struct relume_viewport viewport;
+    relume_status status = pick_places(&places, &s->places, fewer);
+    if (!status)
+        status = relume_image_create(&without, s->panorama.width, s->panorama.height, 3);
+    if (!status) {
+        memcpy(without.data, s->panorama.data,
+               3 * (size_t)without.width * (size_t)without.height * sizeof *without.data);
+        reduce(&without, fewer);
+        status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), whole,
+                                       places.width, places.height);
+    }
+    if (!status)
+        status =
+            exchange_all(&with, NULL, NULL, &places, &viewport, renderer, whole, lights, n, fewer);
+    if (!status)
+        thread_for(((const struct standing_in *)renderer->over)->params.threads,
+                   (size_t)s->panorama.height, multiply_row,
+                   &(struct quotient){&s->panorama, &with, &without, fewer});
+    relume_image_destroy(&places);
+    relume_image_destroy(&with);
+    relume_image_destroy(&without);
+    return status;
 }
 
 static relume_status draw_over(struct relume_image *out, relume_renderer *renderer,
@@ -304,9 +438,16 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
         shares = mem_zeroed((size_t)n, sizeof *shares);
         if (!status && !shares)
             status = RELUME_ENOMEM;
-        if (!status)
-            status = exchange_all(&scene, &reflected, shares, &places, &viewport, renderer, camera,
-                                  lights, n);
+    }
+    if (!status)
+        status = bodies_need(&in->bodies, objects, params->threads, params->log);
+    if (!status)
+        status = lighting_enters(&lighting, objects, in->bodies, params->threads, params->log);
+    if (!status && exchanges_light(in)) {
+        status = exchange_all(&scene, &reflected, shares, &places, &viewport, renderer, camera,
+                              lights, n, 1);
+        if (!status && mirrors_surroundings(renderer, in))
+            status = exchange_surround(&lighting.surround, renderer, &whole, lights, n);
     } else if (!status) {
         status = light_scene(&scene, &places, objects, renderer, camera, lights, n, params);
     }

@@ -5,7 +5,7 @@
 // Mirrors show environments as they are.
 static bool needs_sky(const relume_objects *o, int material)
 {
-    if (o->material[material].mirror)
+    if (o->material[material].mirror || o->material[material].translucent)
         return false;
     for (int i = 0; i < o->info.parts; i++)
         if (o->part[i].material == material)
@@ -89,6 +89,8 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
 
 void lighting_destroy(struct lighting *l)
 {
+    glows_free(&l->glow, l->bodies);
+    glows_free(&l->gathered, l->bodies);
     for (int i = 0; i < l->skies; i++) {
         for (int k = 0; k < l->materials && l->sky[i].prefiltered && l->sky[i].sky; k++) {
             relume_btf_environment_destroy(&l->sky[i].sky[k]);

@@ -4,7 +4,8 @@
 // the panorama shows in that direction (distance impostors: Szirmay-Kalos, Aszodi, Lazanyi and
 // Premecz 2005, "Approximate ray-tracing on the GPU with distance impostors"), in steps of equal
 // angle to the eye or so. A ray that passes behind something goes on: what is there the panorama
-// has not seen. One that hits nothing ends in the far distance.
+// has not seen. One that hits nothing ends in the far distance. Where light goes between objects
+// and a scene, mirrors show objects, too.
 #include "object/object.h"
 
 #include <relume/light.h>
@@ -120,9 +121,21 @@ static void add_environment(float rgb[3], const struct relume_light *light, vec3
         rgb[c] += light->rgb[c] * value[c];
 }
 
+static void scenery_value(float rgb[3], const struct scenery *scenery, vec3 place, vec3 direction)
+{
+    struct scenery_hit hit;
+    (void)scenery_meet(&hit, scenery, scenery_leave(scenery, place, direction), direction);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = hit.sent[c];
+}
+
 void surround_value(float rgb[3], const struct surround *s, vec3 place, vec3 direction)
 {
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    if (s->scenery) {
+        scenery_value(rgb, s->scenery, place, direction);
+        return;
+    }
     if (s->geometry) {
         panorama_value(rgb, s, place, direction);
         return;
@@ -163,16 +176,68 @@ bool relume_objects_reflect(struct relume_object_reflection *out, const relume_o
     return true;
 }
 
-void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 eye,
-                  const struct surround *surround)
+bool objects_mirror_at(const relume_objects *o, const struct surface_point *p)
+{
+    return o->material[o->part[p->part].material].mirror;
+}
+
+static void reflect_part(float part[3], const relume_objects *o, const struct surface_point *p,
+                         vec3 eye)
 {
     const struct relume_object_material *m = &o->material[o->part[p->part].material];
-    struct relume_object_reflection reflection;
     const double cosine = vec3_dot(p->normal, vec3_unit(vec3_sub(eye, p->position)));
     const double grazing = 1.0 - fmin(fmax(cosine, 0.0), 1.0);
     const float rest = (float)(grazing * grazing * grazing * grazing * grazing);
-    find_reflection(&reflection, o, p, eye);
-    surround_value(rgb, surround, p->position, reflection.edited);
     for (int c = 0; c < 3; c++)
-        rgb[c] *= m->reflectance[c] + (1.0f - m->reflectance[c]) * rest;
+        part[c] *= m->reflectance[c] + (1.0f - m->reflectance[c]) * rest;
+}
+
+// Whether a ray off a mirror meets objects before the scene. Edited ones may go into the surface:
+// they look up what is around.
+static bool meets_objects(struct surface_point *next, const relume_objects *o,
+                          const struct surface_point *p, vec3 along, const struct lighting *l)
+{
+    if (!(vec3_dot(along, p->geometric) > 0.0) || !objects_hit(next, o, point_leave(p), along))
+        return false;
+    for (int i = 0; i < l->sceneries; i++) {
+        struct scenery_hit scene;
+        const vec3 start = scenery_leave(l->scenery[i], p->position, p->geometric);
+        if (scenery_meet(&scene, l->scenery[i], start, along) && scene.distance < next->distance)
+            return false;
+    }
+    return true;
+}
+
+void mirror_follow(struct mirrored *out, const relume_objects *o, const struct surface_point *point,
+                   vec3 eye, const struct lighting *l)
+{
+    enum { MOST = 6 };  // mirrors
+    struct surface_point at = *point;
+    *out = (struct mirrored){.part = {1.0f, 1.0f, 1.0f}};
+    for (int i = 0; i < MOST && !out->meets; i++) {
+        struct relume_object_reflection reflection;
+        reflect_part(out->part, o, &at, eye);
+        find_reflection(&reflection, o, &at, eye);
+        out->from = eye = at.position;
+        out->direction = reflection.edited;
+        if (!l->sceneries || !meets_objects(&out->point, o, &at, out->direction, l))
+            return;
+        out->meets = !objects_mirror_at(o, &out->point);
+        at = out->point;
+    }
+}
+
+void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 eye,
+                  const struct lighting *l)
+{
+    struct mirrored m;
+    struct lighting there = *l;
+    there.shares = NULL;  // they are those of the mirror
+    mirror_follow(&m, o, p, eye, l);
+    if (m.meets)
+        objects_shade(rgb, o, &m.point, m.from, &there);
+    else
+        surround_value(rgb, &l->surround, m.from, m.direction);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= m.part[c];
 }

@@ -4,9 +4,17 @@
 
 #include "base/json.h"
 #include "mesh/trace.h"
+#include "transport/scattering.h"
 #include "transport/transport.h"
 
 #include <relume/object.h>
+
+// A material that light goes into and leaves elsewhere.
+struct translucent {
+    const char *name;  // NULL: it is another one
+    struct scattering scattering;
+    double mm;  // how long a unit of the world is; 0: nobody has said
+};
 
 struct relume_objects {
     struct relume_objects_info info;  // points to what is below
@@ -16,8 +24,9 @@ struct relume_objects {
     uint32_t (*triangles)[3];
     struct relume_object_part *part;  // [parts]
     struct relume_object_material *material;
-    char **folder;                   // [materials]: as it was opened
-    relume_reflection **reflection;  // [objects]; NULL: as it is
+    char **folder;                    // [materials]: as it was opened
+    struct translucent *translucent;  // [materials]
+    relume_reflection **reflection;   // [objects]; NULL: as it is
 };
 
 // The part's material, opened when it is not there yet; its number. An input status, RELUME_ENOMEM.
@@ -30,6 +39,12 @@ relume_status objects_mirror(relume_objects *o, const float reflectance[3], int 
 // A matte surface likewise. Errors of relume_btf_fit, too.
 relume_status objects_matte(relume_objects *o, const float reflectance[3], int *number,
                             const struct relume_objects_params *params);
+// A translucent one, which is shown matte where nothing scatters. Likewise.
+relume_status objects_translucent(relume_objects *o, const struct translucent *translucent,
+                                  int *number, const struct relume_objects_params *params);
+// What JSON value `translucent` of a description says. RELUME_EFORMAT with a sentence.
+relume_status translucent_read(struct translucent *out, const jvalue *value,
+                               const struct relume_log *log);
 
 // How a mesh stands and how its parts are covered.
 struct covering {
@@ -115,7 +130,11 @@ struct surround {
     enum relume_filter filter;
     const struct relume_light *light;  // borrowed; other ones than environments do not count
     int lights;
+    const struct scenery *scenery;  // shows what it sends, of one light; NULL: it does not
 };
+// Bodies of translucent material.
+struct bodies;
+struct glow;
 struct lighting {
     struct surround surround;
     struct relume_object_light *light_sample;
@@ -132,6 +151,8 @@ struct lighting {
     // images of three channels; NaN: look. NULL: look always.
     const struct relume_image *shares;
     size_t pixel;
+    const struct bodies *bodies;   // NULL: what is translucent is shown matte
+    struct glow *glow, *gathered;  // [bodies]: by lamps, and by arrivals; NULL: not
 };
 // RELUME_ENOMEM, RELUME_EINVAL. The caller destroys what is in `out`, whatever is returned.
 relume_status lighting_create(struct lighting *out, const relume_objects *o,
@@ -145,11 +166,55 @@ void lighting_destroy(struct lighting *lighting);
     "none; add --light \"env MAP\""
 bool objects_have_mirrors(const relume_objects *o);
 bool surround_lacks(const struct surround *surround, const relume_objects *o);
-// What a mirror shows to `eye` there.
-void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
-                  vec3 eye, const struct surround *surround);
 // What lies in a direction (unit) from a place.
 void surround_value(float rgb[3], const struct surround *surround, vec3 place, vec3 direction);
+// What `eye` sees in a mirror at a point, past other mirrors. Objects are seen in it where light
+// goes between them and a scene.
+struct mirrored {
+    float part[3];               // of it comes back
+    vec3 from, direction;        // of the last mirror's ray
+    bool meets;                  // an object, in `point`
+    struct surface_point point;  // else what is around is seen
+};
+void mirror_follow(struct mirrored *out, const relume_objects *o, const struct surface_point *point,
+                   vec3 eye, const struct lighting *lighting);
+bool objects_mirror_at(const relume_objects *o, const struct surface_point *point);
+// What a mirror shows to `eye` there.
+void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
+                  vec3 eye, const struct lighting *lighting);
+
+// Whether nothing stands before a lamp.
+bool objects_lit(const relume_objects *o, const struct surface_point *p, const struct lighting *l,
+                 vec3 towards, double distance);
+
+// The bodies of the materials that are shown, made anew when these are others; they begin as NULL.
+// RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status bodies_need(struct bodies **bodies, const relume_objects *o, int threads,
+                          const struct relume_log *log);
+void bodies_destroy(struct bodies **bodies);
+// The lamps of a lighting that is complete but for this enter the bodies, which are borrowed.
+// RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status lighting_enters(struct lighting *l, const relume_objects *o,
+                              const struct bodies *bodies, int threads,
+                              const struct relume_log *log);
+// What a way of transport gathers there enters, too. Likewise.
+relume_status lighting_gathers(struct lighting *l, const relume_objects *o, const struct world *w,
+                               const struct relume_transport *transport,
+                               const struct relume_log *log);
+void glows_free(struct glow **glows, const struct bodies *bodies);
+// Which body a part belongs to; -1: none. Whether there is one.
+int translucent_body(const struct lighting *l, int part);
+bool lighting_scatters(const struct lighting *l);
+// What of the lamps' light leaves a place of it, and which part of that goes towards `eye`, 1 on
+// average.
+void translucent_leaves(float rgb[3], const struct lighting *l, int body, vec3 place, vec3 normal);
+double translucent_lets_out(const struct lighting *l, int body, const struct surface_point *p,
+                            vec3 eye);
+// Both, or of what has been gathered. False where the point is no body's.
+bool translucent_shade(float rgb[3], const struct lighting *l, const struct surface_point *p,
+                       vec3 eye);
+bool translucent_return(float rgb[3], const struct lighting *l, const struct surface_point *p,
+                        vec3 eye);
 
 // Of what the samples of environment number `sky` send, each by its cosine, the part that arrives.
 void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
@@ -168,6 +233,18 @@ void objects_shade(float rgb[3], const relume_objects *o, const struct surface_p
 typedef void pixel_value(float rgb[3], const void *context, double x, double y, double step);
 relume_status objects_trace(struct relume_image *out, pixel_value *value, const void *context,
                             const struct relume_render_params *params);
+
+// What leaves bodies, for all pixels of a picture, of which `ray` gives the rays. NULL where there
+// is none. RELUME_ENOMEM, RELUME_ECANCEL.
+struct seen;
+typedef struct ray pixel_ray(const void *context, double x, double y);
+relume_status seen_create(struct seen **out, const relume_objects *o,
+                          const struct lighting *lighting, int width, int height, pixel_ray *ray,
+                          const void *context, const struct relume_render_params *params);
+void seen_destroy(struct seen **s);
+// As translucent_shade, by the pixel that the place lies in; false also where that is not known.
+bool seen_shade(float rgb[3], const struct seen *s, const struct surface_point *point, vec3 eye,
+                double x, double y);
 
 // A scene and the objects, where they are before it.
 struct layered {
@@ -195,14 +272,16 @@ double scene_share(const relume_objects *o, const struct relume_object_light *li
 struct exchange;
 // `captured` and what else is handed over is borrowed. RELUME_ENOMEM.
 relume_status exchange_create(struct exchange **out, const relume_objects *o,
-                              const struct scenery *scenery, const struct relume_viewport *viewport,
+                              const struct bodies *bodies, const struct scenery *scenery,
+                              const struct relume_viewport *viewport,
                               const struct relume_image *places,
                               const struct relume_render_params *params);
 void exchange_destroy(struct exchange **e);
 // Under one light, in which the scene alone shows `lone` and `captured` sends it: the scene as it
-// is with the objects is added to `scene`, what objects show of its light to `reflected`, at pixels
-// where objects are; `share` is filled with share_of_sky there, elsewhere with NaN (NULL: it is not
-// asked for, or the light is no environment). RELUME_ENOMEM, RELUME_ECANCEL.
+// is with the objects is added to `scene`, what objects show of its light to `reflected` (NULL:
+// nobody asks), at pixels where objects are; `share` is filled with share_of_sky there, elsewhere
+// with NaN (NULL: it is not asked for, or the light is no environment). RELUME_ENOMEM,
+// RELUME_ECANCEL.
 relume_status exchange_light(struct exchange *e, struct relume_image *scene,
                              struct relume_image *reflected, struct relume_image *share,
                              const struct relume_image *lone, const struct relume_light *light);

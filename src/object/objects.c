@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "mesh/mesh_read.h"
 #include "object/object.h"
+#include "transport/dipole.h"
 
 #include <string.h>
 #include <strings.h>
@@ -45,6 +46,7 @@ void relume_objects_destroy(relume_objects **objects)
     mem_free(o->part);
     mem_free(o->material);
     mem_free(o->folder);
+    mem_free(o->translucent);
     mem_free(o);
 }
 
@@ -184,10 +186,12 @@ static relume_status need_material(relume_objects *o, const char *name,
     if (o->info.materials == MOST_MATERIALS)
         return log_fail(log, RELUME_ELIMIT, "%s: expected at most %d materials", name,
                         MOST_MATERIALS);
-    return mem_grow(&o->material, count, sizeof *o->material) &&
-                   mem_grow(&o->folder, count, sizeof *o->folder)
-               ? RELUME_OK
-               : RELUME_ENOMEM;
+    if (!mem_grow(&o->material, count, sizeof *o->material) ||
+        !mem_grow(&o->folder, count, sizeof *o->folder) ||
+        !mem_grow(&o->translucent, count, sizeof *o->translucent))
+        return RELUME_ENOMEM;
+    o->translucent[count] = (struct translucent){.name = NULL};
+    return RELUME_OK;
 }
 
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
@@ -288,6 +292,39 @@ relume_status objects_matte(relume_objects *o, const float reflectance[3], int *
     return status ? status : take_model(added, fitted, params ? params->log : NULL);
 }
 
+static bool is_like(const struct translucent *a, const struct translucent *b)
+{
+    return a->name && !strcmp(a->name, b->name) && a->mm == b->mm &&
+           !memcmp(&a->scattering, &b->scattering, sizeof a->scattering);
+}
+
+relume_status objects_translucent(relume_objects *o, const struct translucent *translucent,
+                                  int *number, const struct relume_objects_params *params)
+{
+    const struct relume_log *log = params ? params->log : NULL;
+    struct dipole d;
+    float matte[3];
+    relume_btf_fitted *fitted = NULL;
+    for (*number = 0; *number < o->info.materials; ++*number)
+        if (is_like(&o->translucent[*number], translucent))
+            return RELUME_OK;
+    dipole_make(&d, &translucent->scattering, 1.0);
+    for (int c = 0; c < 3; c++)
+        matte[c] = (float)(d.enters * dipole_disc(&d, c, INFINITY));
+    relume_status status = need_material(o, translucent->name, log);
+    char *name = status ? NULL : mem_text(translucent->name);
+    if (!name)
+        return status ? status : RELUME_ENOMEM;
+    struct relume_object_material *m = &o->material[*number];
+    *m = (struct relume_object_material){.name = name, .translucent = true};
+    memcpy(m->reflectance, matte, sizeof matte);
+    o->folder[*number] = NULL;
+    o->translucent[*number] = *translucent;
+    o->info.materials++;
+    status = fit_matte(&fitted, matte, params);
+    return status ? status : take_model(m, fitted, log);
+}
+
 // ---------------------------------------------------------------- the description
 
 struct reader {
@@ -307,10 +344,17 @@ static relume_status know(const struct reader *r, const jvalue *object, const ch
                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
+static relume_status read_translucent(const struct reader *r, const jvalue *value, int *number)
+{
+    struct translucent t;
+    const relume_status status = translucent_read(&t, value, r->log);
+    return status ? status : objects_translucent(r->o, &t, number, r->params);
+}
+
 // One number for all, or one for each: what a mirror or a matte surface reflects.
 static relume_status read_reflectance(const struct reader *r, const jvalue *value, int *number)
 {
-    static const char *const known[] = {"mirror", "diffuse", NULL};
+    static const char *const known[] = {"mirror", "diffuse", "translucent", NULL};
     const bool matte = jvalue_member(value, "diffuse");
     const char *what = matte ? "diffuse" : "mirror";
     const jvalue *m = jvalue_member(value, what);
@@ -319,8 +363,14 @@ static relume_status read_reflectance(const struct reader *r, const jvalue *valu
     relume_status status = know(r, value, known);
     if (status)
         return status;
-    if (matte && jvalue_member(value, "mirror"))
-        return log_fail(r->log, RELUME_EFORMAT, "material: expected one of diffuse and mirror");
+    int members = 0;
+    for (int i = 0; known[i]; i++)
+        members += jvalue_member(value, known[i]) != NULL;
+    if (members > 1)
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "material: expected one of diffuse, mirror and translucent");
+    if (jvalue_member(value, "translucent"))
+        return read_translucent(r, jvalue_member(value, "translucent"), number);
     if (!jvalue_numbers(m, f, 3)) {
         if (!jvalue_number(m, &f[0]))
             return log_fail(r->log, RELUME_EFORMAT,
@@ -343,7 +393,7 @@ static relume_status read_folder(const struct reader *r, const jvalue *text, int
     if (!name || !*name)
         return log_fail(r->log, RELUME_EFORMAT,
                         "material: expected the folder of a BTF or of a model, {\"diffuse\": 0.5}, "
-                        "{\"mirror\": 1}, or a list of them");
+                        "{\"mirror\": 1}, {\"translucent\": \"marble\"}, or a list of them");
     char *folder = mesh_beside(r->path, name);
     const relume_status status =
         folder ? objects_material(r->o, folder, number, r->params) : RELUME_ENOMEM;

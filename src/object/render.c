@@ -186,9 +186,8 @@ static void ask(float rgb[3], const relume_objects *o, const struct surface_poin
         relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, ray, rgb);
 }
 
-// Whether neither objects nor what is captured stand before a lamp.
-static bool is_lit(const relume_objects *o, const struct surface_point *p, const struct lighting *l,
-                   vec3 towards, double distance)
+bool objects_lit(const relume_objects *o, const struct surface_point *p, const struct lighting *l,
+                 vec3 towards, double distance)
 {
     if (l->no_shadows)
         return true;
@@ -211,7 +210,7 @@ static void add_sample(float rgb[3], const relume_objects *o, const struct surfa
     const vec3 light = local(p, towards);
     if (!(light.z > 0.0))
         return;
-    if (!is_lit(o, p, l, towards, distance))
+    if (!objects_lit(o, p, l, towards, distance))
         return;
     ask(value, o, p, &(struct relume_btf_ray){.view = view, .light = vec3_unit(light)});
     for (int c = 0; c < 3; c++)
@@ -229,7 +228,7 @@ void share_of_sky(float share[3], const relume_objects *o, const struct surface_
         const float cosine = (float)vec3_dot(light_sample->direction, p->normal);
         if (!(cosine > 0.0f))
             continue;
-        const bool reached = is_lit(o, p, l, light_sample->direction, INFINITY);
+        const bool reached = objects_lit(o, p, l, light_sample->direction, INFINITY);
         for (int c = 0; c < 3; c++) {
             sent[c] += cosine * light_sample->rgb[c];
             arrived[c] += reached ? cosine * light_sample->rgb[c] : 0.0f;
@@ -257,11 +256,6 @@ static void add_sky(float rgb[3], const relume_objects *o, const struct surface_
         rgb[c] += share[c] * value[c];
 }
 
-static bool is_mirror(const relume_objects *o, const struct surface_point *p)
-{
-    return o->material[o->part[p->part].material].mirror;
-}
-
 static vec3 view_from(const struct surface_point *p, vec3 eye)
 {
     const vec3 view = local(p, vec3_unit(vec3_sub(eye, p->position)));
@@ -274,7 +268,7 @@ void objects_return(float rgb[3], const relume_objects *o, const struct surface_
     const double GRAZING = 0.05;  // values hold n.l, the arrival's share too
     const vec3 light = local(p, arrival->towards);
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    if (!(light.z > 0.0) || is_mirror(o, p))
+    if (!(light.z > 0.0) || objects_mirror_at(o, p))
         return;
     const float share = (float)(arrival->share / fmax(light.z, GRAZING));
     ask(rgb, o, p, &(struct relume_btf_ray){.view = view_from(p, eye), .light = vec3_unit(light)});
@@ -285,10 +279,12 @@ void objects_return(float rgb[3], const relume_objects *o, const struct surface_
 void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 eye,
                    const struct lighting *lighting)
 {
-    if (is_mirror(o, p)) {
-        mirror_shade(rgb, o, p, eye, &lighting->surround);
+    if (objects_mirror_at(o, p)) {
+        mirror_shade(rgb, o, p, eye, lighting);
         return;
     }
+    if (translucent_shade(rgb, lighting, p, eye))
+        return;
     const vec3 view = view_from(p, eye);
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     for (int i = 0; i < lighting->light_samples; i++)
@@ -360,10 +356,12 @@ struct view {
     const struct relume_window *window;
     double width, height;
     struct lighting lighting;
+    struct seen *seen;
 };
 
-static struct ray ray_at(const struct view *v, double x, double y)
+static struct ray ray_at(const void *context, double x, double y)
 {
+    const struct view *v = context;
     const struct relume_window *w = v->window;
     const vec3 at =
         vec3_add(w->corner, vec3_along(vec3_scale(w->right, x / v->width), w->down, y / v->height));
@@ -380,7 +378,8 @@ static void view_value(float rgb[3], const void *context, double x, double y, do
     if (!objects_hit(&p, v->o, ray.origin, ray.direction))
         return;
     objects_spread(&p, v->o, &ray, &right, &below);
-    objects_shade(rgb, v->o, &p, ray.origin, &v->lighting);
+    if (!seen_shade(rgb, v->seen, &p, ray.origin, x, y))
+        objects_shade(rgb, v->o, &p, ray.origin, &v->lighting);
 }
 
 relume_status relume_objects_render(struct relume_image *out, const relume_objects *objects,
@@ -390,12 +389,22 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
 {
     const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
     struct view view = {.o = objects, .window = window, .width = out->width, .height = out->height};
+    struct bodies *bodies = NULL;
     relume_status status = lighting_create(&view.lighting, objects, lights, n, &own);
     if (!status && surround_lacks(&view.lighting.surround, objects))
         log_line(own.log, RELUME_WARNING, "%s", SURROUND_LACKS);
     if (!status)
+        status = bodies_need(&bodies, objects, own.threads, own.log);
+    if (!status)
+        status = lighting_enters(&view.lighting, objects, bodies, own.threads, own.log);
+    if (!status)
+        status = seen_create(&view.seen, objects, &view.lighting, out->width, out->height, ray_at,
+                             &view, &own);
+    if (!status)
         status = objects_trace(out, view_value, &view, &own);
+    seen_destroy(&view.seen);
     lighting_destroy(&view.lighting);
+    bodies_destroy(&bodies);
     return status;
 }
 

@@ -321,8 +321,8 @@ static relume_status begin_exchange(struct drawing *d)
     const relume_status status =
         relume_image_create(&d->reflected, d->camera.width, d->camera.height, 3);
     return status ? status
-                  : exchange_create(&d->exchange, t->objects, t->capture[0].scenery, &d->viewport,
-                                    &d->places, &d->params);
+                  : exchange_create(&d->exchange, t->objects, t->bodies, t->capture[0].scenery,
+                                    &d->viewport, &d->places, &d->params);
 }
 
 static relume_status begin_lighting(struct drawing *d, const struct relume_light *lights, int n)
@@ -336,6 +336,11 @@ static relume_status begin_lighting(struct drawing *d, const struct relume_light
         d->lighting.surround.geometry = g;
         status = exhibit_whole_places(&d->lighting.surround.places, &t->capture[0]);
     }
+    if (!status)
+        status = bodies_need(&t->bodies, t->objects, t->params.threads, t->params.log);
+    if (!status)
+        status =
+            lighting_enters(&d->lighting, t->objects, t->bodies, t->params.threads, t->params.log);
     if (!status && !t->said_black && surround_lacks(&d->lighting.surround, t->objects)) {
         log_line(t->params.log, RELUME_WARNING, "%s", SURROUND_LACKS);
         t->said_black = true;

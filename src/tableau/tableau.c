@@ -21,6 +21,7 @@ void relume_tableau_destroy(relume_tableau **tableau)
         mem_free((void *)t->entity[i].name);
     for (int i = 0; i < t->info.captures; i++)
         exhibit_destroy(&t->capture[i]);
+    bodies_destroy(&t->bodies);
     relume_objects_destroy(&t->objects);
     relume_rig_destroy(&t->rig);
     jvalue_free(&t->root);
@@ -155,6 +156,7 @@ static struct relume_objects_params objects_params(const relume_tableau *t)
 static relume_status read_objects(relume_tableau *t)
 {
     const struct relume_objects_params params = objects_params(t);
+    bodies_destroy(&t->bodies);
     relume_objects_destroy(&t->objects);
     bool any = false;
     for (int i = 0; i < tableau_objects(t); i++)

@@ -44,6 +44,11 @@ void scenery_destroy(struct scenery **c)
     mem_free(old);
 }
 
+bool scenery_is_around(const struct scenery *c)
+{
+    return c->geometry.projection >= RELUME_CYLINDRICAL;
+}
+
 static vec3 place_at(const struct relume_image *places, int x, int y)
 {
     const float *p = places->data + 3 * ((size_t)y * (size_t)places->width + (size_t)x);

@@ -17,6 +17,8 @@ struct scenery;
 relume_status scenery_create(struct scenery **out, const struct relume_geometry *geometry, vec3 eye,
                              const struct relume_image *places, const struct relume_log *log);
 void scenery_destroy(struct scenery **c);
+// Whether it is seen on all sides: a panorama.
+bool scenery_is_around(const struct scenery *c);
 
 // It sends from now on what `relit` shows, of the places' size; scenery_draw goes by what of it
 // arrives at `middle`. RELUME_ENOMEM, RELUME_EINVAL (another size).

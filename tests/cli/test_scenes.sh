@@ -29,6 +29,13 @@ expect_ok 'with light between' - "$RELUME" relight scene.json -o f.exr -q --ligh
 check 'which changes it' sh -c "'$RELUME' compare a.exr f.exr | awk '/max_abs/ { exit !(\$2 > 0.01) }'"
 expect_ok 'an environment' - "$RELUME" relight scene.json -o g.png -q --light 'area 0 1 -1 0.3 0 0 0 0 0.3' --samples 1
 
+for material in '{"translucent":{"preset":"wax","scale_mm":100}}' '{"mirror":1}'; do
+    sed "s/{\"diffuse\":0.7}/$material/" scene.json >other.json
+    expect_ok "$material" - "$RELUME" relight other.json -o h.exr -q --light 'dir 0 1 0.3'
+    check 'is another' sh -c "! cmp -s a.exr h.exr"
+    expect_ok "$material, light between" - "$RELUME" relight other.json -o h.exr -q --light 'dir 0 1 0.3' --transport ssdo
+done
+
 expect_ok 'info' - "$RELUME" info scene.json
 check 'names what is in it' grep -q 'capture       the pot: slab, 4 views of 24 x 24 pixels' out.txt
 check 'and objects' grep -q 'object        ball: ' out.txt

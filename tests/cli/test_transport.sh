@@ -155,6 +155,26 @@ refuse 'a way for a scene alone' 2 'only with objects in a scene' "$VIEWER" room
 refuse 'a way of the viewer that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'" "$VIEWER" room.exr --objects ball.json --offscreen x.png --transport sddo
 refuse 'the viewer without depth and a way' 1 'how far the scene is' "$VIEWER" far.exr --objects ball.json --offscreen x.png
 
+# light goes below the surface of what is translucent, under all ways and lights
+objects '0,-0.6,-1.4' '{"translucent":{"preset":"skin","scale_mm":30}}' >skin.json
+for way in none ssao ssdo ism radiosity path; do
+    expect_ok "translucent, $way" - "$RELUME" relight room.exr --objects skin.json $look -o skin-$way.exr --light 'dir 0 1 0' --transport $way -q
+done
+check 'it is lit by the room' sh -c "'$RELUME' compare skin-none.exr skin-path.exr | awk '/max_abs/ { exit !(\$2 > 0.02) }'"
+expect_ok 'again by one thread' - "$RELUME" relight room.exr --objects skin.json $look -o again.exr --light 'dir 0 1 0' --transport path --threads 1 -q
+check 'byte for byte' cmp skin-path.exr again.exr
+for light in 'point 0.5 0.8 -1' 'area 0 1 -1 0.4 0 0 0 0 0.4' 'spot 0 1 -1 0 -1 -0.3 40'; do
+    expect_ok "under $light" - "$RELUME" relight room.exr --objects skin.json $look -o lit.exr --light "$light" -q
+done
+objects '0,0,0' '{"translucent":"marble"}' >marble.json
+expect_ok 'alone' - "$RELUME" btf render marble.json -o marble.exr --picture 48x48 --light 'dir 1 0 -0.5'
+check 'its size is said to be a guess' grep -q 'marble: nothing says how large object 0 is: taken to be 100 mm long' err.txt
+check 'light comes through' sh -c "'$RELUME' btf render marble.json -o behind.exr --picture 48x48 --light 'dir 0 0 -1' -q && ! cmp -s marble.exr behind.exr"
+for material in '"jade"' '{"absorption":-1,"reduced_scattering":1}' '{"preset":"marble","scale_mm":0}' '{"preset":"marble","scale":1}' '7'; do
+    objects '0,0,0' "{\"translucent\":$material}" >bad.json
+    expect_fail "translucent $material" 1 'bad.json: object 0: translucent: (preset|absorption|scale_mm|expected|unknown)' x.png "$RELUME" relight room.exr --objects bad.json -o x.png
+done
+
 expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ssdo'\?" x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport sddo
 expect_fail 'without objects' 2 'work only with --objects' x.png "$RELUME" relight room.exr -o x.png --transport path
 expect_fail 'many rays a pixel' 2 'expected 1 to 16 rays' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --samples 17

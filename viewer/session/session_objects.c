@@ -7,6 +7,19 @@
 #include <stdio.h>
 #include <string.h>
 
+static void say_matte(const relume_objects *objects, const struct relume_log *log)
+{
+    const struct relume_objects_info *info = relume_objects_info(objects);
+    for (int i = 0; i < info->materials; i++)
+        if (info->material[i].translucent) {
+            if (log && log->message)
+                log->message(log->user, RELUME_NOTE,
+                             "translucent materials are shown matte by passes; relume relight and "
+                             "relume btf render show light going through them");
+            return;
+        }
+}
+
 relume_status session_take_objects(struct session *s, const struct session_objects *wanted)
 {
     const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
@@ -20,6 +33,8 @@ relume_status session_take_objects(struct session *s, const struct session_objec
         snprintf(s->material, sizeof s->material, "%s", wanted->material[0]);
     if (wanted->description) {
         const relume_status status = relume_objects_open(&s->objects, wanted->description, &params);
+        if (!status)
+            say_matte(s->objects, s->log);
         return status || !wanted->reflections
                    ? status
                    : relume_objects_load_reflections(
@@ -63,6 +78,7 @@ relume_status session_open_objects(struct session *s, const char *path,
         status = relume_objects_open(&objects, path, &params);
     if (status)
         return status;
+    say_matte(objects, s->log);
     relume_objects *was = s->objects;
     char material[APP_SPEC];
     memcpy(material, s->material, sizeof material);

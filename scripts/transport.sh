@@ -23,20 +23,23 @@ if [ ! -e "$out/shore.exr" ]; then
     "$relume" panorama "$shore.jpg" --depth "${shore}_depthmap.jpg" --depth-range 1,8 -o "$out/shore" -q
     "$relume" encode "$out/shore" -o "$out/shore.exr" -q
 fi
-list=
+list= gathered=
 for scene in attic shore; do
     case $scene in
     attic) look="--pan -8 --tilt -24 --zoom 2.2 --exposure 1.5" ;;
     shore) look="--pan 3 --tilt -18 --zoom 2" ;;
     esac
-    for way in none ssao ssdo ism path; do
+    for way in none ssao ssdo ism micro path; do
         "$relume" relight "$out/$scene.exr" --objects "$out/$scene.json" -o "$out/$scene-$way.exr" $look \
             --size 256x256 --light "dir .8 .5 0" --transport $way -q 2>/dev/null
-        list="$list $out/$scene-$way.exr"
+        [ $way = micro ] || list="$list $out/$scene-$way.exr"
     done
+    gathered="$gathered $out/$scene-ssdo.exr $out/$scene-micro.exr $out/$scene-path.exr"
 done
 "$draw" row "$pictures/transport.jpg" columns=5 $list
 echo "  $pictures/transport.jpg"
+"$draw" row "$pictures/micro.jpg" columns=3 $gathered
+echo "  $pictures/micro.jpg"
 
 # in the viewer: one way beside hard shadows, and the panel
 printf 'size 900 520\ndock left\nclick 100 26\ntransport ssdo\ntransport beside none\nmove 600 510\nwait\nshot %s\n' "$out/ways.exr" >"$out/ways.txt"

@@ -221,14 +221,24 @@ static double far_from(const struct world *w)
     return FAR * most;
 }
 
+// The background's may be of several pixels.
 static void sent_of_piece(float rgb[3], const struct scenery *c, size_t i)
 {
+    enum { SIDE = 2 };
     const size_t triangles = scenery_mesh(c)->triangle_count;
-    vec3 unused;
-    if (i < triangles)
+    if (i < triangles) {
         scenery_sent(rgb, c, i, 1.0f / 3.0f, 1.0f / 3.0f);
-    else
-        (void)scenery_piece(&unused, rgb, c, i - triangles, 0.5, 0.5);
+        return;
+    }
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        vec3 unused;
+        float part[3];
+        (void)scenery_piece(&unused, part, c, i - triangles, (k % SIDE + 0.5) / SIDE,
+                            (k / SIDE + 0.5) / SIDE);
+        for (int n = 0; n < 3; n++)
+            rgb[n] += part[n] / (SIDE * SIDE);
+    }
 }
 
 struct lighting_scene {

@@ -38,6 +38,15 @@ for sheet in up down; do
 done
 check 'whichever way it is turned' sh -c "'$RELUME' compare up.exr down.exr | awk '/rms/ { exit !(\$2 < 0.002) }'"
 
+# lamps of an environment are looked for between pixels, too
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n' >sky.hdr
+printf '\200\200\200\202\200\200\200\200\200\100\100\200\100\100\200\201\100\100\100\200\100\100\100\200\100\100\100\200\100\100\100\200' >>sky.hdr
+for spacing in 1 4; do
+    expect_ok "under a sky, spacing $spacing" - "$RELUME" relight room.exr --objects ball.json --tilt -20 --size 96x64 -o sky$spacing.exr --light 'env sky.hdr' --transport micro --spacing $spacing -q
+done
+check 'hardly differ' sh -c "'$RELUME' compare sky1.exr sky4.exr | awk '/^rms/ { exit !(\$2 > 0 && \$2 < 0.01) }'"
+check 'nor does what is lit alone' sh -c "'$RELUME' relight room.exr --objects ball.json --tilt -20 --size 96x64 -o skyp.exr --light 'env sky.hdr' --transport path -q && '$RELUME' compare sky4.exr skyp.exr | awk '/^rms/ { exit !(\$2 < 0.03) }'"
+
 # an object before the plane of a slab: it is lit from behind by what it stands before
 "$RELUME" synth teapot -q -o slab --views 2x2 --size 24 --lights 6 --samples 1
 "$RELUME" encode -q slab -o slab.exr --shadows no

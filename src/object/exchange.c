@@ -516,7 +516,7 @@ static void gather_at_objects(struct exchange *e, int x, int y)
         look_ahead(e->ahead.data + 3 * pixel, e, &point);
 }
 
-static void between(float out[3], const struct between *b, const struct relume_image *image)
+static void between(float out[3], const struct between_pixels *b, const struct relume_image *image)
 {
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < b->count; i++)
@@ -528,7 +528,7 @@ static void between(float out[3], const struct between *b, const struct relume_i
 
 // Whether what pixels have gathered, over what they would have, differs by more than a tenth: a
 // pixel between them shows a border.
-static bool differ(const struct between *b, const struct relume_image *over,
+static bool differ(const struct between_pixels *b, const struct relume_image *over,
                    const struct relume_image *under)
 {
     const double SAME = 0.1;
@@ -544,7 +544,7 @@ static bool differ(const struct between *b, const struct relume_image *over,
     return most - least > SAME * most;
 }
 
-static void fill_lamps(struct exchange *e, size_t pixel, const struct between *b)
+static void fill_lamps(struct exchange *e, size_t pixel, const struct between_pixels *b)
 {
     if (!b->count || differ(b, &e->lamps[LET_THROUGH_WITH], &e->lamps[LET_THROUGH]) ||
         differ(b, &e->lamps[ALL_WITH], &e->lamps[ALL])) {
@@ -558,7 +558,7 @@ static void fill_lamps(struct exchange *e, size_t pixel, const struct between *b
 static void fill_scene(struct exchange *e, int x, int y)
 {
     const size_t pixel = pixel_of(e, x, y);
-    struct between b;
+    struct between_pixels b;
     if (transport_gathers(e->spacing, x, y) || !holds(&e->scene, pixel))
         return;
     transport_between(&b, e->spacing, x, y, &e->scene.places, &e->scene.normals, e->eye);
@@ -578,7 +578,7 @@ static void fill_objects(struct exchange *e, int x, int y)
 {
     const size_t pixel = pixel_of(e, x, y);
     struct surface_point point;
-    struct between b;
+    struct between_pixels b;
     float own[3], ahead[3], *returned = e->returned.data + 3 * pixel;
     if (transport_gathers(e->spacing, x, y) || !holds(&e->objects, pixel) ||
         !objects_at(&point, e, x, y))

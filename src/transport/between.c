@@ -12,7 +12,7 @@ bool transport_gathers(int spacing, int x, int y)
     return x % spacing == spacing / 2 && y % spacing == spacing / 2;
 }
 
-void transport_between(struct between *out, int spacing, int x, int y,
+void transport_between(struct between_pixels *out, int spacing, int x, int y,
                        const struct relume_image *places, const struct relume_image *normals,
                        vec3 eye)
 {

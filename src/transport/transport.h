@@ -101,13 +101,13 @@ relume_status transport_smooth(struct relume_image *const *images, int count,
 // Between pixels that have gathered, which are those where transport_gathers: the ones about a
 // pixel that show its surface, with weights that add up to 1 ("bilateral upsampling": Sloan et al.
 // 2007). `count` is 0 where they are too few to tell.
-struct between {
+struct between_pixels {
     int count;
     size_t pixel[4];
     double weight[4];
 };
 bool transport_gathers(int spacing, int x, int y);
-void transport_between(struct between *out, int spacing, int x, int y,
+void transport_between(struct between_pixels *out, int spacing, int x, int y,
                        const struct relume_image *places, const struct relume_image *normals,
                        vec3 eye);
 

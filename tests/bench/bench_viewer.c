@@ -165,7 +165,7 @@ static double measure(struct scene *s, const char *what, int n, enum relume_ligh
 
 static void open_scene(struct scene *s, struct file *f)
 {
-    const struct code_source source = {fetch, NULL, f, find_surface};
+    const struct code_source source = {.codes = fetch, NULL, f, find_surface};
     *s = (struct scene){.frame = {0}};
     bench_check(relighter_create(&s->relighter, &gl, &source, 1, NULL));
     s->relighter.by_library = by_library;

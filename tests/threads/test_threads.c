@@ -44,14 +44,14 @@ static void test_encode(void **state)
         enum relume_step step;
         bool near;
     } kinds[] = {
-        {&relume_basis_sh, {.coefficients = 9}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
-        {&relume_basis_sh, {.coefficients = 4}, RELUME_STORE_16, RELUME_COMPRESS_ZIP, 0},
-        {&relume_basis_table, {0}, RELUME_STORE_HALF, RELUME_COMPRESS_NONE, 0},
-        {&relume_basis_pca, {0}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, RELUME_STEP_COMMON},
-        {&relume_basis_pca, {.choose = true}, RELUME_STORE_12, RELUME_COMPRESS_ZIP, 0},
-        {&relume_basis_dct, {.luminance = true}, RELUME_STORE_10, RELUME_COMPRESS_RLE, 0},
-        {&relume_basis_dct_resampled, {0}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
-        {&relume_basis_sh,
+        {.basis = &relume_basis_sh, {.coefficients = 9}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
+        {.basis = &relume_basis_sh, {.coefficients = 4}, RELUME_STORE_16, RELUME_COMPRESS_ZIP, 0},
+        {.basis = &relume_basis_table, {0}, RELUME_STORE_HALF, RELUME_COMPRESS_NONE, 0},
+        {.basis = &relume_basis_pca, {0}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, RELUME_STEP_COMMON},
+        {.basis = &relume_basis_pca, {.choose = true}, RELUME_STORE_12, RELUME_COMPRESS_ZIP, 0},
+        {.basis = &relume_basis_dct, {.luminance = true}, RELUME_STORE_10, RELUME_COMPRESS_RLE, 0},
+        {.basis = &relume_basis_dct_resampled, {0}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
+        {.basis = &relume_basis_sh,
          {.coefficients = 4},
          RELUME_STORE_8,
          RELUME_COMPRESS_PIZ,

@@ -72,7 +72,8 @@ static void add_column(struct relume_scene_builder *b, double x, double z, uint3
 
 // ---------------------------------------------------------------- above and below
 
-// Beams along the rows and across, which leave square coffers open to a boarded ceiling.
+// Beams along the rows and across, with boards over the square coffers between them; those of the
+// outer aisle are gone, and light falls through.
 static void add_ceiling(struct relume_scene_builder *b, uint32_t stone, uint32_t boards)
 {
     for (int row = 0; row < 2; row++)
@@ -85,7 +86,7 @@ static void add_ceiling(struct relume_scene_builder *b, uint32_t stone, uint32_t
         build_box(b, vec3_of(x - 0.1, CEILING - 0.22, -LENGTH), vec3_of(x + 0.1, CEILING, LENGTH),
                   0.01, stone);
     build_box(b, vec3_of(WALL - 0.4, CEILING, -LENGTH),
-              vec3_of(ROWS[1] + 0.8, CEILING + 0.12, LENGTH), 0.01, boards);
+              vec3_of(ROWS[0] + 0.42, CEILING + 0.12, LENGTH), 0.01, boards);
 }
 
 static void add_floor(struct relume_scene_builder *b, uint32_t paving, uint32_t stone)

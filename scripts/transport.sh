@@ -41,6 +41,21 @@ echo "  $pictures/transport.jpg"
 "$draw" row "$pictures/micro.jpg" columns=3 $gathered
 echo "  $pictures/micro.jpg"
 
+# the sun goes over the attic
+if [ ! -e "$out/day.exr" ]; then
+    "$relume" synth attic -o "$out/day" --projection spherical --size 192 --lights 40 --hemisphere --samples 16 --bounces 3 -q
+    "$relume" encode "$out/day" -o "$out/day.exr" -q
+fi
+list=
+for sun in '1 .6 .1' '.6 .8 .1' '.1 1 .1' '-.5 .8 .1' '-1 .5 .1'; do
+    file=$out/sun$(echo "$sun" | tr -d ' ').exr
+    "$relume" relight "$out/day.exr" --objects "$out/attic.json" -o "$file" --tilt -20 --pan -8 --zoom 1.7 --exposure 1 \
+        --size 200x160 --light "dir $sun" --transport ssdo -q 2>/dev/null
+    list="$list $file"
+done
+"$draw" row "$pictures/transport-sun.jpg" columns=5 $list
+echo "  $pictures/transport-sun.jpg"
+
 # in the viewer: one way beside hard shadows, and the panel
 printf 'size 900 520\ndock left\nclick 100 26\ntransport ssdo\ntransport beside none\nmove 600 510\nwait\nshot %s\n' "$out/ways.exr" >"$out/ways.txt"
 "$viewer" "$out/attic.exr" --objects "$out/attic.json" --pan -12.5 --tilt -24 --zoom 2.2 --exposure 1.5 \

@@ -85,10 +85,10 @@ struct relume_object_material {
     // its normal to the eye (Schlick 1994, "An inexpensive BRDF model for physically-based
     // rendering").
     bool mirror;
-    float reflectance[3];  // F, of a mirror, or of a matte surface; in [0, 1]
     // Light goes into it and leaves elsewhere, where ray tracing shows it. `fitted` is a matte
     // surface that is as bright in even light.
     bool translucent;
+    float reflectance[3];  // F, of a mirror, or of a matte surface; in [0, 1]
 };
 
 // Triangles of one mesh that show one material.

@@ -647,7 +647,8 @@ static void quotient(double part[3], const float shown[3], const struct lit_by *
         const double before = lamp(&lit->without, hidden, c) + (double)without[c];
         const double after = lamp(&lit->with, hidden, c) + (double)with[c];
         const double unknown = fmax(least[c] - before, 0.0);
-        part[c] = before + unknown > 0.0 ? (after + unknown) / (before + unknown) : 1.0;
+        const bool shows = least[c] > 0.0;  // few captured lights also foretell less than none
+        part[c] = shows && before + unknown > 0.0 ? (after + unknown) / (before + unknown) : 1.0;
     }
 }
 

@@ -468,15 +468,20 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     return status;
 }
 
+bool render_params_good(const struct relume_render_params *params)
+{
+    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16, MOST_SPACING = 16 };
+    return params->transport_samples >= 0 && params->transport_samples <= MOST_SAMPLES &&
+           params->bounces <= MOST_BOUNCES && params->transport_spacing >= 0 &&
+           params->transport_spacing <= MOST_SPACING;
+}
+
 relume_status relume_renderer_set_objects(relume_renderer *renderer, const relume_objects *objects,
                                           const struct relume_render_params *params)
 {
-    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16, MOST_SPACING = 16 };
     const struct standing_in in = {.objects = objects,
                                    .params = PARAMS_WORK(relume_render_params, params)};
-    if (in.params.transport_samples < 0 || in.params.transport_samples > MOST_SAMPLES ||
-        in.params.bounces > MOST_BOUNCES || in.params.transport_spacing < 0 ||
-        in.params.transport_spacing > MOST_SPACING)
+    if (!render_params_good(&in.params))
         return RELUME_EINVAL;
     struct standing_in *copy = objects ? mem_copy(&in, 1, sizeof in) : NULL;
     if (objects && !copy)

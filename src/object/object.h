@@ -246,6 +246,9 @@ void seen_destroy(struct seen **s);
 bool seen_shade(float rgb[3], const struct seen *s, const struct surface_point *point, vec3 eye,
                 double x, double y);
 
+// Whether what it says of transport is within its ranges.
+bool render_params_good(const struct relume_render_params *params);
+
 // A scene and the objects, where they are before it.
 struct layered {
     const relume_objects *o;

@@ -13,6 +13,7 @@
 #include <string.h>
 
 enum { NONE = -1 };
+static const double FARTHEST = 1e15;  // rays are of single precision
 
 // A frame of the captures that are shown.
 struct drawing {
@@ -94,6 +95,10 @@ static relume_status take_camera(struct drawing *d, const struct relume_camera *
         relume_frame_size(&d->camera.width, &d->camera.height, size, camera);
     d->viewport = (struct relume_viewport){
         .kind = RELUME_VIEWPORT_PERSPECTIVE, .width = d->camera.width, .height = d->camera.height};
+    if (vec3_length(d->camera.eye) > FARTHEST || vec3_length(d->camera.look_at.at) > FARTHEST)
+        return log_fail(d->t->params.log, RELUME_EINVAL,
+                        "%s: expected an eye and a place looked at within %g of the middle",
+                        d->t->path, FARTHEST);
     if (find_window(&d->viewport.window, &d->camera))
         return RELUME_OK;
     return log_fail(d->t->params.log, RELUME_EINVAL,
@@ -207,7 +212,9 @@ static void light_row(void *context, size_t row, int worker)
     for (size_t x = 0; x < width; x++) {
         const size_t pixel = row * width + x;
         const int owner = d->owner[pixel];
-        const struct relume_image *shows = &d->colour[owner == NONE ? 0 : owner];
+        const struct relume_image *shows = owner != NONE         ? &d->colour[owner]
+                                           : d->t->info.captures ? &d->colour[0]
+                                                                 : NULL;
         const vec3 place = place_at(&d->places, pixel);
         double part = 1.0;
         if (owner != NONE && d->sceneries > 1 && !d->params.no_shadows)
@@ -215,7 +222,7 @@ static void light_row(void *context, size_t row, int worker)
                             scene_normal(&d->places, (int)x, (int)row));
         for (size_t c = 0; c < 3; c++)
             d->lone.data[3 * pixel + c] =
-                shows->data ? (float)part * shows->data[3 * pixel + c] : 0.0f;
+                shows && shows->data ? (float)part * shows->data[3 * pixel + c] : 0.0f;
     }
 }
 
@@ -355,6 +362,8 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
 {
     struct drawing d = {.params = PARAMS_WORK(relume_render_params, params)};
     *out = (struct relume_image){0};
+    if (!render_params_good(&d.params))
+        return RELUME_EINVAL;
     relume_status status = begin(&d, tableau, camera);
     if (!status)
         status = relume_image_create(&d.lone, d.camera.width, d.camera.height, 3);

@@ -10,6 +10,7 @@
 
 enum { VERSION = 1, MOST_CAPTURES = 64, MOST_LIGHTS = 4096 };
 #define FORMAT "relume-scene"
+static const uint64_t DEFAULT_MEMORY = (uint64_t)1 << 30;  // of all captures
 
 void relume_tableau_destroy(relume_tableau **tableau)
 {
@@ -135,6 +136,9 @@ static relume_status read_capture(relume_tableau *t, int number)
         status = log_fail(log, RELUME_EFORMAT,
                           "the first capture stands where it was captured; leave out its pose, and "
                           "give one to the others");
+    if (!status && !number && jvalue_member(entry, "instead_of"))
+        status = log_fail(log, RELUME_EFORMAT,
+                          "the first capture is always seen; give instead_of to another");
     if (!status)
         status = read_stand_in(t, e, entry, log);
     if (!status)
@@ -153,16 +157,22 @@ static struct relume_objects_params objects_params(const relume_tableau *t)
                                           .threads = t->params.threads};
 }
 
-static relume_status read_objects(relume_tableau *t)
+// All but those that are left out; when that fails, what there is stays.
+static relume_status read_objects(relume_tableau *t, const bool *left_out)
 {
     const struct relume_objects_params params = objects_params(t);
-    bodies_destroy(&t->bodies);
-    relume_objects_destroy(&t->objects);
+    relume_objects *objects;
     bool any = false;
     for (int i = 0; i < tableau_objects(t); i++)
-        any |= !t->left_out[i];
-    return objects_read(&t->objects, any ? list_of(t, "objects") : NULL, t->path, t->left_out,
-                        &params);
+        any |= !left_out[i];
+    const relume_status status =
+        objects_read(&objects, any ? list_of(t, "objects") : NULL, t->path, left_out, &params);
+    if (status)
+        return status;
+    bodies_destroy(&t->bodies);
+    relume_objects_destroy(&t->objects);
+    t->objects = objects;
+    return RELUME_OK;
 }
 
 static relume_status name_objects(relume_tableau *t)
@@ -192,26 +202,25 @@ static vec3 corner_of(const relume_objects *o, size_t triangle, int k)
 static void measure(relume_tableau *t)
 {
     const relume_objects *o = t->objects;
-    for (int i = 0; i < o->info.parts; i++) {
-        const struct relume_object_part *part = &o->part[i];
-        t->entity[t->info.captures + part->object].triangles += part->count;
-    }
-    for (int i = 0; i < tableau_objects(t); i++) {
-        vec3 min = vec3_of(INFINITY, INFINITY, INFINITY), max = vec3_scale(min, -1.0);
+    const vec3 none = vec3_of(INFINITY, INFINITY, INFINITY);
+    for (int i = 0, part = 0; i < tableau_objects(t); i++) {
+        struct relume_tableau_entity *e = &t->entity[t->info.captures + i];
+        vec3 min = none, max = vec3_scale(none, -1.0);
         double area = 0.0;
-        for (size_t k = 0; k < o->mesh.triangle_count; k++) {
-            if (o->part[o->mesh.triangles[k].material].object != i)
-                continue;
-            const vec3 a = corner_of(o, k, 0), b = corner_of(o, k, 1), c = corner_of(o, k, 2);
-            area += 0.5 * vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
-            widen(&min, &max, a);
-            widen(&min, &max, b);
-            widen(&min, &max, c);
+        for (; part < o->info.parts && o->part[part].object == i; part++) {
+            const size_t first = o->part[part].first, count = o->part[part].count;
+            for (size_t k = first; k < first + count; k++) {
+                const vec3 a = corner_of(o, k, 0), b = corner_of(o, k, 1), c = corner_of(o, k, 2);
+                area += 0.5 * vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
+                widen(&min, &max, a);
+                widen(&min, &max, b);
+                widen(&min, &max, c);
+            }
+            e->triangles += count;
         }
-        t->extent[i] = (struct extent){
-            .middle = vec3_scale(vec3_add(min, max), 0.5),
-            .radius = 0.5 * vec3_length(vec3_sub(max, min)),
-            .triangle = area / fmax((double)t->entity[t->info.captures + i].triangles, 1.0)};
+        t->extent[i] = (struct extent){.middle = vec3_scale(vec3_add(min, max), 0.5),
+                                       .radius = 0.5 * vec3_length(vec3_sub(max, min)),
+                                       .triangle = area / fmax((double)e->triangles, 1.0)};
     }
 }
 
@@ -314,7 +323,8 @@ static relume_status make_room(relume_tableau *t)
     t->info.captures = captures;
     t->info.entities = captures + objects;
     if (captures)
-        t->params.memory /= (uint64_t)captures;
+        t->params.memory =
+            (t->params.memory ? t->params.memory : DEFAULT_MEMORY) / (uint64_t)captures + 1;
     return RELUME_OK;
 }
 
@@ -334,7 +344,7 @@ static relume_status read_all(relume_tableau *t)
     for (int i = 0; i < t->info.captures && !status; i++)
         status = read_capture(t, i);
     if (!status)
-        status = read_objects(t);
+        status = read_objects(t, t->left_out);
     if (!status) {
         measure(t);
         status = read_rig(t);
@@ -378,15 +388,22 @@ static bool is_too_fine(const struct extent *extent, const struct relume_window 
 relume_status tableau_choose(bool *shown, relume_tableau *t, const struct relume_window *window,
                              int width, int height)
 {
-    bool changed = false;
+    const size_t objects = (size_t)tableau_objects(t);
+    bool *left_out = mem_zeroed(objects, sizeof *left_out);
+    if (!left_out)
+        return RELUME_ENOMEM;
     for (int i = 0; i < t->info.captures; i++) {
         const int object = t->entity[i].instead_of - t->info.captures;
-        shown[i] = t->entity[i].instead_of < 0;
-        if (shown[i])
-            continue;
-        shown[i] = is_too_fine(&t->extent[object], window, width, height);
-        changed |= shown[i] != t->left_out[object];
-        t->left_out[object] = shown[i];
+        shown[i] = object < 0 || is_too_fine(&t->extent[object], window, width, height);
+        if (object >= 0)
+            left_out[object] = shown[i];
     }
-    return changed ? read_objects(t) : RELUME_OK;
+    relume_status status = RELUME_OK;
+    if (objects && memcmp(left_out, t->left_out, objects * sizeof *left_out)) {
+        status = read_objects(t, left_out);
+        if (!status)
+            memcpy(t->left_out, left_out, objects * sizeof *left_out);
+    }
+    mem_free(left_out);
+    return status;
 }

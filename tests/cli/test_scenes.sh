@@ -45,6 +45,8 @@ check 'has all of it' grep -q '"name": "ball", "kind": "mesh", "triangles": ' ou
 expect_fail 'an option of one file' 2 'leave out --objects' x.png "$RELUME" relight scene.json -o x.png --objects scene.json
 expect_fail 'a pass' 2 'leave out --pass' x.png "$RELUME" relight scene.json -o x.png --pass normals
 expect_fail 'an eye that looks nowhere' 2 'stands where it looks' x.png "$RELUME" relight scene.json -o x.png --eye 1,1,1 --look-at 1,1,1
+expect_fail 'an eye far off' 2 'within 1e\+15' x.png "$RELUME" relight scene.json -o x.png --eye 1e20,0,0
+expect_fail 'bounces without light between' 2 'only with --transport' x.png "$RELUME" relight scene.json -o x.png --bounces 3
 sed 's/room.exr/scene.json/' scene.json >itself.json
 expect_fail 'a scene in a scene' 1 "'scene.json' is a scene file itself" x.png "$RELUME" relight itself.json -o x.png
 sed 's/room.exr/gone.exr/' scene.json >gone.json

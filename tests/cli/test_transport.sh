@@ -47,6 +47,10 @@ done
 check 'hardly differ' sh -c "'$RELUME' compare sky1.exr sky4.exr | awk '/^rms/ { exit !(\$2 > 0 && \$2 < 0.01) }'"
 check 'nor does what is lit alone' sh -c "'$RELUME' relight room.exr --objects ball.json --tilt -20 --size 96x64 -o skyp.exr --light 'env sky.hdr' --transport path -q && '$RELUME' compare sky4.exr skyp.exr | awk '/^rms/ { exit !(\$2 < 0.03) }'"
 
+# few captured lights foretell less than none: what objects send does not make more of it
+expect_ok 'a lamp near by' - "$RELUME" relight room.exr --objects ball.json $look -o near.pfm --light 'point 0 0 0' --transport micro -q
+above 'no more darkness' "$(tail -n +4 near.pfm | od -An -v -tf4 | awk '{ for (i = 1; i <= NF; i++) if ($i < least) least = $i } END { print least + 0 }')" -0.05
+
 # an object before the plane of a slab: it is lit from behind by what it stands before
 "$RELUME" synth teapot -q -o slab --views 2x2 --size 24 --lights 6 --samples 1
 "$RELUME" encode -q slab -o slab.exr --shadows no

@@ -254,6 +254,14 @@ static void meshes_give_way_to_captures(void **state)
     far.look_at.field_of_view_deg = 4.0;
     assert_int_not_equal(which_at(t, &far, 15, 15), 2);
     assert_int_equal(which_at(t, &near, 150, 150), 2);
+    // the mesh is gone when it is read again: that is said each time
+    struct relume_image unused;
+    assert_int_not_equal(which_at(t, &far, 15, 15), 2);
+    CHECK_OK(rename(path_of("ball.obj"), path_of("away.obj")));
+    for (int i = 0; i < 2; i++)
+        assert_true(relume_status_is_input(relume_tableau_which(&unused, t, &near)));
+    CHECK_OK(rename(path_of("away.obj"), path_of("ball.obj")));
+    assert_int_equal(which_at(t, &near, 150, 150), 2);
     relume_tableau_destroy(&t);
 }
 
@@ -319,6 +327,9 @@ static void bad_scenes_are_refused(void **state)
               "}]}",
          "scale: expected a number above 0"},
         {HEAD "\"captures\":[{\"file\":\"grey.exr\",\"instead_of\":\"cow\"}]}",
+         "the first capture is always seen"},
+        {HEAD
+         "\"captures\":[{\"file\":\"grey.exr\"},{\"file\":\"grey.exr\",\"instead_of\":\"cow\"}]}",
          "expected the name of one of the objects; found 'cow'"},
         {HEAD "\"captures\":[{\"file\":\"grey.exr\"}],\"lights\":[3]}",
          "light 0: expected a text such as"},
@@ -354,6 +365,9 @@ static void an_eye_must_look_somewhere(void **state)
     camera.look_at.at = camera.eye;
     assert_int_equal(relume_tableau_frame(&image, t, &camera, &light, 1, NULL), RELUME_EINVAL);
     assert_null(image.data);
+    assert_int_equal(relume_tableau_frame(&image, t, &above, &light, 1,
+                                          relume_render_params(.transport_spacing = -3)),
+                     RELUME_EINVAL);
     relume_tableau_destroy(&t);
 }
 

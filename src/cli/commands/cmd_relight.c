@@ -485,6 +485,10 @@ static relume_status check_scene(const struct relight_options *o)
             return usage_error("%s: a scene file holds objects, captures and their places; leave "
                                "out %s",
                                o->args.input[0], of_files[i].option);
+    if (given(o, &o->bounces) && !o->transport)
+        return usage_error("--bounces works only with --transport");
+    if (given(o, &o->spacing) && !(o->transport && relume_transport_spacing(o->transport)))
+        return usage_error("--spacing works only with --transport micro and path");
     if (o->samples > MOST_ACROSS && !(o->transport && relume_transport_samples(o->transport)))
         return usage_error("--samples: expected 1 to %d rays along each side of a pixel; found %d",
                            MOST_ACROSS, o->samples);

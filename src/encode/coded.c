@@ -176,11 +176,12 @@ static void set_anchors(struct material *m, const struct view_groups *groups)
 // Words and the heads of their rows, against the words.
 static const double PACKED = 1.003;
 
-// What is weighed beside the header and a word for each view of a group.
-enum weighed { BARE, EXTRAS, PREVIEW, MODELS };
+// What is weighed beside the header and a word for each view of a group: the heads of all groups,
+// nothing, depth, mask and levels of its views, the preview, or what shadows and highlights of all
+// views move by.
+enum weighed { HEADS, BARE, EXTRAS, PREVIEW, MODELS };
 
-// The bytes of a file of group `g` but for its words: with depth, mask and levels of its views, or
-// the preview, or what shadows and highlights of all views move by.
+// The bytes of a file of group `g` but for its words.
 static relume_status weigh(double *bytes, const struct coding *c, int g, enum weighed what)
 {
     static const uint32_t nothing[1];
@@ -198,7 +199,8 @@ static relume_status weigh(double *bytes, const struct coding *c, int g, enum we
         view[i].shadow = what == MODELS ? view[i].shadow : NULL;
         view[i].gloss = what == MODELS ? view[i].gloss : NULL;
     }
-    for (int i = c->groups.begin[g]; i < c->groups.begin[g + 1]; i++) {
+    const int end = what == HEADS ? c->groups.count : g + 1;
+    for (int i = c->groups.begin[g]; i < c->groups.begin[end]; i++) {
         struct relume_pack_view *v = &view[c->groups.view[i]];
         v->levels = plain ? NULL : c->m->view[c->groups.view[i]].levels;
         v->depth = plain ? NULL : v->depth;
@@ -250,9 +252,10 @@ static relume_status make_rest(void *context, int member, struct relume_buffer *
 {
     struct coding *c = context;
     const int middle = c->m->views / 2;
-    double header = 0.0, one = 0.0, bytes;
-    relume_status status = weigh(&header, c, 0, BARE);
-    bytes = member ? 0.0 : header;
+    double header = 0.0, one = 0.0, bytes = 0.0;
+    relume_status status = member ? RELUME_OK : weigh(&bytes, c, 0, HEADS);
+    if (!status)
+        status = weigh(&header, c, 0, BARE);
     if (!status)
         status = each_view(c, member, c->members, load_extras);
     if (!status && c->leveled)

@@ -27,6 +27,11 @@ relume encode bust -o small.exr --bytes-per-pixel 6 --no-depth
 below '--bytes-per-pixel keeps its size' "$(wc -c <small.exr)" $((48 * 48 * 6 + 1))
 relume encode bust -o large.exr --bytes-per-pixel 9 --no-depth
 below 'more bytes are used' "$(wc -c <small.exr)" "$(wc -c <large.exr)"
+# three groups of views have three heads, and what shadows move by is there once
+"$RELUME" synth teapot -o groups --size 24 --views 4x4 --lights 5 --samples 1 -q
+relume encode groups -o groups.exr --bytes-per-pixel 3.5 --shadows yes
+below 'groups, shadows: the size is kept' "$(wc -c <groups.exr)" $((24 * 24 * 16 * 7 / 2 + 1))
+below 'groups, shadows: the size is used' $((24 * 24 * 16 * 7 / 2 * 95 / 100)) "$(wc -c <groups.exr)"
 
 # ---- what cannot be had is said
 expect_ok 'too low a quality' 'dB PSNR .*; its coarsest coding is better than 10 dB' "$RELUME" encode bust -o worst.exr --psnr 10 --force

@@ -60,8 +60,8 @@ static const struct option options[] = {
            "this PSNR; default: 38",
            10, 60),
     ENTRY("--interpolant", interpolant, "NAME",
-          "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay, gaussian", relume_interpolants,
-          NAMES("auto")),
+          "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay, gaussian",
+          relume_interpolants, NAMES("auto")),
     NAME("--colour", luminance, "C",
          "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb", 0,
          "rgb", "luminance"),
@@ -206,6 +206,9 @@ static double both_errors(double a, double b)
     return -10.0 * log10(pow(10.0, -0.1 * a) + pow(10.0, -0.1 * b));
 }
 
+// Bytes a pixel from which on a newcomer should know of coding with loss.
+static const double LARGE = 4.0;
+
 static void say_result(const struct args *args, const relume_capture *capture,
                        const relume_coder *coder, const struct relume_encode_report *report,
                        const struct request *r)
@@ -241,6 +244,9 @@ static void say_result(const struct args *args, const relume_capture *capture,
     if (short_of && !one && !r->coder.coefficients)
         snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
                  info->coefficients);
+    else if (r->decide && !is_coded(r) && each > LARGE)
+        snprintf(more, sizeof more, "; with --psnr %g it is several times smaller",
+                 RELUME_USUAL_DB);
     announce(args, RELUME_NOTE,
              "%s: reproduces your photograph%s at %.1f dB PSNR (differences %s) with %d "
              "coefficient%s%s, "

@@ -42,6 +42,8 @@ edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
 surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base io image object mesh
+volume:base math image:base image volume
+isosurface:base volume:base mesh volume
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport

@@ -50,6 +50,7 @@
 #include <relume/transport.h>
 #include <relume/vec.h>
 #include <relume/view.h>
+#include <relume/volume.h>
 #include <relume/ingest.h>
 
 #endif

@@ -1,12 +1,11 @@
-// cmd_mesh.c - relume mesh: surfaces as triangles
-#include "commands/mesh_tasks.h"
-
-#include <time.h>
+// cmd_mesh.c - relume mesh: surfaces as triangles, of volumes and models
+#include "commands/mesh_volume.h"
 
 struct mesh_options {
     struct args args;
     const char *output;
     bool json;
+    struct volume_options volume;
 };
 #define OPTIONS struct mesh_options
 
@@ -14,48 +13,44 @@ static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_OUTPUT, output, "OUT", "mesh to write: .ply, .obj or .glb"),
     FLAG("--json", json, "triangles, vertices and seconds as one JSON object"),
+    VOLUME_ROWS,
     {0},
 };
 
-static double seconds(void)
+static relume_status convert(const struct mesh_options *o)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void report(const struct mesh_options *o, const struct relume_mesh *mesh, double time)
-{
-    if (o->json)
-        printf("{\"triangles\": %zu, \"vertices\": %zu, \"seconds\": %.6f}\n", mesh->triangle_count,
-               mesh->vertex_count, time);
-    else
-        announce(&o->args, RELUME_NOTE, "%s: %zu triangles, %zu vertices, %.2f s", o->output,
-                 mesh->triangle_count, mesh->vertex_count, time);
+    const struct relume_mesh_params *p = relume_mesh_params(.log = o->args.log);
+    struct relume_mesh mesh = {0};
+    relume_status status = relume_mesh_check(o->output, p);
+    const double start = mesh_clock();
+    if (!status)
+        status = relume_mesh_read(&mesh, o->args.input[0], p);
+    const struct mesh_made made = {o->output, &mesh, mesh_clock() - start, NULL, 0};
+    if (!status)
+        status = relume_mesh_write(&mesh, o->output, p);
+    if (!status && o->json) {
+        putchar('{');
+        mesh_print_json(&made);
+        puts("}");
+    } else if (!status) {
+        mesh_say(&o->args, &made);
+    }
+    relume_mesh_free(&mesh);
+    return status;
 }
 
 static relume_status run(const struct args *args)
 {
     const struct mesh_options *o = (const void *)args;
-    const struct relume_mesh_params *p = relume_mesh_params(.log = args->log);
-    struct relume_mesh mesh = {0};
-    relume_status status = relume_mesh_check(o->output, p);
-    const double start = seconds();
-    if (!status)
-        status = relume_mesh_read(&mesh, args->input[0], p);
-    const double time = seconds() - start;
-    if (!status)
-        status = relume_mesh_write(&mesh, o->output, p);
-    if (!status)
-        report(o, &mesh, time);
-    relume_mesh_free(&mesh);
-    return status;
+    return given(o, &o->volume.threshold) ? mesh_of_volume(args, &o->volume, o->output, o->json)
+                                          : convert(o);
 }
 
 static const struct command *const tasks[] = {NULL};
 
 const struct command command_mesh = {
     .tasks = tasks,
-    COMMAND("mesh", "MODEL -o OUT [OPTION ...]", "surfaces as triangles, in other formats",
-            "relume mesh statue.obj -o statue.glb", 1, 1),
+    COMMAND("mesh", "VOLUME|MODEL -o OUT [OPTION ...]",
+            "the surface in a volume as triangles, or a model in another format",
+            "relume mesh head.nii.gz --threshold 80 -o head.ply", 1, 1),
 };

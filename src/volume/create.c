@@ -1,4 +1,4 @@
-// volume.c - volumes as callers of the library see them
+// create.c - volumes as callers of the library see them
 #include "volume/volume.h"
 
 #include "base/log.h"

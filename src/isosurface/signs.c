@@ -26,14 +26,17 @@
 
 static const struct typed {
     void (*sign_row)(uint64_t *out, const relume_volume *v, size_t row, double limit);
+    void (*sign_bricks)(uint64_t *out, const relume_volume *v, size_t row, double limit,
+                        const float (*range)[2]);
     struct place (*place)(const struct signs *g, int axis, int x, int y, int z);
     double least, most;  // limits of the type: what is beyond them is beyond every sample
     bool whole;
 } typed[VOLUME_TYPES] = {
-    [VOLUME_U8] = {sign_row_u8, place_u8, 0, UINT8_MAX, true},
-    [VOLUME_U16] = {sign_row_u16, place_u16, 0, UINT16_MAX, true},
-    [VOLUME_I16] = {sign_row_i16, place_i16, INT16_MIN, INT16_MAX, true},
-    [VOLUME_F32] = {sign_row_f32, place_f32, (double)-FLT_MAX, (double)FLT_MAX, false},
+    [VOLUME_U8] = {sign_row_u8, sign_bricks_u8, place_u8, 0, UINT8_MAX, true},
+    [VOLUME_U16] = {sign_row_u16, sign_bricks_u16, place_u16, 0, UINT16_MAX, true},
+    [VOLUME_I16] = {sign_row_i16, sign_bricks_i16, place_i16, INT16_MIN, INT16_MAX, true},
+    [VOLUME_F32] = {sign_row_f32, sign_bricks_f32, place_f32, (double)-FLT_MAX, (double)FLT_MAX,
+                    false},
 };
 
 // ---------------------------------------------------------------- bits
@@ -49,9 +52,19 @@ static void sign_layer(void *context, size_t z, int worker)
 {
     (void)worker;
     const struct signing *s = context;
-    const size_t height = (size_t)s->g->size[1];
-    for (size_t row = z * height; row < (z + 1) * height; row++)
-        s->typed->sign_row(s->g->bits + row * (size_t)s->g->words, s->g->volume, row, s->limit);
+    const relume_volume *v = s->g->volume;
+    const struct volume_index *index = &v->index;
+    const size_t height = (size_t)s->g->size[1], words = (size_t)s->g->words;
+    for (size_t y = 0; y < height; y++) {
+        const size_t row = z * height + y;
+        const size_t bricks = z / BRICK_Z * (size_t)index->bricks[1] + y / BRICK_Y;
+        if (index->range)
+            s->typed->sign_bricks(s->g->bits + row * words, v, row, s->limit,
+                                  (const float(*)[2])index->range +
+                                      bricks * (size_t)index->bricks[0]);
+        else
+            s->typed->sign_row(s->g->bits + row * words, v, row, s->limit);
+    }
 }
 
 relume_status signs_create(struct signs *g, const relume_volume *volume, float threshold,

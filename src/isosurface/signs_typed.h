@@ -19,6 +19,38 @@ static uint64_t OF(signs)(const SAMPLE *sample, int count, SAMPLE limit)
     return word;
 }
 
+// The same of a brick's 16 samples, or of what is left of a row.
+static uint64_t OF(signs_of_brick)(const SAMPLE *sample, int count, SAMPLE limit)
+{
+    uint8_t flag[BRICK_X];
+    uint64_t low, high;
+    for (int i = 0; i < BRICK_X; i++)
+        flag[i] = sample[i < count ? i : count - 1] >= limit;
+    memcpy(&low, flag, sizeof low);
+    memcpy(&high, flag + 8, sizeof high);
+    return low * 0x0102040810204080u >> 56 | high * 0x0102040810204080u >> 56 << 8;
+}
+
+// Of a row of bricks, `range` their least and largest: samples count where a surface may be.
+static void OF(sign_bricks)(uint64_t *out, const relume_volume *v, size_t row, double limit,
+                            const float (*range)[2])
+{
+    const int width = v->size[0];
+    const SAMPLE *sample = (const SAMPLE *)v->data + row * (size_t)width, at = (SAMPLE)limit;
+    uint64_t bits = 0;
+    for (int x = 0; x < width; x += BRICK_X, range++) {
+        bits = (double)(*range)[0] >= limit  ? 0xffff
+               : (double)(*range)[1] < limit ? 0
+                                             : OF(signs_of_brick)(sample + x, width - x, at);
+        if (!(x & 63))
+            out[x >> 6] = 0;
+        out[x >> 6] |= bits << (x & 63);
+    }
+    // the last sample is repeated up to the end of its word
+    for (int x = (width + BRICK_X - 1) / BRICK_X * BRICK_X; x & 63; x += BRICK_X)
+        out[x >> 6] |= (bits >> 15 ? (uint64_t)0xffff : 0) << (x & 63);
+}
+
 static void OF(sign_row)(uint64_t *out, const relume_volume *v, size_t row, double limit)
 {
     const int width = v->size[0];

@@ -41,7 +41,9 @@ gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
 surface:base math btf btf_model:base image btf btf_environment surface
-mesh:base math geometry:base object
+mesh:base math geometry:base io image object mesh
+volume:base image:base image photograph volume
+isosurface:base volume:base mesh volume
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport
@@ -91,7 +93,7 @@ jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
 aom/:src/lossy/av1_write.c tests/tools/preload/msan.c
 dav1d:src/lossy/av1_read.c tests/tools/preload/msan.c
-zlib:src/image/exr_sums.c src/lossy/lossy.c src/lossy/disparity.c
+zlib:src/image/exr_sums.c src/lossy/lossy.c src/lossy/disparity.c src/volume/unpack.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 mpi[.]h:src/mpi/relume_mpi.c

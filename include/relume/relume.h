@@ -22,6 +22,7 @@
 #include <relume/io.h>
 #include <relume/light.h>
 #include <relume/maps.h>
+#include <relume/mesh.h>
 #include <relume/slab_depth.h>
 #include <relume/directions.h>
 #include <relume/edit.h>
@@ -49,6 +50,7 @@
 #include <relume/transport.h>
 #include <relume/vec.h>
 #include <relume/view.h>
+#include <relume/volume.h>
 #include <relume/ingest.h>
 
 #endif

@@ -1,0 +1,21 @@
+// mesh_tasks.h - `relume mesh`: its tasks, and what they share
+#ifndef COMMANDS_MESH_TASKS_H
+#define COMMANDS_MESH_TASKS_H
+
+#include "cli.h"
+
+// Seconds since some moment.
+double mesh_clock(void);
+
+// What a command has made: a line of people's text, or a JSON object without its braces.
+struct mesh_made {
+    const char *output;
+    const struct relume_mesh *mesh;
+    double seconds;                                 // that it took, without reading and writing
+    const struct relume_isosurface_report *report;  // of an isosurface, or NULL
+    int block;
+};
+void mesh_print_json(const struct mesh_made *m);
+void mesh_say(const struct args *args, const struct mesh_made *m);
+
+#endif

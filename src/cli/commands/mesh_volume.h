@@ -1,0 +1,51 @@
+// mesh_volume.h - the part of `relume mesh` that is about volumes
+#ifndef COMMANDS_MESH_VOLUME_H
+#define COMMANDS_MESH_VOLUME_H
+
+#include "commands/mesh_tasks.h"
+
+// "XxYxZ".
+struct volume_size {
+    int side[3];
+};
+// "X,Y,Z", or "file".
+struct volume_spacing {
+    double step[3];
+    bool own;
+};
+struct volume_options {
+    double threshold;
+    struct volume_size size;
+    const char *type;
+    struct volume_spacing spacing;
+    struct ints blocks;
+    uint64_t skip;
+};
+// Rows of a table of options.
+#define VOLUME_ROWS                                                                                \
+    GROUP("volumes"),                                                                              \
+        NUMBER("--threshold", volume.threshold, "T",                                               \
+               "the surface of all samples that are at least T", -1e38, 1e38),                     \
+        OWN("--size", volume.size, "XxYxZ", "samples of a raw file, x running fastest",            \
+            take_volume_size),                                                                     \
+        TEXT("--type", volume.type, "TYPE",                                                        \
+             "of raw samples: u8 (default), i8, u16le, u16be, i16le, ..., f32le, f64be; without "  \
+             "an end little-endian"),                                                              \
+        BYTES("--skip", volume.skip, "BYTES", "of a raw file before its samples"),                 \
+        OWN("--spacing", volume.spacing, "X,Y,Z",                                                  \
+            "from sample to sample, or 'file': as NRRD and NIfTI say; default: 1,1,1",             \
+            take_volume_spacing),                                                                  \
+        WORDS("--block", volume.blocks, "N,...",                                                   \
+              "largest boxes: 1 (default), 2, 4, 8 or 16 samples; fewer triangles where the "      \
+              "surface is smooth; several make OUT.1.ply, OUT.4.ply, ...",                         \
+              OPTION_INT, .min = 1, .max = 16)
+
+relume_status take_volume_size(void *size, const struct option *o, const char *text,
+                               const struct relume_log *log);
+relume_status take_volume_spacing(void *spacing, const struct option *o, const char *text,
+                                  const struct relume_log *log);
+
+relume_status mesh_of_volume(const struct args *args, const struct volume_options *o,
+                             const char *output, bool json);
+
+#endif

@@ -1,0 +1,172 @@
+// open.c - volumes from files: which format a file is, and raw samples
+#include "volume/readers.h"
+
+#include "base/infile.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/params.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+void volume_set_spacing(struct store *s, const double spacing[3],
+                        const struct relume_volume_params *p)
+{
+    for (int c = 0; c < 3 && p->own_spacing; c++)
+        if (spacing[c] > 1e-9 && spacing[c] < 1e9)
+            s->volume->spacing[c] = spacing[c];
+}
+
+// ---------------------------------------------------------------- raw samples
+
+static relume_status check_exact(const struct store *s, unpack *from, uint64_t bytes)
+{
+    uint64_t left;
+    if (unpack_left(from, &left))
+        return left == bytes ? RELUME_OK
+                             : log_fail(s->log, RELUME_EUNFIT,
+                                        "%s: %llu bytes of samples; expected %llu for %d x %d x "
+                                        "%d of %s (--size, --type)",
+                                        s->path, (unsigned long long)left,
+                                        (unsigned long long)bytes, s->volume->size[0],
+                                        s->volume->size[1], s->volume->size[2], s->type->name);
+    return RELUME_OK;
+}
+
+static relume_status take_layers(struct store *s, unpack *from, const char *expected, bool exact)
+{
+    const size_t bytes = store_layer_bytes(s);
+    void *layer = mem_array(bytes, 1);
+    relume_status status = layer ? RELUME_OK : RELUME_ENOMEM;
+    char more;
+    size_t got;
+    for (int z = 0; z < s->volume->size[2] && !status; z++) {
+        status = unpack_all(from, layer, bytes, expected);
+        if (!status)
+            status = store_put(s, layer, bytes / (size_t)s->type->bytes);
+        if (!status && !log_progress(s->log, "reading", (z + 1.0) / s->volume->size[2]))
+            status = RELUME_ECANCEL;
+    }
+    mem_free(layer);
+    if (!status && exact)
+        status = unpack_read(from, &more, 1, &got);
+    if (!status && exact && got)
+        status = log_fail(s->log, RELUME_EUNFIT, "%s: has more bytes than %s (--size, --type)",
+                          s->path, expected);
+    return status;
+}
+
+relume_status volume_take(struct store *s, unpack *from, const int64_t size[3], bool exact,
+                          const struct relume_volume_params *p)
+{
+    char expected[128];
+    relume_status status = store_begin(s, size, p);
+    if (status)
+        return status;
+    const uint64_t bytes = (uint64_t)store_layer_bytes(s) * (uint64_t)size[2];
+    snprintf(expected, sizeof expected, "%llu, for %d x %d x %d samples of %s",
+             (unsigned long long)bytes, (int)size[0], (int)size[1], (int)size[2], s->type->name);
+    if (exact)
+        status = check_exact(s, from, bytes);
+    return status ? status : take_layers(s, from, expected, exact);
+}
+
+relume_status volume_read_raw(struct store *s, const char *path,
+                              const struct relume_volume_params *p)
+{
+    const int64_t size[3] = {p->size[0], p->size[1], p->size[2]};
+    unpack *from;
+    if (!size[0])
+        return log_fail(p->log, RELUME_EINVAL,
+                        "%s: raw samples do not say how many they are; give --size XxYxZ, and "
+                        "--type where they are not u8",
+                        path);
+    s->type = sample_type_find(p->type ? p->type : "u8", &s->big);
+    if (!s->type)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "samples of type '%s'; expected one of u8, i8, u16le, u16be and so on",
+                        p->type);
+    relume_status status = unpack_open(&from, path, 0, NULL, p->log);
+    if (status)
+        return status;
+    if (p->skip)
+        status = unpack_skip(from, p->skip, "more");
+    if (!status)
+        status = volume_take(s, from, size, true, p);
+    unpack_close(&from);
+    return status;
+}
+
+// ---------------------------------------------------------------- formats
+
+static const struct format {
+    const char *name;
+    relume_status (*read)(struct store *s, const char *path,
+                          const struct relume_volume_params *params);
+} raw = {"raw", volume_read_raw}, nrrd = {"nrrd", volume_read_nrrd},
+  nifti = {"nifti", volume_read_nifti}, slices = {"slices", volume_read_slices};
+
+// Magic numbers of NIfTI-1 stand at the end of its header of 348 bytes.
+enum { NIFTI_BYTES = 352, NIFTI_MAGIC = 344 };
+
+static relume_status find(const struct format **out, const char *path,
+                          const struct relume_volume_params *p)
+{
+    char head[NIFTI_BYTES] = {0};
+    size_t got;
+    unpack *from;
+    *out = &raw;
+    if (input_kind(path, p->log) == INPUT_FOLDER) {
+        *out = &slices;
+        return RELUME_OK;
+    }
+    relume_status status = unpack_open(&from, path, 0, NULL, p->log);
+    if (status)
+        return status;
+    status = unpack_read(from, head, sizeof head, &got);
+    unpack_close(&from);
+    if (status)
+        return status;
+    if (!memcmp(head, "NRRD000", 7))
+        *out = &nrrd;
+    else if (!memcmp(head + NIFTI_MAGIC, "n+1", 4) || !memcmp(head + NIFTI_MAGIC, "ni1", 4))
+        *out = &nifti;
+    return RELUME_OK;
+}
+
+static relume_status check_spacing(const struct relume_volume_params *p)
+{
+    const double *s = p->spacing;
+    const bool none = s[0] == 0.0 && s[1] == 0.0 && s[2] == 0.0;
+    for (int c = 0; c < 3; c++)
+        if (!none && !(s[c] > 1e-9 && s[c] < 1e9))
+            return log_fail(p->log, RELUME_EINVAL,
+                            "a spacing of %g,%g,%g; expected three numbers from 1e-9 to 1e9", s[0],
+                            s[1], s[2]);
+    return RELUME_OK;
+}
+
+relume_status relume_volume_open(relume_volume **out, const char *path,
+                                 const struct relume_volume_params *params)
+{
+    const struct relume_volume_params p = PARAMS(relume_volume_params, params);
+    struct store s = {.slope = 1.0, .path = path, .log = p.log};
+    const struct format *format = &raw;
+    relume_status status = check_spacing(&p);
+    *out = NULL;
+    if (!status)
+        status = find(&format, path, &p);
+    if (!status)
+        status = format->read(&s, path, &p);
+    if (!status)
+        status = store_end(&s);
+    if (status) {
+        relume_volume_destroy(&s.volume);
+        return status;
+    }
+    s.volume->format = format->name;
+    *out = s.volume;
+    return RELUME_OK;
+}

@@ -20,6 +20,7 @@
 #include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/io.h>
+#include <relume/jnd.h>
 #include <relume/light.h>
 #include <relume/maps.h>
 #include <relume/slab_depth.h>

@@ -23,6 +23,7 @@
 #include <relume/jnd.h>
 #include <relume/light.h>
 #include <relume/maps.h>
+#include <relume/mesh.h>
 #include <relume/slab_depth.h>
 #include <relume/directions.h>
 #include <relume/edit.h>

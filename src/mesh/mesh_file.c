@@ -8,6 +8,7 @@
 void mesh_file_free(struct mesh_file *file)
 {
     mesh_free(&file->mesh);
+    mem_free(file->colour);
     mem_free(file->picture);
     for (int i = 0; i < file->parts; i++)
         mem_free(file->part[i]);

@@ -6,6 +6,7 @@
 
 struct mesh_file {
     struct mesh mesh;
+    uint8_t (*colour)[4];  // of each vertex, as relume_mesh; NULL: none
     bool has_uv;
     bool made_normals;  // the file has none, or not everywhere
     char *picture;      // the file of its texture, or NULL

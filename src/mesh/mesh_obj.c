@@ -21,12 +21,13 @@ struct corner {
 
 struct obj {
     struct list v, vt, vn;
+    struct list colour;  // behind positions, as many write them: as many as `v`, or none
     struct mesh_file *out;
     const char *path;
     const struct relume_log *log;
     int line;
     bool own_normals;     // every corner so far has a normal
-    uint32_t *smooth_of;  // vertex -> position number, where normals must be computed
+    uint32_t *smooth_of;  // vertex -> position number
     bool has_materials;   // parts go by usemtl, else by g
     uint32_t part;
 };
@@ -56,6 +57,25 @@ static relume_status read_vector(const struct obj *o, struct list *list, char *t
     if (n < least || !isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]))
         return bad_line(o, least == 1 ? "texture coordinates" : "three finite numbers");
     return push(list, vec3_of(x[0], x[1], x[2]));
+}
+
+// x y z, and maybe red green blue of 1.
+static relume_status read_position(struct obj *o, char *text)
+{
+    double rgb[3];
+    int n = 0;
+    relume_status status = read_vector(o, &o->v, text, 3);
+    for (int skip = 0; skip < 3; skip++)
+        (void)strtod(text, &text);
+    for (char *end; n < 3; n++, text = end) {
+        rgb[n] = strtod(text, &end);
+        if (end == text || !isfinite(rgb[n]))
+            break;
+    }
+    // a fourth number alone is a weight
+    if (!status && n == 3 && o->colour.count + 1 == o->v.count)
+        status = push(&o->colour, vec3_of(rgb[0], rgb[1], rgb[2]));
+    return status;
 }
 
 // Counted from 1, or from the end when negative, as the format says; 0 when out of range.
@@ -167,7 +187,7 @@ static relume_status read_line(struct obj *o, char *line)
     const size_t length = strcspn(line, " \t");
     char *rest = line + length + strspn(line + length, " \t");
     if (length == 1 && line[0] == 'v')
-        return read_vector(o, &o->v, rest, 3);
+        return read_position(o, rest);
     if (length == 1 && line[0] == 'f')
         return read_face(o, rest);
     if (length == 2 && !strncmp(line, "vt", 2))
@@ -201,6 +221,24 @@ static relume_status make_normals(const struct obj *o)
                sizeof mesh->vertices[i].normal);
     mesh_free(&shared);
     return failed ? RELUME_ENOMEM : RELUME_OK;
+}
+
+static uint8_t colour_byte(double value)
+{
+    return (uint8_t)relume_whole(fmin(fmax(value, 0.0), 1.0) * 255.0 + 0.5);
+}
+
+static relume_status take_colours(const struct obj *o)
+{
+    const size_t count = o->out->mesh.vertex_count;
+    uint8_t(*colour)[4] = mem_array(count, sizeof *colour);
+    for (size_t i = 0; colour && i < count; i++) {
+        const vec3 c = o->colour.at[o->smooth_of[i]];
+        const uint8_t rgba[4] = {colour_byte(c.x), colour_byte(c.y), colour_byte(c.z), 255};
+        memcpy(colour[i], rgba, sizeof rgba);
+    }
+    o->out->colour = colour;
+    return colour ? RELUME_OK : RELUME_ENOMEM;
 }
 
 // Cut the next line out of `*text`, joining lines that end in a backslash; NULL at the end.
@@ -243,7 +281,10 @@ relume_status mesh_read_obj(struct mesh_file *out, const char *text, size_t size
     out->made_normals = !o.own_normals;
     if (!status && !o.own_normals)
         status = make_normals(&o);
+    if (!status && o.v.count && o.colour.count == o.v.count)
+        status = take_colours(&o);
     mem_free(copy);
+    mem_free(o.colour.at);
     mem_free(o.v.at);
     mem_free(o.vt.at);
     mem_free(o.vn.at);

@@ -1,8 +1,8 @@
 // mesh_ply.c - the Stanford polygon format (Turk 1994): ascii, binary little and big endian
 //
 // A header declares elements and their properties; the body holds them in that order. Positions,
-// normals and texture coordinates of `vertex` and the index list of `face` are used, the rest is
-// read past.
+// normals, texture coordinates and colours of `vertex` and the index list of `face` are used, the
+// rest is read past.
 #include "base/log.h"
 #include "base/memory.h"
 #include "mesh/mesh_file.h"
@@ -13,7 +13,23 @@
 enum { MAX_ELEMENTS = 16, MAX_PROPERTIES = 64, MAX_CORNERS = 4096 };
 enum form { FORM_NONE, FORM_ASCII, FORM_LITTLE, FORM_BIG };
 enum type { TYPE_NONE, INT8, UINT8, INT16, UINT16, INT32, UINT32, FLOAT32, FLOAT64 };
-enum use { USE_NONE, USE_X, USE_Y, USE_Z, USE_NX, USE_NY, USE_NZ, USE_U, USE_V, USE_CORNERS, USES };
+enum use {
+    USE_NONE,
+    USE_X,
+    USE_Y,
+    USE_Z,
+    USE_NX,
+    USE_NY,
+    USE_NZ,
+    USE_U,
+    USE_V,
+    USE_RED,
+    USE_GREEN,
+    USE_BLUE,
+    USE_ALPHA,
+    USE_CORNERS,
+    USES
+};
 
 struct property {
     enum type count;  // of a list's length; TYPE_NONE: not a list
@@ -33,7 +49,7 @@ struct ply {
     enum form form;
     int elements;
     struct element element[MAX_ELEMENTS];
-    bool has_normals;
+    bool has_normals, has_colours;
     struct mesh_file *out;
     const char *path;
     const struct relume_log *log;
@@ -85,6 +101,10 @@ static enum use use_named(const char *name)
         {"t", USE_V},
         {"texture_u", USE_U},
         {"texture_v", USE_V},
+        {"red", USE_RED},
+        {"green", USE_GREEN},
+        {"blue", USE_BLUE},
+        {"alpha", USE_ALPHA},
         {"vertex_indices", USE_CORNERS},
         {"vertex_index", USE_CORNERS},
     };
@@ -114,6 +134,7 @@ static relume_status read_property(struct ply *p, const char *line)
         new.use = USE_NONE;
     p->has_normals |= e->is_vertex && new.use == USE_NX;
     p->out->has_uv |= e->is_vertex && new.use == USE_U;
+    p->has_colours |= e->is_vertex && new.use == USE_RED;
     e->property[e->properties++] = new;
     return RELUME_OK;
 }
@@ -232,9 +253,25 @@ static relume_status truncated(const struct ply *p)
                   "declares");
 }
 
+// As 8 bits; numbers with a point are of 1.
+static uint8_t colour_byte(double value, enum type type)
+{
+    const double scaled = type >= FLOAT32 ? value * 255.0 : type == UINT16 ? value / 257.0 : value;
+    return (uint8_t)relume_whole(fmin(fmax(scaled, 0.0), 255.0) + 0.5);
+}
+
+static void add_colour(struct ply *p, const double at[USES])
+{
+    struct mesh_file *out = p->out;
+    const size_t vertex = out->mesh.vertex_count - 1;
+    out->mesh.failed = out->mesh.failed || !mem_grow(&out->colour, vertex, sizeof *out->colour);
+    for (int c = 0; !out->mesh.failed && c < 4; c++)
+        out->colour[vertex][c] = (uint8_t)at[USE_RED + c];
+}
+
 static relume_status read_vertex(struct ply *p, const struct element *e)
 {
-    double at[USES] = {0};
+    double at[USES] = {[USE_ALPHA] = 255.0};
     for (int i = 0; i < e->properties; i++) {
         const struct property *property = &e->property[i];
         double length = 1.0, value;
@@ -243,13 +280,17 @@ static relume_status read_vertex(struct ply *p, const struct element *e)
         for (double k = 0.0; k < length; k++) {
             if (!read_value(p, property->type, &value))
                 return truncated(p);
-            at[property->use] = value;
+            at[property->use] = property->use >= USE_RED && property->use <= USE_ALPHA
+                                    ? colour_byte(value, property->type)
+                                    : value;
         }
     }
     const vec3 normal = vec3_of(at[USE_NX], at[USE_NY], at[USE_NZ]);
     p->has_normals &= vec3_length(normal) > 0.0;
     mesh_vertex(&p->out->mesh, vec3_of(at[USE_X], at[USE_Y], at[USE_Z]),
                 p->has_normals ? vec3_unit(normal) : normal, vec3_of(at[USE_U], at[USE_V], 0.0));
+    if (p->has_colours)
+        add_colour(p, at);
     return RELUME_OK;
 }
 

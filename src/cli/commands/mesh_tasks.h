@@ -1,0 +1,7 @@
+// mesh_tasks.h - the tasks of `relume mesh` that have files of their own
+#ifndef COMMANDS_MESH_TASKS_H
+#define COMMANDS_MESH_TASKS_H
+
+#include "cli.h"
+
+#endif

@@ -43,6 +43,7 @@
 #include <relume/acquire.h>
 #include <relume/viewport.h>
 #include <relume/shadow.h>
+#include <relume/simplify.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
 #include <relume/tableau.h>

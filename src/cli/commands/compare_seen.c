@@ -110,7 +110,7 @@ relume_status compare_prepare(struct relume_image *a, struct relume_image *b,
             return data_error("%s: black, or not finite; its colours cannot be fitted",
                               args->input[1]);
         if (!status)
-            status = relume_colours_apply(b, matrix);
+            status = relume_colours_apply(b, (const double(*)[3])matrix);
     }
     if (!status && look->grey) {
         const double to = mean_grey(a, mask), from = mean_grey(b, mask);

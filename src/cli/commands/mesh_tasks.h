@@ -4,4 +4,6 @@
 
 #include "cli.h"
 
+extern const struct command mesh_task_simplify;
+
 #endif

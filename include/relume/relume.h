@@ -20,6 +20,7 @@
 #include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/io.h>
+#include <relume/jnd.h>
 #include <relume/light.h>
 #include <relume/maps.h>
 #include <relume/mesh.h>
@@ -42,6 +43,7 @@
 #include <relume/acquire.h>
 #include <relume/viewport.h>
 #include <relume/shadow.h>
+#include <relume/simplify.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
 #include <relume/tableau.h>

@@ -46,7 +46,7 @@ static relume_status run(const struct args *args)
                                           : convert(o);
 }
 
-static const struct command *const tasks[] = {NULL};
+static const struct command *const tasks[] = {&mesh_task_simplify, NULL};
 
 const struct command command_mesh = {
     .tasks = tasks,

@@ -18,4 +18,6 @@ struct mesh_made {
 void mesh_print_json(const struct mesh_made *m);
 void mesh_say(const struct args *args, const struct mesh_made *m);
 
+extern const struct command mesh_task_simplify;
+
 #endif

@@ -1,0 +1,116 @@
+// mesh_simplify.c - relume mesh simplify: fewer triangles that look the same
+#include "commands/mesh_tasks.h"
+
+#include <math.h>
+#include <time.h>
+
+struct simplify_options {
+    struct args args;
+    const char *output, *steps;
+    double error, jnd, distance, gloss, white;
+    int triangles;
+    bool quadrics, json;
+};
+#define OPTIONS struct simplify_options
+
+static const struct option options[] = {
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "OUT", "mesh to write: .ply, .obj or .glb"),
+    TEXT_AS(OPTION_OUTPUT, "--steps", steps, "FILE.csv",
+            "also write which vertex went onto which, in order: undone, they lead back"),
+    FLAG("--json", json, "triangles, vertices, errors and seconds as one JSON object"),
+    GROUP("how far"),
+    NUMBER("--error", error, "E",
+           "most distance from the original, in diagonals of its box: 0.001 is 0.1 %", 1e-9, 1),
+    INT("--triangles", triangles, "N", "as many triangles, or a few less", 1, 2147483647),
+    NUMBER("--jnd", jnd, "J", "nothing of the shading changes by more than J noticeable steps",
+           0.01, 100),
+    GROUP("what is seen"),
+    NUMBER("--distance", distance, "D",
+           "of the eye, in diagonals; default: where --error is seen under 1/30 degree, else 1.9",
+           0.01, 1e6),
+    NUMBER("--gloss", gloss, "G", "sharpness of highlights: 0 is matte; default: 20", 0, 1000),
+    NUMBER("--luminance", white, "CD", "of white, in candela per square metre; default: 200", 0.01,
+           1e6),
+    FLAG("--quadrics", quadrics, "test nothing; --error is that of quadrics"),
+    {0},
+};
+
+static double seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static relume_status write_steps(const struct relume_simplified *s, const char *path,
+                                 const struct args *args)
+{
+    FILE *file = fopen(path, "w");
+    bool good = file && fputs("vertex,onto,error,distance\n", file) >= 0;
+    for (size_t i = 0; good && i < s->steps; i++)
+        good = fprintf(file, "%u,%u,%.6g,%.6g\n", s->step[i].vertex, s->step[i].onto,
+                       (double)s->step[i].error, (double)s->step[i].distance) > 0;
+    (void)args;
+    return file && !fclose(file) && good ? RELUME_OK : RELUME_EIO;
+}
+
+static void report(const struct simplify_options *o, const struct relume_simplified *s,
+                   size_t before, double time)
+{
+    if (!o->json) {
+        announce(&o->args, RELUME_NOTE, "%s: %zu of %zu triangles, %zu vertices, %.2f s", o->output,
+                 s->triangles, before, s->vertices, time);
+        return;
+    }
+    printf("{\"triangles\": %zu, \"vertices\": %zu, \"triangles_before\": %zu, \"error\": ",
+           s->triangles, s->vertices, before);
+    json_number(stdout, s->error);
+    printf(", \"distance\": ");
+    json_number(stdout, s->distance);
+    printf(", \"seconds\": %.6f}\n", time);
+}
+
+static relume_status run(const struct args *args)
+{
+    const struct simplify_options *o = (const void *)args;
+    const struct relume_mesh_params *p = relume_mesh_params(.log = args->log);
+    struct relume_mesh mesh = {0}, small = {0};
+    struct relume_simplified done = {0};
+    double time = 0.0;
+    if (!(o->error > 0.0) && !(o->jnd > 0.0) && !o->triangles)
+        return usage_error("how far? Give --error, --triangles or --jnd");
+    if (o->quadrics && o->jnd > 0.0)
+        return usage_error("--quadrics tests nothing of what is seen; leave out --jnd");
+    relume_status status = relume_mesh_check(o->output, p);
+    if (!status)
+        status = relume_mesh_read(&mesh, args->input[0], p);
+    if (!status) {
+        const double start = seconds();
+        status = relume_mesh_simplify(
+            &small, &done, &mesh,
+            relume_simplify_params(.log = args->log, .error = o->error,
+                                   .triangles = (size_t)o->triangles, .jnd = o->jnd,
+                                   .distance = o->distance,
+                                   .gloss =
+                                       given(o, &o->gloss) && o->gloss <= 0.0 ? -1.0 : o->gloss,
+                                   .white = o->white, .quadrics = o->quadrics));
+        time = seconds() - start;
+    }
+    if (!status)
+        status = relume_mesh_write(&small, o->output, p);
+    if (!status && o->steps)
+        status = write_steps(&done, o->steps, args);
+    if (!status)
+        report(o, &done, mesh.triangle_count, time);
+    relume_free(done.step);
+    relume_mesh_free(&mesh);
+    relume_mesh_free(&small);
+    return status;
+}
+
+const struct command mesh_task_simplify = {
+    COMMAND("mesh simplify", "MODEL -o OUT --error E|--triangles N|--jnd J [OPTION ...]",
+            "fewer triangles that look the same",
+            "relume mesh simplify statue.ply -o small.glb --error 0.001", 1, 1),
+};

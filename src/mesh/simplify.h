@@ -1,0 +1,169 @@
+// simplify.h - what the parts of mesh simplification share
+//
+// A corner belongs to a vertex of the mesh; vertices at one place (where texture or normals have a
+// seam) are one point. Places are relative to the middle of the mesh, in diagonals of its bounding
+// box.
+#ifndef MESH_SIMPLIFY_H
+#define MESH_SIMPLIFY_H
+
+#include "base/memory.h"
+#include "math/vec.h"
+
+#include <relume/simplify.h>
+
+#define NOTHING UINT32_MAX
+
+enum {
+    FAN = 96,          // most triangles around a point that may go
+    VALUES = 8,        // normal, texture place, colour
+    MOST_VERTICES = 8  // at one point that may go
+};
+
+// ---------------------------------------------------------------- connectivity
+
+struct connect {
+    size_t vertices, triangles;
+    uint32_t points;
+    uint32_t (*triangle)[3];  // vertices; dead: all NOTHING
+    const uint32_t *part;     // or NULL
+    uint32_t *point;          // [vertices]
+    uint32_t *first;          // [points]: a corner, 3 * triangle + k
+    uint32_t *next;           // [3 * triangles]: another corner of the same point
+    size_t alive;             // triangles
+};
+// Points are vertices at equal places.
+relume_status connect_create(struct connect *c, const struct relume_mesh *mesh);
+void connect_free(struct connect *c);
+
+// What lies around a point: its triangles, and the points across its edges.
+struct fan {
+    int triangles, neighbours;
+    bool too_many;
+    uint32_t triangle[FAN];
+    uint32_t neighbour[2 * FAN];
+    int shared[2 * FAN];    // triangles at that edge
+    bool feature[2 * FAN];  // border, seam, or between parts
+    int features;
+};
+void connect_fan(struct connect *c, uint32_t point, struct fan *fan);
+
+// How the vertices at a point go to those at another.
+struct moves {
+    int count;
+    uint32_t from[MOST_VERTICES], to[MOST_VERTICES];
+};
+// Whether `point` may go to its neighbour `i` without tearing or folding the surface's
+// connectivity, and how its vertices do.
+// The vertices alone. False where they have no one way to go.
+bool connect_moves(const struct connect *c, uint32_t point, const struct fan *fan, uint32_t target,
+                   struct moves *moves);
+bool connect_may_move(struct connect *c, uint32_t point, const struct fan *fan, int i,
+                      struct moves *moves);
+// Neighbours that a point may go to at all.
+bool connect_is_target(const struct fan *fan, int i);
+void connect_move(struct connect *c, uint32_t point, const struct fan *fan, uint32_t target,
+                  const struct moves *moves);
+static inline bool triangle_has(const struct connect *c, uint32_t triangle, uint32_t point)
+{
+    const uint32_t *t = c->triangle[triangle];
+    return c->point[t[0]] == point || c->point[t[1]] == point || c->point[t[2]] == point;
+}
+static inline uint32_t moved(const struct moves *m, uint32_t vertex)
+{
+    for (int i = 0; i < m->count; i++)
+        if (m->from[i] == vertex)
+            return m->to[i];
+    return vertex;
+}
+
+// ---------------------------------------------------------------- what is seen of shading
+
+// How far away turned normals are seen: a table over their angle.
+enum { VISIBLE_ANGLES = 256 };
+struct visible {
+    double reach[VISIBLE_ANGLES + 1];  // at angles of PI (k / 256)^2, times the curvature
+};
+relume_status visible_create(struct visible *v, double jnd, double gloss, double white);
+// The distance up to which a normal that is `angle` off is seen where the surface bends by
+// `curvature`, 1 / diagonal; infinite where it is seen from any distance.
+double visible_distance(const struct visible *v, double angle, double curvature);
+
+// ---------------------------------------------------------------- the surfaces
+
+struct simplify {
+    const struct relume_mesh *mesh;
+    struct connect connect;
+    vec3 middle;
+    double scale;  // 1 / diagonal
+    int values;    // of a vertex that quadrics know
+    double weight[VALUES];
+    double slide;  // of a unit of texture, diagonals
+
+    double (*quadric)[11];  // [points]: of planes, and their area
+    float *spread;          // [vertices][quadric_floats]: of values
+
+    bool tested;             // and not by quadrics alone
+    float *curvature;        // [points]: sqrt(k1^2 + k2^2), 1 / diagonal
+    float *spacing;          // [points]: of edges, diagonals
+    uint32_t *sample_first;  // [triangles]: original vertices that lie there
+    uint32_t *sample_next;   // [vertices]
+    struct visible visible;
+    double seen_per_length;  // distance at which a length counts as seen: 1 / (2 tan (1/60 degree))
+    double white, jnd;
+};
+
+static inline vec3 place(const struct simplify *s, uint32_t vertex)
+{
+    const float *p = s->mesh->position[vertex];
+    const vec3 v = vec3_of((double)p[0], (double)p[1], (double)p[2]);
+    return vec3_scale(vec3_sub(v, s->middle), s->scale);
+}
+
+static inline vec3 normal_of(const struct simplify *s, uint32_t vertex)
+{
+    const float *n = s->mesh->normal[vertex];
+    return vec3_of((double)n[0], (double)n[1], (double)n[2]);
+}
+
+// Quadrics of all points and vertices. RELUME_ENOMEM.
+relume_status quadrics_create(struct simplify *s);
+// The error of a point that goes to another, whose place is that of moves->to[0]: a length.
+double quadrics_error(const struct simplify *s, uint32_t point, const struct moves *moves);
+void quadrics_move(struct simplify *s, uint32_t point, uint32_t target, const struct moves *moves);
+size_t quadrics_bytes(const struct simplify *s, size_t points);
+
+// Original vertices that have gone, and the triangles that they lie on now.
+struct error {
+    double length;    // most distance between the surfaces
+    double distance;  // up to which something is seen
+};
+struct landing {
+    uint32_t vertex, triangle;
+};
+struct samples {
+    size_t count, room;
+    struct landing *landing;
+};
+relume_status samples_create(struct simplify *s);
+// What a move would do, at the vertices that have gone around there and those that go; gives up
+// beyond `most`. False when memory is short.
+bool samples_try(const struct simplify *s, struct samples *to, struct error *error,
+                 const struct fan *fan, uint32_t target, const struct moves *moves,
+                 const struct error *most);
+void samples_move(struct simplify *s, const struct samples *to, const struct fan *fan);
+
+// ---------------------------------------------------------------- what comes next
+
+// Points in the order of keys, a binary heap.
+struct queue {
+    uint32_t count;
+    uint32_t *heap;  // points
+    uint32_t *at;    // [points]: place in the heap, NOTHING
+    float *key;      // [points]
+};
+relume_status queue_create(struct queue *q, uint32_t points);
+void queue_free(struct queue *q);
+void queue_put(struct queue *q, uint32_t point, double key);  // new, or with another key
+uint32_t queue_take(struct queue *q);                         // that of the smallest key
+
+#endif

@@ -1,0 +1,279 @@
+// simplify_samples.c - how far the new surface is from the vertices that have gone, and from how
+// far away that is seen
+//
+// Every vertex that goes is remembered by the triangle that it lies on. A move sees those of the
+// triangles around, each at the new triangle where its worst error is least: its distance; how far
+// its place in the texture slides; and its normal and colour against those of the new surface there
+// (Guthe 2008, section 10.1: both against the mesh before and, since these are the vertices of the
+// original, against that).
+#include "mesh/simplify.h"
+
+#include <math.h>
+#include <relume/jnd.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+// New triangles may not turn by more than this against the old one; cosine of 75 degrees.
+#define LEAST_FACING 0.26
+
+// ---------------------------------------------------------------- how the surface bends
+
+// The mean square of how fast normals turn along edges is (k1^2 + k2^2) / 2.
+static void add_bend(const struct simplify *s, uint32_t a, uint32_t b, float *edges)
+{
+    const uint32_t at = s->connect.point[a];
+    const double length = vec3_length(vec3_sub(place(s, a), place(s, b)));
+    if (!(length > 0.0))
+        return;
+    const double turn = vec3_length(vec3_sub(normal_of(s, a), normal_of(s, b))) / length;
+    s->curvature[at] += (float)(turn * turn);
+    s->spacing[at] += (float)length;
+    edges[at] += 1.0f;
+}
+
+static relume_status find_bends(struct simplify *s)
+{
+    float *edges = mem_zeroed(s->connect.points, sizeof *edges);
+    if (!edges)
+        return RELUME_ENOMEM;
+    for (size_t t = 0; t < s->connect.triangles; t++) {
+        const uint32_t *v = s->connect.triangle[t];
+        for (int k = 0; v[0] != NOTHING && k < 3; k++) {
+            add_bend(s, v[k], v[(k + 1) % 3], edges);
+            add_bend(s, v[k], v[(k + 2) % 3], edges);
+        }
+    }
+    for (uint32_t p = 0; p < s->connect.points; p++)
+        if (edges[p] > 0.0f) {
+            s->curvature[p] = sqrtf(2.0f * s->curvature[p] / edges[p]);
+            s->spacing[p] /= edges[p];
+        }
+    mem_free(edges);
+    return RELUME_OK;
+}
+
+relume_status samples_create(struct simplify *s)
+{
+    s->curvature = mem_zeroed(s->connect.points, sizeof *s->curvature);
+    s->spacing = mem_zeroed(s->connect.points, sizeof *s->spacing);
+    s->sample_first = mem_array(s->connect.triangles, sizeof *s->sample_first);
+    s->sample_next = mem_array(s->connect.vertices, sizeof *s->sample_next);
+    if (!s->curvature || !s->spacing || !s->sample_first || !s->sample_next)
+        return RELUME_ENOMEM;
+    memset(s->sample_first, 0xff, s->connect.triangles * sizeof *s->sample_first);
+    return find_bends(s);
+}
+
+// ---------------------------------------------------------------- new triangles
+
+struct facet {
+    uint32_t triangle, vertex[3];
+    vec3 p[3];
+};
+
+// The triangles that stay; false when one turns over or loses its area.
+static bool find_facets(const struct simplify *s, const struct fan *fan, uint32_t target,
+                        const struct moves *moves, struct facet *facet, int *count)
+{
+    *count = 0;
+    for (int i = 0; i < fan->triangles; i++) {
+        if (triangle_has(&s->connect, fan->triangle[i], target))
+            continue;
+        struct facet *f = &facet[(*count)++];
+        const uint32_t *old = s->connect.triangle[fan->triangle[i]];
+        vec3 was[3];
+        f->triangle = fan->triangle[i];
+        for (int k = 0; k < 3; k++) {
+            f->vertex[k] = moved(moves, old[k]);
+            f->p[k] = place(s, f->vertex[k]);
+            was[k] = place(s, old[k]);
+        }
+        const vec3 before = vec3_cross(vec3_sub(was[1], was[0]), vec3_sub(was[2], was[0]));
+        const vec3 now = vec3_cross(vec3_sub(f->p[1], f->p[0]), vec3_sub(f->p[2], f->p[0]));
+        const double size = vec3_length(now) * vec3_length(before);
+        if (!(vec3_length(now) > 1e-15) ||
+            (size > 0.0 && vec3_dot(before, now) < LEAST_FACING * size))
+            return false;
+    }
+    return *count > 0;
+}
+
+// The place on a triangle that is nearest to p, as weights of its corners (Ericson 2005, 5.1.5).
+static void nearest(const vec3 t[3], vec3 p, double w[3])
+{
+    const vec3 ab = vec3_sub(t[1], t[0]), ac = vec3_sub(t[2], t[0]), ap = vec3_sub(p, t[0]);
+    const double d1 = vec3_dot(ab, ap), d2 = vec3_dot(ac, ap);
+    const vec3 bp = vec3_sub(p, t[1]), cp = vec3_sub(p, t[2]);
+    const double d3 = vec3_dot(ab, bp), d4 = vec3_dot(ac, bp);
+    const double d5 = vec3_dot(ab, cp), d6 = vec3_dot(ac, cp);
+    const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    double v = 0.0, u = 0.0;  // of the second and third corner
+    if (d1 <= 0.0 && d2 <= 0.0)
+        v = u = 0.0;
+    else if (d3 >= 0.0 && d4 <= d3)
+        v = 1.0;
+    else if (d6 >= 0.0 && d5 <= d6)
+        u = 1.0;
+    else if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0)
+        v = d1 / (d1 - d3);
+    else if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0)
+        u = d2 / (d2 - d6);
+    else if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+        u = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        v = 1.0 - u;
+    } else {
+        v = vb / (va + vb + vc);
+        u = vc / (va + vb + vc);
+    }
+    w[0] = 1.0 - v - u;
+    w[1] = v;
+    w[2] = u;
+}
+
+// ---------------------------------------------------------------- errors
+
+static double slide_of(const struct simplify *s, uint32_t vertex, const struct facet *f,
+                       const double w[3])
+{
+    double sum = 0.0;
+    for (int k = 0; s->mesh->texture && k < 2; k++) {
+        double d = -(double)s->mesh->texture[vertex][k];
+        for (int i = 0; i < 3; i++)
+            d += w[i] * (double)s->mesh->texture[f->vertex[i]][k];
+        sum += d * d;
+    }
+    return s->slide * sqrt(sum);
+}
+
+static double turn_of(const struct simplify *s, uint32_t vertex, const struct facet *f,
+                      const double w[3])
+{
+    vec3 n = vec3_of(0, 0, 0);
+    for (int i = 0; i < 3; i++)
+        n = vec3_along(n, normal_of(s, f->vertex[i]), w[i]);
+    const double length = vec3_length(n);
+    return length > 1e-9 ? vec3_angle(vec3_scale(n, 1.0 / length), normal_of(s, vertex)) : PI;
+}
+
+static double linear_of(double code)
+{
+    return code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4);
+}
+
+// From how far a colour is seen to differ; its pattern is as fine as its vertices lie.
+static double colour_distance(const struct simplify *s, uint32_t vertex, const struct facet *f,
+                              const double w[3])
+{
+    double was[3], now[3], a[RELUME_OPPONENTS], b[RELUME_OPPONENTS], most = 0.0;
+    if (!s->mesh->colour)
+        return 0.0;
+    for (int k = 0; k < 3; k++) {
+        double code = 0.0;
+        for (int i = 0; i < 3; i++)
+            code += w[i] * s->mesh->colour[f->vertex[i]][k] / 255.0;
+        was[k] = linear_of(s->mesh->colour[vertex][k] / 255.0);
+        now[k] = linear_of(code);
+    }
+    relume_jnd_opponent(a, was, s->white);
+    relume_jnd_opponent(b, now, s->white);
+    for (int c = 0; c < RELUME_OPPONENTS; c++) {
+        const double difference = fabs(a[c] - b[c]);
+        if (difference > 0.0)
+            most = fmax(most, relume_jnd_finest((enum relume_opponent)c, s->jnd / difference));
+    }
+    // cycles per degree = distance * pi / 180 / (2 spacing)
+    return most * 360.0 / PI * (double)s->spacing[s->connect.point[vertex]];
+}
+
+static struct error error_at(const struct simplify *s, uint32_t vertex, const struct facet *f,
+                             double best)
+{
+    const vec3 p = place(s, vertex);
+    double w[3];
+    nearest(f->p, p, w);
+    vec3 there = vec3_scale(f->p[0], w[0]);
+    there = vec3_along(vec3_along(there, f->p[1], w[1]), f->p[2], w[2]);
+    struct error e = {.length = vec3_length(vec3_sub(p, there))};
+    if (e.length >= best)
+        return e;
+    e.length = fmax(e.length, slide_of(s, vertex, f, w));
+    e.distance = visible_distance(&s->visible, turn_of(s, vertex, f, w),
+                                  (double)s->curvature[s->connect.point[vertex]]);
+    if (e.distance < best * s->seen_per_length)
+        e.distance = fmax(e.distance, colour_distance(s, vertex, f, w));
+    return e;
+}
+
+static double worst_of(const struct simplify *s, struct error e)
+{
+    return fmax(e.length, e.distance / s->seen_per_length);
+}
+
+static bool land(struct samples *to, uint32_t vertex, uint32_t triangle)
+{
+    if (to->count == to->room) {
+        const size_t room = to->room ? 2 * to->room : 64;
+        struct landing *more = mem_resize(to->landing, room, sizeof *more);
+        if (!more)
+            return false;
+        to->landing = more;
+        to->room = room;
+    }
+    to->landing[to->count++] = (struct landing){vertex, triangle};
+    return true;
+}
+
+// Where a vertex lies on the new triangles.
+static bool try_vertex(const struct simplify *s, struct samples *to, struct error *error,
+                       uint32_t vertex, const struct facet *facet, int count)
+{
+    struct error best = {INFINITY, INFINITY};
+    uint32_t triangle = facet[0].triangle;
+    for (int i = 0; i < count; i++) {
+        const struct error e = error_at(s, vertex, &facet[i], worst_of(s, best));
+        if (worst_of(s, e) < worst_of(s, best)) {
+            best = e;
+            triangle = facet[i].triangle;
+        }
+    }
+    error->length = fmax(error->length, best.length);
+    error->distance = fmax(error->distance, best.distance);
+    return land(to, vertex, triangle);
+}
+
+bool samples_try(const struct simplify *s, struct samples *to, struct error *error,
+                 const struct fan *fan, uint32_t target, const struct moves *moves,
+                 const struct error *most)
+{
+    struct facet facet[FAN];
+    int count;
+    to->count = 0;
+    *error = (struct error){INFINITY, INFINITY};
+    if (!find_facets(s, fan, target, moves, facet, &count))
+        return true;
+    *error = (struct error){0.0, 0.0};
+    if (!s->tested)
+        return true;
+    for (int i = 0; i < moves->count; i++)
+        if (!try_vertex(s, to, error, moves->from[i], facet, count))
+            return false;
+    for (int i = 0; i < fan->triangles; i++)
+        for (uint32_t v = s->sample_first[fan->triangle[i]]; v != NOTHING; v = s->sample_next[v]) {
+            if (error->length > most->length || error->distance > most->distance)
+                return true;
+            if (!try_vertex(s, to, error, v, facet, count))
+                return false;
+        }
+    return true;
+}
+
+void samples_move(struct simplify *s, const struct samples *to, const struct fan *fan)
+{
+    for (int i = 0; s->tested && i < fan->triangles; i++)
+        s->sample_first[fan->triangle[i]] = NOTHING;
+    for (size_t i = 0; i < to->count; i++) {
+        uint32_t *first = &s->sample_first[to->landing[i].triangle];
+        s->sample_next[to->landing[i].vertex] = *first;
+        *first = to->landing[i].vertex;
+    }
+}

@@ -40,7 +40,8 @@ btf:base math image:base image directions capture btf
 gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
-surface:base math btf btf_model:base image btf btf_environment surface
+synthesis:base math image:base image synthesis
+surface:base math synthesis btf btf_model:base image btf btf_environment surface synthesis
 mesh:base math geometry:base object
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene

@@ -43,6 +43,7 @@
 #include <relume/shadow.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
+#include <relume/synthesis.h>
 #include <relume/tableau.h>
 #include <relume/team.h>
 #include <relume/tone.h>

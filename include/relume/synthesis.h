@@ -105,8 +105,8 @@ struct relume_grow_params {  // zero in a field means its default
     const relume_regular *regular;
     double weight;  // of the structure beside the texels; default 1; [0.01, 100]
     int threads;    // default: all cores
-    // PATCH: side of a square, texels, even; default: two periods of the structure, or a third of
-    // the sample; [8, 256]
+    // PATCH: side of a square, texels, even; default: two periods of the structure, at least a sixth
+    // of the sample; without a structure a third; [4, 256]
     int patch;
     // PIXEL:
     int neighbourhood;  // side of what is compared, odd; default 5; [3, 9]

@@ -8,8 +8,9 @@
 
 enum { SAMPLES = 4000, NARROWER = 30 };
 // Periods of the sample that a structure has at least, and how far beyond the lowest wave a base is
-// looked for (delta). Waves below STILL do not change that way.
-static const double LEAST = 2.0, BEYOND = 4.0, STILL = 0.5;
+// looked for (delta). Waves below STILL do not change that way; small ones, which may be no part of
+// the structure, do not say what the lowest is.
+static const double LEAST = 2.0, BEYOND = 4.0, STILL = 0.5, COUNTS = 0.2;
 
 static double size_of(const struct relume_wave *w)
 {
@@ -45,16 +46,19 @@ static double wrong_by(const struct line *l, double b)
     return sum / (b * b * all);
 }
 
-// With the multiples as they are at b: where the waves say the base is.
+// With the multiples as they are at b: where the waves say the base is, by power, those aside that
+// are no multiples.
 static double settle(const struct line *l, double b)
 {
     for (int round = 0; round < NARROWER; round++) {
         double sum = 0.0, all = 0.0;
         for (int i = 0; i < l->count; i++) {
-            const double at = place_of(&l->wave[i], l->along_x);
-            const double size = size_of(&l->wave[i]), n = base_multiple(at, b);
-            sum += size * n * at;
-            all += size * n * n;
+            const double at = place_of(&l->wave[i], l->along_x), size = size_of(&l->wave[i]);
+            const double n = base_multiple(at, b);
+            if (fabs(n * b - at) > BASE_FAR)
+                continue;
+            sum += size * size * n * at;
+            all += size * size * n * n;
         }
         const double next = all > 0.0 ? sum / all : b;
         if (next == b)
@@ -90,11 +94,15 @@ int base_candidates(double out[BASE_MOST], const struct relume_wave *wave, int c
 {
     const struct line l = {wave, count, along_x};
     struct candidate list[BASE_MOST];
-    double lowest = INFINITY;
+    double lowest = INFINITY, largest = 0.0;
     int found = 0;
+    for (int i = 0; i < count; i++)
+        if (fabs(place_of(&wave[i], along_x)) > STILL)
+            largest = fmax(largest, size_of(&wave[i]));
     for (int i = 0; i < count; i++) {
         const double at = fabs(place_of(&wave[i], along_x));
-        lowest = at > STILL ? fmin(lowest, at) : lowest;
+        if (at > STILL && size_of(&wave[i]) >= COUNTS * largest)
+            lowest = fmin(lowest, at);
     }
     if (lowest == INFINITY) {
         out[0] = 0.0;

@@ -5,6 +5,8 @@
 #include <relume/synthesis.h>
 
 enum { BASE_MOST = 12 };  // candidates
+// From a multiple, periods of the sample: what is farther is another wave.
+#define BASE_FAR 0.35
 
 // What fits the places of `count` waves along x (or along y), best first, at most BASE_MOST; their
 // number. Waves that stand still that way do not count; when all do there is one candidate, 0.

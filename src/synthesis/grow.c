@@ -29,7 +29,7 @@ static int default_patch(const struct relume_texture *t, const struct relume_reg
     if (r && r->info.common) {
         const double x = r->info.base[0] > 0.0 ? t->width / r->info.base[0] : 0.0,
                      y = r->info.base[1] > 0.0 ? t->height / r->info.base[1] : 0.0;
-        size = (int)ceil(2.0 * fmax(x, y));
+        size = larger_of((int)ceil(2.0 * fmax(x, y)), side / 6);
     }
     size = smaller_of(larger_of(size, 16), smaller_of(side / 2, 128));
     return larger_of(size / 2 * 2, 4);

@@ -67,21 +67,9 @@ static relume_status without_structure(float **out, const struct relume_texture 
                                        const relume_regular *regular)
 {
     const size_t n = (size_t)t->width * (size_t)t->height;
-    float *plain = mem_array(n, sizeof *plain), *mask = NULL;
-    double sum = 0.0, *scratch = NULL;
-    bool good = plain != NULL;
-    if (good && regular) {
-        const struct mask_area area = {.width = t->width,
-                                       .height = t->height,
-                                       .spacing = 1.0,
-                                       .stretch_x = 1.0,
-                                       .stretch_y = 1.0};
-        mask = mem_array(n * MASK_VALUES, sizeof *mask);
-        scratch = mem_array(2 * (size_t)(t->width + t->height), sizeof *scratch);
-        good = mask && scratch;
-        if (good)
-            mask_fill(mask, regular, &area, 0.0, scratch);
-    }
+    float *plain = mem_array(n, sizeof *plain), *mask = regular ? mask_of_sample(regular) : NULL;
+    const bool good = plain && (mask || !regular);
+    double sum = 0.0;
     for (size_t i = 0; good && i < n; i++) {
         plain[i] = t->value[i * (size_t)t->channels] - (mask ? mask[i * MASK_VALUES] : 0.0f);
         sum += (double)plain[i];
@@ -89,7 +77,6 @@ static relume_status without_structure(float **out, const struct relume_texture 
     for (size_t i = 0; good && i < n; i++)
         plain[i] -= (float)(sum / (double)n);
     mem_free(mask);
-    mem_free(scratch);
     if (!good)
         mem_free(plain);
     *out = good ? plain : NULL;

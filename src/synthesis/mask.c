@@ -9,13 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-// What a Gaussian of that deviation leaves of a wave of b periods in m texels.
-static double left_by(double blur, double b, int m)
-{
-    const double w = 2.0 * M_PI * b / m * blur;
-    return exp(-0.5 * w * w);
-}
-
 static void turn_from(double *c, double *s, int count, double from, double step)
 {
     for (int i = 0; i < count; i++) {
@@ -24,7 +17,7 @@ static void turn_from(double *c, double *s, int count, double from, double step)
     }
 }
 
-void mask_fill(float *out, const struct relume_regular *r, const struct mask_area *a, double blur,
+void mask_fill(float *out, const struct relume_regular *r, const struct mask_area *a,
                double *scratch)
 {
     double *cx = scratch, *sx = cx + a->width, *cy = sx + a->width, *sy = cy + a->height;
@@ -34,13 +27,12 @@ void mask_fill(float *out, const struct relume_regular *r, const struct mask_are
         if (w->x == 0.0 && w->y == 0.0)
             continue;
         const double per_x = 2.0 * M_PI * w->x / r->width * a->spacing * a->stretch_x,
-                     per_y = 2.0 * M_PI * w->y / r->height * a->spacing * a->stretch_y,
-                     left = left_by(blur, w->x, r->width) * left_by(blur, w->y, r->height) / 255.0;
+                     per_y = 2.0 * M_PI * w->y / r->height * a->spacing * a->stretch_y;
         turn_from(cx, sx, a->width, per_x * a->x, per_x);
         turn_from(cy, sy, a->height, per_y * a->y, per_y);
         for (int y = 0; y < a->height; y++) {
-            const double re = left * (w->re * cy[y] - w->im * sy[y]),
-                         im = left * (w->re * sy[y] + w->im * cy[y]);
+            const double re = (w->re * cy[y] - w->im * sy[y]) / 255.0,
+                         im = (w->re * sy[y] + w->im * cy[y]) / 255.0;
             float *to = out + (size_t)y * (size_t)a->width * MASK_VALUES;
             for (int x = 0; x < a->width; x++, to += MASK_VALUES) {
                 const double real = re * cx[x] - im * sx[x];
@@ -53,6 +45,22 @@ void mask_fill(float *out, const struct relume_regular *r, const struct mask_are
             }
         }
     }
+}
+
+float *mask_of_sample(const struct relume_regular *r)
+{
+    const struct mask_area area = {
+        .width = r->width, .height = r->height, .spacing = 1.0, .stretch_x = 1.0, .stretch_y = 1.0};
+    float *mask = mem_array((size_t)r->width * (size_t)r->height * MASK_VALUES, sizeof *mask);
+    double *scratch = mem_array(2 * (size_t)(r->width + r->height), sizeof *scratch);
+    if (mask && scratch)
+        mask_fill(mask, r, &area, scratch);
+    if (!scratch) {
+        mem_free(mask);
+        mask = NULL;
+    }
+    mem_free(scratch);
+    return mask;
 }
 
 // ---------------------------------------------------------------- pictures
@@ -83,7 +91,7 @@ static void draw_band(void *context, size_t item, int worker)
     for (int i = 0; i < p->r->info.count; i++)
         if (p->r->wave[i].x == 0.0 && p->r->wave[i].y == 0.0)
             mean[p->r->wave[i].channel] = (float)(p->r->wave[i].re / 255.0);
-    mask_fill(mask, p->r, &area, 0.0, p->scratch + (size_t)worker * 2 * (width + BAND));
+    mask_fill(mask, p->r, &area, p->scratch + (size_t)worker * 2 * (width + BAND));
     float *to = image->data + (size_t)top * width * (size_t)image->channels;
     for (size_t i = 0; i < width * (size_t)area.height; i++)
         for (int c = 0; c < image->channels; c++)

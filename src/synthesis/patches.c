@@ -105,6 +105,34 @@ static int by_wrong(const void *a, const void *b)
     return x->tie < y->tie ? -1 : x->tie > y->tie;
 }
 
+// Brings the `most` best of a list to its front, in any order; how many these are.
+static int keep_best(struct place *list, int count, int most)
+{
+    int low = 0, high = count - 1;
+    while (most < count && low < high) {
+        const struct place pivot = list[low + (high - low) / 2];
+        int i = low, j = high;
+        while (i <= j) {
+            while (by_wrong(&list[i], &pivot) < 0)
+                i++;
+            while (by_wrong(&list[j], &pivot) > 0)
+                j--;
+            if (i <= j) {
+                const struct place swapped = list[i];
+                list[i++] = list[j];
+                list[j--] = swapped;
+            }
+        }
+        if (most <= j)
+            high = j;
+        else if (most >= i)
+            low = i;
+        else
+            break;
+    }
+    return smaller_of(count, most);
+}
+
 static int corner(const struct quilt *q, int i)
 {
     const int end = q->size - 1, middle = q->size / 2;
@@ -125,7 +153,7 @@ static void structure_at(const struct quilt *q, const struct square *s, float *o
                                       .spacing = 1.0,
                                       .stretch_x = q->g->stretch_x,
                                       .stretch_y = q->g->stretch_y},
-                  0.0, turn);
+                  turn);
     }
 }
 
@@ -135,15 +163,15 @@ static int right_places(const struct quilt *q, const struct square *s, struct pl
     const struct relume_texture *t = q->g->texture;
     const int across = t->width - q->size + 1, down = t->height - q->size + 1;
     const int64_t all = (int64_t)across * down;
-    const int count = (int)(all < PLACES ? all : PLACES);
     const float *mask = q->mask;
+    const int most = mask ? PLACES : 2 * RIGHT, count = (int)(all < most ? all : most);
     float wanted[CORNERS * MASK_VALUES];
     int n = 0;
     if (mask)
         structure_at(q, s, wanted);
     for (int i = 0; i < count; i++) {
         const uint64_t mixed = random_mix(s->seed ^ (uint64_t)i);
-        const int64_t at = all <= PLACES ? i : (int64_t)(mixed % (uint64_t)all);
+        const int64_t at = all <= most ? i : (int64_t)(mixed % (uint64_t)all);
         if (all > 64 && (double)(random_mix(mixed) >> 11) * 0x1p-53 > OPEN)
             continue;
         const uint32_t from = (uint32_t)(at / across * t->width + at % across);
@@ -156,8 +184,7 @@ static int right_places(const struct quilt *q, const struct square *s, struct pl
         }
         list[n++] = (struct place){q->weight * wrong / CORNERS, from, random_mix(~mixed)};
     }
-    qsort(list, (size_t)n, sizeof *list, by_wrong);
-    return smaller_of(n, RIGHT);
+    return keep_best(list, n, RIGHT);
 }
 
 // Texels of the square where something is already; their number.
@@ -341,26 +368,14 @@ static void release(struct quilt *q, int workers)
 
 static bool prepare(struct quilt *q, int workers)
 {
-    const struct relume_texture *t = q->g->texture;
     const size_t cells = (size_t)q->width * (size_t)q->height;
     bool good = true;
     q->canvas = mem_large(cells * sizeof *q->canvas);
     q->worker = mem_zeroed((size_t)workers, sizeof *q->worker);
     for (int i = 0; q->worker && i < workers; i++)
         good &= alloc_worker(&q->worker[i], q->size);
-    if (q->g->regular) {
-        const struct mask_area area = {.width = t->width,
-                                       .height = t->height,
-                                       .spacing = 1.0,
-                                       .stretch_x = 1.0,
-                                       .stretch_y = 1.0};
-        double *scratch = mem_array(2 * (size_t)(t->width + t->height), sizeof *scratch);
-        q->mask = mem_array((size_t)t->width * (size_t)t->height * MASK_VALUES, sizeof *q->mask);
-        if (q->mask && scratch)
-            mask_fill(q->mask, q->g->regular, &area, 0.0, scratch);
-        good &= q->mask && scratch;
-        mem_free(scratch);
-    }
+    if (q->g->regular)
+        good &= (q->mask = mask_of_sample(q->g->regular)) != NULL;
     for (size_t i = 0; q->canvas && i < cells; i++)
         q->canvas[i] = EMPTY;
     return good && q->canvas && q->worker;

@@ -36,14 +36,15 @@ static const double APART = 0.06;
 struct level {
     struct grow *g;
     int level, spacing, width, height;
-    float *value;     // the sample, blurred: [texels][values]
-    float *mask;      // its structure: [texels][MASK_VALUES]
-    double blur;      // deviation of what blurred it, texels
-    uint32_t *alike;  // [texels][k - 1]
-    uint32_t *texel;  // [height][width] of this level
-    uint32_t *next;   // of every fourth
-    int pass;         // which fourth
-    float weight;     // of the structure, squared, over all texels of the surroundings
+    int margin;                   // around the map, as less is known at borders
+    int full_width, full_height;  // of the finest level with it
+    float *value;                 // the sample, blurred: [texels][values]
+    float *mask;                  // its structure: [texels][MASK_VALUES]
+    uint32_t *alike;              // [texels][k - 1]
+    uint32_t *texel;              // [height][width] of this level
+    uint32_t *next;               // of every fourth
+    int pass;                     // which fourth
+    float weight;                 // of the structure, squared, over all texels of the surroundings
     int side, k;
     ptrdiff_t offset[MOST_SIDE * MOST_SIDE];  // of the surroundings, in floats of `value`
     float *scratch;                           // [workers][BLOCK * BLOCK][MASK_VALUES]
@@ -90,18 +91,6 @@ static bool blur(float *value, int width, int height, int values, int step)
                   row, values, step);
     mem_free(copy);
     return true;
-}
-
-static bool fill_sample_mask(struct level *l)
-{
-    const struct relume_texture *t = l->g->texture;
-    const struct mask_area area = {
-        .width = t->width, .height = t->height, .spacing = 1.0, .stretch_x = 1.0, .stretch_y = 1.0};
-    double *scratch = mem_array(2 * (size_t)(t->width + t->height), sizeof *scratch);
-    if (scratch)
-        mask_fill(l->mask, l->g->regular, &area, l->blur, scratch);
-    mem_free(scratch);
-    return scratch != NULL;
 }
 
 // ---------------------------------------------------------------- places
@@ -257,12 +246,15 @@ static struct mask_area block_area(const struct level *l, size_t item)
 }
 
 // The structure in a block, in the worker's scratch; NULL where there is none.
-static float *block_mask(const struct level *l, const struct mask_area *area, int worker)
+static float *block_mask(const struct level *l, const struct mask_area *block, int worker)
 {
     if (!l->g->regular)
         return NULL;
     float *mask = l->scratch + (size_t)worker * BLOCK * BLOCK * MASK_VALUES;
-    mask_fill(mask, l->g->regular, area, l->blur, l->turn + (size_t)worker * 4 * BLOCK);
+    struct mask_area area = *block;
+    area.x -= l->margin / l->spacing;
+    area.y -= l->margin / l->spacing;
+    mask_fill(mask, l->g->regular, &area, l->turn + (size_t)worker * 4 * BLOCK);
     return mask;
 }
 
@@ -360,19 +352,13 @@ static relume_status prepare(struct level *l)
     const struct relume_texture *t = g->texture;
     const size_t texels = (size_t)t->width * (size_t)t->height;
     memcpy(l->value, g->value, texels * (size_t)g->values * sizeof *l->value);
-    double variance = 0.0;
-    for (int i = 0; i < l->level; i++) {
+    for (int i = 0; i < l->level; i++)
         if (!blur(l->value, t->width, t->height, g->values, 1 << i))
             return RELUME_ENOMEM;
-        variance += (double)(1 << i) * (double)(1 << i);  // of the taps
-    }
-    l->blur = sqrt(variance);
     for (int j = 0, n = 0; j < l->side; j++)
         for (int i = 0; i < l->side; i++, n++)
             l->offset[n] = ((ptrdiff_t)(j - l->side / 2) * t->width + (i - l->side / 2)) *
                            l->spacing * g->values;
-    if (g->regular && !fill_sample_mask(l))
-        return RELUME_ENOMEM;
     if (l->k < 2)
         return RELUME_OK;
     const int apart =
@@ -395,15 +381,16 @@ static bool alloc(struct level *l)
     const struct grow *g = l->g;
     const size_t texels = (size_t)g->texture->width * (size_t)g->texture->height,
                  workers = (size_t)thread_count(g->params->threads),
-                 fourth = (size_t)((g->width + 1) / 2) * (size_t)((g->height + 1) / 2);
+                 fourth = (size_t)((l->full_width + 1) / 2) * (size_t)((l->full_height + 1) / 2);
     l->value = mem_array(texels * (size_t)g->values, sizeof *l->value);
-    l->mask = mem_array(texels * MASK_VALUES, sizeof *l->mask);
+    l->mask = g->regular ? mask_of_sample(g->regular) : NULL;
     l->alike = mem_array(texels * (size_t)larger_of(l->k - 1, 1), sizeof *l->alike);
-    l->texel = mem_array((size_t)g->width * (size_t)g->height, sizeof *l->texel);
+    l->texel = mem_array((size_t)l->full_width * (size_t)l->full_height, sizeof *l->texel);
     l->next = mem_array(fourth, sizeof *l->next);
     l->scratch = mem_array(workers * BLOCK * BLOCK * MASK_VALUES, sizeof *l->scratch);
     l->turn = mem_array(workers * 4 * BLOCK, sizeof *l->turn);
-    return l->value && l->mask && l->alike && l->texel && l->next && l->scratch && l->turn;
+    return l->value && (l->mask || !g->regular) && l->alike && l->texel && l->next && l->scratch &&
+           l->turn;
 }
 
 static relume_status run_level(struct level *l, int index, int levels, double done, double share)
@@ -412,19 +399,17 @@ static relume_status run_level(struct level *l, int index, int levels, double do
     const int coarse_width = l->width;
     l->level = levels - 1 - index;
     l->spacing = 1 << l->level;
-    l->width = (g->width + l->spacing - 1) / l->spacing;
-    l->height = (g->height + l->spacing - 1) / l->spacing;
+    l->width = (l->full_width + l->spacing - 1) / l->spacing;
+    l->height = (l->full_height + l->spacing - 1) / l->spacing;
     relume_status status = prepare(l);
     if (status)
         return status;
     if (index == 0) {
         thread_for(g->params->threads, block_count(l), first_block, l);
     } else {
-        memcpy(g->texel, l->texel,
-               (size_t)coarse_width *
-                   (size_t)((g->height + 2 * l->spacing - 1) / (2 * l->spacing)) *
-                   sizeof *g->texel);
-        refine(l, g->texel, coarse_width);
+        memcpy(l->next, l->texel,
+               (size_t)coarse_width * (size_t)((l->height + 1) / 2) * sizeof *l->next);
+        refine(l, l->next, coarse_width);
     }
     return put_right(l, index == 0 ? FIRST_ROUNDS : ROUNDS, done, share);
 }
@@ -434,6 +419,9 @@ relume_status grow_pixels(struct grow *g)
     struct level l = {.g = g, .side = g->params->neighbourhood, .k = g->params->alike};
     const float all = (float)(l.side * l.side - 1), weight = (float)g->params->weight;
     l.weight = weight * weight * all;
+    l.margin = g->params->tile ? 0 : 1 << g->params->levels;
+    l.full_width = g->width + 2 * l.margin;
+    l.full_height = g->height + 2 * l.margin;
     relume_status status = alloc(&l) ? RELUME_OK : RELUME_ENOMEM;
     double done = 0.0;
     for (int i = 0; i < g->params->levels && !status; i++) {
@@ -442,8 +430,10 @@ relume_status grow_pixels(struct grow *g)
         status = run_level(&l, i, g->params->levels, done, share);
         done += share;
     }
-    if (!status)
-        memcpy(g->texel, l.texel, (size_t)g->width * (size_t)g->height * sizeof *g->texel);
+    for (int y = 0; y < g->height && !status; y++)
+        memcpy(g->texel + (size_t)y * (size_t)g->width,
+               l.texel + (size_t)(y + l.margin) * (size_t)l.full_width + (size_t)l.margin,
+               (size_t)g->width * sizeof *g->texel);
     mem_free(l.value);
     mem_free(l.mask);
     mem_free(l.alike);

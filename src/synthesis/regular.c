@@ -79,7 +79,6 @@ static double total(const double *list, int n)
 // those far from all multiples are left out. `base` NULL: where they are.
 static relume_status choose(struct search *s, const double base[2])
 {
-    static const double FAR = 0.6;
     relume_status status = RELUME_OK;
     for (int c = 0; c < s->channels && !status; c++) {
         struct waves *to = &s->kept[c];
@@ -90,7 +89,7 @@ static relume_status choose(struct search *s, const double base[2])
             if (base && i) {
                 const double x = base[0] * base_multiple(w.x, base[0]),
                              y = base[1] * base_multiple(w.y, base[1]);
-                good = good && fabs(x - w.x) < FAR && fabs(y - w.y) < FAR;
+                good = good && fabs(x - w.x) < BASE_FAR && fabs(y - w.y) < BASE_FAR;
                 w.x = x;
                 w.y = y;
                 for (int j = 0; j < to->count; j++)
@@ -125,31 +124,38 @@ static bool stands_still(const struct search *s, bool along_x)
     return true;
 }
 
-// Of the pairs of candidates that fit best the one that leaves least; of those that leave about
-// as little, the one of the largest frequencies, which has the smallest tile.
-static relume_status find_base(double base[2], struct search *s, const struct relume_wave *list,
-                               int count)
+// The power of the waves that are multiples of a base.
+static double power_at(const struct relume_wave *list, int count, double x, double y)
 {
-    enum { EACH = 4 };
-    double x[BASE_MOST], y[BASE_MOST], best = 0.0, rest[EACH * EACH];
-    const int across = smaller_of(base_candidates(x, list, count, true), EACH),
-              down = smaller_of(base_candidates(y, list, count, false), EACH);
-    const double all = total(s->variance, s->channels);
-    relume_status status = RELUME_OK;
-    base[0] = base[1] = 0.0;
-    for (int i = 0; i < across * down && !status; i++) {
-        status = choose(s, (const double[]){x[i % across], y[i / across]});
-        rest[i] = all - total(s->rest, s->channels);
-        best = fmax(best, rest[i]);
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) {
+        const struct relume_wave *w = &list[i];
+        if (fabs(x * base_multiple(w->x, x) - w->x) < BASE_FAR &&
+            fabs(y * base_multiple(w->y, y) - w->y) < BASE_FAR)
+            sum += w->re * w->re + w->im * w->im;
     }
-    for (int i = 0; i < across * down && !status; i++) {
-        const double size = fmax(x[i % across], 1.0) * fmax(y[i / across], 1.0);
-        if (rest[i] >= ENOUGH * best && size > fmax(base[0], 1.0) * fmax(base[1], 1.0) * 1.0001) {
-            base[0] = x[i % across];
-            base[1] = y[i / across];
+    return sum;
+}
+
+// Of the pairs of candidates the one whose multiples have most power (what is left, Eq. 4.5, is
+// least then); of those that have about as much, the one of the largest frequencies, which has the
+// smallest tile.
+static void find_base(double base[2], const struct relume_wave *list, int count)
+{
+    double x[BASE_MOST], y[BASE_MOST], most = 0.0;
+    const int across = base_candidates(x, list, count, true),
+              down = base_candidates(y, list, count, false);
+    base[0] = base[1] = 0.0;
+    for (int i = 0; i < across * down; i++)
+        most = fmax(most, power_at(list, count, x[i % across], y[i / across]));
+    for (int i = 0; i < across * down; i++) {
+        const double a = x[i % across], b = y[i / across];
+        if (power_at(list, count, a, b) >= ENOUGH * most &&
+            fmax(a, 1.0) * fmax(b, 1.0) > fmax(base[0], 1.0) * fmax(base[1], 1.0)) {
+            base[0] = a;
+            base[1] = b;
         }
     }
-    return status;
 }
 
 static int by_size(const void *a, const void *b)
@@ -200,9 +206,8 @@ static relume_status settle(struct relume_regular *r, struct search *s)
     const int count = status ? 0 : gather(list, s);
     r->info.regular = count > 0 && share >= LEAST_SHARE;
     if (r->info.regular) {
-        status = find_base(base, s, list, count);
-        if (!status && base[0] + base[1] > 0.0)
-            status = choose(s, base);
+        find_base(base, list, count);
+        status = base[0] + base[1] > 0.0 ? choose(s, base) : RELUME_OK;
         r->info.common = base[0] + base[1] > 0.0 && share_of(s) >= LEAST_KEPT * share;
         if (!status && !r->info.common)
             status = choose(s, NULL);

@@ -20,8 +20,10 @@ struct mask_area {
 };
 // out[height][width][MASK_VALUES], without the means and in values of the texture: the first
 // channel and what it is a quarter of a period on, then the second and third channel. `scratch`
-// holds 2 (width + height) doubles. A mean over `blur` texels of the sample has been taken.
+// holds 2 (width + height) doubles.
 void mask_fill(float *out, const struct relume_regular *r, const struct mask_area *area,
-               double blur, double *scratch);
+               double *scratch);
+// That of the whole sample, [texels][MASK_VALUES]; NULL: no memory.
+float *mask_of_sample(const struct relume_regular *r);
 
 #endif

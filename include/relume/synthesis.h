@@ -111,7 +111,7 @@ struct relume_grow_params {  // zero in a field means its default
     // PIXEL:
     int neighbourhood;  // side of what is compared, odd; default 5; [3, 9]
     int alike;          // k: texels that look alike and are tried, with itself; default 2; [1, 8]
-    int levels;         // each half as fine; default: as the sample allows, at most 5; [1, 8]
+    int levels;         // each half as fine, as many as the sample has; default 5; [1, 8]
 };
 #define relume_grow_params(...)                                                                    \
     (&(const struct relume_grow_params){RELUME_SIZED(relume_grow_params), __VA_ARGS__})

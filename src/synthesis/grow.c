@@ -35,10 +35,11 @@ static int default_patch(const struct relume_texture *t, const struct relume_reg
     return larger_of(size / 2 * 2, 4);
 }
 
-static int default_levels(const struct relume_texture *t)
+// At most `most`, while the sample has 8 texels a side.
+static int levels_of(const struct relume_texture *t, int most)
 {
     int levels = 1;
-    while (levels < 5 && (smaller_of(t->width, t->height) >> levels) >= 8)
+    while (levels < most && (smaller_of(t->width, t->height) >> levels) >= 8)
         levels++;
     return levels;
 }
@@ -71,7 +72,7 @@ static relume_status check(struct relume_grow_params *p, int width, int height,
     p->patch = p->patch ? p->patch : default_patch(t, p->regular);
     p->neighbourhood = p->neighbourhood ? p->neighbourhood : 5;
     p->alike = p->alike ? p->alike : 2;
-    p->levels = p->levels ? p->levels : default_levels(t);
+    p->levels = p->levels ? p->levels : 5;
     if (!(p->weight >= 0.01 && p->weight <= 100.0))
         return log_fail(p->log, RELUME_EINVAL, "weight: expected 0.01 to 100; found %g", p->weight);
     relume_status status = between(p->log, "patch", p->patch, 4, smaller_of(256, side), 2);
@@ -81,6 +82,7 @@ static relume_status check(struct relume_grow_params *p, int width, int height,
         status = between(p->log, "alike", p->alike, 1, 8, 1);
     if (!status)
         status = between(p->log, "levels", p->levels, 1, 8, 1);
+    p->levels = levels_of(t, p->levels);
     return status;
 }
 

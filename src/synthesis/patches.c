@@ -388,9 +388,9 @@ relume_status grow_patches(struct grow *g)
                       .size = g->params->patch,
                       .wrap = g->params->tile,
                       .weight = (float)(g->params->weight * g->params->weight)};
-    const int step = q.size * 2 / 3;
     if (q.wrap && (g->width < 2 * q.size || g->height < 2 * q.size))
         q.size = larger_of(4, smaller_of(g->width, g->height) / 4 * 2);
+    const int step = q.size * 2 / 3;
     q.across = (g->width + step - 1) / step;
     q.down = (g->height + step - 1) / step;
     q.width = q.wrap ? g->width : (q.across - 1) * step + q.size;

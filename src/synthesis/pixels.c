@@ -24,12 +24,15 @@ enum {
     MOST_SIDE = 9,   // of surroundings
     NEAR = 9,        // places whose continuations are tried
     MOST_ALIKE = 8,  // k
-    FIRST = 64,      // random places of which a first one is chosen by the structure
+    FIRST = 1024,    // random places of which a first one is chosen by the structure
+    AGAIN = 32,      // random places where no other has the structure that belongs there
     ROUNDS = 2,
     FIRST_ROUNDS = 6,
 };
 // A place that is no continuation must be so much better, squared.
 static const float COHERENT = 1.1f;
+// What a structure may be off its place, beside the mean square of the whole.
+static const float LOOSE = 0.25f;
 // Places that look alike are apart by this part of the sample.
 static const double APART = 0.06;
 
@@ -43,8 +46,10 @@ struct level {
     uint32_t *alike;              // [texels][k - 1]
     uint32_t *texel;              // [height][width] of this level
     uint32_t *next;               // of every fourth
+    int round;                    // of putting right
     int pass;                     // which fourth
     float weight;                 // of the structure, squared, over all texels of the surroundings
+    float loose;                  // a squared difference of the structure that is another place's
     int side, k;
     ptrdiff_t offset[MOST_SIDE * MOST_SIDE];  // of the surroundings, in floats of `value`
     float *scratch;                           // [workers][BLOCK * BLOCK][MASK_VALUES]
@@ -118,6 +123,17 @@ struct site {
     const float *mask;                           // what the structure is there, or NULL
 };
 
+// The squared difference of the structure at a texel of the sample from what it is to be.
+static float out_of_place(const struct level *l, const float *mask, size_t texel)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < MASK_VALUES; k++) {
+        const float d = l->mask[texel * MASK_VALUES + (size_t)k] - mask[k];
+        sum += d * d;
+    }
+    return sum;
+}
+
 // How wrong texel (x, y) of the sample is at a site; more than `most` may be anything above it.
 static inline __attribute__((always_inline)) float compare_values(const struct level *l,
                                                                   const struct site *s, int x,
@@ -126,12 +142,7 @@ static inline __attribute__((always_inline)) float compare_values(const struct l
     const struct relume_texture *t = l->g->texture;
     const int r = l->side / 2, reach = r * l->spacing;
     const size_t at = (size_t)y * (size_t)t->width + (size_t)x;
-    float sum = 0.0f;
-    if (s->mask)
-        for (int k = 0; k < MASK_VALUES; k++) {
-            const float d = l->mask[at * MASK_VALUES + (size_t)k] - s->mask[k];
-            sum += l->weight * d * d;
-        }
+    float sum = s->mask ? l->weight * out_of_place(l, s->mask, at) : 0.0f;
     const bool inside = x >= reach && y >= reach && x + reach < t->width && y + reach < t->height;
     const float *centre = l->value + at * (size_t)values;
     for (int j = 0, n = 0; j < l->side; j++) {
@@ -177,7 +188,7 @@ static void look_around(const struct level *l, struct site *s, int x, int y)
 
 struct choice {
     int count;
-    uint32_t tried[NEAR * MOST_ALIKE];
+    uint32_t tried[NEAR * MOST_ALIKE + AGAIN];
     uint32_t best;
     float wrong;
 };
@@ -202,6 +213,16 @@ static void try_place(const struct level *l, const struct site *s, struct choice
     }
 }
 
+// A region whose structure is moved goes on as well as any: chance finds a place that is not.
+static void try_others(const struct level *l, const struct site *s, struct choice *c, uint64_t at)
+{
+    const double texels = (double)l->g->texture->width * l->g->texture->height;
+    struct random random =
+        random_stream(l->g->params->seed, (uint64_t)(l->level * 256 + l->round), at);
+    for (int i = 0; i < AGAIN; i++)
+        try_place(l, s, c, (uint32_t)(random_next(&random) * texels), 0, 0, COHERENT);
+}
+
 static uint32_t best_place(const struct level *l, const float *mask, int x, int y)
 {
     static const signed char step[NEAR][2] = {{0, 0},   {-1, 0}, {1, 0},  {0, -1}, {0, 1},
@@ -219,6 +240,8 @@ static uint32_t best_place(const struct level *l, const float *mask, int x, int 
             for (int k = 0; k < l->k - 1; k++)
                 try_place(l, &s, &c, l->alike[(size_t)id * (size_t)(l->k - 1) + (size_t)k],
                           step[n][0], step[n][1], COHERENT);
+    if (mask && out_of_place(l, mask, c.best) > l->loose)
+        try_others(l, &s, &c, (uint64_t)y * (uint64_t)l->width + (uint64_t)x);
     return c.best;
 }
 
@@ -289,6 +312,7 @@ static relume_status put_right(struct level *l, int rounds, double done, double 
 {
     static const unsigned char order[4] = {0, 3, 1, 2};
     for (int i = 0; i < 4 * rounds; i++) {
+        l->round = i / 4;
         l->pass = order[i % 4];
         thread_for(l->g->params->threads, block_count(l), right_block, l);
         thread_for(l->g->params->threads, block_count(l), take_block, l);
@@ -319,11 +343,7 @@ static void first_block(void *context, size_t item, int worker)
             float least = INFINITY;
             for (int i = 0; i < (here ? FIRST : 1); i++) {
                 const size_t id = (size_t)(random_next(&random) * (double)texels);
-                float wrong = 0.0f;
-                for (int k = 0; here && k < MASK_VALUES; k++) {
-                    const float d = l->mask[id * MASK_VALUES + (size_t)k] - here[k];
-                    wrong += d * d;
-                }
+                const float wrong = here ? out_of_place(l, here, id) : 0.0f;
                 if (wrong < least) {
                     least = wrong;
                     l->texel[at] = (uint32_t)id;
@@ -423,6 +443,11 @@ relume_status grow_pixels(struct grow *g)
     l.full_width = g->width + 2 * l.margin;
     l.full_height = g->height + 2 * l.margin;
     relume_status status = alloc(&l) ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; i < (g->regular ? g->regular->info.count : 0); i++) {
+        const struct relume_wave *w = &g->regular->wave[i];
+        if (w->x != 0.0 || w->y != 0.0)
+            l.loose += LOOSE * (float)((w->re * w->re + w->im * w->im) / (255.0 * 255.0));
+    }
     double done = 0.0;
     for (int i = 0; i < g->params->levels && !status; i++) {
         const double share =

@@ -16,7 +16,7 @@ enum { STEPS = 12 };  // of the least squares that move waves
 // Noise has powers that follow an exponential distribution: the highest of a million bins is 14
 // times the mean. Structure has LEAST_SHARE of the variance; a base explains LEAST_KEPT of what the
 // waves did by themselves, and nearly as much (ENOUGH) as the best does.
-static const double STANDS_OUT = 25.0, LEAST_SHARE = 0.03, LEAST_KEPT = 0.6, ENOUGH = 0.97,
+static const double STANDS_OUT = 25.0, LEAST_SHARE = 0.03, LEAST_KEPT = 0.85, ENOUGH = 0.97,
                     LEAST_PERIODS = 1.5;
 
 struct search {

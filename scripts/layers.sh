@@ -40,8 +40,9 @@ btf:base math image:base image directions capture btf
 gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
-surface:base math btf btf_model:base image btf btf_environment surface
-mesh:base math geometry:base io image object mesh
+synthesis:base math image:base image synthesis
+surface:base math synthesis btf btf_model:base image btf btf_environment surface synthesis
+mesh:base math geometry:base io image object mesh jnd simplify
 volume:base image:base image photograph volume
 isosurface:base volume:base mesh volume
 reflect:base math kernel:base reflection

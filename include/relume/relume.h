@@ -46,6 +46,7 @@
 #include <relume/simplify.h>
 #include <relume/slab_set.h>
 #include <relume/surface.h>
+#include <relume/synthesis.h>
 #include <relume/tableau.h>
 #include <relume/team.h>
 #include <relume/tone.h>

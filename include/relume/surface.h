@@ -13,6 +13,7 @@
 #include <relume/btf.h>
 #include <relume/image.h>
 #include <relume/light.h>
+#include <relume/synthesis.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -44,6 +45,11 @@ RELUME_RESULT relume_status relume_btf_map_create(relume_btf_map **out,
 RELUME_RESULT relume_status relume_btf_map_open(relume_btf_map **out, const char *path,
                                                 int sample_width, int sample_height,
                                                 const struct relume_btf_params *params);
+// The surface that a map makes as one index map, by the ending of the name: .npy, uint32
+// [height][width]; .exr, red and green the places of the texels' centres. RELUME_EINVAL for another
+// ending, RELUME_EIO, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_map_save(const relume_btf_map *map, const char *path,
+                                                const struct relume_btf_params *params);
 RELUME_API void relume_btf_map_destroy(relume_btf_map **map);
 // Belongs to the map.
 RELUME_API const struct relume_btf_map_info *relume_btf_map_info(const relume_btf_map *map);
@@ -67,6 +73,11 @@ struct relume_btf_tiles_params {  // zero in a field means its default
 RELUME_RESULT relume_status relume_btf_map_tiles(relume_btf_map **out,
                                                  const relume_btf_fitted *sample,
                                                  const struct relume_btf_tiles_params *params);
+
+// A sample as a texture of 12 channels (synthesis.h): the principal components of its texels'
+// values in 64 pictures, in display coding. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_texture(struct relume_texture *out,
+                                               const relume_btf_fitted *sample, int threads);
 
 // How visible the cuts of a map are. Steps are root mean square differences between neighbouring
 // texels over pictures of the sample in display coding.

@@ -3,6 +3,8 @@
 // coding, so that a step counts as it is seen.
 #include "surface/features.h"
 
+#include <relume/surface.h>
+
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/lsq.h"
@@ -100,4 +102,14 @@ void features_free(struct features *f)
 {
     mem_free(f->texel);
     f->texel = NULL;
+}
+
+relume_status relume_btf_texture(struct relume_texture *out, const relume_btf_fitted *sample,
+                                 int threads)
+{
+    struct features f;
+    const relume_status status = features_make(&f, sample, threads);
+    *out = (struct relume_texture){.width = f.width, .height = f.height, .channels = FEATURES};
+    out->value = status ? NULL : *f.texel;
+    return status;
 }

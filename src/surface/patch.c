@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/random.h"
-#include "surface/cut.h"
+#include "synthesis/cut.h"
 #include "surface/surface.h"
 
 #include <string.h>

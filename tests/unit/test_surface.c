@@ -1,7 +1,7 @@
 // Large surfaces: cuts against all cuts, tiles, lookups through maps, files, pictures.
 #include "made_btf.h"
 
-#include "surface/cut.h"
+#include "synthesis/cut.h"
 #include "surface/surface.h"
 
 // ---------------------------------------------------------------- samples

@@ -59,7 +59,7 @@ relume_status btf_render(const struct args *args);
 relume_status btf_tile(const struct args *args);
 relume_status btf_plant(const struct args *args);
 relume_status btf_expand(const struct args *args);
-extern const struct command btf_task_edit, btf_task_make;
+extern const struct command btf_task_edit, btf_task_make, btf_task_synth;
 
 // What may be written as a model: a folder as relume_folder_check has it, or an .exr file.
 relume_status btf_check_model_output(const struct btf_options *o);

@@ -447,12 +447,12 @@ TASK(expand, btf_expand, "MODEL -o DIR", "write what a model shows in its direct
      "relume btf expand planted.exr -o planted_btf", 1, "output;");
 
 static const struct command *const tasks[] = {
-    &task_fit,   &task_eval,   &task_compare,  &task_info,     &task_render, &task_tile,
-    &task_plant, &task_expand, &btf_task_edit, &btf_task_make, NULL};
+    &task_fit,       &task_eval,  &task_compare, &task_info,     &task_render,   &task_tile,
+    &btf_task_synth, &task_plant, &task_expand,  &btf_task_edit, &btf_task_make, NULL};
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render|tile|plant|expand|edit|make ...",
+    .usage = "fit|eval|compare|info|render|tile|synth|plant|expand|edit|make ...",
     .summary = "measured materials: fit models to a BTF, compare and render them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 1,

@@ -1,5 +1,5 @@
 // cut.c - maximum flow on a grid (Dinitz 1970): the minimum cut is what the last flow fills
-#include "surface/cut.h"
+#include "synthesis/cut.h"
 
 #include "base/memory.h"
 

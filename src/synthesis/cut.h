@@ -1,7 +1,7 @@
 // cut.h - the cheapest closed line through a grid that separates what must be on either side
 // (Kwatra, Schoedl, Essa, Turk, Bobick, "Graphcut Textures", 2003)
-#ifndef SURFACE_CUT_H
-#define SURFACE_CUT_H
+#ifndef SYNTHESIS_CUT_H
+#define SYNTHESIS_CUT_H
 
 #include <relume/base.h>
 

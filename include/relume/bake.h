@@ -55,6 +55,10 @@ struct relume_bake_params {
     int rays;           // from each texel, for light from surfaces, at most 65536; default 64
     int lights;         // directions that any light is sampled from; default: 12 times the
                         // coefficients, 1024 at most. A cube has its own
+    // Fixed light on materials that are not matte goes through spherical harmonics of degree 5
+    // where the atlas has more texels than the material, which is many times faster (Meseth 2008,
+    // 10.1.1) and blurs sharp highlights; or not.
+    bool light_by_light;
 };
 #define relume_bake_params(...)                                                                    \
     (&(const struct relume_bake_params){RELUME_SIZED(relume_bake_params), __VA_ARGS__})

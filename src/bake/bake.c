@@ -166,6 +166,28 @@ static relume_status find_lights(struct baking *b, const struct relume_bake_para
     return b->light ? RELUME_OK : RELUME_ENOMEM;
 }
 
+// Materials at once under light from all sides, where there are more texels of the atlas than of
+// the material.
+static relume_status find_convolved(struct baking *b, const struct relume_bake_params *p)
+{
+    const uint64_t MOST = (uint64_t)1 << 30;
+    const relume_objects *o = b->o;
+    relume_status status = RELUME_OK;
+    if (!p->fixed || b->matte || p->light_by_light)
+        return RELUME_OK;
+    b->convolved = mem_zeroed((size_t)o->info.materials, sizeof(struct convolved *));
+    if (!b->convolved)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < o->info.parts && !status; i++) {
+        const int m = o->part[i].material;
+        const struct relume_object_material *from = &o->material[m];
+        if (!b->convolved[m] && (size_t)from->width * (size_t)from->height < b->atlas.used)
+            status = convolved_create(&b->convolved[m], from->surface, from->width, from->height,
+                                      b->side, MOST, b->threads);
+    }
+    return status;
+}
+
 // ---------------------------------------------------------------- all of it
 
 static void baking_free(struct baking *b)
@@ -174,6 +196,9 @@ static void baking_free(struct baking *b)
     mem_free(b->used);
     mem_free(b->number);
     mem_free(b->light);
+    for (int i = 0; b->convolved && i < b->o->info.materials; i++)
+        convolved_destroy(&b->convolved[i]);
+    mem_free(b->convolved);
     mem_free(b->sent);
     mem_free(b->bounced);
 }
@@ -203,7 +228,9 @@ static relume_status begin(struct baking *b, relume_baked *out, const relume_obj
         status = RELUME_ENOMEM;
     if (!status)
         status = find_lights(b, p);
-    return status ? status : find_texels(b);
+    if (!status)
+        status = find_texels(b);
+    return status ? status : find_convolved(b, p);
 }
 
 static void describe(relume_baked *out, const struct baking *b, const struct relume_bake_params *p)

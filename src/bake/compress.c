@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CHUNK = 16, AT_ONCE = 16, TAUGHT = 2048 };
+enum { CHUNK = 16, AT_ONCE = 16, TAUGHT = 3072 };
 static const size_t TAUGHT_BYTES = (size_t)512 << 20;
 
 // ---------------------------------------------------------------- over texels

@@ -60,13 +60,17 @@ static vec3 across(const struct surface_point *p)
     return vec3_cross(p->normal, p->tangent);
 }
 
+static bool is_mirrored(const struct surface_point *p)
+{
+    return vec3_dot(across(p), p->bitangent) < 0.0;
+}
+
 // A view of the map, and a direction of the world, in the frame of the material. Of a mirrored
 // texture it is left-handed, the map's never.
 static vec3 view_local(const struct surface_point *p, int side, int number)
 {
     const vec3 v = view_direction(side, number);
-    const bool mirrored = vec3_dot(across(p), p->bitangent) < 0.0;
-    return vec3_of(v.x, mirrored ? -v.y : v.y, v.z);
+    return vec3_of(v.x, is_mirrored(p) ? -v.y : v.y, v.z);
 }
 
 static vec3 local(const struct surface_point *p, vec3 d)
@@ -86,16 +90,22 @@ static void material(float (*rgb)[3], const struct baking *b, const struct surfa
 
 // ---------------------------------------------------------------- straight light
 
-// One of the lights: false where it does not arrive.
+// What arrives of one of the lights; false: nothing.
+static bool arrives(vec3 *towards, float arriving[3], const struct baking *b,
+                    const struct surface_point *p, const struct relume_object_light *light)
+{
+    double distance;
+    return relume_object_light_at(towards, arriving, &distance, light, p->position) &&
+           vec3_dot(*towards, p->normal) > 0.0 &&
+           objects_reached(b->o, p->lifted, p->geometric, *towards, distance);
+}
+
 static bool light_sample(float (*rgb)[3], const struct baking *b, const struct surface_point *p,
                          const struct relume_object_light *light)
 {
     float arriving[3];
-    double distance;
     vec3 towards;
-    if (!relume_object_light_at(&towards, arriving, &distance, light, p->position) ||
-        !(vec3_dot(towards, p->normal) > 0.0) ||
-        !objects_reached(b->o, p->lifted, p->geometric, towards, distance))
+    if (!arrives(&towards, arriving, b, p, light))
         return false;
     material(rgb, b, p, local(p, towards));
     for (int v = 0; v < b->views; v++)
@@ -104,13 +114,32 @@ static bool light_sample(float (*rgb)[3], const struct baking *b, const struct s
     return true;
 }
 
+static const struct convolved *convolved_of(const struct baking *b, const struct surface_point *p)
+{
+    return b->convolved ? b->convolved[b->o->part[p->part].material] : NULL;
+}
+
+static void show_at_once(float *out, const struct baking *b, const struct surface_point *p,
+                         const struct convolved *c)
+{
+    float light[CONVOLVE_COUNT][3] = {{0.0f}}, arriving[3];
+    for (int i = 0; i < b->lights; i++) {
+        vec3 towards;
+        if (arrives(&towards, arriving, b, p, &b->light[i]))
+            convolved_add(light, local(p, towards), arriving);
+    }
+    convolved_show(out, c, p->s, p->t, is_mirrored(p), light);
+}
+
 relume_status texel_direct(float *out, const struct baking *b, const struct surface_point *p,
                            struct texel_scratch *s)
 {
     const size_t views = (size_t)b->views * 3;
     if (b->fixed) {
         memset(out, 0, views * sizeof *out);
-        for (int i = 0; i < b->lights; i++)
+        if (convolved_of(b, p))
+            show_at_once(out, b, p, convolved_of(b, p));
+        for (int i = 0; i < b->lights && !convolved_of(b, p); i++)
             if (light_sample((float(*)[3])s->samples, b, p, &b->light[i]))
                 for (size_t k = 0; k < views; k++)
                     out[k] += s->samples[k];
@@ -176,6 +205,16 @@ static void add_row(float *out, const float factor[3], const float *row, int cou
             out[3 * k + c] += factor[c] * row[3 * k + c];
 }
 
+// Likewise, in harmonics.
+static void add_to_light(float light[][3], const struct baking *b, const struct surface_point *p,
+                         vec3 towards, const float *row)
+{
+    const vec3 direction = local(p, towards);
+    const float share = (float)(1.0 / (b->rays * fmax(direction.z, GRAZING)));
+    const float rgb[3] = {share * row[0], share * row[1], share * row[2]};
+    convolved_add(light, direction, rgb);
+}
+
 // In all views what comes along one ray.
 static void add_ray(float *out, const struct baking *b, const struct surface_point *p, vec3 towards,
                     const float *row)
@@ -199,11 +238,12 @@ void texel_gather(float *out, const struct baking *b, const struct surface_point
     const double turned[2] = {random_next(&random), random_next(&random)};
     const size_t row = 3 * (size_t)b->count;
     const vec3 origin = point_leave(p);
-    float albedo[3];
+    const struct convolved *c = convolved_of(b, p);
+    float albedo[3], light[CONVOLVE_COUNT][3] = {{0.0f}};
     objects_ask(albedo, b->o, p,
                 &(struct relume_btf_ray){.view = vec3_of(0, 0, 1), .light = vec3_of(0, 0, 1)});
-    for (int c = 0; c < 3; c++)
-        albedo[c] /= (float)b->rays;
+    for (int i = 0; i < 3; i++)
+        albedo[i] /= (float)b->rays;
     for (int i = 0; i < b->rays; i++) {
         const vec3 towards = ray_direction(p, i, b->rays, turned);
         const uint32_t met =
@@ -212,9 +252,13 @@ void texel_gather(float *out, const struct baking *b, const struct surface_point
             continue;
         if (b->matte)
             add_row(out, albedo, from + met * row, b->count);
+        else if (c)
+            add_to_light(light, b, p, towards, from + met * row);
         else
             add_ray(out, b, p, towards, from + met * row);
     }
+    if (c && !b->matte)
+        convolved_show(out, c, p->s, p->t, is_mirrored(p), light);
 }
 
 void texel_mean(float *out, const struct baking *b, const float *vector)

@@ -3,6 +3,7 @@
 #define BAKE_TEXEL_H
 
 #include "baked/atlas.h"
+#include "bake/convolve.h"
 #include "object/object.h"
 
 #include <relume/bake.h>
@@ -20,7 +21,8 @@ struct baking {
     bool fixed;
     bool matte;  // all materials look alike from all views
     int side, views;
-    int count;  // numbers of light in each view: 1, or those of the basis
+    int count;                     // numbers of light in each view: 1, or those of the basis
+    struct convolved **convolved;  // [materials]; NULL: asked light by light
     int rays, bounces, threads;
     const struct relume_log *log;
     // [used][count][3]: the light that is sent, the mean over views, and what of the bounce before

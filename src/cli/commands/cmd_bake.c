@@ -9,7 +9,7 @@ struct bake_options {
     const char *output;
     const struct relume_basis *basis;
     int coefficients, cube, kept, size[2], views, clusters, components, bounces, rays, directions;
-    bool per_view, json;
+    bool per_view, light_by_light, json;
     struct light_options lighting;
 };
 #define OPTIONS struct bake_options
@@ -26,6 +26,8 @@ static const struct option options[] = {
     INT("--bounces", bounces, "N", "how often light goes from surface to surface; default: 2", 0,
         64),
     INT("--rays", rays, "N", "rays from each texel for that light; default: 64", 1, 65536),
+    FLAG("--light-by-light", light_by_light,
+         "fixed: no spherical harmonics between light and materials; exact, hours"),
     GROUP("any light"),
     ENTRY("--basis", basis, "B", "what lights become: sh (default), table, ...; see 'encode'",
           relume_bases, NULL),
@@ -128,7 +130,7 @@ static relume_status bake(relume_baked **out, const relume_objects *objects,
                                .coefficients = o->coefficients, .cube = o->cube, .kept = o->kept,
                                .width = o->size[0], .height = o->size[1], .side = o->views,
                                .clusters = o->clusters, .components = o->components,
-                               .per_view = o->per_view,
+                               .light_by_light = o->light_by_light, .per_view = o->per_view,
                                .bounces = given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
                                .rays = o->rays, .lights = o->directions));
     relume_rig_destroy(&rig);

@@ -74,6 +74,8 @@ typedef struct baked_lit baked_lit;
 relume_status lit_create(baked_lit **out, const relume_baked *b, const struct frame *stands,
                          const struct relume_light *lights, int n, int threads);
 void lit_destroy(baked_lit **lit);
+// Its colours [vectors], for mem_free; it is no more.
+float (*lit_take(baked_lit **lit))[3];
 
 // Where a baked object is looked at: a place of the atlas, and the unit direction to the eye in the
 // object's own axes.

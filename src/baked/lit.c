@@ -126,6 +126,14 @@ void lit_destroy(baked_lit **lit)
     *lit = NULL;
 }
 
+float (*lit_take(baked_lit **lit))[3]
+{
+    float(*colour)[3] = (*lit)->colour;
+    (*lit)->colour = NULL;
+    lit_destroy(lit);
+    return colour;
+}
+
 // ---------------------------------------------------------------- looking
 
 // What vectors show, under light that they have been seen in, or under weights.

@@ -196,6 +196,80 @@ bool baked_return(float rgb[3], const relume_objects *o, const struct surface_po
     return true;
 }
 
+// ---------------------------------------------------------------- for other renderers
+
+bool relume_objects_baked(struct relume_baked_arrays *out, const relume_objects *o, int material)
+{
+    if (material < 0 || material >= o->info.materials || !o->standing[material].baked)
+        return false;
+    const struct standing_baked *s = &o->standing[material];
+    const relume_baked *b = s->baked;
+    *out = (struct relume_baked_arrays){
+        .cluster = b->cluster,
+        .weight = b->weight,
+        .frame = (const float(*)[6])b->frame,
+        .vectors = b->vectors,
+        .blocks = b->blocks,
+        .views = b->views,
+        .axis = {vec3_unit(s->frame.x), vec3_unit(s->frame.y), vec3_unit(s->frame.z)},
+    };
+    return true;
+}
+
+// A light as it shines on the middle of the objects; false: not at all.
+static bool from_afar(struct relume_light *out, const relume_objects *o,
+                      const struct relume_light *light)
+{
+    const vec3 middle = vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
+    struct relume_object_light *sample;
+    int n;
+    bool is = false;
+    *out = *light;
+    if (!relume_light_is_near(light->kind))
+        return true;
+    *out = (struct relume_light){.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0, 0, 0}};
+    if (relume_objects_lights(&sample, &n, o, light, 1))
+        return false;
+    for (int i = 0; i < n; i++) {
+        float rgb[3];
+        double distance;
+        vec3 towards;
+        if (!relume_object_light_at(&towards, rgb, &distance, &sample[i], middle))
+            continue;
+        is = true;
+        out->direction = vec3_along(out->direction, towards, (double)(rgb[0] + rgb[1] + rgb[2]));
+        for (int c = 0; c < 3; c++)
+            out->rgb[c] += rgb[c];
+    }
+    relume_free(sample);
+    return is && vec3_length(out->direction) > 0.0;
+}
+
+relume_status relume_objects_baked_colours(float (**out)[3], const relume_objects *o, int material,
+                                           const struct relume_light *lights, int n)
+{
+    struct relume_baked_arrays a;
+    int used = 0;
+    *out = NULL;
+    if (!relume_objects_baked(&a, o, material))
+        return RELUME_EINVAL;
+    const struct standing_baked *s = &o->standing[material];
+    struct relume_light *far = mem_array((size_t)n, sizeof *far);
+    if (!far)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < n; i++)
+        used += from_afar(&far[used], o, &lights[i]);
+    baked_lit *lit;
+    relume_status status = lit_create(&lit, s->baked, &s->frame, far, used, 0);
+    mem_free(far);
+    if (status)
+        return status;
+    *out = lit_take(&lit);
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- the lights of a lighting
+
 relume_status lighting_bakes(struct lighting *l, const relume_objects *o, int threads)
 {
     const struct relume_light *lights = l->surround.light;

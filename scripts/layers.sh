@@ -48,7 +48,9 @@ isosurface:base volume:base mesh volume
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport
-object:base math mesh transport frame:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport object renderer
+baked:base math geometry image:base coder codebook directions light bake
+object:base math mesh transport frame baked:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport object renderer bake
+bake:base math mesh baked object:base light surface btf object bake
 tableau:base math geometry mesh transport frame object:base image light relight view slab_set pack frame viewport object renderer exchange rig tableau
 helper:base image mesh:base
 measure:base math kernel image:*

@@ -37,6 +37,8 @@ extern "C" {
 
 // Thread-safety: safe while nobody chooses.
 typedef struct relume_objects relume_objects;
+// An object with its light computed beforehand (bake.h).
+typedef struct relume_baked relume_baked;
 
 struct relume_objects_params {
     size_t struct_size;  // filled by the macro (base.h)
@@ -52,7 +54,7 @@ struct relume_objects_params {
 // materials are folders of BTFs, of fitted models or of surfaces, .btf files of Bonn's data base,
 // or g-BRDFs as .exr. What a mesh lacks is made, with a warning: normals, texture coordinates (from
 // the three axes). An input status with a sentence, RELUME_ENOMEM, RELUME_ESYSTEM when Embree or
-// the reader of a format is missing.
+// the reader of a format is missing. A baked object (.exr) is opened as the only one.
 RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
                                                 const struct relume_objects_params *params);
 // One mesh, all of it of the first of `count` materials, its texture repeated `repeat` times (0: 1)
@@ -88,7 +90,9 @@ struct relume_object_material {
     // Light goes into it and leaves elsewhere, where ray tracing shows it. `fitted` is a matte
     // surface that is as bright in even light.
     bool translucent;
-    float reflectance[3];  // F, of a mirror, or of a matte surface; in [0, 1]
+    float reflectance[3];       // F, of a mirror, or of a matte surface; in [0, 1]
+    const relume_baked *baked;  // then it has nothing of the above but name, size and bytes; of
+                                // all others NULL
 };
 
 // Triangles of one mesh that show one material.

@@ -5,6 +5,7 @@
 #include <relume/align.h>
 #include <relume/btf_environment.h>
 #include <relume/base.h>
+#include <relume/bake.h>
 #include <relume/ball.h>
 #include <relume/btf.h>
 #include <relume/capture.h>

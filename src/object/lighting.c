@@ -5,7 +5,8 @@
 // Mirrors show environments as they are.
 static bool needs_sky(const relume_objects *o, int material)
 {
-    if (o->material[material].mirror || o->material[material].translucent)
+    if (o->material[material].mirror || o->material[material].translucent ||
+        o->material[material].baked)
         return false;
     for (int i = 0; i < o->info.parts; i++)
         if (o->part[i].material == material)
@@ -84,11 +85,12 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
             sky->light_samples++;
         status = make_sky(sky, o, &lights[i], params ? params->threads : 0);
     }
-    return status;
+    return status ? status : lighting_bakes(out, o, params ? params->threads : 0);
 }
 
 void lighting_destroy(struct lighting *l)
 {
+    lighting_bakes_free(l);
     glows_free(&l->glow, l->bodies);
     glows_free(&l->gathered, l->bodies);
     for (int i = 0; i < l->skies; i++) {

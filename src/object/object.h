@@ -2,6 +2,7 @@
 #ifndef OBJECT_OBJECT_H
 #define OBJECT_OBJECT_H
 
+#include "baked/baked.h"
 #include "base/json.h"
 #include "mesh/trace.h"
 #include "transport/scattering.h"
@@ -16,6 +17,12 @@ struct translucent {
     double mm;  // how long a unit of the world is; 0: nobody has said
 };
 
+// A baked object and how it stands in the world; `baked` NULL: the material is another one.
+struct standing_baked {
+    relume_baked *baked;
+    struct frame frame;
+};
+
 struct relume_objects {
     struct relume_objects_info info;  // points to what is below
     struct mesh mesh;  // the same triangles for rays; their material is the number of the part
@@ -26,9 +33,12 @@ struct relume_objects {
     struct relume_object_material *material;
     char **folder;                    // [materials]: as it was opened
     struct translucent *translucent;  // [materials]
+    struct standing_baked *standing;  // [materials]
     relume_reflection **reflection;   // [objects]; NULL: as it is
 };
 
+// Whether a file is one by its name.
+bool objects_named_exr(const char *path);
 // The part's material, opened when it is not there yet; its number. An input status, RELUME_ENOMEM.
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params);
@@ -42,6 +52,10 @@ relume_status objects_matte(relume_objects *o, const float reflectance[3], int *
 // A translucent one, which is shown matte where nothing scatters. Likewise.
 relume_status objects_translucent(relume_objects *o, const struct translucent *translucent,
                                   int *number, const struct relume_objects_params *params);
+// A baked object as a material, which it takes over on success: `*baked` is NULL then.
+relume_status objects_take_baked(relume_objects *o, relume_baked **baked, const char *path,
+                                 const struct frame *frame, int *number,
+                                 const struct relume_objects_params *params);
 // What JSON value `translucent` of a description says. RELUME_EFORMAT with a sentence.
 relume_status translucent_read(struct translucent *out, const jvalue *value,
                                const struct relume_log *log);
@@ -65,6 +79,9 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
 // The same for a cushion: a square of side 2 that lies on z = 0 by its rim and rises to its middle.
 relume_status objects_add_cushion(relume_objects *o, struct standing *standing,
                                   const struct relume_objects_params *params);
+// A baked object as a whole, of a file. Errors of relume_baked_open.
+relume_status objects_add_baked(relume_objects *o, const char *path, const struct frame *frame,
+                                const struct relume_objects_params *params);
 // The edits of JSON value `edit`, of the file `path`, for an object. Errors of
 // relume_objects_load_reflections.
 relume_status objects_read_reflections(relume_objects *o, int object, const jvalue *edit,
@@ -153,6 +170,8 @@ struct lighting {
     size_t pixel;
     const struct bodies *bodies;   // NULL: what is translucent is shown matte
     struct glow *glow, *gathered;  // [bodies]: by lamps, and by arrivals; NULL: not
+    baked_lit **baked;             // [lights][materials]; NULL: it is near, or not baked
+    size_t baked_count;
 };
 // RELUME_ENOMEM, RELUME_EINVAL. The caller destroys what is in `out`, whatever is returned.
 relume_status lighting_create(struct lighting *out, const relume_objects *o,
@@ -182,6 +201,20 @@ bool objects_mirror_at(const relume_objects *o, const struct surface_point *poin
 // What a mirror shows to `eye` there.
 void mirror_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
                   vec3 eye, const struct lighting *lighting);
+
+// What the material shows at a point, of lights and to eyes in its own frame; no mirror, nothing
+// baked.
+void objects_ask(float rgb[3], const relume_objects *o, const struct surface_point *point,
+                 const struct relume_btf_ray *ray);
+
+// What is baked under the lights of a lighting. RELUME_ENOMEM; lighting_destroy frees it.
+relume_status lighting_bakes(struct lighting *l, const relume_objects *o, int threads);
+void lighting_bakes_free(struct lighting *l);
+// As objects_shade and objects_return; false where the point is of nothing baked.
+bool baked_shade(float rgb[3], const relume_objects *o, const struct surface_point *point, vec3 eye,
+                 const struct lighting *lighting);
+bool baked_return(float rgb[3], const relume_objects *o, const struct surface_point *point,
+                  vec3 eye, const struct arrival *arrival);
 
 // Whether nothing stands before a lamp.
 bool objects_lit(const relume_objects *o, const struct surface_point *p, const struct lighting *l,

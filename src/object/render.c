@@ -170,8 +170,8 @@ static vec3 local(const struct surface_point *p, vec3 d)
     return vec3_of(vec3_dot(d, p->tangent), vec3_dot(d, p->bitangent), vec3_dot(d, p->normal));
 }
 
-static void ask(float rgb[3], const relume_objects *o, const struct surface_point *p,
-                const struct relume_btf_ray *ray)
+void objects_ask(float rgb[3], const relume_objects *o, const struct surface_point *p,
+                 const struct relume_btf_ray *ray)
 {
     const struct relume_object_part *part = &o->part[p->part];
     const struct relume_object_material *m = &o->material[part->material];
@@ -212,7 +212,7 @@ static void add_sample(float rgb[3], const relume_objects *o, const struct surfa
         return;
     if (!objects_lit(o, p, l, towards, distance))
         return;
-    ask(value, o, p, &(struct relume_btf_ray){.view = view, .light = vec3_unit(light)});
+    objects_ask(value, o, p, &(struct relume_btf_ray){.view = view, .light = vec3_unit(light)});
     for (int c = 0; c < 3; c++)
         rgb[c] += arriving[c] * value[c];
 }
@@ -244,10 +244,10 @@ static void add_sky(float rgb[3], const relume_objects *o, const struct surface_
     const struct sky_light *sky = &l->sky[number];
     const float *known = l->shares ? l->shares[number].data + l->pixel : NULL;
     float value[3], share[3];
-    ask(value, o, p,
-        &(struct relume_btf_ray){.view = view,
-                                 .sky = sky->sky[o->part[p->part].material],
-                                 .frame = {p->tangent, p->bitangent, p->normal}});
+    objects_ask(value, o, p,
+                &(struct relume_btf_ray){.view = view,
+                                         .sky = sky->sky[o->part[p->part].material],
+                                         .frame = {p->tangent, p->bitangent, p->normal}});
     if (known && !isnan(known[0]))
         memcpy(share, known, sizeof share);
     else
@@ -268,10 +268,11 @@ void objects_return(float rgb[3], const relume_objects *o, const struct surface_
     const double GRAZING = 0.05;  // values hold n.l, the arrival's share too
     const vec3 light = local(p, arrival->towards);
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    if (!(light.z > 0.0) || objects_mirror_at(o, p))
+    if (baked_return(rgb, o, p, eye, arrival) || !(light.z > 0.0) || objects_mirror_at(o, p))
         return;
     const float share = (float)(arrival->share / fmax(light.z, GRAZING));
-    ask(rgb, o, p, &(struct relume_btf_ray){.view = view_from(p, eye), .light = vec3_unit(light)});
+    objects_ask(rgb, o, p,
+                &(struct relume_btf_ray){.view = view_from(p, eye), .light = vec3_unit(light)});
     for (int c = 0; c < 3; c++)
         rgb[c] *= share * arrival->with[c];
 }
@@ -283,7 +284,7 @@ void objects_shade(float rgb[3], const relume_objects *o, const struct surface_p
         mirror_shade(rgb, o, p, eye, lighting);
         return;
     }
-    if (translucent_shade(rgb, lighting, p, eye))
+    if (translucent_shade(rgb, lighting, p, eye) || baked_shade(rgb, o, p, eye, lighting))
         return;
     const vec3 view = view_from(p, eye);
     rgb[0] = rgb[1] = rgb[2] = 0.0f;

@@ -4,6 +4,8 @@
 #include "fixture.h"
 #include "test.h"
 
+#include <relume/bake.h>
+
 #include <unistd.h>
 
 enum { SIDE = 48, TEXELS = 8, PARTS = 7 };
@@ -453,6 +455,50 @@ static void shadows_agree(void **state)
     finish(&t);
 }
 
+static void write_description(const char *name, const char *object)
+{
+    FILE *file = fopen(path_of(name), "w");
+    assert_non_null(file);
+    fprintf(file, "{\"format\": \"relume-objects\", \"version\": 1, \"objects\": [{%s}]}", object);
+    fclose(file);
+}
+
+// Baked, turned, with views of their own and without, under a lamp and a sky.
+static void baked_objects_agree(void **state)
+{
+    (void)state;
+    write_description("matte.json",
+                      "\"mesh\": \"mesh.obj\", \"parts\": [{\"material\": {\"diffuse\": 0.6}}]");
+    write_description("baked.json", "\"baked\": \"baked.exr\", "
+                                    "\"pose\": {\"rotate\": [0, 0, 1, 70], \"scale\": 0.9}");
+    const struct {
+        int side;
+        bool per_view;
+        const char *light;
+    } way[] = {{1, false, "env sky.exr"}, {4, false, sunlight}, {3, true, sunlight}};
+    for (size_t i = 0; i < sizeof way / sizeof *way; i++) {
+        relume_objects *o;
+        relume_baked *b;
+        struct objects_drawer t;
+        assert_int_equal(relume_objects_open(&o, path_of("matte.json"), NULL), RELUME_OK);
+        assert_int_equal(
+            relume_bake(&b, o,
+                        relume_bake_params(.width = 40, .side = way[i].side, .coefficients = 9,
+                                           .clusters = 5, .components = 3, .bounces = 1, .rays = 8,
+                                           .per_view = way[i].per_view)),
+            RELUME_OK);
+        assert_int_equal(relume_baked_save(b, path_of("baked.exr"), NULL), RELUME_OK);
+        relume_baked_destroy(&b);
+        relume_objects_destroy(&o);
+        assert_int_equal(relume_objects_open(&o, path_of("baked.json"), NULL), RELUME_OK);
+        assert_int_equal(objects_drawer_create(&t, &fixture_gl, o, &fixture_log), RELUME_OK);
+        relume_rig *rig = rig_of((const char *const[]){way[i].light, NULL});
+        compare(&t, rig, "baked");
+        relume_rig_destroy(&rig);
+        finish(&t);
+    }
+}
+
 static void write_lights(void)
 {
     struct relume_image image;
@@ -500,6 +546,7 @@ int main(void)
         cmocka_unit_test(levels_agree),
         cmocka_unit_test(lights_agree),
         cmocka_unit_test(shadows_agree),
+        cmocka_unit_test(baked_objects_agree),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

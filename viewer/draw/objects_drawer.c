@@ -141,6 +141,7 @@ relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *g
                                  .uniforms = {.gl = gl, .log = log},
                                  .maps = {.gl = gl, .log = log},
                                  .mirrors = {.gl = gl, .log = log},
+                                 .baked = {.gl = gl, .log = log},
                                  .grid = gl->software ? 1 : FINER};
     const struct relume_vec3 extent = vec3_sub(info->max, info->min);
     t->radius = 0.5 * vec3_length(extent);
@@ -199,6 +200,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
     light_uniforms_forget(&t->uniforms);
     sky_maps_forget(&t->maps);
     mirrors_forget(&t->mirrors);
+    baked_forget(&t->baked);
     t->gl->DeleteVertexArrays(1, &t->array);
     t->gl->DeleteBuffers(1, &t->vertices);
     t->gl->DeleteBuffers(1, &t->indices);
@@ -211,7 +213,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
 
 size_t objects_drawer_bytes(const struct objects_drawer *t, int material)
 {
-    return t->material[material].bytes;
+    return t->material[material].bytes + baked_bytes(&t->baked, material);
 }
 
 // ---------------------------------------------------------------- what is needed
@@ -301,6 +303,7 @@ relume_status objects_drawer_light(struct objects_drawer *t, const struct relume
     memcpy(light, lights, (size_t)n * sizeof *light);
     t->light = light;
     t->lights = n;
+    baked_unlight(&t->baked);
     relume_free(t->light_sample);
     return relume_objects_lights(&t->light_sample, &t->light_samples, t->objects, lights, n);
 }
@@ -455,11 +458,18 @@ static relume_status use_material(const struct program **out, struct objects_dra
     return RELUME_OK;
 }
 
+// Mirrors and what is baked are no sums over light samples.
+static bool has_own_pass(const struct objects_drawer *t, int material)
+{
+    const struct relume_object_material *m = &relume_objects_info(t->objects)->material[material];
+    return m->mirror || m->baked;
+}
+
 static relume_status shade_part(struct objects_drawer *t, int part, int material, int light_sample)
 {
     const struct program *program;
     const struct gl *gl = t->gl;
-    if (relume_objects_info(t->objects)->material[material].mirror)
+    if (has_own_pass(t, material))
         return RELUME_OK;
     relume_status status = use_material(&program, t, part, material, false);
     if (status)
@@ -483,7 +493,7 @@ relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int m
     const struct sky_map *map;
     const struct program *program;
     const struct gl *gl = t->gl;
-    if (relume_objects_info(t->objects)->material[material].mirror)
+    if (has_own_pass(t, material))
         return RELUME_OK;
     relume_status status = need_material(t, material);
     struct btf_material *m = &t->material[material];
@@ -522,6 +532,21 @@ static relume_status add_sample(struct objects_drawer *t, int light_sample, int 
     return status;
 }
 
+static relume_status add_baked(struct objects_drawer *t, int only)
+{
+    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    const struct baked_surface surface = {&t->place, &t->normal, &t->tangent, t->projection.eye};
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < info->parts && !status; i++) {
+        const int material = only >= 0 ? only : info->part[i].material;
+        if (!info->material[material].baked)
+            continue;
+        target_resume(&t->shaded, t->gl);
+        status = baked_draw(&t->baked, t->objects, i, material, &surface, t->light, t->lights);
+    }
+    return status;
+}
+
 static relume_status add_mirrors(struct objects_drawer *t, int only)
 {
     const struct relume_objects_info *info = relume_objects_info(t->objects);
@@ -556,6 +581,8 @@ relume_status objects_drawer_shade(struct objects_drawer *t,
     for (int i = 0; i < t->lights && !status; i++)
         if (t->light[i].kind == RELUME_LIGHT_ENVIRONMENT)
             status = objects_drawer_add_sky(t, i, only);
+    if (!status)
+        status = add_baked(t, only);
     if (!status)
         status = add_mirrors(t, only);
     return status ? status : gl_check(gl, "drawing objects", t->log);

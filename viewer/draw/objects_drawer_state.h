@@ -2,6 +2,7 @@
 #ifndef VIEWER_OBJECTS_DRAWER_STATE_H
 #define VIEWER_OBJECTS_DRAWER_STATE_H
 
+#include "draw/baked.h"
 #include "draw/btf_upload.h"
 #include "draw/captured_mesh.h"
 #include "draw/draw.h"
@@ -28,6 +29,7 @@ struct objects_drawer {
     struct light_uniforms uniforms;
     struct sky_maps maps;
     struct mirrors mirrors;
+    struct baked_drawer baked;
     struct mirror_panorama panorama;  // that they show, of the present frame
     struct shadow_map shadow;
     // Of the frame, `grid` times finer; `other` is in another material, to compare with.

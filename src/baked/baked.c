@@ -1,0 +1,62 @@
+// baked.c - the life of a baked object
+#include "baked/baked.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+
+#include <string.h>
+
+// An allocation of a product that may be large, with a sentence when it is above the limit.
+static uint64_t bytes_of(const relume_baked *b)
+{
+    const uint64_t texels = (uint64_t)b->info.width * (uint64_t)b->info.height;
+    const uint64_t blocks = (uint64_t)b->blocks;
+    return texels * blocks * (2 + 4 * (uint64_t)b->info.components) + texels * 24 +
+           (uint64_t)b->vectors * (uint64_t)b->kept * (12 + (b->info.cube ? 2 : 0)) +
+           (uint64_t)b->info.triangles * sizeof *b->triangle;
+}
+
+relume_status baked_make(relume_baked *b, const struct relume_log *log)
+{
+    const size_t texels = (size_t)b->info.width * (size_t)b->info.height;
+    const size_t n = texels * (size_t)b->blocks;
+    const int views = b->info.side * b->info.side;
+    b->vectors = (size_t)b->blocks * (size_t)b->info.clusters * (size_t)(1 + b->info.components) *
+                 (size_t)(views / b->blocks);
+    b->info.bytes = bytes_of(b);
+    const relume_status status = limits_memory(b->info.bytes, "the baked object", log);
+    if (status)
+        return status;
+    b->cluster = mem_array(n, sizeof *b->cluster);
+    b->weight = mem_zeroed(n * (size_t)b->info.components, sizeof *b->weight);
+    b->frame = mem_zeroed(texels, sizeof *b->frame);
+    b->value = mem_zeroed(b->vectors * (size_t)b->kept, 3 * sizeof *b->value);
+    if (b->info.cube)
+        b->place = mem_zeroed(b->vectors * (size_t)b->kept, sizeof *b->place);
+    if (b->cluster)
+        memset(b->cluster, 0xff, n * sizeof *b->cluster);
+    return b->cluster && b->weight && b->frame && b->value && (!b->info.cube || b->place)
+               ? RELUME_OK
+               : RELUME_ENOMEM;
+}
+
+void relume_baked_destroy(relume_baked **baked)
+{
+    relume_baked *b = *baked;
+    *baked = NULL;
+    if (!b)
+        return;
+    basis_free(&b->basis);
+    mem_free(b->triangle);
+    mem_free(b->cluster);
+    mem_free(b->weight);
+    mem_free(b->frame);
+    mem_free(b->place);
+    mem_free(b->value);
+    mem_free(b);
+}
+
+const struct relume_baked_info *relume_baked_info(const relume_baked *baked)
+{
+    return &baked->info;
+}

@@ -1,0 +1,166 @@
+// cmd_bake.c - relume bake: objects with their light computed beforehand
+#include "cli.h"
+#include "frame_options.h"
+
+#include <string.h>
+
+struct bake_options {
+    struct args args;
+    const char *output;
+    const struct relume_basis *basis;
+    int coefficients, cube, kept, size[2], views, clusters, components, bounces, rays, directions;
+    bool per_view, light_by_light, json;
+    struct light_options lighting;
+};
+#define OPTIONS struct bake_options
+
+static const struct option options[] = {
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "OUT.exr", "baked object to write"),
+    FLAG("--json", json, "print what was made as JSON"),
+    GROUP("light"),
+    TEXTS("--light", lighting.light, "any|fixed|SPEC",
+          "any (default): lit later; fixed: by the lights of --rig and of further --light, as "
+          "\"env sunset.hdr\", for ever"),
+    TEXT("--rig", lighting.rig, "FILE", "fixed: lights of a rig (JSON)"),
+    INT("--bounces", bounces, "N", "how often light goes from surface to surface; default: 2", 0,
+        64),
+    INT("--rays", rays, "N", "rays from each texel for that light; default: 64", 1, 65536),
+    FLAG("--light-by-light", light_by_light,
+         "fixed: no spherical harmonics between light and materials; exact, hours"),
+    GROUP("any light"),
+    ENTRY("--basis", basis, "B", "what lights become: sh (default), table, ...; see 'encode'",
+          relume_bases, NULL),
+    INT("-k", coefficients, "K", "coefficients of the basis; default: 36, table: 256", 1,
+        RELUME_MOST_COEFFICIENTS),
+    INT("--lights", directions, "N",
+        "directions that it is sampled from; default: 12 K, at most 1024", 1,
+        RELUME_MOST_COEFFICIENTS),
+    INT("--haar", cube, "N",
+        "in place of a basis: wavelets on a cube of lights, N x N a face: 2, 4, 8, 16 or 32", 2,
+        RELUME_BAKED_MOST_CUBE),
+    INT("--keep", kept, "N", "--haar: wavelets kept of a face; default: 20", 1, 1024),
+    GROUP("size"),
+    SIZE("--size", size, "WxH", "texels of the atlas; default: 256x256", 4, 8192),
+    INT("--views", views, "N",
+        "views of a texel, N x N; default: 1 if all is matte, else 8, of fixed light 16", 1,
+        RELUME_BAKED_MOST_SIDE),
+    INT("--clusters", clusters, "N", "groups of like texels; default: 128", 1,
+        RELUME_BAKED_MOST_CLUSTERS),
+    INT("--components", components, "N", "numbers kept of each texel; default: 8, fixed: 4", 1,
+        RELUME_BAKED_MOST_COMPONENTS),
+    FLAG("--per-view", per_view, "groups and components for each view of its own"),
+    {0},
+};
+
+// What --light says besides its two words.
+struct wanted {
+    bool any, fixed;
+    int count;
+    const char *spec[MOST_ARGUMENTS];
+};
+
+static relume_status find_wanted(struct wanted *w, const struct bake_options *o)
+{
+    for (int i = 0; i < o->lighting.light.count; i++) {
+        const char *text = o->lighting.light.text[i];
+        if (!strcmp(text, "any"))
+            w->any = true;
+        else if (!strcmp(text, "fixed"))
+            w->fixed = true;
+        else
+            w->spec[w->count++] = text;
+    }
+    w->fixed = w->fixed || w->count || o->lighting.rig;
+    if (w->any && w->fixed)
+        return usage_error("--light any: takes no lights; they are chosen when it is shown");
+    if (w->fixed && (o->basis || o->cube || given(o, &o->coefficients) || o->directions))
+        return usage_error("--light fixed: has no basis; leave out --basis, -k, --lights, --haar");
+    if (o->cube && (o->basis || o->coefficients || o->directions))
+        return usage_error("--haar: is a basis of its own; leave out --basis, -k, --lights");
+    if (given(o, &o->kept) && !o->cube)
+        return usage_error("--keep: works only with --haar");
+    return RELUME_OK;
+}
+
+static void tell(const struct bake_options *o, const relume_baked *baked)
+{
+    const struct relume_baked_info *i = relume_baked_info(baked);
+    if (!o->json) {
+        announce(&o->args, RELUME_NOTE,
+                 "%s: %zu texels of %d x %d, %d view%s, %d clusters of %d components, %.2f MB; "
+                 "error of the compression %.1f %%",
+                 o->output, i->texels, i->width, i->height, i->side * i->side,
+                 relume_plural(i->side * i->side), i->clusters, i->components,
+                 (double)i->bytes * 1e-6, 100.0 * i->error);
+        return;
+    }
+    printf("{\"file\": ");
+    json_text(stdout, o->output);
+    printf(", \"fixed\": %s, \"basis\": \"%s\", \"coefficients\": %d, \"width\": %d, \"height\": "
+           "%d, \"texels\": %zu, \"views\": %d, \"clusters\": %d, \"components\": %d, "
+           "\"per_view\": %s, \"bounces\": %d, \"triangles\": %zu, \"bytes\": %llu, \"error\": ",
+           i->fixed ? "true" : "false",
+           i->fixed  ? "fixed"
+           : i->cube ? "haar"
+                     : i->basis->name,
+           i->coefficients, i->width, i->height, i->texels, i->side * i->side, i->clusters,
+           i->components, i->per_view ? "true" : "false", i->bounces, i->triangles,
+           (unsigned long long)i->bytes);
+    json_number(stdout, i->error);
+    printf("}\n");
+}
+
+static relume_status bake(relume_baked **out, const relume_objects *objects,
+                          const struct bake_options *o, const struct wanted *w)
+{
+    struct light_options own = o->lighting;
+    relume_rig *rig = NULL;
+    const struct relume_light *lights = NULL;
+    int count = 0;
+    own.light.count = w->count;
+    own.light.text = w->spec;
+    relume_status status =
+        w->fixed ? parse_lights(&o->args, &own, &rig, &lights, &count) : RELUME_OK;
+    if (!status)
+        status = relume_bake(
+            out, objects,
+            relume_bake_params(.log = o->args.log, .threads = o->args.threads, .fixed = lights,
+                               .fixed_count = count, .basis = o->basis,
+                               .coefficients = o->coefficients, .cube = o->cube, .kept = o->kept,
+                               .width = o->size[0], .height = o->size[1], .side = o->views,
+                               .clusters = o->clusters, .components = o->components,
+                               .light_by_light = o->light_by_light, .per_view = o->per_view,
+                               .bounces = given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
+                               .rays = o->rays, .lights = o->directions));
+    relume_rig_destroy(&rig);
+    return status;
+}
+
+static relume_status run(const struct args *args)
+{
+    const struct bake_options *o = (const void *)args;
+    struct wanted wanted = {.any = false};
+    relume_objects *objects = NULL;
+    relume_baked *baked = NULL;
+    relume_status status = find_wanted(&wanted, o);
+    if (!status)
+        status =
+            relume_objects_open(&objects, args->input[0],
+                                relume_objects_params(.log = args->log, .threads = args->threads));
+    if (!status)
+        status = bake(&baked, objects, o, &wanted);
+    if (!status)
+        status = relume_baked_save(baked, o->output, args->log);
+    if (!status)
+        tell(o, baked);
+    relume_baked_destroy(&baked);
+    relume_objects_destroy(&objects);
+    return status;
+}
+
+const struct command command_bake = {
+    COMMAND("bake", "OBJECTS.json -o OUT.exr [OPTION ...]",
+            "compute the light on objects beforehand: shadows, light from surface to surface",
+            "relume bake cow.json -o cow.exr --bounces 3", 1, 1),
+};

@@ -36,6 +36,9 @@ for material in '{"translucent":{"preset":"wax","scale_mm":100}}' '{"mirror":1}'
     expect_ok "$material, light between" - "$RELUME" relight other.json -o h.exr -q --light 'dir 0 1 0.3' --transport ssdo
 done
 
+sed 's/{"diffuse":0.7}/{"translucent":{"preset":"wax","scale_mm":1e-6}}/' scene.json >tiny.json
+expect_ok 'a body smaller than the way of light in it' 'object 0 is 4e-07 mm long, and light goes .* it will look black' "$RELUME" relight tiny.json -o h.exr --light 'dir 0 1 0.3'
+
 expect_ok 'info' - "$RELUME" info scene.json
 check 'names what is in it' grep -q 'capture       the pot: slab, 4 views of 24 x 24 pixels' out.txt
 check 'and objects' grep -q 'object        ball: ' out.txt

@@ -44,7 +44,9 @@ MODE     := $($(config))
 ifeq ($(MODE),)
 $(error config=$(config): expected release, debug, asan, tsan, fuzzer or msan)
 endif
-C11      := -std=c11 -D_GNU_SOURCE $(COMMON) $(MODE) -Wstrict-prototypes -Wmissing-prototypes
+# Threads may have stacks of 128 kB (docs/architecture.md). Checked by test_build.sh.
+FRAMES   := $(if $(filter release,$(config)),-Werror=frame-larger-than=98304)
+C11      := -std=c11 -D_GNU_SOURCE $(COMMON) $(MODE) $(FRAMES) -Wstrict-prototypes -Wmissing-prototypes
 CXX17    := -std=c++17 $(COMMON) $(MODE)
 
 # Asked of pkg-config once, after the packages are there.

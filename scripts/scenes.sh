@@ -1,9 +1,9 @@
 #!/bin/sh
-# The picture of docs/scenes.md.
+# The pictures of docs/scenes.md, one of them of the viewer.
 # scenes.sh BUILD_FOLDER WORK_FOLDER PICTURES_FOLDER
 # Captures stay in the work folder and are used again. The cow and the shore are those of ../shared/data.
 set -eu
-relume=$1/relume draw=$1/samples/figures out=$2 pictures=$3 data=$PWD/../shared/data
+relume=$1/relume viewer=$1/relume-view draw=$1/samples/figures out=$2 pictures=$3 data=$PWD/../shared/data
 mkdir -p "$out" "$pictures"
 if [ ! -e "$out/teapot.exr" ]; then
     "$relume" synth teapot -o "$out/teapot" --views 5x5 --size 256 --lights 24 --samples 9 -q
@@ -33,3 +33,15 @@ draw_frame 1 0,0,0 '.6 .7 .4'
 draw_frame 2 -0.5,0.1,-0.1 '-.8 .5 .1'
 "$draw" row "$pictures/scenes.jpg" columns=2 "$out/frame1.exr" "$out/frame2.exr"
 echo "  $pictures/scenes.jpg"
+cat >"$out/moves.txt" <<END
+drag left 400 200 430 195
+key ctrl+right
+key ctrl+right
+transport beside ssdo
+move 300 40
+wait
+shot $out/viewer.exr
+END
+"$viewer" "$out/scene.json" --size 1100x500 --dock right --light 'dir .6 .7 .4' --script "$out/moves.txt" 2>/dev/null
+"$draw" row "$pictures/viewer-scene.jpg" columns=1 "$out/viewer.exr"
+echo "  $pictures/viewer-scene.jpg"

@@ -4,6 +4,7 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "frame/renderer.h"
+#include "object/coarse.h"
 #include "object/object.h"
 
 #include <relume/viewport.h>
@@ -251,29 +252,12 @@ static vec3 middle_of(const relume_objects *o)
     return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
 }
 
-// Means of `fewer` x `fewer` pixels, in place; what is left over at the ends goes.
-static void reduce(struct relume_image *image, int fewer)
-{
-    const struct relume_image from = *image;
-    image->width /= fewer, image->height /= fewer;
-    for (int y = 0; y < image->height && fewer > 1; y++)
-        for (int x = 0; x < image->width; x++)
-            for (int c = 0; c < 3; c++) {
-                float sum = 0.0f;
-                for (int k = 0; k < fewer * fewer; k++)
-                    sum += from.data[3 * ((size_t)(y * fewer + k / fewer) * (size_t)from.width +
-                                          (size_t)(x * fewer + k % fewer)) +
-                                     (size_t)c];
-                image->data[3 * ((size_t)y * (size_t)image->width + (size_t)x) + (size_t)c] =
-                    sum / (float)(fewer * fewer);
-            }
-}
-
-// One light alone, and what it does between the scene and the objects, in a frame of fewer pixels.
+// One light alone, and what it does between the scene and the objects, in a frame that may have
+// fewer pixels than the camera says.
 static relume_status exchange_one(struct exchange *e, struct relume_image *scene,
                                   struct relume_image *reflected, struct relume_image *share,
                                   relume_renderer *renderer, const struct relume_camera *camera,
-                                  const struct relume_light *light, int fewer)
+                                  const struct relume_light *light)
 {
     struct standing_in *in = renderer->over;
     const struct relume_camera whole = whole_view(renderer, camera);
@@ -286,7 +270,7 @@ static relume_status exchange_one(struct exchange *e, struct relume_image *scene
     if (!status)
         status = scenery_light(in->scenery, &relit, middle_of(in->objects));
     if (!status) {
-        reduce(&lone, fewer);
+        coarse_means(&lone, scene->width, scene->height);
         status = exchange_light(e, scene, reflected, share, &lone, light);
     }
     relume_image_destroy(&lone);
@@ -295,12 +279,12 @@ static relume_status exchange_one(struct exchange *e, struct relume_image *scene
 }
 
 // light_scene, with light between the scene and the objects, of which `reflected` is created, too,
-// unless it is NULL. `fewer`: as exchange_one.
+// unless it is NULL. As many pixels as places.
 static relume_status exchange_all(struct relume_image *scene, struct relume_image *reflected,
                                   struct relume_image *shares, const struct relume_image *places,
                                   const struct relume_viewport *viewport, relume_renderer *renderer,
                                   const struct relume_camera *camera,
-                                  const struct relume_light *lights, int n, int fewer)
+                                  const struct relume_light *lights, int n)
 {
     struct standing_in *in = renderer->over;
     struct exchange *e = NULL;
@@ -316,67 +300,11 @@ static relume_status exchange_all(struct relume_image *scene, struct relume_imag
         if (share)
             status = relume_image_create(share, places->width, places->height, 3);
         if (!status)
-            status = exchange_one(e, scene, reflected, share, renderer, camera, &lights[i], fewer);
+            status = exchange_one(e, scene, reflected, share, renderer, camera, &lights[i]);
     }
     exchange_destroy(&e);
     const relume_status restored = relume_renderer_set_lights(renderer, lights, n);
     return status ? status : restored;
-}
-
-// The middle one of `fewer` x `fewer` places each.
-static relume_status pick_places(struct relume_image *out, const struct relume_image *places,
-                                 int fewer)
-{
-    const relume_status status =
-        relume_image_create(out, places->width / fewer, places->height / fewer, 3);
-    for (int y = 0; !status && y < out->height; y++)
-        for (int x = 0; x < out->width; x++)
-            memcpy(out->data + 3 * ((size_t)y * (size_t)out->width + (size_t)x),
-                   places->data + 3 * ((size_t)(y * fewer + fewer / 2) * (size_t)places->width +
-                                       (size_t)(x * fewer + fewer / 2)),
-                   3 * sizeof *out->data);
-    return status;
-}
-
-// The quotient at a place of the panorama of fewer pixels, between their centres.
-static double quotient_at(const struct relume_image *with, const struct relume_image *without,
-                          double x, double y, int channel)
-{
-    const int width = with->width, height = with->height, left = (int)floor(x), top = (int)floor(y);
-    double sum = 0.0;
-    for (int i = 0; i < 4; i++) {
-        const int u = left + i % 2, v = top + i / 2;
-        const size_t at = 3 * ((size_t)(v < 0        ? 0
-                                        : v < height ? v
-                                                     : height - 1) *
-                                   (size_t)width +
-                               (size_t)(u < 0       ? 0
-                                        : u < width ? u
-                                                    : width - 1)) +
-                          (size_t)channel;
-        const double weight = (1.0 - fabs(x - u)) * (1.0 - fabs(y - v));
-        sum +=
-            weight *
-            (without->data[at] > 0.0f ? (double)with->data[at] / (double)without->data[at] : 1.0);
-    }
-    return sum;
-}
-
-struct quotient {
-    struct relume_image *panorama;
-    const struct relume_image *with, *without;
-    int fewer;
-};
-
-static void multiply_row(void *context, size_t row, int worker)
-{
-    (void)worker;
-    const struct quotient *q = context;
-    float *to = q->panorama->data + 3 * row * (size_t)q->panorama->width;
-    for (int x = 0; x < q->panorama->width; x++)
-        for (int c = 0; c < 3; c++)
-            *to++ *= (float)quotient_at(q->with, q->without, (x + 0.5) / q->fewer - 0.5,
-                                        ((double)row + 0.5) / q->fewer - 0.5, c);
 }
 
 // What mirrors see of the scene becomes what it is with the objects, found in fewer pixels.
@@ -388,23 +316,22 @@ static relume_status exchange_surround(struct surround *s, relume_renderer *rend
     const int fewer = (s->panorama.width + ACROSS - 1) / ACROSS;
     struct relume_image places = {0}, with = {0}, without = {0};
     struct relume_viewport viewport;
-    relume_status status = pick_places(&places, &s->places, fewer);
+    relume_status status = coarse_places(&places, &s->places, fewer);
     if (!status)
         status = relume_image_create(&without, s->panorama.width, s->panorama.height, 3);
     if (!status) {
         memcpy(without.data, s->panorama.data,
                3 * (size_t)without.width * (size_t)without.height * sizeof *without.data);
-        reduce(&without, fewer);
+        coarse_means(&without, places.width, places.height);
         status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), whole,
                                        places.width, places.height);
     }
     if (!status)
-        status =
-            exchange_all(&with, NULL, NULL, &places, &viewport, renderer, whole, lights, n, fewer);
+        status = exchange_all(&with, NULL, NULL, &places, &viewport, renderer, whole, lights, n);
     if (!status)
-        thread_for(((const struct standing_in *)renderer->over)->params.threads,
-                   (size_t)s->panorama.height, multiply_row,
-                   &(struct quotient){&s->panorama, &with, &without, fewer});
+        coarse_multiply(&s->panorama, &with, &without,
+                        s->geometry->projection == RELUME_CUBE ? EDGE_CLAMPED : EDGE_WRAPPED,
+                        ((const struct standing_in *)renderer->over)->params.threads);
     relume_image_destroy(&places);
     relume_image_destroy(&with);
     relume_image_destroy(&without);
@@ -445,7 +372,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
         status = lighting_enters(&lighting, objects, in->bodies, params->threads, params->log);
     if (!status && exchanges_light(in)) {
         status = exchange_all(&scene, &reflected, shares, &places, &viewport, renderer, camera,
-                              lights, n, 1);
+                              lights, n);
         if (!status && mirrors_surroundings(renderer, in))
             status = exchange_surround(&lighting.surround, renderer, &whole, lights, n);
     } else if (!status) {

@@ -118,11 +118,18 @@ static relume_status find_shape(struct shape *s, const struct bodies *b, int num
     return RELUME_OK;
 }
 
-static size_t points_for(const struct shape *s, const struct scattering *m, double mm, int bodies)
+// The shortest of the colours' mean free paths, mm.
+static double path_of(const struct scattering *m)
 {
     double path = INFINITY;
     for (int c = 0; c < 3; c++)
-        path = fmin(path, 1.0 / (mm * (double)(m->absorption[c] + m->reduced[c])));
+        path = fmin(path, 1.0 / (double)(m->absorption[c] + m->reduced[c]));
+    return path;
+}
+
+static size_t points_for(const struct shape *s, const struct scattering *m, double mm, int bodies)
+{
+    const double path = path_of(m) / mm;
     const double most = fmax(fmin(MOST, (double)MOST_OF_ALL / bodies), OF_MANY);
     return (size_t)fmin(fmax(s->area / (path * path), FEWEST), most);
 }
@@ -188,6 +195,11 @@ static relume_status make_body(struct bodies *b, int number, const relume_object
             log, RELUME_NOTE,
             "%s: nothing says how large object %d is: taken to be %g mm long (\"scale_mm\": %.3g)",
             t->name, body->object, USUAL_MM, mm);
+    if (!status && shape.longest * mm < path_of(&t->scattering))
+        log_line(log, RELUME_WARNING,
+                 "%s: object %d is %.2g mm long, and light goes %.2g mm in it between two "
+                 "scatterings: it will look black; \"scale_mm\" is how many mm a unit is",
+                 t->name, body->object, shape.longest * mm, path_of(&t->scattering));
     body->outwards = shape.volume < 0.0 ? -1.0 : 1.0;
     if (!status)
         status = spread_make(&body->spread, &o->mesh, shape.triangle, shape.count,

@@ -368,6 +368,7 @@ struct storing {
     float *before, *after;  // [planes][pixels]
     struct range *range;    // [planes], of all samples
     float *step;            // [2][planes]: scales and offsets
+    uint16_t *count;        // [65536], of codes
     float gain[5];          // exposures to be looked at
     int gains;
 };
@@ -414,18 +415,17 @@ static double bits_of(const struct storing *s, enum relume_storage storage)
 {
     const size_t n = s->job->some.pixels, planes = (size_t)s->coder->info.planes;
     const int top = relume_storage_top(storage);
-    uint16_t count[65536];
     double bits = 0.0;
     quantise(s, storage);
     for (size_t p = 0; p < planes; p++) {
-        memset(count, 0, ((size_t)top + 1) * sizeof *count);
+        memset(s->count, 0, ((size_t)top + 1) * sizeof *s->count);
         for (size_t x = 0; x < n; x++) {
             const float code = (s->after[p * n + x] - s->step[planes + p]) / s->step[p];
-            count[(int)(fminf(fmaxf(code, 0.0f), (float)top) + 0.5f)]++;
+            s->count[(int)(fminf(fmaxf(code, 0.0f), (float)top) + 0.5f)]++;
         }
         for (int c = 0; c <= top; c++)
-            if (count[c])
-                bits -= count[c] * log2((double)count[c] / (double)n) / (double)n;
+            if (s->count[c])
+                bits -= s->count[c] * log2((double)s->count[c] / (double)n) / (double)n;
     }
     return bits;
 }
@@ -543,7 +543,8 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out, d
     s.after = mem_array(planes * n, sizeof *s.after);
     s.range = mem_array(planes, sizeof *s.range);
     s.step = mem_array(2 * planes, sizeof *s.step);
-    relume_status status = s.after && s.step ? find_ranges(&s) : RELUME_ENOMEM;
+    s.count = mem_array(UINT16_MAX + 1, sizeof *s.count);
+    relume_status status = s.after && s.step && s.count ? find_ranges(&s) : RELUME_ENOMEM;
     if (!status)
         status = find_planes(job, job->coder, &s.before);
     if (!status)
@@ -563,6 +564,7 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out, d
     mem_free(s.after);
     mem_free(s.range);
     mem_free(s.step);
+    mem_free(s.count);
     return status;
 }
 

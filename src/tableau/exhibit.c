@@ -14,6 +14,8 @@
 #include <relume/exchange.h>
 #include <relume/view.h>
 
+#include <string.h>
+
 // ---------------------------------------------------------------- between its world and the
 // scene's
 
@@ -295,6 +297,16 @@ static relume_status check_turned(const struct exhibit *c, const struct relume_l
                     relume_light_kind_name(light->kind));
 }
 
+// Its whole view, which an eye that moves needs again.
+static relume_status relight_whole(struct exhibit *c, const struct relume_light *own)
+{
+    if (c->relit.data && !memcmp(&c->relit_by, own, sizeof *own))
+        return RELUME_OK;
+    relume_image_destroy(&c->relit);
+    memcpy(&c->relit_by, own, sizeof *own);
+    return relume_renderer_frame(&c->relit, c->renderer, &c->whole);
+}
+
 relume_status exhibit_light(struct relume_image *out, struct exhibit *c,
                             const struct relume_camera *camera, const struct relume_window *window,
                             const struct relume_image *places, const struct relume_light *light,
@@ -304,9 +316,8 @@ relume_status exhibit_light(struct relume_image *out, struct exhibit *c,
     relume_status status = check_turned(c, light, params->log);
     if (!status)
         status = relume_renderer_set_lights(c->renderer, &own, 1);
-    relume_image_destroy(&c->relit);
     if (!status && (!is_slab(c) || params->transport))
-        status = relume_renderer_frame(&c->relit, c->renderer, &c->whole);
+        status = relight_whole(c, &own);
     if (status)
         return status;
     if (is_slab(c)) {

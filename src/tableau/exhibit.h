@@ -18,7 +18,8 @@ struct exhibit {
     struct scenery *scenery;     // of `whole`, in the scene's world
     struct relume_camera whole;  // the view that stands for all of it
     struct relume_viewport viewport;  // ... in its own world
-    struct relume_image relit;  // that view, under the last light; of slabs only for transport
+    struct relume_image relit;     // that view, under the last light; of slabs only for transport
+    struct relume_light relit_by;  // in its own world
 };
 
 // A file at a pose. Errors of relume_open, RELUME_EUNFIT with a sentence (a slab without depth).

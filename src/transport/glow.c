@@ -14,6 +14,8 @@
 #include "base/memory.h"
 #include "base/thread.h"
 
+#include <float.h>
+
 #include <string.h>
 
 struct glow_node {
@@ -103,6 +105,7 @@ static void weigh(struct middle *m, vec3 place, const float power[3], double are
 {
     const double light = (double)(power[0] + power[1] + power[2]);
     m->by_light = vec3_along(m->by_light, place, light);
+    area = fmax(area, (double)FLT_MIN);
     m->by_area = vec3_along(m->by_area, place, area);
     m->light += light, m->area += area;
 }
@@ -200,8 +203,8 @@ static void add_across(struct asked *a, const struct dipole *d, double distance,
 {
     const double end = sqrt(distance * distance + (double)area / M_PI);
     for (int c = 0; c < 3; c++)
-        a->rgb[c] +=
-            (float)(dipole_disc(d, c, end) - dipole_disc(d, c, distance)) * power[c] / area;
+        a->rgb[c] += (float)((dipole_disc(d, c, end) - dipole_disc(d, c, distance)) *
+                             (double)power[c] / fmax((double)area, (double)FLT_MIN));
 }
 
 static void add_point(struct asked *a, const struct glow *g, size_t i)
@@ -247,8 +250,8 @@ int glow_leaves(float rgb[3], const struct glow *g, vec3 place, vec3 normal, dou
         }
     }
     for (int c = 0; c < 3; c++) {
-        const float even = a.near_area > 0.0 ? a.near[c] / (float)a.near_area : 0.0f;
-        rgb[c] = a.rgb[c] + t->near_share[c] * even;
+        const double even = a.near_area > 0.0 ? (double)a.near[c] / a.near_area : 0.0;
+        rgb[c] = a.rgb[c] + t->near_share[c] * (float)even;
     }
     return pieces;
 }

@@ -104,8 +104,8 @@ struct totals {
 
 static double area_of(const struct piece *p)
 {
-    return sqrt(
-        (double)(p->area[0] * p->area[0] + p->area[1] * p->area[1] + p->area[2] * p->area[2]));
+    const double x = (double)p->area[0], y = (double)p->area[1], z = (double)p->area[2];
+    return sqrt(x * x + y * y + z * z);
 }
 
 static struct totals totals_of(const struct building *b, size_t begin, size_t end)
@@ -217,10 +217,11 @@ void hierarchy_forget(struct hierarchy *h)
 
 static bool is_there(const struct piece *p)
 {
+    const double MOST = 1e30;  // sums of many are single, too
     bool finite = true;
     for (int c = 0; c < 3; c++)
         finite = finite && isfinite(p->place[c]) && isfinite(p->area[c]);
-    return finite && area_of(p) > 0.0 && isfinite(area_of(p));
+    return finite && area_of(p) > 0.0 && area_of(p) < MOST;
 }
 
 static size_t place_pieces(struct placed *placed, const struct piece *pieces, size_t count)

@@ -146,28 +146,32 @@ static void look(struct instant *s, const struct world *w, size_t i, vec3 middle
     }
 }
 
-static void draw_some(struct maps *m, size_t first, size_t end, const struct points *points,
-                      const struct instant_params *p, int threads)
+static relume_status draw_some(struct maps *m, size_t first, size_t end,
+                               const struct points *points, const struct instant_params *p,
+                               int threads)
 {
     const size_t texels = (size_t)m->size * (size_t)m->size;
     struct maps some = {m->look + first, m->depth + first * texels, end - first, m->size, 0.0};
-    maps_draw(
+    const relume_status status = maps_draw(
         &some, points,
         &(struct maps_params){.points = p->points, .unfilled = p->unfilled, .threads = threads});
     m->square = some.square;
+    return status;
 }
 
-static void draw_maps(struct instant *s, const struct world *w, size_t first, size_t end)
+static relume_status draw_maps(struct instant *s, const struct world *w, size_t first, size_t end)
 {
     const double began = processor_s();
     if (s->params.rays || first == end)
-        return;
+        return RELUME_OK;
     const vec3 middle = middle_of(w);
     for (size_t i = first; i < end; i++)
         look(s, w, i, middle);
-    draw_some(&s->of_scene, first, end, &s->scene, &s->params, w->threads);
-    draw_some(&s->of_objects, first, end, &s->objects, &s->params, w->threads);
+    relume_status status = draw_some(&s->of_scene, first, end, &s->scene, &s->params, w->threads);
+    if (!status)
+        status = draw_some(&s->of_objects, first, end, &s->objects, &s->params, w->threads);
     s->seconds[INSTANT_MAPS] += processor_s() - began;
+    return status;
 }
 
 static relume_status make_maps(struct maps *m, size_t lights, int size)
@@ -257,7 +261,7 @@ static relume_status light_objects(struct instant *s, const struct world *w, siz
         s->lights += found;
         send(&b, s, number);
         set_reach(s, s->on_scene, s->lights);
-        draw_maps(s, w, s->on_scene, s->lights);
+        status = draw_maps(s, w, s->on_scene, s->lights);
     }
     for (int i = 1; i < w->bounces && !status && found; i++) {
         thread_for(w->threads, b.senders, gather_at_sender, &b);
@@ -304,9 +308,9 @@ static relume_status make_lights(struct instant *s, const struct world *w, size_
     if (status)
         return status;
     set_reach(s, 0, s->lights);
-    draw_maps(s, w, 0, s->lights);
+    status = draw_maps(s, w, 0, s->lights);
     began = processor_s() - s->seconds[INSTANT_MAPS];  // which go on there
-    if (w->bounces > 0)
+    if (!status && w->bounces > 0)
         status = light_objects(s, w, on_objects);
     s->seconds[INSTANT_OBJECTS] = processor_s() - s->seconds[INSTANT_MAPS] - began;
     return status;

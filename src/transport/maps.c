@@ -7,6 +7,7 @@
 // where they are; the paper fills wherever one texel is known.
 #include "transport/maps.h"
 
+#include "base/memory.h"
 #include "base/thread.h"
 #include "math/random.h"
 
@@ -177,8 +178,6 @@ void maps_fill(float *depth, int size, double apart, struct map_level *levels)
 
 // ---------------------------------------------------------------- maps
 
-enum { MOST_SIZE = 256 };
-
 // Surfaces are apart by more than a twentieth of what a map sees.
 static double apart_in(const float *depth, size_t texels)
 {
@@ -196,11 +195,11 @@ struct drawing {
     struct maps *maps;
     const struct points *points;
     const struct maps_params *params;
+    struct map_level *levels;  // of each worker
 };
 
 static void draw_map(void *context, size_t map, int worker)
 {
-    (void)worker;
     const struct drawing *d = context;
     const struct maps *m = d->maps;
     const struct points *p = d->points;
@@ -208,7 +207,6 @@ static void draw_map(void *context, size_t map, int worker)
     const size_t run = d->params->points < p->count ? d->params->points : p->count;
     const size_t first = p->count ? random_mix(map) % p->count : 0;
     float *depth = m->depth + map * texels;
-    struct map_level levels[MOST_SIZE * MOST_SIZE / 2];
     struct random r = random_stream(6, map, 0);
     for (size_t i = 0; i < texels; i++)
         depth[i] = INFINITY;
@@ -220,15 +218,22 @@ static void draw_map(void *context, size_t map, int worker)
               random_next(&r));
     }
     if (!d->params->unfilled)
-        maps_fill(depth, m->size, apart_in(depth, texels), levels);
+        maps_fill(depth, m->size, apart_in(depth, texels),
+                  d->levels + (size_t)worker * (texels / 2));
 }
 
-void maps_draw(struct maps *m, const struct points *points, const struct maps_params *p)
+relume_status maps_draw(struct maps *m, const struct points *points, const struct maps_params *p)
 {
+    const size_t texels = (size_t)m->size * (size_t)m->size;
     const size_t run = p->points < points->count ? p->points : points->count;
-    struct drawing d = {m, points, p};
+    struct drawing d = {m, points, p, NULL};
+    d.levels = mem_array((size_t)thread_count(p->threads), texels / 2 * sizeof *d.levels);
+    if (!d.levels)
+        return RELUME_ENOMEM;
     m->square = run ? sqrt(points->at->area * (double)points->count / (double)run) : 0.0;
     thread_for(p->threads, m->count, draw_map, &d);
+    mem_free(d.levels);
+    return RELUME_OK;
 }
 
 // How far a surface may lie behind the depth that is drawn for it: as far as its plane goes back

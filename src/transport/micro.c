@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 enum { SCENE_LEAVES = 1 << 15, OBJECT_LEAVES = 1 << 12 };
@@ -22,6 +23,10 @@ struct micro {
     struct hierarchy scene;
     struct points points;  // of objects
     struct hierarchy side[SIDES];
+    // A view's cells for each worker, and whether one has them: no stack is so large.
+    struct cut_cell *cells;  // [workers][side * side]
+    atomic_flag *taken;      // [workers]
+    int workers;
 };
 
 static void copy(float out[3], vec3 v)
@@ -37,8 +42,22 @@ struct gathering {
     const struct site *site;
     struct cut_place place;
     struct cut_list scene, side[SIDES];
-    struct cut_cell cells[CUT_MOST * CUT_MOST];
+    struct cut_cell *cells;  // [side * side]
 };
+
+// There are as many as workers.
+static int take_cells(const struct micro *m)
+{
+    int i = 0;
+    while (atomic_flag_test_and_set_explicit(&m->taken[i], memory_order_acquire))
+        i = (i + 1) % m->workers;
+    return i;
+}
+
+static void give_cells(const struct micro *m, int i)
+{
+    atomic_flag_clear_explicit(&m->taken[i], memory_order_release);
+}
 
 static void draw(struct gathering *g)
 {
@@ -167,15 +186,17 @@ static void gather(const struct world *w, const struct site *site, take_arrival 
 {
     const struct micro *m = w->state;
     struct gathering g;
-    g.w = w, g.m = m, g.site = site;
+    const int pixels = m->view.side * m->view.side, taken = take_cells(m);
+    g.w = w, g.m = m, g.site = site, g.cells = m->cells + (ptrdiff_t)taken * pixels;
     draw(&g);
-    for (int i = 0; i < m->view.side * m->view.side; i++) {
+    for (int i = 0; i < pixels; i++) {
         struct arrival arrival;
         if (!(m->view.pixel[i].share > 0.0f))
             continue;
         resolve(&arrival, &g, i);
         arrive(context, &arrival);
     }
+    give_cells(m, taken);
 }
 
 // ---------------------------------------------------------------- the scene's points
@@ -427,8 +448,21 @@ static void end(struct world *w)
     for (int k = 0; k < SIDES; k++)
         hierarchy_forget(&m->side[k]);
     points_forget(&m->points);
+    mem_free(m->cells);
+    mem_free(m->taken);
     mem_free(m);
     w->state = NULL;
+}
+
+static relume_status make_cells(struct micro *m, int threads)
+{
+    m->workers = thread_count(threads);
+    m->cells =
+        mem_array((size_t)m->workers, (size_t)(m->view.side * m->view.side) * sizeof *m->cells);
+    m->taken = mem_array((size_t)m->workers, sizeof *m->taken);
+    for (int i = 0; m->taken && i < m->workers; i++)
+        atomic_flag_clear(&m->taken[i]);
+    return m->cells && m->taken ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status begin(struct world *w, const struct relume_log *log)
@@ -440,7 +474,9 @@ static relume_status begin(struct world *w, const struct relume_log *log)
     if (!m)
         return RELUME_ENOMEM;
     cut_view_create(&m->view, side < CUT_LEAST ? CUT_LEAST : side > CUT_MOST ? CUT_MOST : side);
-    relume_status status = build_scene(m, w);
+    relume_status status = make_cells(m, w->threads);
+    if (!status)
+        status = build_scene(m, w);
     if (!status)
         status = build_objects(m, w);
     return status ? status : light_objects(m, w);

@@ -59,6 +59,22 @@ expect_fail() {
     fi
 }
 
+# refuse NAME STATUS PATTERN COMMAND...: the viewer must end so, and say one line "relume-view: ..." that
+# matches PATTERN.
+refuse() { # name, status, pattern, command...
+    name=$1 want=$2 pattern=$3
+    shift 3
+    timeout 60 "$@" >out.txt 2>err.txt
+    status=$?
+    if [ "$status" -ne "$want" ]; then
+        not_ok "$name" "status $status, expected $want; $(cat err.txt)"
+    elif [ "$(wc -l <err.txt)" -ne 1 ] || ! grep -qE "^relume-view: .*$pattern" err.txt; then
+        not_ok "$name" "expected one line with /$pattern/, found: $(cat err.txt)"
+    else
+        ok "$name"
+    fi
+}
+
 # expect_ok NAME PATTERN COMMAND...: status 0; PATTERN matches a line of stderr ("-": stderr has
 # no warning).
 expect_ok() {

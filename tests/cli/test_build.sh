@@ -42,6 +42,15 @@ for f in relume relume-view librelume.so librelume.a; do
     fi
 done
 
+# ---------------------------------------------------------------- stacks
+cp -r "$TOP/Makefile" "$TOP/include" "$TOP/scripts" . && mkdir -p src/base
+for bytes in 90000 100000; do
+    echo "int deep(int (*f)(char *)); int deep(int (*f)(char *)) { char room[$bytes]; return f(room) + room[1]; }" >src/base/deep$bytes.c
+    make -s config=release build/obj/src/base/deep$bytes.o >make.txt 2>&1 && echo $bytes >>fits.txt
+done
+check "a function takes no more than 96 kB of stack" grep -q 'frame-larger-than' make.txt
+check "one that takes less is built" grep -qx 90000 fits.txt
+
 # ---------------------------------------------------------------- layers
 check "layers hold" "$TOP/scripts/layers.sh"
 "$TOP/scripts/layers.sh" --table >table.txt

@@ -36,11 +36,56 @@ for material in '{"translucent":{"preset":"wax","scale_mm":100}}' '{"mirror":1}'
     expect_ok "$material, light between" - "$RELUME" relight other.json -o h.exr -q --light 'dir 0 1 0.3' --transport ssdo
 done
 
+sed 's/{"diffuse":0.7}/{"translucent":{"preset":"wax","scale_mm":1e-6}}/' scene.json >tiny.json
+expect_ok 'a body smaller than the way of light in it' 'object 0 is 4e-07 mm long, and light goes .* it will look black' "$RELUME" relight tiny.json -o h.exr --light 'dir 0 1 0.3'
+
 expect_ok 'info' - "$RELUME" info scene.json
 check 'names what is in it' grep -q 'capture       the pot: slab, 4 views of 24 x 24 pixels' out.txt
 check 'and objects' grep -q 'object        ball: ' out.txt
 expect_ok 'info for programs' - "$RELUME" info scene.json --json
 check 'has all of it' grep -q '"name": "ball", "kind": "mesh", "triangles": ' out.txt
+
+# the viewer: the picture of relight, an eye and lights that move, files one after the other
+expect_ok 'the viewer shows it' - "$VIEWER" lit.json --offscreen viewed.exr
+check 'byte for byte' cmp viewed.exr c.exr
+expect_ok 'with light between, from elsewhere' - "$VIEWER" scene.json --offscreen viewed.exr --light 'dir 0 1 0.3' --transport ssdo --eye 0.3,0.2,0.1 --fov 60 --size 40x30
+"$RELUME" relight scene.json -o want.exr -q --light 'dir 0 1 0.3' --transport ssdo --eye 0.3,0.2,0.1 --fov 60 --size 40x30
+check 'byte for byte, too' cmp viewed.exr want.exr
+cat >moves.txt <<END
+drag left 10 10 16 12
+wait
+frame turned.exr
+key ctrl+up
+key ctrl+right
+frame walked.exr
+drag right 10 10 20 10
+frame lit.exr
+key ctrl+t
+frame way.exr
+transport difference none
+frame apart.exr
+key tab
+shot panel.png
+open room.exr
+frame room.png
+open scene.json
+frame again.exr
+open ball.json
+frame ball.png
+END
+printf '{"format":"relume-objects","version":1,"objects":[{"mesh":"ball.obj","parts":[{"material":{"diffuse":0.7}}]}]}' >ball.json
+expect_ok 'a script' - "$VIEWER" scene.json --script moves.txt
+before=a.exr
+for name in turned walked lit way apart again; do
+    check "$name: another picture" sh -c "! cmp -s $before $name.exr"
+    before=$name.exr
+done
+check 'which has something in it' sh -c "'$RELUME' compare walked.exr lit.exr | awk '/^rms/ { exit !(\$2 > 0.001 && \$2 < 1) }'"
+sed 's/room.exr/gone.exr/' scene.json >gone.json
+refuse 'the viewer looks by an eye' 2 'leave out --pan' "$VIEWER" scene.json --offscreen x.png --pan 3
+refuse 'with objects of the scene' 2 'leave out --objects' "$VIEWER" scene.json --offscreen x.png --objects ball.json
+refuse 'the viewer, an eye that looks nowhere' 2 'the eye stands where it looks' "$VIEWER" scene.json --offscreen x.png --eye 1,1,1 --look-at 1,1,1
+refuse 'the viewer, a scene that is none' 1 'gone.exr: no such file' "$VIEWER" gone.json --offscreen x.png
 
 expect_fail 'an option of one file' 2 'leave out --objects' x.png "$RELUME" relight scene.json -o x.png --objects scene.json
 expect_fail 'a pass' 2 'leave out --pass' x.png "$RELUME" relight scene.json -o x.png --pass normals
@@ -49,7 +94,6 @@ expect_fail 'an eye far off' 2 'within 1e\+15' x.png "$RELUME" relight scene.jso
 expect_fail 'bounces without light between' 2 'only with --transport' x.png "$RELUME" relight scene.json -o x.png --bounces 3
 sed 's/room.exr/scene.json/' scene.json >itself.json
 expect_fail 'a scene in a scene' 1 "'scene.json' is a scene file itself" x.png "$RELUME" relight itself.json -o x.png
-sed 's/room.exr/gone.exr/' scene.json >gone.json
 expect_fail 'a file that is not there' 1 'gone.exr: no such file' x.png "$RELUME" relight gone.json -o x.png
 sed 's/"captures"/"captrues"/' scene.json >wrong.json
 expect_fail 'a member that is none' 1 "did you mean 'captures'" x.png "$RELUME" relight wrong.json -o x.png

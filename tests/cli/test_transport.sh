@@ -141,14 +141,6 @@ for pair in none:one one:sides sides:apart apart:same one:next; do
     differ "ways: ${pair%:*} and ${pair#*:}" "${pair%:*}.exr" "${pair#*:}.exr"
 done
 check 'a way is not apart from itself' sh -c "'$RELUME' relight room.exr --objects ball.json $look -o black.exr --light 'dir 0 1 0 rgb 0 0 0' -q; '$RELUME' compare same.exr black.exr | awk '\$1 == \"max_abs\" { exit !(\$2 == 0) }'"
-refuse() { # name, status, pattern, command...
-    name=$1 want=$2 pattern=$3
-    shift 3
-    "$@" >out.txt 2>err.txt
-    status=$?
-    [ "$(grep -cE "^relume-view: .*$pattern" err.txt)/$(wc -l <err.txt)/$status" = "1/1/$want" ] && ok "$name" ||
-        not_ok "$name" "status $status, $(cat err.txt)"
-}
 echo 'transport sdo' >bad.txt
 refuse 'a way in a script that is none' 1 "column 11; expected WAY, beside WAY, .*ssdo, .*or path; found 'sdo'" "$VIEWER" room.exr --objects ball.json --script bad.txt
 echo 'transport ssdo' >bad.txt

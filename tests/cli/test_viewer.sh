@@ -274,19 +274,6 @@ else
     skip 'EGL and OSMesa agree' "$(cat err.txt)"
 fi
 
-refuse() { # name, status, pattern, command...
-    name=$1 want=$2 pattern=$3
-    shift 3
-    timeout 60 "$@" >out.txt 2>err.txt
-    status=$?
-    if [ "$status" -ne "$want" ]; then
-        not_ok "$name" "status $status, expected $want; $(cat err.txt)"
-    elif [ "$(wc -l <err.txt)" -ne 1 ] || ! grep -qE "^relume-view: .*$pattern" err.txt; then
-        not_ok "$name" "expected one line with /$pattern/, found: $(cat err.txt)"
-    else
-        ok "$name"
-    fi
-}
 refuse 'no display' 3 'use --offscreen .*package' env -u DISPLAY -u WAYLAND_DISPLAY "$VIEWER" teapot.exr
 refuse 'no such file' 1 'none.exr: no such file' "$VIEWER" none.exr --offscreen none.png
 refuse 'unknown option' 2 "did you mean '--offscreen'" "$VIEWER" teapot.exr --offscren none.png

@@ -432,6 +432,37 @@ static void keys_work_the_lens(void **state)
     close_app(&t);
 }
 
+// Of scene files: eye and what it looks at go along, on the level; slow frames are drawn again at
+// rest.
+static void keys_walk_in_scenes(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    struct app *app = &t.app;
+    const struct relume_vec3 from = {1, 3, 4}, at = {1, 0, 0};
+    app->now.camera.eye = from;
+    app->now.camera.look_at = (struct relume_look_at){true, at, {0, 1, 0}, 60};
+    press(app, APP_CONTROL | APP_KEY_UP_ARROW);
+    assert_true(vec3_length(vec3_sub(app->now.camera.eye, from)) ==
+                0);  // of other files nobody walks
+    app->file.scene = true;
+    press(app, APP_CONTROL | APP_KEY_UP_ARROW);
+    press(app, APP_CONTROL | APP_KEY_RIGHT);
+    const struct relume_vec3 step = {0.25, 0, -0.25};  // a twentieth of 5
+    assert_true(vec3_length(vec3_sub(app->now.camera.eye, vec3_add(from, step))) < 1e-12);
+    assert_true(vec3_length(vec3_sub(app->now.camera.look_at.at, vec3_add(at, step))) < 1e-12);
+    press(app, APP_CONTROL | APP_KEY_DOWN_ARROW);
+    press(app, APP_CONTROL | APP_KEY_LEFT);
+    assert_true(vec3_length(vec3_sub(app->now.camera.eye, from)) < 1e-12);
+    send(app, APP_PRESS, 5, 5);
+    assert_true(app_handle(app, &(struct app_event){.kind = APP_RELEASE, .x = 5, .y = 5}));
+    app->file.scene = false;
+    send(app, APP_PRESS, 5, 5);
+    assert_false(app_handle(app, &(struct app_event){.kind = APP_RELEASE, .x = 5, .y = 5}));
+    close_app(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -447,6 +478,7 @@ int main(void)
         cmocka_unit_test(a_turntable_goes_around),
         cmocka_unit_test(what_cannot_be_seen_is_refused),
         cmocka_unit_test(keys_work_the_lens),
+        cmocka_unit_test(keys_walk_in_scenes),
     };
     return cmocka_run_group_tests(tests, fixture_open, fixture_close);
 }

@@ -6,6 +6,7 @@
 #include "relit/exchanger.h"
 
 #include <relume/exchange.h>
+#include <relume/tableau.h>
 #include <relume/transport.h>
 
 #include <time.h>
@@ -13,7 +14,7 @@
 
 enum { W = 24, H = 16, LARGE = 160 };
 
-static char folder[64], file[96];
+static char folder[64], file[96], scene[96];
 static relume_objects *objects;
 static const struct relume_light lights[] = {{.direction = {0.3, 0.4, 0.8}, .rgb = {1, 1, 1}},
                                              {.direction = {-0.5, 0.4, 0.7}, .rgb = {1, 1, 1}}};
@@ -46,6 +47,12 @@ static int open_all(void **state)
     f = fopen(path, "w");
     fputs("{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"square.obj\","
           "\"parts\":[{\"material\":[{\"diffuse\":0.8},{\"diffuse\":[1,0,0]}]}]}]}",
+          f);
+    fclose(f);
+    snprintf(scene, sizeof scene, "%s/scene.json", folder);
+    f = fopen(scene, "w");
+    fputs("{\"format\":\"relume-scene\",\"version\":1,\"captures\":[{\"file\":\"capture.json\"}],"
+          "\"objects\":[{\"mesh\":\"square.obj\",\"parts\":[{\"material\":{\"diffuse\":0.8}}]}]}",
           f);
     fclose(f);
     return relume_objects_open(&objects, path, NULL) != 0;
@@ -237,6 +244,63 @@ static void test_error(void **state)
     exchanger_destroy(&e);
 }
 
+// From another eye the last picture stays until there is a new one; every way is the library's.
+static void test_scene_file(void **state)
+{
+    (void)state;
+    struct exchanger *e;
+    relume_tableau *tableau;
+    const struct relume_image *image;
+    struct relume_image wanted;
+    bool fresh;
+    const struct exchange_source source = {
+        .file = scene, .scene = true, .log = &quiet, .threads = 2};
+    const char *const ways[] = {"none", "ssdo"};
+    assert_int_equal(exchanger_create(&e, &source), RELUME_OK);
+    assert_int_equal(relume_tableau_open(&tableau, scene, NULL), RELUME_OK);
+    struct exchange_request q = request_of("none", W, H, 0);
+    q.camera = relume_tableau_info(tableau)->camera;
+    q.camera.width = W, q.camera.height = H;
+    for (int i = 0; i < 2; i++) {
+        q.transport = relume_transport_find(ways[i]);
+        q.camera.eye.x += 0.1;
+        assert_int_equal(exchanger_ask(e, 0, &q), RELUME_OK);
+        const enum exchange_fit fit = exchanger_show(&image, &fresh, e, 0);
+        assert_true(fresh || fit == (i ? EXCHANGE_ELSEWHERE : EXCHANGE_NONE));
+        assert_int_equal(exchanger_wait(e), RELUME_OK);
+        assert_int_equal(exchanger_show(&image, &fresh, e, 0), EXCHANGE_FINE);
+        assert_int_equal(
+            relume_tableau_frame(&wanted, tableau, &q.camera, q.lights, q.count,
+                                 relume_render_params(.samples = 3, .transport = q.transport)),
+            RELUME_OK);
+        assert_true(same_image(image, &wanted));
+        relume_image_destroy(&wanted);
+    }
+    relume_tableau_destroy(&tableau);
+    exchanger_destroy(&e);
+}
+
+// The newest sentences are heard, however many there were before.
+static void test_many_sentences(void **state)
+{
+    (void)state;
+    enum { MANY = 40 };
+    struct exchanger *e;
+    setup_exchanger(&e);
+    struct exchange_request q = request_of("ssdo", W, H, 0);
+    for (int i = 0; i < MANY; i++) {
+        q.camera.view = 1 + i;
+        assert_int_equal(exchanger_ask(e, 0, &q), RELUME_OK);
+        assert_int_equal(exchanger_wait(e), RELUME_OK);
+        exchanger_speak(e);
+        char number[16];
+        snprintf(number, sizeof number, "%d", 1 + i);
+        assert_int_equal(said, 1 + i);
+        assert_non_null(strstr(last, number));
+    }
+    exchanger_destroy(&e);
+}
+
 // All lights are off.
 static void test_dark(void **state)
 {
@@ -256,7 +320,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_two_ways),  cmocka_unit_test(test_rough_first),
         cmocka_unit_test(test_cancelled), cmocka_unit_test(test_rest),
-        cmocka_unit_test(test_error),     cmocka_unit_test(test_dark),
+        cmocka_unit_test(test_error),     cmocka_unit_test(test_scene_file),
+        cmocka_unit_test(test_dark),      cmocka_unit_test(test_many_sentences),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

@@ -223,12 +223,72 @@ static void test_materials(void **state)
     relume_btf_destroy(&btf);
 }
 
+// ---------------------------------------------------------------- objects in a scene
+
+static relume_status exchange(const void *transport)
+{
+    relume_pack *pack = NULL;
+    relume_objects *objects = NULL;
+    relume_renderer *renderer = NULL;
+    struct relume_image out = {0};
+    char file[96];
+    const int samples = transport == relume_transport_find("micro") ? 2304 : 16;  // its largest
+    const struct relume_light light = {.direction = {0.3, 0.2, 0.9}, .rgb = {1, 1, 1}};
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .width = 6, .height = 4};
+    snprintf(file, sizeof file, "%s/objects.json", folder);
+    relume_status status = relume_pack_open(&pack, path, relume_pack_params(.threads = 1));
+    if (!status)
+        status = relume_objects_open(&objects, file, relume_objects_params(.threads = 1));
+    if (!status)
+        status = relume_renderer_create(&renderer, pack, relume_frame_params(.threads = 1));
+    if (!status)
+        status = relume_renderer_set_objects(
+            renderer, objects,
+            relume_render_params(.samples = 1, .threads = 1, .transport = transport,
+                                 .transport_samples = samples, .bounces = samples > 16 ? -1 : 1));
+    if (!status)
+        status = relume_renderer_set_lights(renderer, &light, 1);
+    if (!status)
+        status = relume_renderer_frame(&out, renderer, &camera);
+    relume_image_destroy(&out);
+    relume_renderer_destroy(&renderer);
+    relume_objects_destroy(&objects);
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+static void write_text(const char *name, const char *text)
+{
+    char file[96];
+    snprintf(file, sizeof file, "%s/%s", folder, name);
+    FILE *f = fopen(file, "w");
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+}
+
+static void test_transports(void **state)
+{
+    (void)state;
+    const struct coding coding = {
+        &relume_basis_table, {0}, {.storage = RELUME_STORE_HALF, .domain = RELUME_DOMAIN_LINEAR}};
+    write_text("square.obj", "v -0.4 -0.4 0.3\nv 0.4 -0.4 0.3\nv 0.4 0.4 0.3\nv -0.4 0.4 0.3\n"
+                             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    write_text("objects.json",
+               "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":"
+               "\"square.obj\",\"parts\":[{\"material\":{\"diffuse\":0.8}}]}]}");
+    check_small(encode, &coding);
+    for (const struct relume_transport *const *t = relume_transports; *t; t++)
+        check_small(exchange, *t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_held_out),
         cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_transports),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -192,6 +192,14 @@ static void pieces_that_are_none_do_not_count(void **state)
     assert_int_equal(h.levels, 0);
     CHECK_NEAR(covered(&h, 8, vec3_of(0, 0, 0), vec3_of(0, 0, 1)), 0.0, 0.0);
     hierarchy_forget(&h);
+    const float sizes[] = {1e-25f, 1e25f};  // whose squares are no floats
+    for (int i = 0; i < 2; i++) {
+        const struct piece one = {{1, 2, 3}, {0, 0, sizes[i]}};
+        CHECK_OK(hierarchy_create(&h, &one, 1, 64, 1));
+        assert_int_equal(h.leaves, 1);
+        CHECK_NEAR(h.groups[0].radius[0] / sqrt((double)sizes[i] / M_PI), 1.0, 1e-6);
+        hierarchy_forget(&h);
+    }
     CHECK_OK(hierarchy_create(&h, NULL, 0, 64, 1));
     hierarchy_forget(&h);
 }

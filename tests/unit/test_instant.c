@@ -312,7 +312,8 @@ static double part_wrong(size_t points, bool unfilled, enum map_kind kind)
                                      : map_of_hemisphere(place, down);
         assert_int_equal(look[i].kind, kind);
     }
-    maps_draw(&m, &p, &(struct maps_params){.points = points, .unfilled = unfilled, .threads = 2});
+    CHECK_OK(maps_draw(
+        &m, &p, &(struct maps_params){.points = points, .unfilled = unfilled, .threads = 2}));
     for (int i = 0; i < MAPS; i++)
         for (int k = 0; k < PLACES; k++) {
             struct random r = random_stream(1, (uint64_t)k, (uint64_t)i);

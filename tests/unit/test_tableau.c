@@ -107,6 +107,11 @@ static void captures_hide_and_shade_each_other(void **state)
     assert_int_equal(which_at(t, &above, 15, 15), 1);
     assert_int_equal(which_at(t, &above, 2, 2), 0);
     relume_image_destroy(&got);
+    const struct relume_light straight = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+    got = frame_of(t, &above, &straight);  // another lamp, the same eye
+    CHECK_NEAR(at(&got, 0.02, 0.02), 1.0, 1e-5);
+    CHECK_NEAR(at(&got, 0.7, 0.7), 0.5, 1e-5);
+    relume_image_destroy(&got);
     relume_tableau_destroy(&t);
 }
 

@@ -6,6 +6,7 @@
 #include "app/handles_drag.h"
 #include "app/keys.h"
 #include "app/orbit.h"
+#include "app/way.h"
 #include "common/vec.h"
 
 static const double wheel_factor = 1.1;  // of the zoom, per step
@@ -167,7 +168,7 @@ static bool on_press(struct app *app, const struct app_event *e)
 // What is drawn roughly while it moves is drawn once more when it rests.
 static bool is_rough(const struct app *app)
 {
-    return orbit_is(app) && app->now.aperture > 0;
+    return way_is_slow(app) || (orbit_is(app) && app->now.aperture > 0);
 }
 
 static bool on_release(struct app *app, const struct app_event *e)

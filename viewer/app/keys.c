@@ -5,6 +5,7 @@
 #include "app/handles.h"
 #include "app/handles_say.h"
 #include "app/light_list.h"
+#include "app/orbit.h"
 #include "app/way.h"
 
 #include <relume/tone.h>
@@ -13,6 +14,7 @@
 
 static const double exposure_step = 0.25;  // EV
 static const double dolly_factor = 1.05;   // of the eye's distance
+static const double walk_step = 0.05;      // of its distance
 static const double focus_factor = 1.02;   // of the distance from the cameras
 static const double planet_zoom = 0.5;
 static const double stop_step = 0.25;  // of a light's value
@@ -119,6 +121,18 @@ static bool press_dolly(struct app *app, int key)
     if (app->now.camera.framing != RELUME_FRAME_EYE)
         return false;
     app_dolly(app, key == '[' ? 1 / dolly_factor : dolly_factor);
+    return true;
+}
+
+static bool press_walk(struct app *app, int key)
+{
+    const int way = key & ~APP_CONTROL;
+    if (!app->file.scene)
+        return false;
+    if (way == APP_KEY_LEFT || way == APP_KEY_RIGHT)
+        orbit_walk(app, way == APP_KEY_RIGHT ? walk_step : -walk_step, 0);
+    else
+        orbit_walk(app, 0, way == APP_KEY_UP_ARROW ? walk_step : -walk_step);
     return true;
 }
 
@@ -414,6 +428,10 @@ const struct key_binding key_bindings[] = {
     {'t', "T", "next tone operator", press_tone, false},
     {'[', "[ ]", "slab: nearer, farther", press_dolly, true},
     {']', NULL, NULL, press_dolly, true},
+    {APP_CONTROL | APP_KEY_LEFT, "Ctrl+arrows", "scene file: walk", press_walk, true},
+    {APP_CONTROL | APP_KEY_RIGHT, NULL, NULL, press_walk, true},
+    {APP_CONTROL | APP_KEY_UP_ARROW, NULL, NULL, press_walk, true},
+    {APP_CONTROL | APP_KEY_DOWN_ARROW, NULL, NULL, press_walk, true},
     {'d', "D", "slab: next interpolation", press_interpolation, false},
     {'a', "A", "slab: next aperture", press_aperture, false},
     {',', ", .", "slab: focus nearer, farther", press_focus, true},

@@ -106,6 +106,21 @@ void orbit_dolly(struct app *app, double factor)
     put_eye(app, vec3_scale(d, captured * clamp(now / captured * factor, 0.25, 4.0) / now));
 }
 
+void orbit_walk(struct app *app, double right, double ahead)
+{
+    const struct app_axes a = orbit_axes(app);
+    const struct relume_vec3 at = target_of(app);
+    const double away = vec3_length(eye_from_middle(app));
+    const struct relume_vec3 level = {-a.back.x, 0, -a.back.z};
+    const double flat = vec3_length(level);
+    const struct relume_vec3 before = flat > 1e-9 ? vec3_scale(level, 1 / flat) : a.up;
+    const struct relume_vec3 step =
+        vec3_along(vec3_scale(a.right, right * away), before, ahead * away);
+    app->now.camera.eye = vec3_add(app->now.camera.eye, step);
+    app->now.camera.look_at.at = vec3_add(at, step);
+    app->now.camera.look_at.aimed = true;
+}
+
 // ---------------------------------------------------------------- frame
 
 bool orbit_place(double xy[2], const struct app *app, struct relume_vec3 point)

@@ -15,6 +15,9 @@ double orbit_degrees_per_pixel(const struct app *app);
 // The distance from the object's middle times `factor`, between a quarter and four times that of
 // the cameras.
 void orbit_dolly(struct app *app, double factor);
+// Eye and what it looks at go that part of the distance between them to the right and, on the
+// level, ahead.
+void orbit_walk(struct app *app, double right, double ahead);
 
 // Where a point of the world lies in the frame, pixels; false behind the eye.
 bool orbit_place(double xy[2], const struct app *app, struct relume_vec3 point);

@@ -110,14 +110,17 @@ static bool take_key(struct script *s, int *out)
         {"end", APP_KEY_END},
         {"f11", APP_KEY_F11},
     };
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (take_word(s, names[i].name)) {
-            *out = names[i].key;
-            return true;
-        }
     skip_blanks(s);
     const bool control = !strncmp(s->at, "ctrl+", 5);
     const char *sign = s->at + (control ? 5 : 0);
+    const char *const from = s->at;
+    s->at = sign;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (take_word(s, names[i].name)) {
+            *out = names[i].key | (control ? APP_CONTROL : 0);
+            return true;
+        }
+    s->at = from;
     if (sign[0] <= ' ' || sign[0] > '~' || (sign[1] && !strchr(" \t", sign[1])))
         return false;
     *out = sign[0] | (control ? APP_CONTROL : 0);

@@ -44,7 +44,7 @@ enum {
     APP_KEY_F11,
     APP_KEYS  // all are below
 };
-enum { APP_CONTROL = 1 << 10 };  // added to a letter: Ctrl is held as well
+enum { APP_CONTROL = 1 << 10 };  // added to a letter or an arrow: Ctrl is held
 
 enum { APP_HINT_S = 8, APP_TOAST_S = 4 };  // seconds that a note is shown
 
@@ -55,7 +55,7 @@ struct app_event {
     double wheel;            // WHEEL: steps, > 0 away from the user
     bool repeat;             // KEY_DOWN: the key was down already
     bool unasked;            // KEY_DOWN: of a script, which nobody can ask whether it means it
-    int key;  // KEY_*: a lower-case letter (with APP_CONTROL), a sign, or APP_KEY_*; TEXT: Unicode
+    int key;  // KEY_*: a lower-case letter, a sign, or APP_KEY_*, with APP_CONTROL; TEXT: Unicode
     int width, height;  // SIZE
 };
 
@@ -68,7 +68,8 @@ struct app_file {
     const relume_slab_set *around;  // several slabs, about whose middle the eye goes; NULL: none
     relume_objects *objects;        // in the scene, or all that there is; NULL: none
     const struct relume_captured_region *zone;  // where its light was captured; NULL: not known
-    bool stage;                                 // there are objects alone
+    bool between;                               // light may go between objects and a scene
+    bool scene;                                 // a scene file: the library draws it
     bool empty;                                 // no file is open yet
     bool only_colour;                           // nothing else can be shown of it
 };

@@ -26,7 +26,13 @@ bool way_gathers(int way)
 
 bool way_matters(const struct app *app)
 {
-    return app->file.objects && !app->file.stage;
+    return app->file.between;
+}
+
+bool way_is_slow(const struct app *app)
+{
+    const struct app_state *now = &app->now;
+    return app->file.scene || (way_matters(app) && (way_gathers(now->way) || now->ways));
 }
 
 void way_compare(struct app *app, enum app_split ways)
@@ -78,7 +84,8 @@ bool way_say(struct app *app, const char *words, char expected[WAY_WORDS])
     if (n != (both ? 2 : 1) || (way < 0 && !alone))
         return false;
     if (!way_matters(app)) {
-        snprintf(expected, WAY_WORDS, "objects in a scene to send light between; see --objects");
+        snprintf(expected, WAY_WORDS,
+                 "objects in a scene to send light between; see --objects, or a scene file");
         return false;
     }
     if (alone) {

@@ -11,6 +11,8 @@ const char *way_name(int way);
 bool way_gathers(int way);
 // Whether there is a scene with objects in it, so that there is something to choose.
 bool way_matters(const struct app *app);
+// Whether frames are rough while something moves.
+bool way_is_slow(const struct app *app);
 
 // Show that many ways; the second is not the first when it begins. Materials are then shown alone.
 void way_compare(struct app *app, enum app_split ways);

@@ -558,11 +558,11 @@ relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
     relume_status status = prepare(r, q);
     if (!status && r->empty)
         target_begin(&r->frame, r->gl);
-    else if (!status && r->drawer.gl)
+    else if (!status && (r->drawer.gl || r->exchange.scene))
         status = renderer_draw_ways(r, q, &place, q->light, q->lights);
     else if (!status)
         status = renderer_relight_views(r, q, q->light, q->lights);
-    if (!status && !r->drawer.gl && !r->empty)
+    if (!status && !r->drawer.gl && !r->exchange.scene && !r->empty)
         status = renderer_frame(r, q, &place);
     if (!status)
         status = draw_lights_in_view(r, q, &place);

@@ -43,7 +43,8 @@ relume_status renderer_use_objects(struct renderer *renderer, relume_objects *ob
 // Others on the same stage, before the old ones are destroyed.
 relume_status renderer_replace_objects(struct renderer *r, relume_objects *objects);
 
-// Light may go between the scene and the objects, as `exchange` has them, which is copied.
+// Light may go between the scene and the objects, as `exchange` has them, which is copied; of a
+// scene file all that is seen is drawn so, on the stage of renderer_use_slabs.
 void renderer_use_exchange(struct renderer *renderer, const struct exchange_source *exchange);
 // Nobody looks at the objects from another thread until the next frame.
 void renderer_let_go(struct renderer *renderer);

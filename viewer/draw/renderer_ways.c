@@ -11,6 +11,7 @@
 void renderer_use_exchange(struct renderer *r, const struct exchange_source *exchange)
 {
     r->exchange = *exchange;
+    r->stage |= exchange->scene;
 }
 
 void renderer_ways_destroy(struct renderer *r)
@@ -60,11 +61,13 @@ static const struct passes *passes_of(const struct renderer *r, const char *way)
     return NULL;
 }
 
-// Two ways, or two materials; the latter are compared in hard shadows.
+// Two ways, or two materials; the latter are compared in hard shadows. Of a scene file hard shadows
+// are the library's, too.
+enum { NO_WAY = -1 };
 static bool goes_between(const struct renderer *r, const struct frame_request *q, int way)
 {
-    return r->exchange.file && way_gathers(way) && q->pass == RELUME_PASS_COLOUR &&
-           q->split == APP_SPLIT_NONE;
+    return r->exchange.file && way != NO_WAY && (r->exchange.scene || way_gathers(way)) &&
+           q->pass == RELUME_PASS_COLOUR && q->split == APP_SPLIT_NONE;
 }
 
 // Pixels of the whole picture: as the frame shows them, but of an enlarged one no more than four
@@ -115,21 +118,23 @@ static relume_status check_passes(struct renderer *r, const struct frame_request
 static relume_status ask(struct renderer *r, const struct frame_request *q, int slot, int way,
                          const struct relume_light *lights, int count)
 {
+    if (!goes_between(r, q, way) || is_drawn_by_passes(r, q, way))
+        return r->exchanger ? exchanger_ask(r->exchanger, slot, NULL) : RELUME_OK;
     struct exchange_request request = {
         .transport = relume_transports[way],
         .samples = q->way_samples,
         .bounces = q->bounces,
         .camera = q->camera,
-        .interpolation = q->view.interpolation,
-        .aperture = q->view.aperture,
-        .focus = q->view.focus,
         .lights = lights,
         .count = count,
         .moves = q->moves,
         .waits = r->waits,
     };
-    if (!goes_between(r, q, way) || is_drawn_by_passes(r, q, way))
-        return r->exchanger ? exchanger_ask(r->exchanger, slot, NULL) : RELUME_OK;
+    if (!r->exchange.scene) {  // whose captures are sharp
+        request.interpolation = q->view.interpolation;
+        request.aperture = q->view.aperture;
+        request.focus = q->view.focus;
+    }
     find_size(&request.camera, q);
     const relume_status status =
         r->exchanger ? RELUME_OK : exchanger_create(&r->exchanger, &r->exchange);
@@ -200,7 +205,12 @@ static relume_status draw_way(struct renderer *r, const struct frame_request *q,
     if (!status && !shown && between && stand_in)
         status = draw_passes(&shown, r, q, place, lights, count, &ms, own ? own : stand_in);
     r->passes_ms[slot] = by_passes ? ms : 0.0;
-    return status || shown ? status : renderer_draw_objects(r, q, place, lights, count);
+    if (status || shown)
+        return status;
+    if (!r->exchange.scene)
+        return renderer_draw_objects(r, q, place, lights, count);
+    target_begin(&r->frame, r->gl);
+    return RELUME_OK;
 }
 
 static void swap(struct target *a, struct target *b)
@@ -245,12 +255,12 @@ relume_status renderer_draw_ways(struct renderer *r, const struct frame_request 
                                  const struct place *place, const struct relume_light *lights,
                                  int count)
 {
-    const bool both = q->ways != APP_SPLIT_NONE && !r->stage;
+    const bool both = q->ways != APP_SPLIT_NONE && (!r->stage || r->exchange.scene);
     relume_status status = check_passes(r, q, place);
     if (!status)
         status = ask(r, q, 0, q->way, lights, count);
     if (!status)
-        status = ask(r, q, 1, both ? q->other_way : 0, lights, count);
+        status = ask(r, q, 1, both ? q->other_way : NO_WAY, lights, count);
     if (!status && r->exchanger && r->waits)
         status = wait_for_all(r);
     if (r->exchanger)

@@ -3,9 +3,6 @@
 
 #include "program/clock.h"
 
-#include <relume/exchange.h>
-#include <relume/renderer.h>
-
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -13,19 +10,16 @@
 #include <string.h>
 #include <time.h>
 
-enum step { ROUGH, FINE, STEPS };
 enum {
-    ROUGHER = 4,       // times fewer pixels along each side
-    ENOUGH = 96,       // pixels along the longer side: smaller pictures are drawn at once
-    FINER_ACROSS = 3,  // rays along each side of a pixel, as `relume relight` has it
-    SENTENCES = 16,
+    ENOUGH = 96,     // pixels along the longer side: smaller pictures are drawn at once
+    SENTENCES = 16,  // that are remembered, the newest
     WORDS = 512
 };
 
 struct picture {
     struct exchange_request of;  // its lights are owned
     struct relume_image image;
-    enum step step;
+    enum exchange_step step;
     uint64_t serial;
     double seconds;
 };
@@ -39,87 +33,31 @@ struct slot {
     struct picture made;  // not shown yet; its image may be empty
     // Of who shows.
     struct picture shown;
-    // Of the thread.
-    relume_renderer *renderer;
-    struct exchange_request set;  // what its objects are drawn by; transport NULL: not yet ...
-    enum step set_step;           // ... and how finely
 };
 
 struct exchanger {
-    struct exchange_source source;
     pthread_t thread;
     pthread_mutex_t lock;
     pthread_cond_t work, news;
     struct slot slot[EXCHANGER_SLOTS];
     uint64_t serials;
-    int working;     // slot, or -1
-    enum step step;  // that it is at
+    int working;              // slot, or -1
+    enum exchange_step step;  // that it is at
 
     bool rests, stop;
     atomic_bool cancel;
     atomic_int percent;  // of the work in hand
-    char sentence[SENTENCES][WORDS];
-    enum relume_level level[SENTENCES];
-    int sentences, spoken;
-    // Of the thread.
-    relume_pack *pack;
-    bool listens;
+    struct sentence {
+        enum relume_level level;
+        char words[WORDS];
+    } sentence[SENTENCES];
+    int sentences, spoken;  // the first of them are spoken
     struct relume_log log;
+    const struct relume_log *to;
+    struct exchange_drawer drawer;  // of the thread
 };
 
 // ---------------------------------------------------------------- requests
-
-static void request_forget(struct exchange_request *q)
-{
-    free((void *)q->lights);
-    *q = (struct exchange_request){.transport = NULL};
-}
-
-static bool request_copy(struct exchange_request *out, const struct exchange_request *q)
-{
-    struct relume_light *lights = malloc(((size_t)q->count + 1) * sizeof *lights);
-    if (!lights)
-        return false;
-    if (q->count)
-        memcpy(lights, q->lights, (size_t)q->count * sizeof *lights);
-    *out = *q;
-    out->lights = lights;
-    return true;
-}
-
-static bool same_vec(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-static bool same_camera(const struct relume_camera *a, const struct relume_camera *b)
-{
-    return a->framing == b->framing && a->view == b->view && same_vec(a->eye, b->eye) &&
-           a->through == b->through && a->width == b->width && a->height == b->height &&
-           a->look_at.aimed == b->look_at.aimed && same_vec(a->look_at.at, b->look_at.at) &&
-           same_vec(a->look_at.up, b->look_at.up) &&
-           a->look_at.field_of_view_deg == b->look_at.field_of_view_deg &&
-           a->look.pan_deg == b->look.pan_deg && a->look.tilt_deg == b->look.tilt_deg &&
-           a->look.zoom == b->look.zoom && a->look.stereographic == b->look.stereographic;
-}
-
-static bool same_way(const struct exchange_request *a, const struct exchange_request *b)
-{
-    return a->transport == b->transport && a->samples == b->samples && a->bounces == b->bounces;
-}
-
-static bool same_eye(const struct exchange_request *a, const struct exchange_request *b)
-{
-    return same_way(a, b) && same_camera(&a->camera, &b->camera) &&
-           a->interpolation == b->interpolation && a->aperture == b->aperture &&
-           a->focus == b->focus;
-}
-
-static bool same_request(const struct exchange_request *a, const struct exchange_request *b)
-{
-    return same_eye(a, b) && a->count == b->count &&
-           (!a->count || !memcmp(a->lights, b->lights, (size_t)a->count * sizeof *a->lights));
-}
 
 static bool is_small(const struct exchange_request *q)
 {
@@ -129,37 +67,43 @@ static bool is_small(const struct exchange_request *q)
 
 static int first_step(const struct exchange_request *q)
 {
-    return q->waits || is_small(q) ? FINE : ROUGH;
+    return q->waits || is_small(q) ? EXCHANGE_STEP_FINE : EXCHANGE_STEP_ROUGH;
 }
 
 // Behind the last.
 static int end_of(const struct exchange_request *q)
 {
-    return q->moves && !q->waits && !is_small(q) ? FINE : STEPS;
+    return q->moves && !q->waits && !is_small(q) ? EXCHANGE_STEP_FINE : EXCHANGE_STEPS;
 }
 
 static void picture_forget(struct picture *p)
 {
-    request_forget(&p->of);
+    exchange_request_forget(&p->of);
     relume_image_destroy(&p->image);
     *p = (struct picture){.serial = 0};
 }
 
 // ---------------------------------------------------------------- the thread
 
-// A sentence that was not heard before is kept for who speaks.
+// A sentence that was not heard before is kept for who speaks; the oldest makes room.
 static void keep_sentence(void *user, enum relume_level level, const char *text)
 {
     struct exchanger *e = user;
-    if (!e->listens && level != RELUME_ERROR)
+    if (e->drawer.opens && level != RELUME_ERROR)
         return;
     pthread_mutex_lock(&e->lock);
-    bool known = e->sentences == SENTENCES;
+    bool known = false;
     for (int i = 0; i < e->sentences; i++)
-        known |= !strncmp(e->sentence[i], text, WORDS - 1);
+        known |= !strncmp(e->sentence[i].words, text, WORDS - 1);
+    if (!known && e->sentences == SENTENCES) {
+        memmove(e->sentence, e->sentence + 1, (SENTENCES - 1) * sizeof *e->sentence);
+        e->sentences--;
+        e->spoken -= e->spoken > 0;
+    }
     if (!known) {
-        snprintf(e->sentence[e->sentences], WORDS, "%s", text);
-        e->level[e->sentences++] = level;
+        struct sentence *s = &e->sentence[e->sentences++];
+        s->level = level;
+        snprintf(s->words, WORDS, "%s", text);
         pthread_cond_broadcast(&e->news);
     }
     pthread_mutex_unlock(&e->lock);
@@ -173,80 +117,10 @@ static bool go_on(void *user, const char *what, double done)
     return !atomic_load(&e->cancel);
 }
 
-// What there is to note of the file was noted when the viewer opened it.
-static relume_status need_pack(struct exchanger *e)
-{
-    if (e->pack)
-        return RELUME_OK;
-    e->listens = false;
-    const relume_status status =
-        relume_open(&e->pack, e->source.file,
-                    relume_open_params(.log = &e->log, .threads = e->source.threads,
-                                       .sphere = e->source.sphere));
-    e->listens = true;
-    return status;
-}
-
-static struct relume_frame_params frame_params(const struct exchanger *e,
-                                               const struct exchange_request *q)
-{
-    return *relume_frame_params(.log = &e->log, .threads = e->source.threads,
-                                .interpolation = q->interpolation, .aperture = q->aperture,
-                                .focus = q->focus);
-}
-
-static relume_status need_renderer(struct exchanger *e, struct slot *s,
-                                   const struct exchange_request *q, enum step step)
-{
-    const struct relume_frame_params params = frame_params(e, q);
-    const struct relume_render_params render = {
-        .struct_size = sizeof render,
-        .log = &e->log,
-        .samples = step == ROUGH ? 1 : FINER_ACROSS,
-        .threads = e->source.threads,
-        .transport = q->transport,
-        .transport_samples = q->samples,
-        .bounces = q->bounces,
-    };
-    relume_status status = need_pack(e);
-    if (!status && !s->renderer)
-        status = relume_renderer_create(&s->renderer, e->pack, &params);
-    if (status)
-        return status;
-    relume_renderer_set(s->renderer, &params);
-    if (s->set.transport && same_way(&s->set, q) && s->set_step == step)
-        return RELUME_OK;
-    s->set.transport = NULL;
-    status = relume_renderer_set_objects(s->renderer, e->source.objects, &render);
-    if (!status) {
-        s->set = *q;
-        s->set_step = step;
-    }
-    return status;
-}
-
-static int rougher(int pixels, enum step step)
-{
-    const int fewer = step == ROUGH ? (pixels + ROUGHER - 1) / ROUGHER : pixels;
-    return fewer > 0 ? fewer : 1;
-}
-
-static relume_status draw(struct relume_image *out, struct exchanger *e, struct slot *s,
-                          const struct exchange_request *q, enum step step)
-{
-    struct relume_camera camera = q->camera;
-    camera.width = rougher(camera.width, step);
-    camera.height = rougher(camera.height, step);
-    relume_status status = need_renderer(e, s, q, step);
-    if (!status)
-        status = relume_renderer_set_lights(s->renderer, q->lights, q->count);
-    return status ? status : relume_renderer_frame(out, s->renderer, &camera);
-}
-
 // The slot whose next step is the roughest, or -1.
 static int find_work(const struct exchanger *e)
 {
-    for (int step = ROUGH; step < STEPS && !e->rests; step++)
+    for (int step = EXCHANGE_STEP_ROUGH; step < EXCHANGE_STEPS && !e->rests; step++)
         for (int i = 0; i < EXCHANGER_SLOTS; i++) {
             const struct slot *s = &e->slot[i];
             if (s->wanted.transport && !s->failed && s->next == step && step < end_of(&s->wanted))
@@ -279,8 +153,9 @@ static void hand_over(struct exchanger *e, struct slot *s, struct picture *pictu
 static void work_on(struct exchanger *e, int number)
 {
     struct slot *s = &e->slot[number];
-    struct picture picture = {.step = (enum step)s->next, .serial = s->serial};
-    relume_status status = request_copy(&picture.of, &s->wanted) ? RELUME_OK : RELUME_ENOMEM;
+    struct picture picture = {.step = (enum exchange_step)s->next, .serial = s->serial};
+    relume_status status =
+        exchange_request_copy(&picture.of, &s->wanted) ? RELUME_OK : RELUME_ENOMEM;
     e->working = number;
     e->step = picture.step;
     atomic_store(&e->cancel, false);
@@ -288,7 +163,7 @@ static void work_on(struct exchanger *e, int number)
     pthread_mutex_unlock(&e->lock);
     const double start = now_s();
     if (!status)
-        status = draw(&picture.image, e, s, &picture.of, picture.step);
+        status = exchange_draw(&picture.image, &e->drawer, number, &picture.of, picture.step);
     picture.seconds = now_s() - start;
     pthread_mutex_lock(&e->lock);
     e->working = -1;
@@ -317,12 +192,11 @@ static void release(struct exchanger *e)
 {
     for (int i = 0; i < EXCHANGER_SLOTS; i++) {
         struct slot *s = &e->slot[i];
-        request_forget(&s->wanted);
+        exchange_request_forget(&s->wanted);
         picture_forget(&s->made);
         picture_forget(&s->shown);
-        relume_renderer_destroy(&s->renderer);
     }
-    relume_pack_destroy(&e->pack);
+    exchange_drawer_release(&e->drawer);
     pthread_mutex_destroy(&e->lock);
     pthread_cond_destroy(&e->work);
     pthread_cond_destroy(&e->news);
@@ -335,8 +209,9 @@ relume_status exchanger_create(struct exchanger **out, const struct exchange_sou
     *out = NULL;
     if (!e)
         return RELUME_ENOMEM;
-    e->source = *source;
     e->working = -1;
+    e->to = source->log;
+    e->drawer = (struct exchange_drawer){.source = *source, .log = &e->log};
     e->log = (struct relume_log){.message = keep_sentence,
                                  .progress = go_on,
                                  .user = e,
@@ -372,9 +247,11 @@ void exchanger_destroy(struct exchanger **exchanger)
 // With the lock: whether what is worked at is of no use for the request.
 static bool is_useless(const struct exchanger *e, int slot, const struct exchange_request *q)
 {
+    const struct exchange_request *was = &e->slot[slot].wanted;
     if (e->working != slot)
         return false;
-    return !q || e->step != ROUGH || !same_eye(&e->slot[slot].wanted, q);
+    return !q || e->step != EXCHANGE_STEP_ROUGH || !exchange_same_way(was, q) ||
+           !(e->drawer.source.scene || exchange_same_eye(was, q));
 }
 
 // With the lock. `copy` is taken.
@@ -383,7 +260,7 @@ static void want(struct exchanger *e, int slot, struct exchange_request *copy)
     struct slot *s = &e->slot[slot];
     if (is_useless(e, slot, copy->transport ? copy : NULL))
         atomic_store(&e->cancel, true);
-    request_forget(&s->wanted);
+    exchange_request_forget(&s->wanted);
     s->wanted = *copy;
     s->serial = ++e->serials;
     s->next = first_step(copy);
@@ -397,8 +274,8 @@ relume_status exchanger_ask(struct exchanger *e, int slot, const struct exchange
     struct exchange_request copy = {.transport = NULL};
     relume_status status = RELUME_OK;
     pthread_mutex_lock(&e->lock);
-    const bool same =
-        request ? s->wanted.transport && same_request(&s->wanted, request) : !s->wanted.transport;
+    const bool same = request ? s->wanted.transport && exchange_same_request(&s->wanted, request)
+                              : !s->wanted.transport;
     if (same && request && !e->rests) {
         s->wanted.moves = request->moves;
         s->wanted.waits = request->waits;
@@ -406,7 +283,7 @@ relume_status exchanger_ask(struct exchanger *e, int slot, const struct exchange
             s->next = first_step(&s->wanted);
         pthread_cond_signal(&e->work);
     } else if (!same || request) {
-        if (request && !request_copy(&copy, request))
+        if (request && !exchange_request_copy(&copy, request))
             status = RELUME_ENOMEM;
         else
             want(e, slot, &copy);
@@ -436,10 +313,14 @@ enum exchange_fit exchanger_show(const struct relume_image **image, bool *fresh,
         s->made = (struct picture){.serial = 0};
     }
     const struct picture *p = &s->shown;
-    if (p->image.data && s->wanted.transport && !s->failed && same_eye(&p->of, &s->wanted))
-        fit = p->serial != s->serial ? EXCHANGE_OLDER
-              : p->step == FINE      ? EXCHANGE_FINE
-                                     : EXCHANGE_ROUGH;
+    if (p->image.data && s->wanted.transport && !s->failed) {
+        if (exchange_same_eye(&p->of, &s->wanted))
+            fit = p->serial != s->serial          ? EXCHANGE_OLDER
+                  : p->step == EXCHANGE_STEP_FINE ? EXCHANGE_FINE
+                                                  : EXCHANGE_ROUGH;
+        else if (e->drawer.source.scene)
+            fit = EXCHANGE_ELSEWHERE;
+    }
     pthread_mutex_unlock(&e->lock);
     *image = fit ? &s->shown.image : NULL;
     return fit;
@@ -479,7 +360,7 @@ static void wait_a_while(struct exchanger *e)
 
 relume_status exchanger_wait(struct exchanger *e)
 {
-    const struct relume_log *log = e->source.log;
+    const struct relume_log *log = e->to;
     bool goes_on = true;
     pthread_mutex_lock(&e->lock);
     while (goes_on && (slot_is_busy(e, 0) || slot_is_busy(e, 1))) {
@@ -506,7 +387,7 @@ void exchanger_rest(struct exchanger *e)
     for (int i = 0; i < EXCHANGER_SLOTS; i++) {
         picture_forget(&e->slot[i].made);
         picture_forget(&e->slot[i].shown);
-        request_forget(&e->slot[i].wanted);
+        exchange_request_forget(&e->slot[i].wanted);
     }
     pthread_mutex_unlock(&e->lock);
 }
@@ -529,15 +410,13 @@ void exchanger_state(struct exchange_state *out, struct exchanger *e, int slot)
 
 void exchanger_speak(struct exchanger *e)
 {
-    const struct relume_log *log = e->source.log;
-    char sentence[WORDS];
+    const struct relume_log *log = e->to;
     pthread_mutex_lock(&e->lock);
     while (e->spoken < e->sentences) {
-        const enum relume_level level = e->level[e->spoken];
-        memcpy(sentence, e->sentence[e->spoken++], sizeof sentence);
+        const struct sentence s = e->sentence[e->spoken++];
         pthread_mutex_unlock(&e->lock);
         if (log && log->message)
-            log->message(log->user, level, sentence);
+            log->message(log->user, s.level, s.words);
         pthread_mutex_lock(&e->lock);
     }
     pthread_mutex_unlock(&e->lock);

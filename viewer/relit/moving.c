@@ -151,9 +151,12 @@ static relume_status need_programs(struct moving *m, const struct relume_shadows
     if (m->shadow.id)
         return RELUME_OK;
     snprintf(rays, sizeof rays, "#define RAYS %d\n", (int)s->rays);
-    m->gl->GenFramebuffers(1, &m->framebuffer);
-    relume_status status = program_create_variant(&m->trace, m->gl, "moving_trace.frag", rays,
-                                                  trace_uniforms, TRACE_COUNT, m->log);
+    if (!m->framebuffer)
+        m->gl->GenFramebuffers(1, &m->framebuffer);
+    relume_status status = m->trace.id
+                               ? RELUME_OK
+                               : program_create_variant(&m->trace, m->gl, "moving_trace.frag", rays,
+                                                        trace_uniforms, TRACE_COUNT, m->log);
     if (!status)
         status = program_create(&m->shadow, m->gl, "moving_shadow.frag", shadow_uniforms,
                                 SHADOW_COUNT, m->log);

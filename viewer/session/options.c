@@ -92,7 +92,7 @@ static const struct option options[] = {
     INT("--view", start.camera.view, "N", "the captured view N itself (panoramas: unfolded)", 0,
         65535),
     POINT("--eye", start.camera.eye, "x,y,z",
-          "slab: look from there; default: the middle of the cameras"),
+          "slab, scene file: look from there; default: the middle of the cameras, the file's eye"),
     POINT("--look-at", start.camera.look_at.at, "x,y,z",
           "--eye: the point looked at; default: the middle of the object"),
     POINT("--up", start.camera.look_at.up, "x,y,z",
@@ -133,9 +133,8 @@ static const struct option options[] = {
     TEXT("--reflections", objects.reflections, "FILE",
          "what their mirrors shall reflect where (docs/reflections.md)"),
     OWN("--transport", transport, "NAME",
-        "--objects: how light goes between them and the scene: none (default), ssao, ssdo, path, "
-        "... "
-        "(docs/transport.md)",
+        "--objects, scene files: how light goes between them and the scene: none (default), ssao, "
+        "ssdo, path, ... (docs/transport.md)",
         take_transport),
     INT("--bounces", bounces, "N", "--transport: of light off objects; default: 2", 0, 16),
     INT("--samples", samples, "N", "--transport: directions that light is gathered from at a pixel",
@@ -216,8 +215,8 @@ void options_help(void)
     puts("usage: relume-view [FILE] [OPTION ...]\n\n"
          "Look at a relume file in a window, under any light and from other viewpoints; at a "
          "measured\n"
-         "material on a mesh, or on a cushion; at a folder of maps. Without FILE the window says "
-         "how to open one.\n\n"
+         "material on a mesh, or on a cushion; at a scene file; at a folder of maps. Without FILE\n"
+         "the window says how to open one.\n\n"
          "options:");
     options_print(options, NULL, 22);
     puts("\n"
@@ -243,7 +242,7 @@ void options_help(void)
         "        click X Y             press, release left|right X Y    move X Y\n"
         "        key K                 hold K, let K                    type TEXT\n"
         "        light SPEC            add SPEC                         rig FILE\n"
-        "        open FILE: another relume file, objects, maps, or a material\n"
+        "        open FILE: another relume file, objects, a scene, maps, or a material\n"
         "        edit OPERATION VALUE ...: materials and maps, as relume btf edit; edit undo|redo\n"
         "        reflection on|off|tool T|choose K N|radius R|border P|delete|undo|redo|freeze\n"
         "        reflection unfreeze|view|distance straight|geodesic, reflection save [FILE]\n"
@@ -281,7 +280,13 @@ void options_release(struct options *o)
 static relume_status choose_objects(struct options *o, const struct relume_log *log)
 {
     struct session_objects *w = &o->objects;
-    if (o->file && session_is_description(o->file) && !w->description && !w->mesh) {
+    const bool scene = o->file && session_is_scene(o->file);
+    if (scene && (w->description || w->mesh || w->materials || w->reflections))
+        return say(log, RELUME_EINVAL,
+                   "%s: a scene file has objects of its own; leave out --objects, --mesh, "
+                   "--material and --reflections",
+                   o->file);
+    if (o->file && !scene && session_is_description(o->file) && !w->description && !w->mesh) {
         w->description = o->file;
         o->file = NULL;
     } else if (o->file && !w->materials && (w->mesh || session_is_material(o->file))) {
@@ -308,11 +313,12 @@ static relume_status choose_way(struct options *o, const struct command_line *li
                                 const struct relume_log *log)
 {
     const bool bounces = option_given(line, &o->bounces);
-    const bool in_scene = o->file && (o->objects.description || o->objects.mesh);
+    const bool in_scene =
+        o->file && (o->objects.description || o->objects.mesh || session_is_scene(o->file));
     if ((o->transport || bounces || o->samples) && !in_scene)
         return say(log, RELUME_EINVAL,
                    "--transport, --bounces and --samples work only with objects in a scene; open a "
-                   "FILE with --objects FILE");
+                   "FILE with --objects FILE, or a scene file");
     for (int i = 0; o->transport && i < way_count(); i++)
         o->start.way = relume_transports[i] == o->transport ? i : o->start.way;
     o->start.way_samples = o->samples;

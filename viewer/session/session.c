@@ -162,6 +162,7 @@ void session_close_file(struct session *s)
     relume_slab_set_destroy(&s->stage);
     relume_maps_destroy(&s->found);
     s->beside_warned = false;
+    s->scene = false;
 }
 
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
@@ -172,6 +173,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
     struct app app;
     if (!path)
         return s->objects ? session_open_stage(s, start) : session_open_nothing(s, start);
+    if (session_is_scene(path))
+        return session_open_scene(s, path, start);
     if (session_is_maps(path))
         return session_open_maps(s, path, start);
     if (session_is_objects(path))
@@ -186,6 +189,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     status = find_slabs(&around, pack, relume_look_at_given(&start->camera.look_at), s->log);
     file.around = around;
     file.objects = s->objects;
+    file.between = s->objects != NULL;
     if (!status)
         status = app_start(&app, &file, start, look_ahead, s->log);
     if (!status)
@@ -238,6 +242,8 @@ static relume_status make_renderer(struct session *s)
     }
     if (s->found.width)
         return session_make_maps(s);
+    if (s->scene)
+        return session_make_scene(s);
     if (!s->pack)
         return session_make_stage(s);
     const struct relume_pack_info *info = relume_pack_info(s->pack);

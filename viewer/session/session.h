@@ -55,6 +55,7 @@ struct session {
     char found_path[APP_SPEC];      // it
     char edits[1024];               // of material or maps (session_can_edit), for the panel
     int edited_materials;           // that it has with them
+    bool scene;                     // it is a scene file, on a stage
     relume_slab_set *stage;         // what the eye goes around there
     relume_slab_set *around;        // of it, where there are several
     struct pack_source *source;     // of it, for the renderer and its threads
@@ -133,6 +134,12 @@ bool session_is_maps(const char *path);
 relume_status session_open_maps(struct session *s, const char *path, const struct app_state *start);
 // The renderer of one. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status session_make_maps(struct session *s);
+// For session_open: a scene file (relume/tableau.h), under its own lights where none are named.
+// RELUME_EINVAL with a sentence, errors of relume_tableau_open. Then the renderer of one.
+bool session_is_scene(const char *path);
+relume_status session_open_scene(struct session *s, const char *path,
+                                 const struct app_state *start);
+relume_status session_make_scene(struct session *s);
 // The name of what is shown, for the title.
 void session_set_name(struct session *s, const char *path);
 // The renderer of a stage, and objects in the renderer of a file. RELUME_ESYSTEM, RELUME_ENOMEM.
@@ -245,5 +252,7 @@ relume_status session_save_rig(struct session *s, const char *path);
 // Begin with the lights of `rig`, which becomes the session's; NULL: none. RELUME_EINVAL when there
 // are more than APP_LIGHTS, RELUME_ENOMEM.
 relume_status session_take_rig(struct session *s, relume_rig **rig, struct app_state *start);
+// The lights of a rig at the end of a list; their files belong to the session. The same errors.
+relume_status session_append_lights(struct session *s, struct app_state *to, const relume_rig *rig);
 
 #endif

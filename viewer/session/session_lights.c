@@ -97,6 +97,26 @@ const char *session_map_in_use(const struct session *s)
                : NULL;
 }
 
+static relume_status add_rig(const struct session *s, const relume_rig *rig)
+{
+    const int first = relume_rig_count(s->rig);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < relume_rig_count(rig); i++) {
+        const struct relume_rig_entry *e = relume_rig_entry(rig, i);
+        status = relume_rig_add(s->rig, e->spec, NULL, s->log);
+        if (!status)
+            status = relume_rig_set(s->rig, first + i, e, s->log);
+    }
+    return status;
+}
+
+relume_status session_append_lights(struct session *s, struct app_state *to, const relume_rig *rig)
+{
+    const int first = relume_rig_count(s->rig);
+    const relume_status status = add_rig(s, rig);
+    return status ? status : append_entries(s, to, first);
+}
+
 // Its files stay with the session's own rig, which lights that were there before still need.
 relume_status session_load_rig(struct session *s, const char *path)
 {
@@ -106,12 +126,8 @@ relume_status session_load_rig(struct session *s, const char *path)
     saves.leave_unnoted = true;  // lights may be saved where they came from
     relume_rig *loaded;
     relume_status status = relume_rig_load(&loaded, path, &saves);
-    for (int i = 0; !status && i < relume_rig_count(loaded); i++) {
-        const struct relume_rig_entry *e = relume_rig_entry(loaded, i);
-        status = relume_rig_add(s->rig, e->spec, NULL, s->log);
-        if (!status)
-            status = relume_rig_set(s->rig, first + i, e, s->log);
-    }
+    if (!status)
+        status = add_rig(s, loaded);
     if (!status)
         status = check_near(s, first);
     if (!status && relume_rig_count(loaded) > APP_LIGHTS)

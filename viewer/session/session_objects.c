@@ -145,8 +145,7 @@ static void fit_view(struct relume_camera *camera, const struct session *s)
 relume_status session_open_stage(struct session *s, const struct app_state *start)
 {
     const struct relume_objects_info *info = relume_objects_info(s->objects);
-    struct app_file file = {
-        .width = SIDE, .height = SIDE, .views = 1, .objects = s->objects, .stage = true};
+    struct app_file file = {.width = SIDE, .height = SIDE, .views = 1, .objects = s->objects};
     struct app_state from = *start;
     struct relume_vec3 eye;
     relume_slab_set *stage;

@@ -110,7 +110,9 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
 {
     struct app_event e = at_cursor(handle, action == GLFW_RELEASE ? APP_KEY_UP : APP_KEY_DOWN);
     e.key = key_letter(key, scancode);
-    if (mods & GLFW_MOD_CONTROL && e.key >= 'a' && e.key <= 'z')
+    const bool letter = e.key >= 'a' && e.key <= 'z';
+    const bool arrow = e.key >= APP_KEY_LEFT && e.key <= APP_KEY_DOWN_ARROW;
+    if (mods & GLFW_MOD_CONTROL && (letter || arrow))
         e.key |= APP_CONTROL;
     e.repeat = action == GLFW_REPEAT;
     if (e.key)

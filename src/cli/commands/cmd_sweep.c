@@ -373,20 +373,36 @@ static relume_status measure_apart(struct work *w, struct sweep_row **rows, int 
     return status;
 }
 
-static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
-                                  struct listener *l)
+// What rows of one basis have in common is measured once: before and after storing.
+static relume_status measure_heldout(struct work *w, struct sweep_row **rows, int n,
+                                     struct listener *l)
 {
-    struct relume_heldout_store store[MOST_ROWS];
-    struct relume_heldout_quality before, after[MOST_ROWS];
+    struct relume_heldout_store *store = calloc((size_t)n, sizeof *store);
+    struct relume_heldout_quality before, *after = calloc((size_t)n, sizeof *after);
     const struct relume_coder_params params = coder_params(rows[0], &l->parts);
-    for (int i = 0; i < n; i++) {
+    relume_status status = store && after ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < n; i++) {
         rows[i]->books.log = &l->inner;
         store[i] = rows[i]->store;
         store[i].books = rows[i]->books.codes ? &rows[i]->books : NULL;
     }
+    if (!status)
+        status =
+            relume_heldout_measure(w->heldout, rows[0]->basis, &params, store, n, &before, after);
+    for (int i = 0; !status && i < n; i++) {
+        rows[i]->before_db = before.psnr_db;
+        rows[i]->quality = after[i];
+    }
+    free(store);
+    free(after);
+    return status;
+}
+
+static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
+                                  struct listener *l)
+{
     l->extent *= 0.9;
-    relume_status status =
-        relume_heldout_measure(w->heldout, rows[0]->basis, &params, store, n, &before, after);
+    relume_status status = measure_heldout(w, rows, n, l);
     if (is_skipped(status) && n > 1)
         return measure_apart(w, rows, n, l);
     if (is_skipped(status))
@@ -399,8 +415,6 @@ static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n
     l->extent /= 9.0 * n;
     const relume_status learnt = learn(&coder, &seconds, w, rows[0], &l->inner);
     for (int i = 0; !status && i < n; i++, l->first += l->extent) {
-        rows[i]->before_db = before.psnr_db;
-        rows[i]->quality = after[i];
         status = learnt ? learnt : encode_row(w, rows[i], coder, &l->log);
         rows[i]->seconds += seconds;
         if (is_skipped(status)) {

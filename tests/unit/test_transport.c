@@ -226,8 +226,8 @@ static void a_furnace_lights_what_is_translucent(void **state)
     relume_objects *o =
         place_ball_of("{\"translucent\":{\"preset\":\"spectralon\",\"scale_mm\":100}}");
     static const char *const ways[] = {"ssao", "ssdo", "ism", "radiosity", "path"};
-    for (int way = 0; way < 5; way++) {
-        struct relume_image got = with_ball(pack, o, ways[way], &light, 64, 8);
+    for (int way = 0; way < 5; way += TEST_SANITIZED ? 4 : 1) {
+        struct relume_image got = with_ball(pack, o, ways[way], &light, way < 2 ? 16 : 64, 8);
         const struct relume_vec3 to = {ball[0], ball[1], ball[2]};
         float found = 0.0f;
         double nearest = 0.0;

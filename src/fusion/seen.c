@@ -77,6 +77,34 @@ static void keep(struct relume_mesh *m, const bool *seen, uint32_t *number)
     m->triangle_count = triangles;
 }
 
+// Normals of what is left, from its triangles, each by its area: beside what nobody sees the
+// gradient says nothing.
+static void smooth(struct relume_mesh *m)
+{
+    memset(m->normal, 0, m->vertex_count * sizeof *m->normal);
+    for (size_t i = 0; i < m->triangle_count; i++) {
+        const uint32_t *v = m->triangle[i];
+        float a[3], b[3];
+        for (int c = 0; c < 3; c++) {
+            a[c] = m->position[v[1]][c] - m->position[v[0]][c];
+            b[c] = m->position[v[2]][c] - m->position[v[0]][c];
+        }
+        for (int c = 0; c < 3; c++) {
+            const int d = (c + 1) % 3, e = (c + 2) % 3;
+            for (int k = 0; k < 3; k++)
+                m->normal[v[k]][c] += a[d] * b[e] - a[e] * b[d];
+        }
+    }
+    for (size_t i = 0; i < m->vertex_count; i++) {
+        const vec3 n =
+            vec3_of((double)m->normal[i][0], (double)m->normal[i][1], (double)m->normal[i][2]);
+        const vec3 unit = vec3_length(n) > 0.0 ? vec3_unit(n) : vec3_of(0, 0, 1);
+        m->normal[i][0] = (float)unit.x;
+        m->normal[i][1] = (float)unit.y;
+        m->normal[i][2] = (float)unit.z;
+    }
+}
+
 relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct sight *sight,
                         int sights, double near, int threads)
 {
@@ -88,6 +116,7 @@ relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct
     if (good) {
         thread_for(threads, (mesh->vertex_count + CHUNK - 1) / CHUNK, look_chunk, &k);
         keep(mesh, k.seen, number);
+        smooth(mesh);
         *left_out = before - mesh->triangle_count;
     }
     mem_free(k.seen);

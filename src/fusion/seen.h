@@ -8,8 +8,8 @@
 #include <relume/renderer.h>
 
 // Leave out triangles with a vertex that lies farther than `near` from what any view sees, or which
-// no view sees from its front, and vertices that are left without. `*left_out` counts triangles.
-// RELUME_ENOMEM.
+// no view sees from its front, and vertices that are left without; normals are made anew.
+// `*left_out` counts triangles. RELUME_ENOMEM.
 relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct sight *sight,
                         int sights, double near, int threads);
 // Colours of vertices: the mean of what relit views show, of those more that see it from before.

@@ -25,18 +25,19 @@ static int compare(const void *a, const void *b)
 static double median_step(const struct field *f, float step[MOST_STEPS])
 {
     size_t count = 0, pixels = 0;
-    for (int i = 0; i < f->sights; i++)
-        pixels += (size_t)f->sight[i].depth.width * (size_t)f->sight[i].depth.height;
+    for (int i = 0; i < f->witnesses; i++)
+        pixels += (size_t)f->witness[i].depth.width * (size_t)f->witness[i].depth.height;
     const size_t every = pixels / MOST_STEPS + 1;
     size_t at = 0;
-    for (int i = 0; i < f->sights; i++) {
-        const struct sight *s = &f->sight[i];
+    for (int i = 0; i < f->witnesses; i++) {
+        const struct witness *s = &f->witness[i];
         const size_t own = (size_t)s->depth.width * (size_t)s->depth.height;
         for (; at < own && count < MOST_STEPS; at += every) {
             const int x = (int)(at % (size_t)s->depth.width),
                       y = (int)(at / (size_t)s->depth.width);
             vec3 a, b;
-            if (x + 1 < s->depth.width && sight_place(&a, s, x, y) && sight_place(&b, s, x + 1, y))
+            if (x + 1 < s->depth.width && witness_place(&a, s, x, y) &&
+                witness_place(&b, s, x + 1, y))
                 step[count++] = (float)vec3_length(vec3_sub(b, a));
         }
         at = at > own ? at - own : 0;
@@ -50,10 +51,10 @@ static bool find_bounds(const struct field *f, vec3 *low, vec3 *high)
     vec3 p;
     *low = vec3_of(INFINITY, INFINITY, INFINITY);
     *high = vec3_scale(*low, -1.0);
-    for (int i = 0; i < f->sights; i++)
-        for (int y = 0; y < f->sight[i].depth.height; y++)
-            for (int x = 0; x < f->sight[i].depth.width; x++)
-                if (sight_place(&p, &f->sight[i], x, y)) {
+    for (int i = 0; i < f->witnesses; i++)
+        for (int y = 0; y < f->witness[i].depth.height; y++)
+            for (int x = 0; x < f->witness[i].depth.width; x++)
+                if (witness_place(&p, &f->witness[i], x, y)) {
                     *low = vec3_of(fmin(low->x, p.x), fmin(low->y, p.y), fmin(low->z, p.z));
                     *high = vec3_of(fmax(high->x, p.x), fmax(high->y, p.y), fmax(high->z, p.z));
                 }
@@ -89,13 +90,13 @@ struct fusing {
     uint8_t *near;  // [blocks]
 };
 
-static void mark_row(struct fusing *k, const struct sight *s, int y)
+static void mark_row(struct fusing *k, const struct witness *s, int y)
 {
     const struct field *f = k->f;
     for (int x = 0; x < s->depth.width; x++) {
         vec3 p;
         int from[3], to[3];
-        if (!sight_place(&p, s, x, y))
+        if (!witness_place(&p, s, x, y))
             continue;
         const double at[3] = {p.x - f->origin.x, p.y - f->origin.y, p.z - f->origin.z};
         for (int c = 0; c < 3; c++) {
@@ -119,7 +120,7 @@ static void mark_view(void *context, size_t view, int worker)
 {
     (void)worker;
     struct fusing *k = context;
-    const struct sight *s = &k->f->sight[view];
+    const struct witness *s = &k->f->witness[view];
     for (int y = 0; y < s->depth.height; y++)
         mark_row(k, s, y);
 }
@@ -132,9 +133,9 @@ static uint16_t value_at(const struct field *f, vec3 place)
 {
     const double band = FIELD_BAND * f->voxel;
     double sum = 0.0, weights = 0.0;
-    for (int i = 0; i < f->sights; i++) {
+    for (int i = 0; i < f->witnesses; i++) {
         struct sighting s;
-        if (!sight_look(&s, &f->sight[i], place, band) || s.distance > band)
+        if (!witness_ask(&s, &f->witness[i], place, band) || s.distance > band)
             continue;
         const double weight = s.cosine * s.cosine;
         sum += weight * fmax(s.distance / band, -1.0);
@@ -196,7 +197,7 @@ relume_status field_fuse(struct field *f, const struct relume_volume_params *par
     k.near = mem_zeroed(blocks, 1);
     if (!k.near)
         return RELUME_ENOMEM;
-    thread_for(f->threads, (size_t)f->sights, mark_view, &k);
+    thread_for(f->threads, (size_t)f->witnesses, mark_view, &k);
     thread_for(f->threads, (size_t)k.blocks[2], fuse_layer, &k);
     mem_free(k.near);
     f->volume->min = 0.0f;

@@ -2,7 +2,7 @@
 #ifndef FUSION_FIELD_H
 #define FUSION_FIELD_H
 
-#include "fusion/sight.h"
+#include "fusion/witness.h"
 #include "volume/volume.h"
 
 // Inside is at least this, as samples of 16 bits say it: between -1 and 1 times the band.
@@ -12,8 +12,8 @@
 enum { FIELD_BAND = 3 };
 
 struct field {
-    const struct sight *sight;
-    int sights;
+    const struct witness *witness;
+    int witnesses;
     double voxel;
     vec3 origin;  // of the first sample
     int size[3];

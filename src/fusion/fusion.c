@@ -29,8 +29,8 @@ static const struct relume_light around[] = {DISTANT(1, 0, 0, 0.5f), DISTANT(-1,
 // What surfaces may be off by and still be what a view sees, in voxels.
 static const double NEAR = 1.5;
 
-static relume_status open_sight(struct sight *out, relume_pack *pack, int view,
-                                const struct relume_fusion_params *p)
+static relume_status open_witness(struct witness *out, relume_pack *pack, int view,
+                                  const struct relume_fusion_params *p)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     struct relume_image depth;
@@ -48,19 +48,19 @@ static relume_status open_sight(struct sight *out, relume_pack *pack, int view,
         relume_image_destroy(&depth);
         return log_fail(p->log, RELUME_EUNFIT, "view %d has no depth", view);
     }
-    return sight_create(out, &camera, &depth, p->farthest > 0.0 ? p->farthest : (double)INFINITY,
-                        thread_count(p->threads));
+    return witness_create(out, &camera, &depth, p->farthest > 0.0 ? p->farthest : (double)INFINITY,
+                          thread_count(p->threads));
 }
 
-static relume_status open_sights(struct sight *sight, relume_pack *pack,
-                                 const struct relume_fusion_params *p)
+static relume_status open_witnesses(struct witness *witness, relume_pack *pack,
+                                    const struct relume_fusion_params *p)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     const uint64_t bytes =
         (uint64_t)info->views * (uint64_t)info->width * (uint64_t)info->height * 8;
     relume_status status = limits_memory(bytes, "the depth of all views", p->log);
     for (int i = 0; i < info->views && !status; i++) {
-        status = open_sight(&sight[i], pack, i, p);
+        status = open_witness(&witness[i], pack, i, p);
         if (!status && !log_progress(p->log, "depth", (i + 1.0) / info->views))
             status = RELUME_ECANCEL;
     }
@@ -76,10 +76,11 @@ static void move(struct relume_mesh *m, vec3 origin)
 }
 
 static relume_status fuse(struct relume_mesh *out, struct relume_fusion_report *report,
-                          const struct sight *sight, int sights,
+                          const struct witness *witness, int witnesses,
                           const struct relume_fusion_params *p)
 {
-    struct field f = {.sight = sight, .sights = sights, .threads = thread_count(p->threads)};
+    struct field f = {
+        .witness = witness, .witnesses = witnesses, .threads = thread_count(p->threads)};
     relume_status status = field_plan(&f, p->voxel, p->log);
     if (!status)
         status = field_fuse(&f, relume_volume_params(.log = p->log, .limits = p->limits,
@@ -96,11 +97,12 @@ static relume_status fuse(struct relume_mesh *out, struct relume_fusion_report *
     report->voxel = f.voxel;
     for (int c = 0; c < 3; c++)
         report->size[c] = f.size[c];
-    return seen_keep(out, &report->unseen, sight, sights, NEAR * f.voxel, f.threads);
+    return seen_keep(out, &report->unseen, witness, witnesses, NEAR * f.voxel, f.threads);
 }
 
-static relume_status colour(struct relume_mesh *mesh, relume_pack *pack, const struct sight *sight,
-                            double voxel, const struct relume_fusion_params *p)
+static relume_status colour(struct relume_mesh *mesh, relume_pack *pack,
+                            const struct witness *witness, double voxel,
+                            const struct relume_fusion_params *p)
 {
     relume_renderer *renderer;
     relume_status status = relume_renderer_create(
@@ -112,23 +114,23 @@ static relume_status colour(struct relume_mesh *mesh, relume_pack *pack, const s
         status =
             relume_renderer_set_lights(renderer, panorama ? around : frontal, panorama ? 6 : 1);
     if (!status)
-        status = seen_colour(mesh, renderer, sight, relume_pack_info(pack)->views, NEAR * voxel,
+        status = seen_colour(mesh, renderer, witness, relume_pack_info(pack)->views, NEAR * voxel,
                              thread_count(p->threads));
     relume_renderer_destroy(&renderer);
     return status;
 }
 
 static relume_status work(struct relume_mesh *out, struct relume_fusion_report *report,
-                          relume_pack *pack, struct sight *sight,
+                          relume_pack *pack, struct witness *witness,
                           const struct relume_fusion_params *p)
 {
     const double start = seconds();
-    relume_status status = open_sights(sight, pack, p);
+    relume_status status = open_witnesses(witness, pack, p);
     if (!status)
-        status = fuse(out, report, sight, relume_pack_info(pack)->views, p);
+        status = fuse(out, report, witness, relume_pack_info(pack)->views, p);
     report->seconds = seconds() - start;
     if (!status && !p->no_colours && out->vertex_count)
-        status = colour(out, pack, sight, report->voxel, p);
+        status = colour(out, pack, witness, report->voxel, p);
     return status;
 }
 
@@ -144,11 +146,11 @@ relume_status relume_fusion(struct relume_mesh *out, struct relume_fusion_report
                         "no depth; expected a file of a capture with depth maps");
     if (!(p.voxel >= 0.0 && p.farthest >= 0.0) || isinf(p.voxel))
         return log_fail(p.log, RELUME_EINVAL, "voxels of %g; expected a size above 0", p.voxel);
-    struct sight *sight = mem_zeroed((size_t)info->views, sizeof *sight);
-    relume_status status = sight ? work(out, &own, pack, sight, &p) : RELUME_ENOMEM;
-    for (int i = 0; sight && i < info->views; i++)
-        sight_destroy(&sight[i]);
-    mem_free(sight);
+    struct witness *witness = mem_zeroed((size_t)info->views, sizeof *witness);
+    relume_status status = witness ? work(out, &own, pack, witness, &p) : RELUME_ENOMEM;
+    for (int i = 0; witness && i < info->views; i++)
+        witness_destroy(&witness[i]);
+    mem_free(witness);
     if (status)
         relume_mesh_free(out);
     if (report)

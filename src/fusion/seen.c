@@ -11,8 +11,8 @@ enum { CHUNK = 4096 };
 
 struct looking {
     struct relume_mesh *mesh;
-    const struct sight *sight;
-    int sights;
+    const struct witness *witness;
+    int witnesses;
     double near;
     bool *seen;
     // of colours
@@ -21,7 +21,7 @@ struct looking {
 };
 
 // How well a view sees a vertex: the cosine at its normal, squared; 0: not at all.
-static double weight_of(struct sighting *at, const struct looking *k, const struct sight *s,
+static double weight_of(struct sighting *at, const struct looking *k, const struct witness *s,
                         size_t vertex)
 {
     // from the side nobody sees much, and walls beside what is seen begin
@@ -29,7 +29,7 @@ static double weight_of(struct sighting *at, const struct looking *k, const stru
     const double SLANTED = 2.0;  // where depth ends nobody knows how slanted it is
     const float *p = k->mesh->position[vertex], *n = k->mesh->normal[vertex];
     const vec3 place = vec3_of((double)p[0], (double)p[1], (double)p[2]);
-    if (!sight_look(at, s, place, k->near) || !(fabs(at->distance) <= k->near) ||
+    if (!witness_ask(at, s, place, k->near) || !(fabs(at->distance) <= k->near) ||
         !(fabs(at->along) <= SLANTED * k->near))
         return 0.0;
     const struct camera_ray ray = camera_ray_at(&s->camera, at->xy[0], at->xy[1]);
@@ -46,8 +46,8 @@ static void look_chunk(void *context, size_t chunk, int worker)
     for (size_t i = chunk * CHUNK; i < end && i < k->mesh->vertex_count; i++) {
         struct sighting at;
         k->seen[i] = false;
-        for (int s = 0; s < k->sights && !k->seen[i]; s++)
-            k->seen[i] = weight_of(&at, k, &k->sight[s], i) > 0.0;
+        for (int s = 0; s < k->witnesses && !k->seen[i]; s++)
+            k->seen[i] = weight_of(&at, k, &k->witness[s], i) > 0.0;
     }
 }
 
@@ -105,10 +105,10 @@ static void smooth(struct relume_mesh *m)
     }
 }
 
-relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct sight *sight,
-                        int sights, double near, int threads)
+relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct witness *witness,
+                        int witnesses, double near, int threads)
 {
-    struct looking k = {.mesh = mesh, .sight = sight, .sights = sights, .near = near};
+    struct looking k = {.mesh = mesh, .witness = witness, .witnesses = witnesses, .near = near};
     const size_t before = mesh->triangle_count;
     k.seen = mem_array(mesh->vertex_count, sizeof *k.seen);
     uint32_t *number = mem_array(mesh->vertex_count, sizeof *number);
@@ -134,7 +134,7 @@ static void sum_chunk(void *context, size_t chunk, int worker)
     const size_t end = (chunk + 1) * CHUNK;
     for (size_t i = chunk * CHUNK; i < end && i < k->mesh->vertex_count; i++) {
         struct sighting at;
-        const float weight = (float)weight_of(&at, k, k->sight, i);
+        const float weight = (float)weight_of(&at, k, k->witness, i);
         if (!(weight > 0.0f))
             continue;
         const size_t x = (size_t)at.xy[0], y = (size_t)at.xy[1];
@@ -166,7 +166,7 @@ static uint8_t code_of(float linear)
 }
 
 relume_status seen_colour(struct relume_mesh *mesh, relume_renderer *renderer,
-                          const struct sight *sight, int sights, double near, int threads)
+                          const struct witness *witness, int witnesses, double near, int threads)
 {
     struct looking k = {.mesh = mesh, .near = near};
     relume_status status = RELUME_OK;
@@ -174,8 +174,8 @@ relume_status seen_colour(struct relume_mesh *mesh, relume_renderer *renderer,
     mesh->colour = mem_array(mesh->vertex_count, sizeof *mesh->colour);
     if (!k.sum || !mesh->colour)
         status = RELUME_ENOMEM;
-    for (int i = 0; i < sights && !status; i++) {
-        k.sight = &sight[i];
+    for (int i = 0; i < witnesses && !status; i++) {
+        k.witness = &witness[i];
         status = sum_view(&k, renderer, i, threads);
     }
     for (size_t i = 0; i < mesh->vertex_count && !status; i++) {

@@ -2,7 +2,7 @@
 #ifndef FUSION_SEEN_H
 #define FUSION_SEEN_H
 
-#include "fusion/sight.h"
+#include "fusion/witness.h"
 
 #include <relume/mesh.h>
 #include <relume/renderer.h>
@@ -10,11 +10,11 @@
 // Leave out triangles with a vertex that lies farther than `near` from what any view sees, or which
 // no view sees from its front, and vertices that are left without; normals are made anew.
 // `*left_out` counts triangles. RELUME_ENOMEM.
-relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct sight *sight,
-                        int sights, double near, int threads);
+relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct witness *witness,
+                        int witnesses, double near, int threads);
 // Colours of vertices: the mean of what relit views show, of those more that see it from before.
 // Errors of relume_renderer_frame, RELUME_ENOMEM.
 relume_status seen_colour(struct relume_mesh *mesh, relume_renderer *renderer,
-                          const struct sight *sight, int sights, double near, int threads);
+                          const struct witness *witness, int witnesses, double near, int threads);
 
 #endif

@@ -88,10 +88,10 @@ static double off(vec3 p, bool room)
     return room ? fabs(r - ROOM) : fmin(fabs(r - BALL), fabs(p.z - WALL));
 }
 
-static struct sight sight_of(const struct camera *c, bool room, int hole)
+static struct witness witness_of(const struct camera *c, bool room, int hole)
 {
     struct relume_image depth;
-    struct sight s;
+    struct witness s;
     assert_int_equal(relume_image_create(&depth, c->width, c->height, 1), RELUME_OK);
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++) {
@@ -99,7 +99,7 @@ static struct sight sight_of(const struct camera *c, bool room, int hole)
             const bool gone = abs(x - c->width / 2) < hole && abs(y - c->height / 2) < hole;
             depth.data[y * c->width + x] = gone ? NAN : (float)scene_depth(&ray, room);
         }
-    assert_int_equal(sight_create(&s, c, &depth, (double)INFINITY, 1), RELUME_OK);
+    assert_int_equal(witness_create(&s, c, &depth, (double)INFINITY, 1), RELUME_OK);
     return s;
 }
 
@@ -109,9 +109,9 @@ struct fused {
     double voxel;
 };
 
-static struct fused fuse(const struct sight *sight, int sights, int block, int threads)
+static struct fused fuse(const struct witness *witness, int witnesses, int block, int threads)
 {
-    struct field f = {.sight = sight, .sights = sights, .threads = threads};
+    struct field f = {.witness = witness, .witnesses = witnesses, .threads = threads};
     struct fused out = {.left_out = 0};
     assert_int_equal(field_plan(&f, 0.0, NULL), RELUME_OK);
     assert_int_equal(field_fuse(&f, relume_volume_params(.spacing = {f.voxel, f.voxel, f.voxel})),
@@ -125,8 +125,8 @@ static struct fused fuse(const struct sight *sight, int sights, int block, int t
         out.mesh.position[i][1] += (float)f.origin.y;
         out.mesh.position[i][2] += (float)f.origin.z;
     }
-    assert_int_equal(seen_keep(&out.mesh, &out.left_out, sight, sights, 1.5 * f.voxel, threads),
-                     RELUME_OK);
+    assert_int_equal(
+        seen_keep(&out.mesh, &out.left_out, witness, witnesses, 1.5 * f.voxel, threads), RELUME_OK);
     out.voxel = f.voxel;
     relume_volume_destroy(&f.volume);
     return out;
@@ -160,50 +160,50 @@ static void expect_near(const struct fused *f, bool room, double mean, double mo
 
 enum { VIEWS = 9 };
 
-static void make_slab(struct sight sight[VIEWS], int hole)
+static void make_slab(struct witness witness[VIEWS], int hole)
 {
     for (int i = 0; i < VIEWS; i++) {
         const struct camera c = {.geometry = relume_geometry_default(RELUME_SLAB, 72, 72),
                                  .width = 72,
                                  .height = 72,
                                  .uv = {0.5 * (i % 3 - 1), 0.5 * (i / 3 - 1)}};
-        sight[i] = sight_of(&c, false, hole);
+        witness[i] = witness_of(&c, false, hole);
     }
 }
 
-static void free_slab(struct sight sight[VIEWS])
+static void free_slab(struct witness witness[VIEWS])
 {
     for (int i = 0; i < VIEWS; i++)
-        sight_destroy(&sight[i]);
+        witness_destroy(&witness[i]);
 }
 
 static void test_a_slab_of_a_ball_and_a_wall(void **state)
 {
     (void)state;
-    struct sight sight[VIEWS];
-    make_slab(sight, 0);
+    struct witness witness[VIEWS];
+    make_slab(witness, 0);
     for (int block = 1; block <= 4; block *= 4) {
-        struct fused f = fuse(sight, VIEWS, block, 2);
+        struct fused f = fuse(witness, VIEWS, block, 2);
         expect_near(&f, false, block == 1 ? 0.08 : 0.12, 3.0);
         assert_true(f.left_out > 0);  // where the wall lies in the ball's shadow
         relume_mesh_free(&f.mesh);
     }
-    struct fused one = fuse(sight, VIEWS, 2, 1), other = fuse(sight, VIEWS, 2, 5);
+    struct fused one = fuse(witness, VIEWS, 2, 1), other = fuse(witness, VIEWS, 2, 5);
     assert_int_equal(one.mesh.triangle_count, other.mesh.triangle_count);
     assert_memory_equal(one.mesh.position, other.mesh.position,
                         one.mesh.vertex_count * sizeof *one.mesh.position);
     relume_mesh_free(&one.mesh);
     relume_mesh_free(&other.mesh);
-    free_slab(sight);
+    free_slab(witness);
 }
 
 // Normals point to the eye: out of the ball's front, and from the wall to +z.
 static void test_normals_point_to_the_eyes(void **state)
 {
     (void)state;
-    struct sight sight[VIEWS];
-    make_slab(sight, 0);
-    struct fused f = fuse(sight, VIEWS, 1, 2);
+    struct witness witness[VIEWS];
+    make_slab(witness, 0);
+    struct fused f = fuse(witness, VIEWS, 1, 2);
     double least = 1.0;
     for (size_t i = 0; i < f.mesh.vertex_count; i++) {
         const vec3 p = vertex(&f.mesh, i);
@@ -217,16 +217,16 @@ static void test_normals_point_to_the_eyes(void **state)
     if (!(least > 0.95))
         fail_msg("a normal is off by a cosine of %.3f", least);
     relume_mesh_free(&f.mesh);
-    free_slab(sight);
+    free_slab(witness);
 }
 
 // What one view does not know others see; what nobody knows is a hole, not a surface.
 static void test_holes(void **state)
 {
     (void)state;
-    struct sight sight[VIEWS];
-    make_slab(sight, 6);
-    struct fused f = fuse(sight, VIEWS, 2, 2), alone = fuse(sight + 4, 1, 2, 2);
+    struct witness witness[VIEWS];
+    make_slab(witness, 6);
+    struct fused f = fuse(witness, VIEWS, 2, 2), alone = fuse(witness + 4, 1, 2, 2);
     int front = 0, alone_front = 0;
     for (size_t i = 0; i < f.mesh.vertex_count; i++)
         front += hypot(vertex(&f.mesh, i).x, vertex(&f.mesh, i).y) < 0.05;
@@ -237,7 +237,7 @@ static void test_holes(void **state)
     expect_near(&f, false, 0.15, 1.6);
     relume_mesh_free(&f.mesh);
     relume_mesh_free(&alone.mesh);
-    free_slab(sight);
+    free_slab(witness);
 }
 
 static void test_a_panorama_of_a_round_room(void **state)
@@ -247,7 +247,7 @@ static void test_a_panorama_of_a_round_room(void **state)
         const struct camera c = {.geometry = geometry_of((enum relume_projection)p),
                                  .width = p == RELUME_CUBE ? 240 : 160,
                                  .height = p == RELUME_CUBE ? 40 : 80};
-        struct sight s = sight_of(&c, true, 0);
+        struct witness s = witness_of(&c, true, 0);
         struct fused f = fuse(&s, 1, 2, 2);
         expect_near(&f, true, 0.06, 1.6);
         double inwards = 0.0;  // -1: all normals point to the middle
@@ -260,7 +260,7 @@ static void test_a_panorama_of_a_round_room(void **state)
                      relume_projection_name((enum relume_projection)p),
                      inwards / (double)f.mesh.vertex_count);
         relume_mesh_free(&f.mesh);
-        sight_destroy(&s);
+        witness_destroy(&s);
     }
 }
 
@@ -270,17 +270,17 @@ static void test_depth_without_a_surface(void **state)
     const struct camera c = {
         .geometry = relume_geometry_default(RELUME_SLAB, 8, 8), .width = 8, .height = 8};
     struct relume_image depth;
-    struct sight s;
+    struct witness s;
     assert_int_equal(relume_image_create(&depth, 8, 8, 1), RELUME_OK);
     for (int i = 0; i < 64; i++)
         depth.data[i] = i % 3 == 0 ? INFINITY : i % 3 == 1 ? NAN : -1.0f;
-    assert_int_equal(sight_create(&s, &c, &depth, (double)INFINITY, 1), RELUME_OK);
-    struct field f = {.sight = &s, .sights = 1, .threads = 1};
+    assert_int_equal(witness_create(&s, &c, &depth, (double)INFINITY, 1), RELUME_OK);
+    struct field f = {.witness = &s, .witnesses = 1, .threads = 1};
     assert_int_equal(field_plan(&f, 0.0, NULL), RELUME_EUNFIT);
     s.depth.data[9] = 2.0f;
     assert_int_equal(field_plan(&f, 0.1, NULL), RELUME_OK);
     assert_int_equal(field_plan(&f, 0.0, NULL), RELUME_EINVAL);  // a point has no size
-    sight_destroy(&s);
+    witness_destroy(&s);
 }
 
 int main(void)

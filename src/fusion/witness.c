@@ -1,15 +1,15 @@
-// sight.c - a view with depth: how far a place lies before or behind what it sees
-#include "fusion/sight.h"
+// witness.c - a view with depth: how far a place lies before or behind what it sees
+#include "fusion/witness.h"
 
 #include "base/memory.h"
 #include "base/thread.h"
 
-static float depth_at(const struct sight *s, int x, int y)
+static float depth_at(const struct witness *s, int x, int y)
 {
     return s->depth.data[(size_t)y * (size_t)s->depth.width + (size_t)x];
 }
 
-bool sight_place(vec3 *place, const struct sight *s, int x, int y)
+bool witness_place(vec3 *place, const struct witness *s, int x, int y)
 {
     const double d = (double)depth_at(s, x, y);
     if (!isfinite(d))
@@ -20,7 +20,7 @@ bool sight_place(vec3 *place, const struct sight *s, int x, int y)
 }
 
 // Two neighbours along an axis, or one and the pixel itself.
-static bool tangent(vec3 *out, const struct sight *s, int x, int y, int dx, int dy)
+static bool tangent(vec3 *out, const struct witness *s, int x, int y, int dx, int dy)
 {
     const double JUMP = 1.3;
     const double d = (double)depth_at(s, x, y);
@@ -32,7 +32,7 @@ static bool tangent(vec3 *out, const struct sight *s, int x, int y, int dx, int 
             relume_geometry_shows(&s->camera.geometry, s->camera.width, s->camera.height, px, py);
         const double other = in ? (double)depth_at(s, px, py) : (double)INFINITY;
         const bool near = other < d * JUMP && d < other * JUMP;
-        if (!sight_place(&end[i], s, near ? px : x, near ? py : y))
+        if (!witness_place(&end[i], s, near ? px : x, near ? py : y))
             return false;
     }
     *out = vec3_sub(end[1], end[0]);
@@ -42,7 +42,7 @@ static bool tangent(vec3 *out, const struct sight *s, int x, int y, int dx, int 
 static void slope_row(void *context, size_t row, int worker)
 {
     (void)worker;
-    const struct sight *s = context;
+    const struct witness *s = context;
     const double LEAST = 0.05;  // depth is worth little where it is seen from the side
     const int y = (int)row;
     for (int x = 0; x < s->depth.width; x++) {
@@ -61,15 +61,15 @@ static void slope_row(void *context, size_t row, int worker)
     }
 }
 
-relume_status sight_create(struct sight *out, const struct camera *camera,
-                           struct relume_image *depth, double farthest, int threads)
+relume_status witness_create(struct witness *out, const struct camera *camera,
+                             struct relume_image *depth, double farthest, int threads)
 {
     const size_t pixels = (size_t)depth->width * (size_t)depth->height;
-    *out = (struct sight){.camera = *camera, .depth = *depth};
+    *out = (struct witness){.camera = *camera, .depth = *depth};
     *depth = (struct relume_image){0};
     out->cosine = mem_array(pixels, sizeof *out->cosine);
     if (!out->cosine) {
-        sight_destroy(out);
+        witness_destroy(out);
         return RELUME_ENOMEM;
     }
     for (size_t i = 0; i < pixels; i++) {
@@ -85,7 +85,7 @@ relume_status sight_create(struct sight *out, const struct camera *camera,
     return RELUME_OK;
 }
 
-void sight_destroy(struct sight *s)
+void witness_destroy(struct witness *s)
 {
     relume_image_destroy(&s->depth);
     mem_free(s->cosine);
@@ -93,7 +93,7 @@ void sight_destroy(struct sight *s)
 }
 
 // Between four pixels where they see one surface, else that of the nearest.
-static double surface_at(const struct sight *s, const double xy[2], int x, int y, double step)
+static double surface_at(const struct witness *s, const double xy[2], int x, int y, double step)
 {
     const double u = xy[0] - 0.5, v = xy[1] - 0.5;
     const int left = relume_whole(floor(u)), top = relume_whole(floor(v));
@@ -110,7 +110,7 @@ static double surface_at(const struct sight *s, const double xy[2], int x, int y
     return sum;
 }
 
-bool sight_look(struct sighting *out, const struct sight *s, vec3 place, double step)
+bool witness_ask(struct sighting *out, const struct witness *s, vec3 place, double step)
 {
     double distance;
     if (!camera_project(out->xy, &distance, &s->camera, place))

@@ -1,12 +1,12 @@
-// sight.h - a view with depth: how far a place lies before or behind what it sees
-#ifndef FUSION_SIGHT_H
-#define FUSION_SIGHT_H
+// witness.h - a view with depth: how far a place lies before or behind what it sees
+#ifndef FUSION_WITNESS_H
+#define FUSION_WITNESS_H
 
 #include "geometry/project.h"
 
 #include <relume/image.h>
 
-struct sight {
+struct witness {
     struct camera camera;
     struct relume_image depth;  // along the rays; infinite: nothing is there, NaN: nobody knows
     float *cosine;              // [height][width] of the ray and the surface; 0: not known
@@ -14,12 +14,12 @@ struct sight {
 
 // Takes over `depth`, whatever is returned. What is beyond `farthest` is nothing, what is not above
 // 0 is not known. RELUME_ENOMEM.
-relume_status sight_create(struct sight *out, const struct camera *camera,
-                           struct relume_image *depth, double farthest, int threads);
-void sight_destroy(struct sight *s);
+relume_status witness_create(struct witness *out, const struct camera *camera,
+                             struct relume_image *depth, double farthest, int threads);
+void witness_destroy(struct witness *s);
 
 // The place that the middle of a pixel sees; false where that is nothing.
-bool sight_place(vec3 *place, const struct sight *s, int x, int y);
+bool witness_place(vec3 *place, const struct witness *s, int x, int y);
 
 // What a view says of a place.
 struct sighting {
@@ -31,6 +31,6 @@ struct sighting {
 };
 // False where it says nothing: beside the picture, or where it does not know. `step`: depth differs
 // by more than that where one surface ends and another begins.
-bool sight_look(struct sighting *out, const struct sight *s, vec3 place, double step);
+bool witness_ask(struct sighting *out, const struct witness *s, vec3 place, double step);
 
 #endif

@@ -27,7 +27,7 @@ struct relume_fusion_params {
     // but at most 512 voxels along the longest side.
     double voxel;
     double farthest;      // what is farther from its eye is left out; default: nothing is
-    int block;            // as relume_isosurface_params; default 4
+    int block;            // as relume_isosurface_params; default 2
     bool no_colours;      // without the colours of the photographs
     const char *scratch;  // as relume_volume_params
     // Lights that the photographs are relit by. `lights` NULL: one from before, of panoramas one from

@@ -89,7 +89,7 @@ static relume_status fuse(struct relume_mesh *out, struct relume_fusion_report *
     if (!status)
         status = relume_isosurface(out, &report->mesh, f.volume, FIELD_SURFACE,
                                    relume_isosurface_params(.log = p->log, .threads = p->threads,
-                                                            .blocks = {p->block ? p->block : 4}));
+                                                            .blocks = {p->block ? p->block : 2}));
     relume_volume_destroy(&f.volume);
     if (status)
         return status;

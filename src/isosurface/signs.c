@@ -120,8 +120,11 @@ static void count_layer(void *context, size_t z, int worker)
         uint32_t *first = f->n->first + 3 * (z * (size_t)f->g->size[1] + (size_t)y);
         for (int axis = 0; axis < 3; axis++) {
             int count = 0;
-            for (int w = 0; w < f->g->words; w++)
-                count += __builtin_popcountll(numbering_word(f->n, f->g, axis, y, (int)z, w));
+            for (int w = 0; w < f->g->words; w++) {
+                const uint64_t word = numbering_word(f->n, f->g, axis, y, (int)z, w);
+                if (word)
+                    count += __builtin_popcountll(word);
+            }
             first[axis] = (uint32_t)count;
         }
     }

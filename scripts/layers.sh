@@ -45,6 +45,7 @@ surface:base math synthesis btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base io image object mesh jnd simplify
 volume:base image:base image photograph volume
 isosurface:base volume:base mesh volume
+fusion:base math geometry volume:base image light relight pack frame view slab_set renderer capture mesh volume fusion
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport
@@ -96,7 +97,7 @@ jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
 aom/:src/lossy/av1_write.c tests/tools/preload/msan.c
 dav1d:src/lossy/av1_read.c tests/tools/preload/msan.c
-zlib:src/image/exr_sums.c src/lossy/lossy.c src/lossy/disparity.c src/volume/unpack.c
+zlib:src/image/exr_sums.c src/lossy/lossy.c src/lossy/disparity.c src/volume/unpack.c tests/unit/test_volume.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 mpi[.]h:src/mpi/relume_mpi.c

@@ -17,6 +17,7 @@
 #include <relume/exchange.h>
 #include <relume/eye.h>
 #include <relume/frame.h>
+#include <relume/fusion.h>
 #include <relume/glare.h>
 #include <relume/heldout.h>
 #include <relume/image.h>

@@ -29,14 +29,17 @@ static const struct typed {
     void (*sign_bricks)(uint64_t *out, const relume_volume *v, size_t row, double limit,
                         const float (*range)[2]);
     struct place (*place)(const struct signs *g, int axis, int x, int y, int z);
+    size_t (*put_word)(const struct signs *g, int axis, int x, int y, int z, uint64_t word,
+                       float (*position)[3], float (*normal)[3]);
     double least, most;  // limits of the type: what is beyond them is beyond every sample
     bool whole;
 } typed[VOLUME_TYPES] = {
-    [VOLUME_U8] = {sign_row_u8, sign_bricks_u8, place_u8, 0, UINT8_MAX, true},
-    [VOLUME_U16] = {sign_row_u16, sign_bricks_u16, place_u16, 0, UINT16_MAX, true},
-    [VOLUME_I16] = {sign_row_i16, sign_bricks_i16, place_i16, INT16_MIN, INT16_MAX, true},
-    [VOLUME_F32] = {sign_row_f32, sign_bricks_f32, place_f32, (double)-FLT_MAX, (double)FLT_MAX,
-                    false},
+    [VOLUME_U8] = {sign_row_u8, sign_bricks_u8, place_of_u8, put_word_u8, 0, UINT8_MAX, true},
+    [VOLUME_U16] = {sign_row_u16, sign_bricks_u16, place_of_u16, put_word_u16, 0, UINT16_MAX, true},
+    [VOLUME_I16] = {sign_row_i16, sign_bricks_i16, place_of_i16, put_word_i16, INT16_MIN, INT16_MAX,
+                    true},
+    [VOLUME_F32] = {sign_row_f32, sign_bricks_f32, place_of_f32, put_word_f32, (double)-FLT_MAX,
+                    (double)FLT_MAX, false},
 };
 
 // ---------------------------------------------------------------- bits
@@ -117,8 +120,11 @@ static void count_layer(void *context, size_t z, int worker)
         uint32_t *first = f->n->first + 3 * (z * (size_t)f->g->size[1] + (size_t)y);
         for (int axis = 0; axis < 3; axis++) {
             int count = 0;
-            for (int w = 0; w < f->g->words; w++)
-                count += __builtin_popcountll(numbering_word(f->n, f->g, axis, y, (int)z, w));
+            for (int w = 0; w < f->g->words; w++) {
+                const uint64_t word = numbering_word(f->n, f->g, axis, y, (int)z, w);
+                if (word)
+                    count += __builtin_popcountll(word);
+            }
             first[axis] = (uint32_t)count;
         }
     }
@@ -147,39 +153,40 @@ void numbering_free(struct numbering *n)
     *n = (struct numbering){.used = NULL};
 }
 
-static void stretch(struct place *p, const double spacing[3])
+// In units of the spacing.
+static void stretch(float position[3], float normal[3], const double spacing[3])
 {
     float square = 0.0f;
     for (int c = 0; c < 3; c++) {
-        p->position[c] *= (float)spacing[c];
-        p->normal[c] /= (float)spacing[c];
-        square += p->normal[c] * p->normal[c];
+        position[c] *= (float)spacing[c];
+        normal[c] /= (float)spacing[c];
+        square += normal[c] * normal[c];
     }
     for (int c = 0; c < 3; c++)
-        p->normal[c] /= sqrtf(square);
+        normal[c] /= sqrtf(square);
 }
 
 static void put_layer(void *context, size_t z, int worker)
 {
     (void)worker;
     const struct filling *f = context;
-    const double *spacing = f->g->volume->spacing;
-    const bool stretched = spacing[0] != 1.0 || spacing[1] != 1.0 || spacing[2] != 1.0;
-    struct place (*place)(const struct signs *, int, int, int, int) =
-        typed[f->g->volume->type].place;
-    size_t at = f->n->first[3 * z * (size_t)f->g->size[1]];
-    for (int y = 0; y < f->g->size[1]; y++)
+    const struct signs *g = f->g;
+    const double *spacing = g->volume->spacing;
+    const struct typed *t = &typed[g->volume->type];
+    const size_t first = f->n->first[3 * z * (size_t)g->size[1]];
+    size_t at = first;
+    for (int y = 0; y < g->size[1]; y++)
         for (int axis = 0; axis < 3; axis++)
-            for (int w = 0; w < f->g->words; w++) {
-                uint64_t word = numbering_word(f->n, f->g, axis, y, (int)z, w);
-                for (; word; word &= word - 1, at++) {
-                    struct place p = place(f->g, axis, 64 * w + __builtin_ctzll(word), y, (int)z);
-                    if (stretched)
-                        stretch(&p, spacing);
-                    memcpy(f->out->position[at], p.position, sizeof p.position);
-                    memcpy(f->out->normal[at], p.normal, sizeof p.normal);
-                }
+            for (int w = 0; w < g->words; w++) {
+                const uint64_t word = numbering_word(f->n, g, axis, y, (int)z, w);
+                if (word)
+                    at += t->put_word(g, axis, 64 * w, y, (int)z, word, f->out->position + at,
+                                      f->out->normal + at);
             }
+    if (spacing[0] == 1.0 && spacing[1] == 1.0 && spacing[2] == 1.0)
+        return;
+    for (size_t i = first; i < at; i++)
+        stretch(f->out->position[i], f->out->normal[i], spacing);
 }
 
 void numbering_put(const struct numbering *n, const struct signs *g, struct relume_mesh *out)

@@ -69,20 +69,38 @@ static void OF(gradient)(float out[3], const SAMPLE *at, const int p[3], const i
     }
 }
 
-static struct place OF(place)(const struct signs *g, int axis, int x, int y, int z)
+// Central differences at both ends, where all samples that they need are there.
+static void OF(gradients)(float a[3], float b[3], const SAMPLE *at, int axis,
+                          const ptrdiff_t step[3])
+{
+    const SAMPLE *next = at + step[axis];
+    for (int c = 0; c < 3; c++) {
+        const ptrdiff_t s = step[c];
+        a[c] = 0.5f * ((float)at[s] - (float)at[-s]);
+        b[c] = 0.5f * ((float)next[s] - (float)next[-s]);
+    }
+}
+
+static inline struct place OF(place)(const struct signs *g, int axis, int x, int y, int z)
 {
     const relume_volume *v = g->volume;
     const ptrdiff_t step[3] = {1, v->size[0], (ptrdiff_t)v->size[0] * v->size[1]};
     const SAMPLE *at = (const SAMPLE *)v->data + volume_at(v, x, y, z);
     const float low = (float)at[0], high = (float)at[step[axis]];
-    const float t =
-        fminf(fmaxf((g->threshold - low) / (high - low), LEAST_STEP), 1.0f - LEAST_STEP);
+    const float exact = (g->threshold - low) / (high - low);
+    const float above = exact > LEAST_STEP ? exact : LEAST_STEP;
+    const float t = above < 1.0f - LEAST_STEP ? above : 1.0f - LEAST_STEP;
     struct place out = {{(float)x, (float)y, (float)z}, {0, 0, 0}};
     int p[3] = {x, y, z};
     float a[3], b[3];
-    OF(gradient)(a, at, p, g->size, step);
-    p[axis]++;
-    OF(gradient)(b, at + step[axis], p, g->size, step);
+    if (x > 0 && y > 0 && z > 0 && x + 1 + (axis == 0) < g->size[0] &&
+        y + 1 + (axis == 1) < g->size[1] && z + 1 + (axis == 2) < g->size[2]) {
+        OF(gradients)(a, b, at, axis, step);
+    } else {
+        OF(gradient)(a, at, p, g->size, step);
+        p[axis]++;
+        OF(gradient)(b, at + step[axis], p, g->size, step);
+    }
     out.position[axis] += t;
     float square = 0.0f;
     for (int c = 0; c < 3; c++) {
@@ -98,6 +116,24 @@ static struct place OF(place)(const struct signs *g, int axis, int x, int y, int
         out.normal[axis] = high > low ? -1.0f : 1.0f;
     }
     return out;
+}
+
+static struct place OF(place_of)(const struct signs *g, int axis, int x, int y, int z)
+{
+    return OF(place)(g, axis, x, y, z);
+}
+
+// The vertices of a word of edges, from x on.
+static size_t OF(put_word)(const struct signs *g, int axis, int x, int y, int z, uint64_t word,
+                           float (*position)[3], float (*normal)[3])
+{
+    size_t n = 0;
+    for (; word; word &= word - 1, n++) {
+        const struct place p = OF(place)(g, axis, x + __builtin_ctzll(word), y, z);
+        memcpy(position[n], p.position, sizeof p.position);
+        memcpy(normal[n], p.normal, sizeof p.normal);
+    }
+    return n;
 }
 
 #undef SAMPLE

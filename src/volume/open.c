@@ -131,6 +131,9 @@ static relume_status find(const struct format **out, const char *path,
         return status;
     if (!memcmp(head, "NRRD000", 7))
         *out = &nrrd;
+    else if (!memcmp(head, "II*", 4) || !memcmp(head, "MM\0*", 4))
+        return log_fail(p->log, RELUME_EUNSUPPORTED,
+                        "%s: one TIFF; expected a folder with a picture for each slice", path);
     else if (!memcmp(head + NIFTI_MAGIC, "n+1", 4) || !memcmp(head + NIFTI_MAGIC, "ni1", 4))
         *out = &nifti;
     return RELUME_OK;

@@ -108,6 +108,18 @@ relume_status store_begin(struct store *s, const int64_t size[3],
     return make_room(s, p);
 }
 
+relume_status volume_create(relume_volume **out, const int size[3], const char *type,
+                            const struct relume_volume_params *p)
+{
+    struct store s = {.slope = 1.0, .path = "volume", .log = p->log};
+    s.type = sample_type_find(type, &s.big);
+    const relume_status status = store_begin(&s, (const int64_t[3]){size[0], size[1], size[2]}, p);
+    if (status)
+        relume_volume_destroy(&s.volume);
+    *out = s.volume;
+    return status;
+}
+
 size_t store_layer_bytes(const struct store *s)
 {
     return (size_t)s->volume->size[0] * (size_t)s->volume->size[1] * (size_t)s->type->bytes;

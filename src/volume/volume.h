@@ -27,6 +27,11 @@ struct relume_volume {
     struct volume_index index;  // `range` is NULL: there is none
 };
 
+// A volume of samples that are set afterwards, as are `min` and `max`; errors of
+// relume_volume_from.
+relume_status volume_create(relume_volume **out, const int size[3], const char *type,
+                            const struct relume_volume_params *params);
+
 static inline size_t volume_at(const relume_volume *v, int x, int y, int z)
 {
     return ((size_t)z * (size_t)v->size[1] + (size_t)y) * (size_t)v->size[0] + (size_t)x;

@@ -1,4 +1,5 @@
 // Surfaces of volumes: known shapes, no cracks, dikes and boxes against slow definitions.
+#include "base/memory.h"
 #include "isosurface/block.h"
 #include "isosurface/climb.h"
 
@@ -392,6 +393,36 @@ static void test_thresholds_beyond_the_values(void **state)
     relume_volume_destroy(&volume);
 }
 
+// Whichever allocation fails, nothing is made and nothing is lost (the sanitizers look).
+static void test_memory_that_runs_out(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    float sample[N * N * N];
+    relume_status status = RELUME_ENOMEM;
+    for (int i = 0; i < N * N * N; i++)
+        sample[i] = noise(0, 0, 0);
+    for (long n = 1; status; n++) {
+        relume_volume *volume;
+        struct relume_mesh mesh[2] = {{0}};
+        mem_fail_after(n);
+        status = relume_volume_from(&volume, sample,
+                                    relume_volume_params(.size = {N, N, N}, .type = "f32"));
+        if (!status)
+            status = relume_volume_index(volume, 1);
+        if (!status)
+            status = relume_isosurface(mesh, NULL, volume, 0.0,
+                                       relume_isosurface_params(.threads = 1, .blocks = {1, 4}));
+        mem_fail_after(0);
+        assert_true(status == RELUME_OK || status == RELUME_ENOMEM);
+        for (int l = 0; l < 2; l++) {
+            assert_true(!status == (mesh[l].triangle_count > 0));
+            relume_mesh_free(&mesh[l]);
+        }
+        relume_volume_destroy(&volume);
+    }
+}
+
 // ---------------------------------------------------------------- dikes and boxes
 
 static int crossings(const bool *sample, int begin, int length)
@@ -514,6 +545,7 @@ int main(void)
         cmocka_unit_test(test_types_agree),
         cmocka_unit_test(test_spacing_stretches_places_and_turns_normals),
         cmocka_unit_test(test_thresholds_beyond_the_values),
+        cmocka_unit_test(test_memory_that_runs_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,17 @@
-// cmd_mesh.c - relume mesh: surfaces as triangles, of volumes and models
+// cmd_mesh.c - relume mesh: surfaces as triangles, of volumes, depth and models
+#include "commands/mesh_depth.h"
 #include "commands/mesh_volume.h"
+
+#include <string.h>
+#include <strings.h>
 
 struct mesh_options {
     struct args args;
     const char *output;
     bool json;
+    struct ints blocks;
     struct volume_options volume;
+    struct depth_options depth;
 };
 #define OPTIONS struct mesh_options
 
@@ -13,7 +19,13 @@ static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_OUTPUT, output, "OUT", "mesh to write: .ply, .obj or .glb"),
     FLAG("--json", json, "triangles, vertices and seconds as one JSON object"),
+    WORDS(
+        "--block", blocks, "N,...",
+        "largest boxes: 1, 2, 4, 8 or 16 samples; fewer triangles where the surface is smooth; of "
+        "volumes several, in OUT.1.ply, OUT.4.ply, ...; default: 1, of depth 2",
+        OPTION_INT, .min = 1, .max = 16),
     VOLUME_ROWS,
+    DEPTH_ROWS,
     {0},
 };
 
@@ -39,18 +51,43 @@ static relume_status convert(const struct mesh_options *o)
     return status;
 }
 
+static bool ends_in(const char *name, const char *const *endings)
+{
+    const char *dot = strrchr(name, '.');
+    for (; dot && *endings; endings++)
+        if (!strcasecmp(dot, *endings))
+            return true;
+    return false;
+}
+
+// What is a volume by its name, or by the options that only volumes have.
+static bool seems_volume(const struct mesh_options *o)
+{
+    static const char *const endings[] = {".raw", ".nrrd", ".nhdr", ".nii", ".gz", ".hdr", NULL};
+    return o->volume.size.side[0] || o->volume.type || ends_in(o->args.input[0], endings);
+}
+
 static relume_status run(const struct args *args)
 {
     const struct mesh_options *o = (const void *)args;
-    return given(o, &o->volume.threshold) ? mesh_of_volume(args, &o->volume, o->output, o->json)
-                                          : convert(o);
+    const int block = o->blocks.count ? o->blocks.item[0] : 2;
+    if (given(o, &o->volume.threshold))
+        return mesh_of_volume(args, &o->volume, &o->blocks, o->output, o->json);
+    if (seems_volume(o))
+        return usage_error("mesh: a volume needs --threshold T: the surface is where samples reach "
+                           "T");
+    if (!ends_in(args->input[0], (const char *const[]){".exr", NULL}))
+        return convert(o);
+    if (o->blocks.count > 1)
+        return usage_error("--block: expected one number for depth");
+    return mesh_of_depth(args, &o->depth, block, o->output, o->json);
 }
 
 static const struct command *const tasks[] = {&mesh_task_simplify, NULL};
 
 const struct command command_mesh = {
     .tasks = tasks,
-    COMMAND("mesh", "VOLUME|MODEL -o OUT [OPTION ...]",
-            "the surface in a volume as triangles, or a model in another format",
+    COMMAND("mesh", "VOLUME|FILE.exr|MODEL -o OUT [OPTION ...]",
+            "the surface in a volume or behind depth as triangles; models in other formats",
             "relume mesh head.nii.gz --threshold 80 -o head.ply", 1, 1),
 };

@@ -115,10 +115,10 @@ static void print(const struct set *s, bool json)
 }
 
 relume_status mesh_of_volume(const struct args *args, const struct volume_options *o,
-                             const char *output, bool json)
+                             const struct ints *blocks, const char *output, bool json)
 {
     struct set s = {.args = args};
-    relume_status status = name_levels(&s, &o->blocks, output);
+    relume_status status = name_levels(&s, blocks, output);
     if (!status)
         status = extract(&s, o);
     for (int i = 0; i < s.count && !status; i++)

@@ -18,7 +18,6 @@ struct volume_options {
     struct volume_size size;
     const char *type;
     struct volume_spacing spacing;
-    struct ints blocks;
     uint64_t skip;
 };
 // Rows of a table of options.
@@ -34,11 +33,7 @@ struct volume_options {
         BYTES("--skip", volume.skip, "BYTES", "of a raw file before its samples"),                 \
         OWN("--spacing", volume.spacing, "X,Y,Z",                                                  \
             "from sample to sample, or 'file': as NRRD and NIfTI say; default: 1,1,1",             \
-            take_volume_spacing),                                                                  \
-        WORDS("--block", volume.blocks, "N,...",                                                   \
-              "largest boxes: 1 (default), 2, 4, 8 or 16 samples; fewer triangles where the "      \
-              "surface is smooth; several make OUT.1.ply, OUT.4.ply, ...",                         \
-              OPTION_INT, .min = 1, .max = 16)
+            take_volume_spacing)
 
 relume_status take_volume_size(void *size, const struct option *o, const char *text,
                                const struct relume_log *log);
@@ -46,6 +41,6 @@ relume_status take_volume_spacing(void *spacing, const struct option *o, const c
                                   const struct relume_log *log);
 
 relume_status mesh_of_volume(const struct args *args, const struct volume_options *o,
-                             const char *output, bool json);
+                             const struct ints *blocks, const char *output, bool json);
 
 #endif

@@ -163,7 +163,7 @@ static void test_nothing_repeats(void **state)
     (void)state;
     painter *const none[] = {noise, flat};
     for (int i = 0; i < 2; i++) {
-        struct relume_texture t = paint(64, 48, 3, none[i]);
+        struct relume_texture t = paint(40, 36, 3, none[i]);
         relume_regular *r = find(&t, false);
         const struct relume_regular_info *info = relume_regular_info(r);
         assert_false(info->regular);
@@ -267,8 +267,8 @@ static void test_tiles_close(void **state)
 static void test_threads_and_seeds(void **state)
 {
     (void)state;
-    enum { W = 150, H = 131 };
-    struct relume_texture t = paint(48, 40, 3, noisy_waves);
+    enum { W = 110, H = 91 };
+    struct relume_texture t = paint(40, 32, 3, noisy_waves);
     relume_regular *r = find(&t, false);
     for (int m = 0; m < METHODS; m++) {
         uint32_t *map[4];
@@ -452,7 +452,7 @@ static void test_memory(void **state)
     struct relume_texture t = paint(16, 16, 3, checks);
     uint32_t texel[20 * 20];
     for (int m = 0; m < METHODS; m++)
-        for (long n = 1;; n += TEST_SANITIZED || n < 40 ? 1 : 7) {
+        for (long n = 1;; n += n < 30 ? 1 : TEST_SANITIZED ? 23 : 11) {
             struct relume_grow_quality q;
             relume_regular *r = NULL;
             mem_fail_after(n);

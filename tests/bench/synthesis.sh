@@ -38,17 +38,17 @@ echo
 echo '**k-coherence**, corduroy as a BTF of 64 x 64 texels, three layers (Tab. 4.5)'
 echo
 sample corduroy 64
-echo '| output | k | neighbourhood | s | novelty | repetition |'
+echo '| output | k | neighbourhood | CPU s | novelty | repetition |'
 echo '|---|---|---|---|---|---|'
 for row in '256 1 3' '256 3 3' '256 6 3' '256 6 5' '512 6 3'; do
     set -- $row
     synth corduroy64 -o x.npy --size "$1x$1" --method pixel --alike "$2" --neighbourhood "$3" --layers 3
-    echo "| $1 | $2 | $3 | $(field synthesis_s row.json) | $(field novelty row.json) | $(field repetition row.json) |"
+    echo "| $1 | $2 | $3 | $(field synthesis_cpu_s row.json) | $(field novelty row.json) | $(field repetition row.json) |"
 done
 echo
 echo '**Materials**, 128 x 128 to 512 x 512; repetition and novelty also as texture_judge.py has them'
 echo
-echo '| material | structure | period | by | repetition | novelty | judge: repetition | novelty | cuts % | s |'
+echo '| material | structure | period | by | repetition | novelty | judge: repetition | novelty | cuts % | CPU s |'
 echo '|---|---|---|---|---|---|---|---|---|---|'
 judge() { # sample, picture, periods
     $python "$tools/texture_judge.py" "$@" 2>/dev/null || echo '- -'
@@ -69,16 +69,15 @@ PYTHON
         esac
         x=$(field period row.json) y=$(second period row.json)
         set -- $(judge ${m}128.ppm out.ppm "$x" "$y")
-        echo "| $m | $(field share row.json) | $x x $y | $by | $(field repetition row.json) | $(field novelty row.json) | $1 | $2 | $(field cuts row.json | awk '{printf "%.1f", 100 * $1}') | $(field synthesis_s row.json) |"
+        echo "| $m | $(field share row.json) | $x x $y | $by | $(field repetition row.json) | $(field novelty row.json) | $1 | $2 | $(field cuts row.json | awk '{printf "%.1f", 100 * $1}') | $(field synthesis_cpu_s row.json) |"
     done
     for by in quilt gmic; do
         rm -f out.ppm
-        start=$(date +%s.%N)
         case $by in
-        quilt) $python "$tools/quilt.py" ${m}128.ppm out.ppm 512 512 40 2>/dev/null || true ;;
-        gmic) gmic ${m}128.ppm syntexturize_matchpatch 512,512 round -o out.ppm >/dev/null 2>&1 || true ;;
+        quilt) run="$python $tools/quilt.py ${m}128.ppm out.ppm 512 512 40" ;;
+        gmic) run="gmic ${m}128.ppm syntexturize_matchpatch 512,512 round -o out.ppm" ;;
         esac
-        took=$(echo "$(date +%s.%N) $start" | awk '{printf "%.2f", $1 - $2}')
+        took=$(bash -c "TIMEFORMAT=%U; time $run >/dev/null 2>&1" 2>&1) || true
         [ -s out.ppm ] || continue
         set -- $(judge ${m}128.ppm out.ppm "$x" "$y")
         echo "| $m | | | $by | | | $1 | $2 | | $took |"
@@ -88,9 +87,9 @@ done
 echo
 echo "**Large**: corduroy of 256 x 256 texels (a BTF) to $side x $side"
 echo
-echo '| by | repetition | at | novelty | worst | coverage | cuts % | s | MB |'
+echo '| by | repetition | at | novelty | worst | coverage | cuts % | CPU s | MB |'
 echo '|---|---|---|---|---|---|---|---|---|'
 for by in patch pixel; do
     synth corduroy256 -o large-$by.npy --size "${side}x$side" --method $by
-    echo "| $by | $(field repetition row.json) | $(field repetition_at row.json), $(second repetition_at row.json) | $(field novelty row.json) | $(field worst row.json) | $(field coverage row.json) | $(field cuts row.json | awk '{printf "%.1f", 100 * $1}') | $(field synthesis_s row.json) | $(field peak_mb row.json) |"
+    echo "| $by | $(field repetition row.json) | $(field repetition_at row.json), $(second repetition_at row.json) | $(field novelty row.json) | $(field worst row.json) | $(field coverage row.json) | $(field cuts row.json | awk '{printf "%.1f", 100 * $1}') | $(field synthesis_cpu_s row.json) | $(field peak_mb row.json) |"
 done

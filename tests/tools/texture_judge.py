@@ -18,9 +18,9 @@ LUMA = np.array([0.299, 0.587, 0.114])
 
 
 def without_structure(grey, period):
-    """Less the mean over all pixels of the same phase, in eighths of a pixel."""
+    """Less the mean over all pixels of the same phase, in quarters of a pixel."""
     h, w = grey.shape
-    bins = [max(int(round(p)), 1) for p in period]
+    bins = [max(int(round(4 * p)), 1) for p in period]
     if period[0] <= 0 and period[1] <= 0:
         return grey - grey.mean()
     phase = [np.floor((np.arange(n) / p % 1.0) * b).astype(int) if p > 0 else np.zeros(n, int)

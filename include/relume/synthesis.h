@@ -52,7 +52,8 @@ struct relume_regular_info {
     double base[2];
     bool common;  // the waves have a common base
     double rms;   // of what the waves do not explain, 1/255
-    int found;    // waves before those of the structure were chosen
+    int found;    // waves before those of the structure were chosen, the means left out, ...
+    double rms_found, rms_fitted;  // ... and what these left, one by one and fitted together
 };
 
 // Never changes. Thread-safety: safe.
@@ -105,8 +106,8 @@ struct relume_grow_params {  // zero in a field means its default
     const relume_regular *regular;
     double weight;  // of the structure beside the texels; default 1; [0.01, 100]
     int threads;    // default: all cores
-    // PATCH: side of a square, texels, even; default: two periods of the structure, at least a sixth
-    // of the sample; without a structure a third; [4, 256]
+    // PATCH: side of a square, texels, even; default: two periods of the structure, at least a
+    // sixth of the sample; without a structure a third; [4, 256]
     int patch;
     // PIXEL:
     int neighbourhood;  // side of what is compared, odd; default 5; [3, 9]

@@ -27,7 +27,7 @@ enum {
     FIRST = 1024,    // random places of which a first one is chosen by the structure
     AGAIN = 32,      // random places where no other has the structure that belongs there
     ROUNDS = 2,
-    FIRST_ROUNDS = 6,
+    FIRST_ROUNDS = 3,
 };
 // A place that is no continuation must be so much better, squared.
 static const float COHERENT = 1.1f;
@@ -50,6 +50,7 @@ struct level {
     int pass;                     // which fourth
     float weight;                 // of the structure, squared, over all texels of the surroundings
     float loose;                  // a squared difference of the structure that is another place's
+    float near;                   // that of half a texel
     int side, k;
     ptrdiff_t offset[MOST_SIDE * MOST_SIDE];  // of the surroundings, in floats of `value`
     float *scratch;                           // [workers][BLOCK * BLOCK][MASK_VALUES]
@@ -123,7 +124,8 @@ struct site {
     const float *mask;                           // what the structure is there, or NULL
 };
 
-// The squared difference of the structure at a texel of the sample from what it is to be.
+// The squared difference of the structure at a texel of the sample from what it is to be, beyond
+// what lies within half a texel: else only moves by whole periods and whole texels would do.
 static float out_of_place(const struct level *l, const float *mask, size_t texel)
 {
     float sum = 0.0f;
@@ -131,7 +133,7 @@ static float out_of_place(const struct level *l, const float *mask, size_t texel
         const float d = l->mask[texel * MASK_VALUES + (size_t)k] - mask[k];
         sum += d * d;
     }
-    return sum;
+    return fmaxf(sum - l->near, 0.0f);
 }
 
 // How wrong texel (x, y) of the sample is at a site; more than `most` may be anything above it.
@@ -348,6 +350,8 @@ static void first_block(void *context, size_t item, int worker)
                     least = wrong;
                     l->texel[at] = (uint32_t)id;
                 }
+                if (wrong <= 0.0f)
+                    break;
             }
         }
 }
@@ -445,9 +449,14 @@ relume_status grow_pixels(struct grow *g)
     relume_status status = alloc(&l) ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < (g->regular ? g->regular->info.count : 0); i++) {
         const struct relume_wave *w = &g->regular->wave[i];
-        if (w->x != 0.0 || w->y != 0.0)
-            l.loose += LOOSE * (float)((w->re * w->re + w->im * w->im) / (255.0 * 255.0));
+        const double power = (w->re * w->re + w->im * w->im) / (255.0 * 255.0),
+                     x = M_PI * w->x / g->texture->width, y = M_PI * w->y / g->texture->height;
+        if (w->x != 0.0 || w->y != 0.0) {
+            l.loose += LOOSE * (float)power;
+            l.near += (float)(power * (x * x + y * y));
+        }
     }
+    l.near = fminf(l.near, 0.5f * l.loose);
     double done = 0.0;
     for (int i = 0; i < g->params->levels && !status; i++) {
         const double share =

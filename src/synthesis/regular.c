@@ -12,7 +12,8 @@
 
 #include <string.h>
 
-enum { STEPS = 12 };  // of the least squares that move waves
+// Of the least squares that move waves; texels for each wave, which has four unknowns.
+enum { STEPS = 12, TEXELS_EACH = 24 };
 // Noise has powers that follow an exponential distribution: the highest of a million bins is 14
 // times the mean. Structure has LEAST_SHARE of the variance; a base explains LEAST_KEPT of what the
 // waves did by themselves, and nearly as much (ENOUGH) as the best does.
@@ -22,7 +23,7 @@ static const double STANDS_OUT = 25.0, LEAST_SHARE = 0.03, LEAST_KEPT = 0.85, EN
 struct search {
     struct plane plane[REGULAR_CHANNELS];
     struct waves found[REGULAR_CHANNELS], kept[REGULAR_CHANNELS];
-    double variance[REGULAR_CHANNELS], rest[REGULAR_CHANNELS];
+    double variance[REGULAR_CHANNELS], rest[REGULAR_CHANNELS], before[REGULAR_CHANNELS];
     int channels, threads;
     const struct relume_regular_params *params;
 };
@@ -48,12 +49,13 @@ static bool load(struct search *s, const struct relume_texture *t)
 
 static relume_status analyse(struct search *s)
 {
+    const int texels = s->plane[0].width * s->plane[0].height,
+              most = smaller_of(s->params->most, larger_of(texels / TEXELS_EACH, 4));
     relume_status status = RELUME_OK;
     for (int c = 0; c < s->channels && !status; c++) {
-        status = waves_find(&s->found[c], &s->plane[c], s->params->threshold, s->params->most,
-                            s->threads);
+        status = waves_find(&s->found[c], &s->plane[c], s->params->threshold, most, s->threads);
         if (!status)
-            status = waves_fit(&s->found[c], &s->plane[c], STEPS, &s->rest[c]);
+            status = waves_fit(&s->found[c], &s->plane[c], STEPS, &s->rest[c], &s->before[c]);
         for (int i = 0; i < s->found[c].count; i++)
             s->found[c].wave[i].channel = c;
         if (!status && !log_progress(s->params->log, "structure", (c + 1.0) / s->channels))
@@ -99,7 +101,7 @@ static relume_status choose(struct search *s, const double base[2])
             if (good)
                 to->wave[to->count++] = w;
         }
-        status = waves_fit(to, &s->plane[c], 0, &s->rest[c]);
+        status = waves_fit(to, &s->plane[c], 0, &s->rest[c], NULL);
     }
     return status;
 }
@@ -246,6 +248,8 @@ static relume_status find(struct relume_regular *r, struct search *s,
         if (!s->kept[c].wave)
             status = RELUME_ENOMEM;
     }
+    r->info.rms_found = sqrt(total(s->before, s->channels) / s->channels);
+    r->info.rms_fitted = sqrt(total(s->rest, s->channels) / s->channels);
     if (!status && s->params->all) {
         r->info.share = share_of(s);
         r->info.regular = r->info.found > 0;

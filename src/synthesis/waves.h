@@ -22,9 +22,11 @@ relume_status waves_find(struct waves *out, const struct plane *plane, double th
                          int threads);
 
 // Fit the weights of all waves to the plane together (least squares), with `steps` above 0 also
-// their places (Levenberg and Marquardt). `*rest` is the mean square of what is left. Waves too
-// near each other for a solution stay as they are. RELUME_ENOMEM.
-relume_status waves_fit(struct waves *w, const struct plane *plane, int steps, double *rest);
+// their places (Levenberg and Marquardt). `*rest` is the mean square of what is left; with
+// `before`, not NULL, also of what was. Waves too near each other for a solution stay as they are.
+// RELUME_ENOMEM.
+relume_status waves_fit(struct waves *w, const struct plane *plane, int steps, double *rest,
+                        double *before);
 
 // cos and sin of 2 pi k j / m for j from 0 on.
 void waves_turn(double *cosine, double *sine, int count, double k, int m);

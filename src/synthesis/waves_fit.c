@@ -151,10 +151,13 @@ static bool step(struct fit *f, const struct waves *from, struct waves *to, doub
     return true;
 }
 
-static void run(struct fit *f, struct waves *w, struct waves *trial, int steps, double *rest)
+static void run(struct fit *f, struct waves *w, struct waves *trial, int steps, double *rest,
+                double *before)
 {
     double damping = f->each == PLACES ? 1e-3 : 0.0;
     *rest = residual(f, w);
+    if (before)
+        *before = *rest;
     for (int i = 0; i < steps; i++) {
         fill_matrix(f, w);
         fill_right(f, w);
@@ -176,7 +179,7 @@ static void run(struct fit *f, struct waves *w, struct waves *trial, int steps, 
 }
 
 static relume_status fit(struct waves *w, const struct plane *plane, int each, int steps,
-                         double *rest)
+                         double *rest, double *before)
 {
     const size_t n = (size_t)(w->count * each),
                  pixels = (size_t)plane->width * (size_t)plane->height;
@@ -191,7 +194,7 @@ static relume_status fit(struct waves *w, const struct plane *plane, int each, i
         f.right = f.system + n * n;
         f.turn = f.left + pixels;
         f.column[1] = f.column[0] + plane->width;
-        run(&f, w, &trial, steps, rest);
+        run(&f, w, &trial, steps, rest, before);
     }
     mem_free(trial.wave);
     mem_free(f.matrix);
@@ -200,8 +203,9 @@ static relume_status fit(struct waves *w, const struct plane *plane, int each, i
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
-relume_status waves_fit(struct waves *w, const struct plane *plane, int steps, double *rest)
+relume_status waves_fit(struct waves *w, const struct plane *plane, int steps, double *rest,
+                        double *before)
 {
-    const relume_status status = fit(w, plane, WEIGHTS, 2, rest);
-    return status || steps < 1 ? status : fit(w, plane, PLACES, steps, rest);
+    const relume_status status = fit(w, plane, WEIGHTS, 2, rest, before);
+    return status || steps < 1 ? status : fit(w, plane, PLACES, steps, rest, NULL);
 }

@@ -134,7 +134,7 @@ static void test_planted_waves(void **state)
 static void test_base(void **state)
 {
     (void)state;
-    struct relume_texture t = paint(WIDE, HIGH, 3, lattice);
+    struct relume_texture t = paint(WIDE, HIGH, TEST_SANITIZED ? 1 : 3, lattice);
     relume_regular *r = find(&t, false);
     const struct relume_regular_info *info = relume_regular_info(r);
     assert_true(info->regular && info->common);
@@ -163,7 +163,7 @@ static void test_nothing_repeats(void **state)
     (void)state;
     painter *const none[] = {noise, flat};
     for (int i = 0; i < 2; i++) {
-        struct relume_texture t = paint(64, 48, 3, none[i]);
+        struct relume_texture t = paint(40, 36, 3, none[i]);
         relume_regular *r = find(&t, false);
         const struct relume_regular_info *info = relume_regular_info(r);
         assert_false(info->regular);
@@ -216,7 +216,7 @@ static void test_regular_exact(void **state)
     (void)state;
     enum { W = 136, H = 88 };
     painter *const kind[] = {stripes, checks};
-    for (int k = 0; k < 2; k++) {
+    for (int k = TEST_SANITIZED; k < 2; k++) {
         struct relume_texture t = paint(56, 48, 1, kind[k]);
         relume_regular *r = find(&t, false);
         for (int m = 0; m < 2 * METHODS; m++) {
@@ -247,7 +247,7 @@ static void test_tiles_close(void **state)
     struct relume_texture t = paint(WIDE, HIGH, 1, lattice);
     relume_regular *r = find(&t, false);
     for (int m = 0; m < METHODS; m++)
-        for (int tile = 0; tile < 2; tile++) {
+        for (int tile = TEST_SANITIZED; tile < 2; tile++) {
             uint32_t *texel = grow(
                 &t, W, H,
                 relume_grow_params(.method = methods[m], .regular = r, .tile = tile, .seed = 3));
@@ -267,8 +267,8 @@ static void test_tiles_close(void **state)
 static void test_threads_and_seeds(void **state)
 {
     (void)state;
-    enum { W = 150, H = 131 };
-    struct relume_texture t = paint(48, 40, 3, noisy_waves);
+    enum { W = TEST_SANITIZED ? 70 : 110, H = 91 };
+    struct relume_texture t = paint(40, 32, 3, noisy_waves);
     relume_regular *r = find(&t, false);
     for (int m = 0; m < METHODS; m++) {
         uint32_t *map[4];
@@ -293,7 +293,7 @@ static void test_any_size(void **state)
     (void)state;
     static const int size[][2] = {{1, 1}, {3, 200}, {65, 2}, {17, 19}};
     struct relume_texture t = paint(24, 18, 5, lattice);
-    for (int i = 0; i < 4; i++)
+    for (int i = TEST_SANITIZED; i < 4; i++)
         for (int m = 0; m < 2 * METHODS; m++) {
             uint32_t *texel = grow(&t, size[i][0], size[i][1],
                                    relume_grow_params(.method = methods[m / 2], .tile = m % 2));
@@ -452,7 +452,7 @@ static void test_memory(void **state)
     struct relume_texture t = paint(16, 16, 3, checks);
     uint32_t texel[20 * 20];
     for (int m = 0; m < METHODS; m++)
-        for (long n = 1;; n += TEST_SANITIZED || n < 40 ? 1 : 7) {
+        for (long n = 1;; n += n < 30 ? 1 : TEST_SANITIZED ? 61 : 11) {
             struct relume_grow_quality q;
             relume_regular *r = NULL;
             mem_fail_after(n);

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/resource.h>
+#include <time.h>
 
 struct synth_options {
     struct btf_options btf;
@@ -70,7 +71,7 @@ struct job {
     uint32_t *texel;
     int width, height;
     relume_btf_map *map;
-    double analysis_s, synthesis_s;
+    double analysis_s, synthesis_s, synthesis_cpu_s;
 };
 
 static const struct args *args_of(const struct job *j)
@@ -118,11 +119,20 @@ static relume_status use_map(struct job *j)
     return j->texel ? RELUME_OK : RELUME_ENOMEM;
 }
 
+// Of all threads so far.
+static double cpu_s(void)
+{
+    struct timespec t;
+    return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t)
+               ? 0.0
+               : (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 static relume_status make_map(struct job *j)
 {
     const struct synth_options *o = j->o;
     const struct args *args = args_of(j);
-    const double start = now_s();
+    const double start = now_s(), cpu = cpu_s();
     const struct relume_btf_map_info info = {.sample_width = j->texture.width,
                                              .sample_height = j->texture.height,
                                              .tiles = 1,
@@ -140,6 +150,7 @@ static relume_status make_map(struct job *j)
                            .neighbourhood = o->neighbourhood, .alike = o->alike,
                            .levels = o->pyramid));
     j->synthesis_s = now_s() - start;
+    j->synthesis_cpu_s = cpu_s() - cpu;
     return status ? status : relume_btf_map_create(&j->map, &info, args->log);
 }
 
@@ -154,7 +165,7 @@ static relume_status analyse(struct job *j)
                                                                 .threshold = j->o->threshold,
                                                                 .threads = args->threads));
     j->analysis_s = now_s() - start;
-    if (!status && j->regular && !relume_regular_info(j->regular)->regular)
+    if (!status && j->regular && !relume_regular_info(j->regular)->regular && !j->o->use_map)
         announce(args, RELUME_NOTE,
                  "nothing repeats in this sample: synthesised without a regular "
                  "structure");
@@ -163,9 +174,11 @@ static relume_status analyse(struct job *j)
 
 static relume_status synthesise(struct job *j)
 {
-    relume_status status = analyse(j);
+    relume_status status = j->o->use_map ? use_map(j) : RELUME_OK;
+    if (!status)
+        status = analyse(j);
     if (status || j->o->use_map)
-        return status ? status : use_map(j);
+        return status;
     j->width = j->o->size[0] ? j->o->size[0] : 4 * j->texture.width;
     j->height = j->o->size[1] ? j->o->size[1] : 4 * j->texture.height;
     j->texel = malloc((size_t)j->width * (size_t)j->height * sizeof *j->texel);
@@ -178,8 +191,6 @@ static relume_status save_mask(const struct job *j)
 {
     const struct args *args = args_of(j);
     struct relume_image mask = {0};
-    if (!j->regular)
-        return usage_error("--save-mask: expected a structure to look for; found --plain");
     relume_status status =
         relume_regular_mask(&mask, j->regular, j->width, j->height, args->threads);
     struct relume_image grey = {0};
@@ -259,10 +270,13 @@ static void say_structure(const struct job *j, bool json)
     const double x = regular ? period(i->base[0], j->texture.width) : 0.0,
                  y = regular ? period(i->base[1], j->texture.height) : 0.0;
     if (json)
-        printf("\"regular\": %s, \"waves\": %d, \"waves_found\": %d, \"share\": %.4f, "
-               "\"common\": %s, \"period\": [%.4f, %.4f], ",
-               regular ? "true" : "false", regular ? i->count : 0, i ? i->found : 0,
-               regular ? i->share : 0.0, regular && i->common ? "true" : "false", x, y);
+        printf(
+            "\"regular\": %s, \"waves\": %d, \"waves_found\": %d, \"share\": %.4f, "
+            "\"common\": %s, \"period\": [%.4f, %.4f], \"rms_found\": %.4f, \"rms_fitted\": %.4f, "
+            "\"rms\": %.4f, ",
+            regular ? "true" : "false", regular ? i->count : 0, i ? i->found : 0,
+            regular ? i->share : 0.0, regular && i->common ? "true" : "false", x, y,
+            i ? i->rms_found : 0.0, i ? i->rms_fitted : 0.0, i ? i->rms : 0.0);
     else if (!regular)
         puts("structure   none that repeats");
     else if (!i->common)
@@ -274,22 +288,38 @@ static void say_structure(const struct job *j, bool json)
                i->count, 100.0 * i->share, x, y);
 }
 
-static void say_waves(const struct job *j)
+static void say_list(const char *what, const relume_regular *regular)
 {
-    const struct relume_regular_info *i = j->regular ? relume_regular_info(j->regular) : NULL;
-    puts("channel       b_x       b_y        Re        Im   above its surroundings");
-    for (int k = 0; i && k < i->count; k++) {
+    const struct relume_regular_info *i = relume_regular_info(regular);
+    printf("%s\nchannel       b_x       b_y        Re        Im   power over surroundings\n", what);
+    for (int k = 0; k < i->count; k++) {
         const struct relume_wave *w = &i->wave[k];
         printf("%7d %9.4f %9.4f %9.2f %9.2f   %.0f\n", w->channel, w->x, w->y, w->re, w->im,
                w->above);
     }
 }
 
+// All that were found, then those of the structure.
+static relume_status say_waves(const struct job *j)
+{
+    relume_regular *all;
+    const relume_status status = relume_regular_find(
+        &all, &j->texture,
+        relume_regular_params(.log = args_of(j)->log, .threshold = j->o->threshold, .all = true,
+                              .threads = args_of(j)->threads));
+    if (status)
+        return status;
+    say_list("waves that were found", all);
+    say_list("waves of the structure", j->regular);
+    relume_regular_destroy(&all);
+    return RELUME_OK;
+}
+
 static relume_status report(const struct job *j)
 {
     const struct args *args = args_of(j);
     struct relume_grow_quality q;
-    const relume_status status =
+    relume_status status =
         relume_grow_judge(&q, j->texel, j->width, j->height, &j->texture,
                           relume_grow_quality_params(.log = args->log, .regular = j->regular,
                                                      .threads = args->threads));
@@ -301,16 +331,16 @@ static relume_status report(const struct job *j)
         say_structure(j, true);
         printf("\"repetition\": %.4f, \"repetition_at\": [%d, %d], \"novelty\": %.4f, \"worst\": "
                "%.4f, \"coverage\": %.4f, \"cuts\": %.4f, \"analysis_s\": %.3f, \"synthesis_s\": "
-               "%.3f, \"peak_mb\": %.1f}\n",
+               "%.3f, \"synthesis_cpu_s\": %.3f, \"peak_mb\": %.1f}\n",
                q.repetition, q.repetition_at[0], q.repetition_at[1], q.novelty, q.worst, q.coverage,
-               q.cuts, j->analysis_s, j->synthesis_s, peak_mb());
+               q.cuts, j->analysis_s, j->synthesis_s, j->synthesis_cpu_s, peak_mb());
         return RELUME_OK;
     }
     printf("size        %d x %d texels from %d x %d\n", j->width, j->height, j->texture.width,
            j->texture.height);
     say_structure(j, false);
     if (j->o->waves)
-        say_waves(j);
+        status = say_waves(j);
     printf("repetition  %.2f at %d, %d (1: the sample laid side by side)\n", q.repetition,
            q.repetition_at[0], q.repetition_at[1]);
     printf("likeness    neighbourhoods are %.2f as far from the sample as its own from each other; "
@@ -321,7 +351,7 @@ static relume_status report(const struct job *j)
            100.0 * q.coverage, 100.0 * q.cuts);
     printf("time        structure %.2f s, synthesis %.2f s; %.0f MB at most\n", j->analysis_s,
            j->synthesis_s, peak_mb());
-    return RELUME_OK;
+    return status;
 }
 
 // ---------------------------------------------------------------- the task
@@ -329,6 +359,8 @@ static relume_status report(const struct job *j)
 static relume_status check(const struct job *j)
 {
     const struct synth_options *o = j->o;
+    if (o->plain && (o->waves || o->save_mask))
+        return usage_error("--plain: looks for no structure; leave out --waves and --save-mask");
     if (o->use_map && (given(o, o->size) || o->tile))
         return usage_error("--map: the size is that of the map; leave out --size and --tile");
     if (is_numbers(o->btf.output))

@@ -14,6 +14,7 @@ math:base kernel:base vec
 geometry:base math:base capture
 image:base math kernel:base io image photograph response
 compare:base math image:base image jnd
+study:base math:base image study
 capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth

@@ -64,6 +64,10 @@ static bool is_whole(const struct relume_mesh *m)
         for (int k = 0; k < 3; k++)
             if (m->triangle[i][k] >= m->vertex_count)
                 return false;
+    for (size_t i = 0; i < m->vertex_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(m->position[i][k]) || !isfinite(m->normal[i][k]))
+                return false;
     return true;
 }
 

@@ -226,17 +226,14 @@ static double looks(const struct relume_mesh *m, double ppd)
     return sum;
 }
 
-static struct judged judge(const struct relume_mesh *m, const struct relume_mesh *reference,
-                           const struct grid *grid, double ppd)
+static double distance_of(const struct relume_mesh *m, const struct relume_mesh *reference,
+                          const struct grid *grid)
 {
     struct grid own;
     grid_create(&own, m);
-    const struct judged j = {
-        .distance = fmax(one_way(m, grid), one_way(reference, &own)) / diagonal,
-        .jnd = looks(m, ppd),
-    };
+    const double d = fmax(one_way(m, grid), one_way(reference, &own)) / diagonal;
     grid_free(&own);
-    return j;
+    return d;
 }
 
 // ---------------------------------------------------------------- the others
@@ -278,9 +275,8 @@ static size_t fewest(const struct relume_mesh *m, const struct grid *grid, doubl
         const double n = 0.5 * (low + high);
         struct relume_mesh small;
         must(reduce(&small, m, (size_t)exp(n), by_meshopt));
-        const struct judged j =
-            by_looks ? (struct judged){.jnd = looks(&small, ppd)} : judge(&small, m, grid, ppd);
-        const bool good = by_looks ? j.jnd <= want.jnd : j.distance <= want.distance;
+        const bool good = by_looks ? looks(&small, ppd) <= want.jnd
+                                   : distance_of(&small, m, grid) <= want.distance;
         *(good ? &high : &low) = n;
         drop(&small, by_meshopt);
     }
@@ -291,7 +287,7 @@ static void compare(const char *name, const struct relume_mesh *m, double error)
 {
     const double seen_from = error / (2.0 * tan(3.14159265358979 / 180 / 60));
     const double width_deg = 2.0 * atan(0.5 / seen_from) * 180.0 / 3.14159265358979;
-    const int size = (int)fmax(192.0, 32.0 * width_deg);
+    const int size = (int)fmax(192.0, 24.0 * width_deg);
     const double ppd = size / width_deg;
     struct grid grid;
     struct relume_mesh small;
@@ -301,9 +297,10 @@ static void compare(const char *name, const struct relume_mesh *m, double error)
     const double start = now_s();
     must(!relume_mesh_simplify(&small, NULL, m, relume_simplify_params(.error = error)));
     const double time = now_s() - start;
-    const struct judged own = judge(&small, m, &grid, ppd);
+    const struct judged own = {distance_of(&small, m, &grid), looks(&small, ppd)};
     printf("%s %g%%: %zu triangles of %zu in %.2f s, distance %.3f%%, %.2f JND\n", name,
            100 * error, small.triangle_count, m->triangle_count, time, 100 * own.distance, own.jnd);
+    fflush(stdout);
     for (int peer = 0; peer < 1 + (meshopt_simplify != NULL); peer++) {
         const size_t near = fewest(m, &grid, ppd, own, false, peer),
                      like = fewest(m, &grid, ppd, own, true, peer), n = near > like ? near : like;

@@ -42,7 +42,7 @@ gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
 surface:base math btf btf_model:base image btf btf_environment surface
-mesh:base math geometry:base io image object mesh
+mesh:base math geometry:base io image object mesh jnd simplify
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport
@@ -80,7 +80,7 @@ fi
 # external header: the files it may appear in
 external="openexr:src/image/exr.c tests/tools/decode.c tests/unit/test_piz.c
 OpenImageIO:src/image/oiio.cpp
-dlfcn:src/base/module.c tests/tools/preload/faults.c
+dlfcn:src/base/module.c tests/tools/preload/faults.c tests/bench/bench_simplify.c
 opencv:src/multiview/stitch.cpp
 embree:src/mesh/trace.c tests/tools/preload/msan.c
 assimp:src/mesh/mesh_assimp.c

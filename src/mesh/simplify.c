@@ -270,8 +270,10 @@ static void try_point(struct run *r, uint32_t point)
             r->status = RELUME_ENOMEM;
             return;
         }
-        if (r->last_resort && error.length < (double)INFINITY)
-            error = (struct error){error.length, r->done.distance};
+        if (!(error.length < (double)INFINITY))  // a triangle would turn over
+            continue;
+        if (r->last_resort)
+            error.distance = r->done.distance;
         else if (error.length > r->most.length || error.distance > r->most.distance)
             continue;
         const double worst = fmax(error.length, error.distance / r->s.seen_per_length);

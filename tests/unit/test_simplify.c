@@ -6,7 +6,7 @@
 struct surface {
     int across, down;  // squares
     bool around;       // the last column is the first one's place
-    bool closed;  // the last row is the first one's place
+    bool closed;       // the last row is the first one's place
     bool textured;
     vec3 (*place)(double s, double t);
     vec3 (*normal)(double s, double t);
@@ -72,7 +72,7 @@ static vec3 tube(double s, double t)
 }
 
 static const struct surface plane_of = {20, 20, false, false, false, sheet, up};
-static const struct surface torus_of = {60, 40, true, true, false, torus, torus_normal};
+static const struct surface torus_of = {48, 32, true, true, false, torus, torus_normal};
 static const struct surface tube_of = {40, 30, true, false, true, tube, tube_normal};
 
 static vec3 at(const struct relume_mesh *m, uint32_t v)
@@ -174,7 +174,7 @@ static void test_torus(void **state)
     relume_mesh_free(&m);
 }
 
-// Errors that are allowed shrink the mesh, and so do highlights that are softer.
+// Errors that are allowed shrink the mesh, and so do differences that may be seen.
 static void test_what_counts(void **state)
 {
     (void)state;
@@ -182,11 +182,10 @@ static void test_what_counts(void **state)
         {.error = 0.002, .jnd = 0.25},
         {.error = 0.01, .jnd = 0.25},
         {.error = 0.01, .jnd = 4},
-        {.error = 0.01, .quadrics = true},
     };
     struct relume_mesh m = make(&torus_of), small;
     size_t last = m.triangle_count;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 3; i++) {
         CHECK_OK(relume_mesh_simplify(&small, NULL, &m, &tries[i]));
         assert_true(small.triangle_count < last);
         last = small.triangle_count;
@@ -302,11 +301,25 @@ static void test_parts(void **state)
     relume_mesh_free(&m);
 }
 
+// Triangles that face inwards by more than a right angle.
+static int turned_over(const struct relume_mesh *m)
+{
+    int n = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *v = m->triangle[t];
+        const float *g = m->normal[v[0]];
+        const vec3 a = at(m, v[0]);
+        const vec3 across = vec3_cross(vec3_sub(at(m, v[1]), a), vec3_sub(at(m, v[2]), a));
+        n += vec3_dot(across, vec3_of((double)g[0], (double)g[1], (double)g[2])) < 0.0;
+    }
+    return n;
+}
+
 static void test_count(void **state)
 {
     (void)state;
     struct relume_mesh m = make(&torus_of), small;
-    static const size_t want[] = {3000, 500, 60};
+    static const size_t want[] = {2000, 500, 60};
     for (int i = 0; i < 3; i++) {
         CHECK_OK(
             relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.triangles = want[i])));
@@ -314,6 +327,10 @@ static void test_count(void **state)
         assert_true(is_closed(&small));
         relume_mesh_free(&small);
     }
+    CHECK_OK(relume_mesh_simplify(&small, NULL, &m,
+                                  relume_simplify_params(.triangles = 300, .quadrics = true)));
+    assert_int_equal(turned_over(&m) + turned_over(&small), 0);
+    relume_mesh_free(&small);
     relume_mesh_free(&m);
 }
 

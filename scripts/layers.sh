@@ -14,6 +14,7 @@ math:base kernel:base vec
 geometry:base math:base capture
 image:base math kernel:base io image photograph response
 compare:base math image:base image jnd
+study:base math:base image study
 capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
@@ -85,7 +86,7 @@ fi
 # external header: the files it may appear in
 external="openexr:src/image/exr.c tests/tools/decode.c tests/unit/test_piz.c
 OpenImageIO:src/image/oiio.cpp
-dlfcn:src/base/module.c tests/tools/preload/faults.c
+dlfcn:src/base/module.c tests/tools/preload/faults.c tests/bench/bench_simplify.c
 opencv:src/multiview/stitch.cpp
 embree:src/mesh/trace.c tests/tools/preload/msan.c
 assimp:src/mesh/mesh_assimp.c

@@ -47,6 +47,7 @@
 #include <relume/shadow.h>
 #include <relume/simplify.h>
 #include <relume/slab_set.h>
+#include <relume/study.h>
 #include <relume/surface.h>
 #include <relume/synthesis.h>
 #include <relume/tableau.h>

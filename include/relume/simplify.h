@@ -56,7 +56,7 @@ struct relume_simplified {
 
 // `*out` is new; `report` may be NULL. Edges of three and more triangles stay, as do borders,
 // seams of texture, normals or colour, and edges between parts, along which vertices go. Triangles
-// without area go. RELUME_EINVAL for params out of range or vertices that are not there,
+// of less than three places go. RELUME_EINVAL for params out of range or vertices that are not there,
 // RELUME_ELIMIT with a sentence when it would take more memory than a model may,
 // RELUME_EUNFIT where nothing is left, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_mesh_simplify(struct relume_mesh *out,

@@ -16,9 +16,9 @@
 // An edge is seen to move when it moves by more than this angle.
 #define LEAST_ANGLE (PI / 180.0 / 30.0)
 // Of a value of 1 (a normal's component, white's), diagonals.
-#define VALUE_WEIGHT 0.01
+#define VALUE_WEIGHT 0.03
 // Errors below this share of the most are as good as none.
-#define FINE_SHARE (1.0 / 16.0)
+#define FINE_SHARE 0.5
 // Between looks at whether to stop.
 enum { PROGRESS_EVERY = 16384 };
 
@@ -63,6 +63,10 @@ static bool is_whole(const struct relume_mesh *m)
     for (size_t i = 0; i < m->triangle_count; i++)
         for (int k = 0; k < 3; k++)
             if (m->triangle[i][k] >= m->vertex_count)
+                return false;
+    for (size_t i = 0; i < m->vertex_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(m->position[i][k]) || !isfinite(m->normal[i][k]))
                 return false;
     return true;
 }
@@ -207,7 +211,8 @@ static void weigh(struct run *r, uint32_t point)
     struct choice cheapest;
     connect_fan(&r->s.connect, point, &r->fan);
     r->stale[point] = false;
-    if (find_choices(r, point, &cheapest, 1) && (r->last_resort || cheapest.cost <= r->most.length))
+    if (find_choices(r, point, &cheapest, 1) &&
+        (r->s.tested || r->last_resort || cheapest.cost <= r->most.length))
         queue_put(&r->queue, point, cheapest.cost);
 }
 
@@ -265,15 +270,14 @@ static void try_point(struct run *r, uint32_t point)
             r->status = RELUME_ENOMEM;
             return;
         }
-        if (r->last_resort && error.length < (double)INFINITY)
-            error = (struct error){error.length, r->done.distance};
+        if (!(error.length < (double)INFINITY))  // a triangle would turn over
+            continue;
+        if (r->last_resort)
+            error.distance = r->done.distance;
         else if (error.length > r->most.length || error.distance > r->most.distance)
             continue;
-        const double worst =
-            r->last_resort
-                ? choice[i].cost
-                : fmax(choice[i].cost, fmax(error.length, error.distance / r->s.seen_per_length));
-        if (worst <= allowed) {
+        const double worst = fmax(error.length, error.distance / r->s.seen_per_length);
+        if (!r->s.tested || worst <= allowed) {
             go(r, point, target, &moves, error);
             return;
         }

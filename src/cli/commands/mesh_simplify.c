@@ -43,16 +43,13 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static relume_status write_steps(const struct relume_simplified *s, const char *path,
-                                 const struct args *args)
+static void print_steps(const void *context, FILE *to)
 {
-    FILE *file = fopen(path, "w");
-    bool good = file && fputs("vertex,onto,error,distance\n", file) >= 0;
-    for (size_t i = 0; good && i < s->steps; i++)
-        good = fprintf(file, "%u,%u,%.6g,%.6g\n", s->step[i].vertex, s->step[i].onto,
-                       (double)s->step[i].error, (double)s->step[i].distance) > 0;
-    (void)args;
-    return file && !fclose(file) && good ? RELUME_OK : RELUME_EIO;
+    const struct relume_simplified *s = context;
+    fputs("vertex,onto,error,distance\n", to);
+    for (size_t i = 0; i < s->steps; i++)
+        fprintf(to, "%u,%u,%.6g,%.6g\n", s->step[i].vertex, s->step[i].onto,
+                (double)s->step[i].error, (double)s->step[i].distance);
 }
 
 static void report(const struct simplify_options *o, const struct relume_simplified *s,
@@ -100,7 +97,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = relume_mesh_write(&small, o->output, p);
     if (!status && o->steps)
-        status = write_steps(&done, o->steps, args);
+        status = relume_file_print(o->steps, print_steps, &done, args->log);
     if (!status)
         report(o, &done, mesh.triangle_count, time);
     relume_free(done.step);

@@ -1,0 +1,9 @@
+// study_tasks.h - the tasks of `relume study` that make things
+#ifndef COMMANDS_STUDY_TASKS_H
+#define COMMANDS_STUDY_TASKS_H
+
+#include "cli.h"
+
+extern const struct command study_task_make, study_task_run;
+
+#endif

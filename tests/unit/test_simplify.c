@@ -1,0 +1,385 @@
+// test_simplify.c - fewer triangles: known surfaces, what must stay, replayed steps
+#include "test.h"
+
+#include "mesh/simplify.h"
+
+struct surface {
+    int across, down;  // squares
+    bool around;       // the last column is the first one's place
+    bool closed;       // the last row is the first one's place
+    bool textured;
+    vec3 (*place)(double s, double t);
+    vec3 (*normal)(double s, double t);
+};
+
+// A grid of (across + 1) x (down + 1) vertices.
+static struct relume_mesh make(const struct surface *f)
+{
+    const int w = f->across + 1, h = f->down + 1;
+    struct relume_mesh m = {.vertex_count = (size_t)(w * h),
+                            .triangle_count = (size_t)(2 * f->across * f->down)};
+    m.position = malloc(m.vertex_count * sizeof *m.position);
+    m.normal = malloc(m.vertex_count * sizeof *m.normal);
+    m.texture = f->textured ? malloc(m.vertex_count * sizeof *m.texture) : NULL;
+    m.triangle = malloc(m.triangle_count * sizeof *m.triangle);
+    for (int i = 0; i < w * h; i++) {
+        const double s = (double)(i % w) / f->across, t = (double)(i / w) / f->down;
+        const double at = f->around && i % w == f->across ? 0.0 : s;
+        const double down = f->closed && i / w == f->down ? 0.0 : t;
+        const vec3 p = f->place(at, down), n = f->normal(at, down);
+        memcpy(m.position[i], (float[]){(float)p.x, (float)p.y, (float)p.z}, 12);
+        memcpy(m.normal[i], (float[]){(float)n.x, (float)n.y, (float)n.z}, 12);
+        if (m.texture)
+            memcpy(m.texture[i], (float[]){(float)s, (float)t}, 8);
+    }
+    for (int i = 0; i < f->across * f->down; i++) {
+        const uint32_t a = (uint32_t)(i / f->across * w + i % f->across), b = a + (uint32_t)w;
+        memcpy(m.triangle[2 * i], (uint32_t[]){a, a + 1, b}, 12);
+        memcpy(m.triangle[2 * i + 1], (uint32_t[]){a + 1, b + 1, b}, 12);
+    }
+    return m;
+}
+
+static vec3 sheet(double s, double t)
+{
+    return vec3_of(s, t, 0);
+}
+static vec3 up(double s, double t)
+{
+    (void)s, (void)t;
+    return vec3_of(0, 0, 1);
+}
+static vec3 torus_normal(double s, double t)
+{
+    const double a = 2 * M_PI * s, b = 2 * M_PI * t;
+    return vec3_of(cos(a) * cos(b), sin(a) * cos(b), sin(b));
+}
+static vec3 torus(double s, double t)
+{
+    const vec3 n = torus_normal(s, t);
+    const double a = 2 * M_PI * s;
+    return vec3_along(vec3_of(cos(a), sin(a), 0), n, 0.4);
+}
+static vec3 tube_normal(double s, double t)
+{
+    (void)t;
+    return vec3_of(cos(2 * M_PI * s), sin(2 * M_PI * s), 0);
+}
+static vec3 tube(double s, double t)
+{
+    const vec3 n = tube_normal(s, t);
+    return vec3_of(n.x, n.y, 3 * t);
+}
+
+static const struct surface plane_of = {20, 20, false, false, false, sheet, up};
+static const struct surface torus_of = {48, 32, true, true, false, torus, torus_normal};
+static const struct surface tube_of = {40, 30, true, false, true, tube, tube_normal};
+
+static vec3 at(const struct relume_mesh *m, uint32_t v)
+{
+    return vec3_of((double)m->position[v][0], (double)m->position[v][1], (double)m->position[v][2]);
+}
+
+static double to_segment(vec3 p, vec3 a, vec3 b)
+{
+    const vec3 ab = vec3_sub(b, a);
+    const double t = vec3_dot(vec3_sub(p, a), ab) / vec3_dot(ab, ab);
+    return vec3_length(vec3_sub(p, vec3_along(a, ab, fmin(fmax(t, 0.0), 1.0))));
+}
+
+// Slowly, by the plane where the foot is inside, else the edges.
+static double to_triangle(const struct relume_mesh *m, const uint32_t t[3], vec3 p)
+{
+    const vec3 a = at(m, t[0]), b = at(m, t[1]), c = at(m, t[2]);
+    const vec3 n = vec3_unit(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
+    if (vec3_dot(vec3_cross(vec3_sub(b, a), vec3_sub(p, a)), n) >= 0 &&
+        vec3_dot(vec3_cross(vec3_sub(c, b), vec3_sub(p, b)), n) >= 0 &&
+        vec3_dot(vec3_cross(vec3_sub(a, c), vec3_sub(p, c)), n) >= 0)
+        return fabs(vec3_dot(vec3_sub(p, a), n));
+    return fmin(to_segment(p, a, b), fmin(to_segment(p, b, c), to_segment(p, c, a)));
+}
+
+static double distance_of(const struct relume_mesh *from, const struct relume_mesh *to)
+{
+    double worst = 0.0;
+    for (uint32_t v = 0; v < from->vertex_count; v++) {
+        double best = INFINITY;
+        for (size_t t = 0; t < to->triangle_count; t++)
+            best = fmin(best, to_triangle(to, to->triangle[t], at(from, v)));
+        worst = fmax(worst, best);
+    }
+    return worst;
+}
+
+static double diagonal_of(const struct relume_mesh *m)
+{
+    vec3 low = at(m, 0), high = low;
+    for (uint32_t v = 0; v < m->vertex_count; v++) {
+        const vec3 p = at(m, v);
+        low = vec3_of(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
+        high = vec3_of(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+    }
+    return vec3_length(vec3_sub(high, low));
+}
+
+// Every edge of a closed surface has a twin the other way round; points of seams are one.
+static bool is_closed(const struct relume_mesh *m)
+{
+    for (size_t t = 0; t < m->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const vec3 a = at(m, m->triangle[t][k]), b = at(m, m->triangle[t][(k + 1) % 3]);
+            int twins = 0;
+            for (size_t u = 0; u < m->triangle_count; u++)
+                for (int j = 0; j < 3; j++)
+                    twins += !vec3_length(vec3_sub(at(m, m->triangle[u][j]), b)) &&
+                             !vec3_length(vec3_sub(at(m, m->triangle[u][(j + 1) % 3]), a));
+            if (twins != 1)
+                return false;
+        }
+    return true;
+}
+
+static void test_plane(void **state)
+{
+    (void)state;
+    struct relume_mesh m = make(&plane_of), small;
+    struct relume_simplified r;
+    CHECK_OK(relume_mesh_simplify(&small, &r, &m, relume_simplify_params(.error = 1e-5)));
+    assert_int_equal(small.triangle_count, 2);
+    assert_int_equal(small.vertex_count, 4);
+    assert_int_equal(r.steps, m.vertex_count - 4);
+    CHECK_NEAR(r.error, 0.0, 1e-6);
+    free(r.step);
+    relume_mesh_free(&small);
+    relume_mesh_free(&m);
+}
+
+static void test_torus(void **state)
+{
+    (void)state;
+    struct relume_mesh m = make(&torus_of), small;
+    struct relume_simplified r;
+    const double diagonal = diagonal_of(&m);
+    CHECK_OK(relume_mesh_simplify(&small, &r, &m, relume_simplify_params(.error = 0.005)));
+    assert_true(small.triangle_count < m.triangle_count / 3);
+    // the wraps in t have vertices of their own, at the same places
+    assert_true(is_closed(&small));
+    const double d = distance_of(&m, &small) / diagonal;
+    assert_true(d <= 0.005 + 1e-6);
+    assert_true(r.error <= 0.005 + 1e-6 && d <= r.error + 1e-6);
+    assert_true(r.distance <= 0.005 * 1719.0);
+    CHECK_NEAR(distance_of(&small, &m), 0.0, 1e-6);  // vertices are the original's
+    free(r.step);
+    relume_mesh_free(&small);
+    relume_mesh_free(&m);
+}
+
+// Errors that are allowed shrink the mesh, and so do differences that may be seen.
+static void test_what_counts(void **state)
+{
+    (void)state;
+    static const struct relume_simplify_params tries[] = {
+        {.error = 0.002, .jnd = 0.25},
+        {.error = 0.01, .jnd = 0.25},
+        {.error = 0.01, .jnd = 4},
+    };
+    struct relume_mesh m = make(&torus_of), small;
+    size_t last = m.triangle_count;
+    for (int i = 0; i < 3; i++) {
+        CHECK_OK(relume_mesh_simplify(&small, NULL, &m, &tries[i]));
+        assert_true(small.triangle_count < last);
+        last = small.triangle_count;
+        relume_mesh_free(&small);
+    }
+    relume_mesh_free(&m);
+}
+
+static void test_visible(void **state)
+{
+    (void)state;
+    struct visible matte, glossy;
+    CHECK_OK(visible_create(&matte, 1.0, 0.0, 200.0));
+    CHECK_OK(visible_create(&glossy, 1.0, 60.0, 200.0));
+    CHECK_NEAR(visible_distance(&matte, 0.0, 5.0), 0.0, 0.0);
+    assert_true(isinf(visible_distance(&matte, 0.5, 0.0)));
+    double last = 0.0;
+    bool glossier = false;
+    for (double a = 0.0; a < 1.0; a += 0.01) {
+        const double d = visible_distance(&matte, a, 5.0);
+        assert_true(d >= last);
+        CHECK_NEAR(visible_distance(&matte, a, 10.0), 0.5 * d, 1e-9 * d);
+        glossier |= visible_distance(&glossy, a, 5.0) > d;
+        last = d;
+    }
+    assert_true(glossier && last > 1.0);
+}
+
+// A step sends a vertex onto another; where the last ones lead are the triangles that are left.
+static void test_steps(void **state)
+{
+    (void)state;
+    struct relume_mesh m = make(&torus_of), small;
+    struct relume_simplified r;
+    CHECK_OK(relume_mesh_simplify(&small, &r, &m, relume_simplify_params(.error = 0.01)));
+    uint32_t *onto = malloc(m.vertex_count * sizeof *onto);
+    for (uint32_t v = 0; v < m.vertex_count; v++)
+        onto[v] = v;
+    float error = 0.0f;
+    for (size_t i = 0; i < r.steps; i++) {
+        assert_int_equal(onto[r.step[i].vertex], r.step[i].vertex);
+        onto[r.step[i].vertex] = r.step[i].onto;
+        assert_true(r.step[i].error >= error);
+        error = r.step[i].error;
+    }
+    size_t n = 0;
+    for (size_t t = 0; t < m.triangle_count; t++) {
+        vec3 p[3];
+        for (int k = 0; k < 3; k++) {
+            uint32_t v = m.triangle[t][k];
+            while (onto[v] != v)
+                v = onto[v];
+            p[k] = at(&m, v);
+        }
+        if (vec3_length(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]))) == 0.0)
+            continue;
+        assert_true(n < small.triangle_count);
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(vec3_length(vec3_sub(p[k], at(&small, small.triangle[n][k]))), 0.0, 0.0);
+        n++;
+    }
+    assert_int_equal(n, small.triangle_count);
+    free(onto);
+    free(r.step);
+    relume_mesh_free(&small);
+    relume_mesh_free(&m);
+}
+
+// A tube's texture has a seam: vertices stay vertices of the original, and the texture slides by
+// no more than the surface may.
+static void test_texture(void **state)
+{
+    (void)state;
+    struct relume_mesh m = make(&tube_of), small;
+    CHECK_OK(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = 0.01)));
+    assert_true(small.triangle_count < m.triangle_count / 2);
+    for (uint32_t v = 0; v < small.vertex_count; v++) {
+        const vec3 p = tube((double)small.texture[v][0], (double)small.texture[v][1]);
+        CHECK_NEAR(vec3_length(vec3_sub(p, at(&small, v))), 0.0, 1e-5);
+    }
+    for (size_t t = 0; t < small.triangle_count; t++) {  // none leaps over the seam
+        double low = 1.0, high = 0.0;
+        for (int k = 0; k < 3; k++) {
+            low = fmin(low, (double)small.texture[small.triangle[t][k]][0]);
+            high = fmax(high, (double)small.texture[small.triangle[t][k]][0]);
+        }
+        assert_true(high - low < 0.5);
+    }
+    relume_mesh_free(&small);
+    relume_mesh_free(&m);
+}
+
+// The line between two parts of a plane stays where it is, and so does the rim.
+static void test_parts(void **state)
+{
+    (void)state;
+    struct relume_mesh m = make(&plane_of), small;
+    double area[2] = {0, 0};
+    m.part = malloc(m.triangle_count * sizeof *m.part);
+    for (size_t t = 0; t < m.triangle_count; t++)
+        m.part[t] = t / 2 % 20 >= 7;
+    CHECK_OK(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = 1e-5)));
+    assert_int_equal(small.triangle_count, 4);
+    for (size_t t = 0; t < 4; t++) {
+        const vec3 a = at(&small, small.triangle[t][0]);
+        area[small.part[t]] += 0.5 * vec3_cross(vec3_sub(at(&small, small.triangle[t][1]), a),
+                                                vec3_sub(at(&small, small.triangle[t][2]), a))
+                                         .z;
+    }
+    CHECK_NEAR(area[0], 0.35, 1e-5);
+    CHECK_NEAR(area[1], 0.65, 1e-5);
+    relume_mesh_free(&small);
+    relume_mesh_free(&m);
+}
+
+// Triangles that face inwards by more than a right angle.
+static int turned_over(const struct relume_mesh *m)
+{
+    int n = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *v = m->triangle[t];
+        const float *g = m->normal[v[0]];
+        const vec3 a = at(m, v[0]);
+        const vec3 across = vec3_cross(vec3_sub(at(m, v[1]), a), vec3_sub(at(m, v[2]), a));
+        n += vec3_dot(across, vec3_of((double)g[0], (double)g[1], (double)g[2])) < 0.0;
+    }
+    return n;
+}
+
+static void test_count(void **state)
+{
+    (void)state;
+    struct relume_mesh m = make(&torus_of), small;
+    static const size_t want[] = {2000, 500, 60};
+    for (int i = 0; i < 3; i++) {
+        CHECK_OK(
+            relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.triangles = want[i])));
+        assert_true(small.triangle_count <= want[i] && small.triangle_count + 2 >= want[i]);
+        assert_true(is_closed(&small));
+        relume_mesh_free(&small);
+    }
+    CHECK_OK(relume_mesh_simplify(&small, NULL, &m,
+                                  relume_simplify_params(.triangles = 300, .quadrics = true)));
+    assert_int_equal(turned_over(&m) + turned_over(&small), 0);
+    relume_mesh_free(&small);
+    relume_mesh_free(&m);
+}
+
+// Three leaves at one edge, a triangle of two points, one without a length.
+static void test_broken(void **state)
+{
+    (void)state;
+    float position[][3] = {{0, 0, 0},     {0, 0, 1},      {1, 0, 0.5f},
+                           {-1, 1, 0.5f}, {-1, -1, 0.5f}, {0, 0, 0}};
+    float normal[6][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+    uint32_t triangle[][3] = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 5, 1}, {2, 2, 2}};
+    struct relume_mesh m = {.vertex_count = 6,
+                            .triangle_count = 5,
+                            .position = position,
+                            .normal = normal,
+                            .triangle = triangle},
+                       small;
+    CHECK_OK(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.triangles = 1)));
+    assert_int_equal(small.triangle_count, 3);
+    relume_mesh_free(&small);
+    m.triangle_count = 0;
+    assert_int_equal(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = 0.1)),
+                     RELUME_EINVAL);
+    m.triangle_count = 1;
+    triangle[0][2] = 6;
+    assert_int_equal(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = 0.1)),
+                     RELUME_EINVAL);
+    triangle[0][2] = 5;
+    assert_int_equal(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = 0.1)),
+                     RELUME_EUNFIT);
+    triangle[0][2] = 2;
+    position[3][1] = NAN;
+    assert_int_equal(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = 0.1)),
+                     RELUME_EINVAL);
+    position[3][1] = 1;
+    assert_int_equal(relume_mesh_simplify(&small, NULL, &m, NULL), RELUME_EINVAL);
+    assert_int_equal(relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = -1)),
+                     RELUME_EINVAL);
+    assert_null(small.position);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_plane),       cmocka_unit_test(test_torus),
+        cmocka_unit_test(test_what_counts), cmocka_unit_test(test_visible),
+        cmocka_unit_test(test_steps),       cmocka_unit_test(test_texture),
+        cmocka_unit_test(test_parts),       cmocka_unit_test(test_count),
+        cmocka_unit_test(test_broken),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -41,7 +41,7 @@ gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
 surface:base math btf btf_model:base image btf btf_environment surface
-mesh:base math geometry:base object
+mesh:base math geometry:base image object
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport

@@ -29,6 +29,11 @@ struct relume_objects {
     relume_reflection **reflection;   // [objects]; NULL: as it is
 };
 
+static inline vec3 objects_middle(const relume_objects *o)
+{
+    return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
+}
+
 // The part's material, opened when it is not there yet; its number. An input status, RELUME_ENOMEM.
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params);
@@ -248,6 +253,8 @@ bool seen_shade(float rgb[3], const struct seen *s, const struct surface_point *
 
 // Whether what it says of transport is within its ranges.
 bool render_params_good(const struct relume_render_params *params);
+// Whether light goes between a scene and the objects.
+bool render_exchanges(const struct relume_render_params *params);
 
 // A scene and the objects, where they are before it.
 struct layered {
@@ -270,6 +277,17 @@ vec3 scene_normal(const struct relume_image *places, int x, int y);
 // `every` of them looked for.
 double scene_share(const relume_objects *o, const struct relume_object_light *light_sample, int n,
                    vec3 place, vec3 normal, int every, uint64_t key);
+
+// What one light shows of a scene, each pixel times that share, is added to a picture.
+struct scene_in_shadow {
+    const relume_objects *o;
+    const struct relume_image *places, *lone;  // NaN: nowhere, where no object stands before it
+    struct relume_image *sum;
+    const struct relume_object_light *light_sample;
+    int light_samples;
+    bool none;  // no shadows
+};
+void scene_add(const struct scene_in_shadow *s, int threads);
 
 // Light between a scene and the objects in it at the pixels of a frame.
 struct exchange;

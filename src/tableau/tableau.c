@@ -58,16 +58,6 @@ bool relume_tableau_is(const char *path)
 
 // ---------------------------------------------------------------- the file
 
-static relume_status know(const jvalue *object, const char *const *known,
-                          const struct relume_log *log)
-{
-    const char *stranger = jvalue_unknown(object, known);
-    const char *near = stranger ? relume_name_nearest(stranger, known) : NULL;
-    return stranger ? log_fail(log, RELUME_EFORMAT, "unknown member '%s'%s%s%s", stranger,
-                               near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "")
-                    : RELUME_OK;
-}
-
 static const jvalue *list_of(const relume_tableau *t, const char *name)
 {
     return jvalue_member(t->root, name);
@@ -126,7 +116,7 @@ static relume_status read_capture(relume_tableau *t, int number)
         return log_fail(log, RELUME_EFORMAT, "file: expected the name of a file");
     e->name = name_of(entry, file);
     char *path = mesh_beside(t->path, file);
-    relume_status status = e->name && path ? know(entry, known, log) : RELUME_ENOMEM;
+    relume_status status = e->name && path ? jvalue_check_known(entry, known, log) : RELUME_ENOMEM;
     if (!status && relume_tableau_is(path))
         status = log_fail(log, RELUME_EFORMAT,
                           "'%s' is a scene file itself; name what is in it here instead", file);
@@ -194,11 +184,6 @@ static void widen(vec3 *min, vec3 *max, vec3 p)
     *max = vec3_of(fmax(max->x, p.x), fmax(max->y, p.y), fmax(max->z, p.z));
 }
 
-static vec3 corner_of(const relume_objects *o, size_t triangle, int k)
-{
-    return vertex_position(&o->mesh.vertices[o->mesh.triangles[triangle].vertex[k]]);
-}
-
 static void measure(relume_tableau *t)
 {
     const relume_objects *o = t->objects;
@@ -210,11 +195,11 @@ static void measure(relume_tableau *t)
         for (; part < o->info.parts && o->part[part].object == i; part++) {
             const size_t first = o->part[part].first, count = o->part[part].count;
             for (size_t k = first; k < first + count; k++) {
-                const vec3 a = corner_of(o, k, 0), b = corner_of(o, k, 1), c = corner_of(o, k, 2);
-                area += 0.5 * vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
-                widen(&min, &max, a);
-                widen(&min, &max, b);
-                widen(&min, &max, c);
+                vec3 corner[3];
+                mesh_corners(corner, &o->mesh, k);
+                area += 0.5 * vec3_length(mesh_twice_area(corner));
+                for (int c = 0; c < 3; c++)
+                    widen(&min, &max, corner[c]);
             }
             e->triangles += count;
         }
@@ -250,7 +235,7 @@ static relume_status read_rig(relume_tableau *t)
 
 static void look_at_objects(struct relume_camera *camera, const relume_objects *o)
 {
-    const vec3 middle = vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
+    const vec3 middle = objects_middle(o);
     const double radius = 0.5 * vec3_length(vec3_sub(o->info.max, o->info.min));
     *camera = (struct relume_camera){
         .framing = RELUME_FRAME_EYE,
@@ -336,7 +321,7 @@ static relume_status read_all(relume_tableau *t)
     struct log_place place;
     relume_status status = jvalue_check_format(t->root, t->path, FORMAT, VERSION, t->params.log);
     if (!status)
-        status = know(t->root, known, log_at(&place, t->params.log, "%s: ", t->path));
+        status = jvalue_check_known(t->root, known, log_at(&place, t->params.log, "%s: ", t->path));
     if (!status)
         status = make_room(t);
     if (!status)

@@ -288,6 +288,9 @@ struct work {
     sweep_resume *resume;
     relume_making *folder;  // for files whose size is wanted
     struct warnings warnings;
+    // Of the rows that are measured together.
+    struct relume_heldout_store *store;
+    struct relume_heldout_quality *after;
 };
 
 static struct relume_coder_params coder_params(const struct sweep_row *row,
@@ -376,8 +379,8 @@ static relume_status measure_apart(struct work *w, struct sweep_row **rows, int 
 static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
                                   struct listener *l)
 {
-    struct relume_heldout_store store[MOST_ROWS];
-    struct relume_heldout_quality before, after[MOST_ROWS];
+    struct relume_heldout_store *store = w->store;
+    struct relume_heldout_quality before, *after = w->after;
     const struct relume_coder_params params = coder_params(rows[0], &l->parts);
     for (int i = 0; i < n; i++) {
         rows[i]->books.log = &l->inner;
@@ -504,8 +507,14 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     int unknown = 0;
     for (int i = 0; i < sweep->rows; i++)
         unknown += !sweep->row[i].known;
+    w.store = calloc((size_t)sweep->rows + 1, sizeof *w.store);
+    w.after = calloc((size_t)sweep->rows + 1, sizeof *w.after);
+    if (!status && !(w.store && w.after))
+        status = RELUME_ENOMEM;
     if (!status && unknown)
         status = measure_all(&w, test);
+    free(w.store);
+    free(w.after);
     if (status == RELUME_ECANCEL && sweep->out)
         announce(sweep->args, RELUME_NOTE,
                  "finished rows are kept; run the same command again to continue");

@@ -93,6 +93,7 @@ struct standing_in {
     const relume_objects *objects;
     struct relume_render_params params;
     bool said;                // that mirrors are black
+    bool said_within;         // that the eye is in an object
     bool said_far;            // that the scene is taken to be far away
     struct scenery *scenery;  // the scene as light meets it, of a view; NULL: not needed yet
     int view;                 // ... which one
@@ -319,8 +320,10 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     if (!status)
         status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), camera,
                                        places.width, places.height);
-    if (!status)
+    if (!status) {
+        objects_say_around(&in->said_within, objects, relume_viewport_eye(&viewport), params->log);
         status = light_objects(&lighting, renderer, camera, lights, n);
+    }
     if (!status && render_exchanges(&in->params)) {
         status = need_scenery(in, renderer, &whole);
         lighting.scenery = (const struct scenery *const *)&in->scenery, lighting.sceneries = 1;

@@ -109,6 +109,11 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
 // What a ray in `direction` has hit.
 void objects_point(struct surface_point *out, const relume_objects *o, const struct trace_hit *hit,
                    vec3 direction);
+// The object whose surface is all around a place, as that of a closed mesh is; -1: there is none.
+int objects_around(const relume_objects *o, vec3 place);
+// A note that the eye is within an object, unless that was `said` before.
+void objects_say_around(bool *said, const relume_objects *o, vec3 eye,
+                        const struct relume_log *log);
 // Where rays from the point begin: just off the surface.
 vec3 point_leave(const struct surface_point *point);
 // How far a pixel spreads over the surface: from the ray that hit the point to the rays of the

@@ -356,7 +356,7 @@ static relume_status read_reflectance(const struct reader *r, const jvalue *valu
     int members = 0;
     for (int i = 0; known[i]; i++)
         members += jvalue_member(value, known[i]) != NULL;
-    if (members > 1)
+    if (members != 1)
         return log_fail(r->log, RELUME_EFORMAT,
                         "material: expected one of diffuse, mirror and translucent");
     if (jvalue_member(value, "translucent"))

@@ -106,6 +106,47 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
     return true;
 }
 
+// The object that a ray meets first, and whether it meets that an odd number of times.
+static bool leaves_more_often(int *object, const relume_objects *o, vec3 from, vec3 direction)
+{
+    enum { MOST = 256 };
+    const double STEP = 1e-6;
+    struct surface_point at;
+    bool odd = false;
+    *object = -1;
+    for (int i = 0; i < MOST && objects_hit(&at, o, from, direction); i++) {
+        const int met = o->part[at.part].object;
+        *object = i ? *object : met;
+        odd ^= met == *object;
+        from = vec3_along(at.position, direction, STEP * (at.distance + vec3_length(at.position)));
+    }
+    return odd;
+}
+
+int objects_around(const relume_objects *o, vec3 place)
+{
+    static const vec3 ways[] = {{0.27, 0.91, 0.32}, {-0.88, 0.11, 0.46}, {0.51, -0.43, -0.74}};
+    int first = -1;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        int object;
+        if (!leaves_more_often(&object, o, place, vec3_unit(ways[i])) || (i && object != first))
+            return -1;
+        first = object;
+    }
+    return first;
+}
+
+void objects_say_around(bool *said, const relume_objects *o, vec3 eye, const struct relume_log *log)
+{
+    const int object = objects_around(o, eye);
+    if (object >= 0 && !*said)
+        log_line(log, RELUME_NOTE,
+                 "the eye is within object %d: what it shows is the inside of that, which lamps do "
+                 "not reach",
+                 object);
+    *said = object >= 0;
+}
+
 // The step over the plane of the surface that a ray beside makes.
 static vec3 step_over(const struct surface_point *p, const struct ray *ray,
                       const struct ray *beside)
@@ -380,6 +421,7 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
     const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
     struct view view = {.o = objects, .window = window, .width = out->width, .height = out->height};
     struct bodies *bodies = NULL;
+    objects_say_around(&(bool){false}, objects, window->eye, own.log);
     relume_status status = lighting_create(&view.lighting, objects, lights, n, &own);
     if (!status && surround_lacks(&view.lighting.surround, objects))
         log_line(own.log, RELUME_WARNING, "%s", SURROUND_LACKS);

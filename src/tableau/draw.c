@@ -335,6 +335,8 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
         return RELUME_EINVAL;
     relume_status status = begin(&d, tableau, camera);
     if (!status)
+        objects_say_around(&tableau->said_within, tableau->objects, d.camera.eye, d.params.log);
+    if (!status)
         status = relume_image_create(&d.lone, d.camera.width, d.camera.height, 3);
     if (!status)
         status = relume_image_create(&d.scene, d.camera.width, d.camera.height, 3);

@@ -281,9 +281,9 @@ static relume_status check_turned(const struct exhibit *c, const struct relume_l
     if (!c->turned_aside || !has_up)
         return RELUME_OK;
     return log_fail(log, RELUME_EUNFIT,
-                    "light '%s' cannot fall on a capture that is turned about another axis than y; "
-                    "turn the capture about [0, 1, 0], or take another light",
-                    relume_light_kind_name(light->kind));
+                    "light '%s' cannot fall on capture '%s', which is turned about another axis "
+                    "than y; turn it about [0, 1, 0], or take another light",
+                    relume_light_kind_name(light->kind), c->name);
 }
 
 // Its whole view, which an eye that moves needs again.

@@ -63,14 +63,14 @@ static const jvalue *list_of(const relume_tableau *t, const char *name)
     return jvalue_member(t->root, name);
 }
 
-static relume_status count(int *n, const relume_tableau *t, const char *name, int most)
+static relume_status count(int *n, const relume_tableau *t, const char *name, int least, int most)
 {
     const jvalue *list = list_of(t, name);
     *n = list ? (int)jvalue_count(list) : 0;
-    if (!list || (jvalue_is_array(list) && *n >= 1 && *n <= most))
+    if (!list || (jvalue_is_array(list) && *n >= least && *n <= most))
         return RELUME_OK;
-    return log_fail(t->params.log, RELUME_EFORMAT, "%s: %s: expected a list of 1 to %d", t->path,
-                    name, most);
+    return log_fail(t->params.log, RELUME_EFORMAT, "%s: %s: expected a list of %d to %d", t->path,
+                    name, least, most);
 }
 
 // What an entry calls itself, or else the last word of its file's path.
@@ -133,6 +133,7 @@ static relume_status read_capture(relume_tableau *t, int number)
         status = read_stand_in(t, e, entry, log);
     if (!status)
         status = exhibit_open(&t->capture[number], path, &pose, &t->params);
+    t->capture[number].name = e->name;
     e->pack = t->capture[number].pack;
     mem_free(path);
     return status;
@@ -215,12 +216,12 @@ static relume_status read_rig(relume_tableau *t)
     relume_status status = relume_rig_create(&t->rig);
     int n = 0;
     if (!status)
-        status = count(&n, t, "lights", MOST_LIGHTS);
+        status = count(&n, t, "lights", 0, MOST_LIGHTS);
     const char *slash = strrchr(t->path, '/');
     char *folder = slash ? mem_format("%.*s", (int)(slash - t->path) + 1, t->path) : mem_text(".");
     if (!folder)
         status = RELUME_ENOMEM;
-    if (!status && !n)
+    if (!status && !lights)
         status = relume_rig_add(t->rig, "dir 0 0 1", NULL, t->params.log);
     for (int i = 0; i < n && !status; i++) {
         struct log_place place;
@@ -290,9 +291,9 @@ static relume_status make_room(relume_tableau *t)
 {
     enum { MOST_OBJECTS = 4096 };
     int captures = 0, objects = 0;
-    relume_status status = count(&captures, t, "captures", MOST_CAPTURES);
+    relume_status status = count(&captures, t, "captures", 1, MOST_CAPTURES);
     if (!status)
-        status = count(&objects, t, "objects", MOST_OBJECTS);
+        status = count(&objects, t, "objects", 1, MOST_OBJECTS);
     if (!status && captures + objects == 0)
         status =
             log_fail(t->params.log, RELUME_EFORMAT, "%s: expected captures or objects", t->path);

@@ -63,7 +63,7 @@ struct relume_tableau_info {
     struct relume_camera camera;  // as the file says, else as its first entity is looked at
 };
 RELUME_API const struct relume_tableau_info *relume_tableau_info(const relume_tableau *tableau);
-// The lights of the file; without any, "dir 0 0 1". The rig belongs to the tableau.
+// The lights of the file, of an empty list none; of a file without that, "dir 0 0 1". The rig belongs to the tableau.
 RELUME_API relume_rig *relume_tableau_rig(relume_tableau *tableau);
 
 // What an eye sees: of the camera only `eye`, `look_at` and the size count, all zero being those of

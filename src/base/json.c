@@ -94,6 +94,16 @@ const char *jvalue_unknown(const jvalue *object, const char *const *known)
     return NULL;
 }
 
+relume_status jvalue_check_known(const jvalue *object, const char *const *known,
+                                 const struct relume_log *log)
+{
+    const char *stranger = jvalue_unknown(object, known);
+    const char *near = stranger ? relume_name_nearest(stranger, known) : NULL;
+    return stranger ? log_fail(log, RELUME_EFORMAT, "unknown member '%s'%s%s%s", stranger,
+                               near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "")
+                    : RELUME_OK;
+}
+
 size_t jvalue_count(const jvalue *array)
 {
     return json_array_size(array);

@@ -26,6 +26,9 @@ size_t jvalue_count(const jvalue *array);
 
 // The first member of an object that is not in the NULL-terminated list; NULL when all are.
 const char *jvalue_unknown(const jvalue *object, const char *const *known);
+// RELUME_EFORMAT with a sentence that has the nearest of the list, unless all are.
+relume_status jvalue_check_known(const jvalue *object, const char *const *known,
+                                 const struct relume_log *log);
 
 // False unless `value` is a finite number, an integer, one from `least` to `most`, true or false,
 // an array of `count` finite numbers.

@@ -16,6 +16,17 @@ static inline bool vec3_is_zero(vec3 a)
     return a.x == 0.0 && a.y == 0.0 && a.z == 0.0;
 }
 
+// Of three floats, and back.
+static inline vec3 vec3_floats(const float v[3])
+{
+    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
+}
+
+static inline void vec3_store(float out[3], vec3 v)
+{
+    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
+}
+
 // `a`, turned by the shortest way that brings the unit vector `n` to +z; n.z > -1.
 static inline vec3 vec3_upright(vec3 a, vec3 n)
 {

@@ -12,13 +12,6 @@ void mesh_free(struct mesh *mesh)
     *mesh = (struct mesh){0};
 }
 
-static void put(float out[3], vec3 v)
-{
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-}
-
 uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture)
 {
     mesh->failed = mesh->failed || mesh->vertex_count >= UINT32_MAX ||
@@ -26,9 +19,9 @@ uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture
     if (mesh->failed)
         return 0;
     struct vertex *v = mesh->vertices + mesh->vertex_count;
-    put(v->position, position);
-    put(v->normal, normal);
-    put(v->texture, texture);
+    vec3_store(v->position, position);
+    vec3_store(v->normal, normal);
+    vec3_store(v->texture, texture);
     return (uint32_t)mesh->vertex_count++;
 }
 
@@ -63,13 +56,13 @@ static void add_corner(struct vertex *at, vec3 normal, vec3 left, vec3 right)
     if (l <= 0.0 || r <= 0.0)
         return;
     const double angle = vec3_angle(vec3_scale(left, 1.0 / l), vec3_scale(right, 1.0 / r));
-    put(at->normal, vec3_along(vertex_normal(at), normal, angle));
+    vec3_store(at->normal, vec3_along(vertex_normal(at), normal, angle));
 }
 
 void mesh_smooth(struct mesh *mesh)
 {
     for (size_t i = 0; i < mesh->vertex_count; i++)
-        put(mesh->vertices[i].normal, vec3_of(0, 0, 0));
+        vec3_store(mesh->vertices[i].normal, vec3_of(0, 0, 0));
     for (size_t i = 0; i < mesh->triangle_count; i++) {
         struct vertex *v[3];
         vec3 p[3];
@@ -86,7 +79,8 @@ void mesh_smooth(struct mesh *mesh)
     }
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         const vec3 n = vertex_normal(&mesh->vertices[i]);
-        put(mesh->vertices[i].normal, vec3_length(n) > 0.0 ? vec3_unit(n) : vec3_of(0, 0, 1));
+        vec3_store(mesh->vertices[i].normal,
+                   vec3_length(n) > 0.0 ? vec3_unit(n) : vec3_of(0, 0, 1));
     }
 }
 

@@ -45,12 +45,24 @@ struct bounds mesh_bounds(const struct mesh *mesh);
 
 static inline vec3 vertex_position(const struct vertex *v)
 {
-    return vec3_of(v->position[0], v->position[1], v->position[2]);
+    return vec3_floats(v->position);
 }
 
 static inline vec3 vertex_normal(const struct vertex *v)
 {
-    return vec3_of(v->normal[0], v->normal[1], v->normal[2]);
+    return vec3_floats(v->normal);
+}
+
+static inline void mesh_corners(vec3 corner[3], const struct mesh *mesh, size_t triangle)
+{
+    for (int k = 0; k < 3; k++)
+        corner[k] = vertex_position(&mesh->vertices[mesh->triangles[triangle].vertex[k]]);
+}
+
+// Twice the area of a triangle times its normal.
+static inline vec3 mesh_twice_area(const vec3 corner[3])
+{
+    return vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
 }
 
 #endif

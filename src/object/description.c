@@ -17,16 +17,6 @@ struct reader {
     const struct relume_log *log;  // of an object: it names it
 };
 
-static relume_status know(const struct reader *r, const jvalue *object, const char *const *known)
-{
-    const char *stranger = jvalue_unknown(object, known);
-    if (!stranger)
-        return RELUME_OK;
-    const char *near = relume_name_nearest(stranger, known);
-    return log_fail(r->log, RELUME_EFORMAT, "unknown member '%s'%s%s%s", stranger,
-                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-}
-
 static relume_status read_translucent(const struct reader *r, const jvalue *value, int *number)
 {
     struct translucent t;
@@ -43,13 +33,13 @@ static relume_status read_reflectance(const struct reader *r, const jvalue *valu
     const jvalue *m = jvalue_member(value, what);
     double f[3];
     float reflectance[3];
-    relume_status status = know(r, value, known);
+    relume_status status = jvalue_check_known(value, known, r->log);
     if (status)
         return status;
     int members = 0;
     for (int i = 0; known[i]; i++)
         members += jvalue_member(value, known[i]) != NULL;
-    if (members > 1)
+    if (members != 1)
         return log_fail(r->log, RELUME_EFORMAT,
                         "material: expected one of diffuse, mirror and translucent");
     if (jvalue_member(value, "translucent"))
@@ -115,7 +105,7 @@ static relume_status read_covering(const struct reader *r, const jvalue *value, 
     *c = (struct covering){.repeat = {1, 1}};
     if (!jvalue_is_object(value))
         return log_fail(r->log, RELUME_EFORMAT, "parts: expected objects with a material");
-    relume_status status = know(r, value, known);
+    relume_status status = jvalue_check_known(value, known, r->log);
     if (status)
         return status;
     c->part = jvalue_text(jvalue_member(value, "part"));
@@ -159,7 +149,7 @@ relume_status objects_read_pose(struct frame *out, const jvalue *value,
         return RELUME_OK;
     if (!jvalue_is_object(value))
         return log_fail(r->log, RELUME_EFORMAT, "pose: expected translate, rotate, scale");
-    relume_status status = know(r, value, known);
+    relume_status status = jvalue_check_known(value, known, r->log);
     const jvalue *m = jvalue_member(value, "translate");
     if (!status && m && !jvalue_numbers(m, move, 3))
         status = log_fail(r->log, RELUME_EFORMAT, "translate: expected [x, y, z]");
@@ -201,7 +191,7 @@ static relume_status read_baked(const struct reader *r, const jvalue *object)
     if (!name || !*name)
         return log_fail(r->log, RELUME_EFORMAT, "baked: expected the name of a file");
     char *path = mesh_beside(r->path, name);
-    relume_status status = path ? know(r, object, known) : RELUME_ENOMEM;
+    relume_status status = path ? jvalue_check_known(object, known, r->log) : RELUME_ENOMEM;
     if (!status)
         status = objects_read_pose(&frame, jvalue_member(object, "pose"), r->log);
     if (!status)
@@ -218,7 +208,7 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
     if (!jvalue_is_object(object) || !mesh || !*mesh)
         return log_fail(r->log, RELUME_EFORMAT, "mesh: expected the name of a file");
     char *path = mesh_beside(r->path, mesh);
-    relume_status status = path ? know(r, object, known) : RELUME_ENOMEM;
+    relume_status status = path ? jvalue_check_known(object, known, r->log) : RELUME_ENOMEM;
     if (!status)
         status = objects_read_pose(&s.frame, jvalue_member(object, "pose"), r->log);
     if (!status)

@@ -12,55 +12,26 @@
 
 // ---------------------------------------------------------------- the scene, in their shadow
 
-struct shadows {
-    const relume_objects *o;
-    const struct relume_image *places, *lone;
-    struct relume_image *sum;
-    const struct relume_object_light *light_samples;
-    int n;
-    bool none;
-};
-
-static void add_row(void *context, size_t row, int worker)
-{
-    (void)worker;
-    const struct shadows *s = context;
-    const size_t width = (size_t)s->sum->width;
-    for (size_t x = 0; x < width; x++) {
-        const size_t i = 3 * (row * width + x);
-        const float *lone = s->lone->data + i;
-        const bool lit = lone[0] != 0.0f || lone[1] != 0.0f || lone[2] != 0.0f;
-        const float *place = s->places->data + i;
-        const vec3 at = vec3_of((double)place[0], (double)place[1], (double)place[2]);
-        const double part = lit && !s->none && !isnan(at.x)
-                                ? scene_share(s->o, s->light_samples, s->n, at,
-                                              scene_normal(s->places, (int)x, (int)row), 1, 0)
-                                : 1.0;
-        for (size_t c = 0; c < 3; c++)
-            s->sum->data[i + c] += (float)(part * (double)lone[c]);
-    }
-}
-
-static relume_status add_light(struct shadows *s, relume_renderer *renderer,
+static relume_status add_light(struct scene_in_shadow *s, relume_renderer *renderer,
                                const struct relume_camera *camera, const struct relume_light *light,
                                int threads)
 {
     struct relume_image lone = {0};
-    struct relume_object_light *light_samples;
-    relume_status status = relume_objects_lights(&light_samples, &s->n, s->o, light, 1);
+    struct relume_object_light *samples;
+    relume_status status = relume_objects_lights(&samples, &s->light_samples, s->o, light, 1);
     if (status)
         return status;
     status = relume_renderer_set_lights(renderer, light, 1);
     if (!status)
         status = renderer_bare_frame(&lone, renderer, camera);
-    s->light_samples = light_samples;
+    s->light_sample = samples;
     s->lone = &lone;
     if (!status)
-        thread_for(threads, (size_t)lone.height, add_row, s);
+        scene_add(s, threads);
     relume_image_destroy(&lone);
-    mem_free(light_samples);
+    mem_free(samples);
     s->lone = NULL;
-    s->light_samples = NULL;
+    s->light_sample = NULL;
     return status;
 }
 
@@ -122,6 +93,7 @@ struct standing_in {
     const relume_objects *objects;
     struct relume_render_params params;
     bool said;                // that mirrors are black
+    bool said_within;         // that the eye is in an object
     bool said_far;            // that the scene is taken to be far away
     struct scenery *scenery;  // the scene as light meets it, of a view; NULL: not needed yet
     int view;                 // ... which one
@@ -138,11 +110,6 @@ static void free_standing_in(void *over)
     mem_free(in);
 }
 
-static bool exchanges_light(const struct standing_in *in)
-{
-    return in->params.transport && in->params.transport->gather && !in->params.no_shadows;
-}
-
 // The view that stands for the scene: the one looked at, of a slab the middle one.
 static struct relume_camera whole_view(const relume_renderer *renderer,
                                        const struct relume_camera *camera)
@@ -156,7 +123,8 @@ static struct relume_camera whole_view(const relume_renderer *renderer,
 // A panorama without depth is far away on all sides.
 static bool is_far(const relume_renderer *renderer)
 {
-    return exchanges_light(renderer->over) && !renderer->info->has_depth &&
+    return render_exchanges(&((const struct standing_in *)renderer->over)->params) &&
+           !renderer->info->has_depth &&
            renderer->info->geometry.projection >= RELUME_CYLINDRICAL &&
            !(renderer->params.assume_depth > 0.0);
 }
@@ -207,7 +175,7 @@ static relume_status light_scene(struct relume_image *scene, const struct relume
                                  const struct relume_light *lights, int n,
                                  const struct relume_render_params *params)
 {
-    struct shadows s = {.o = o, .places = places, .sum = scene, .none = params->no_shadows};
+    struct scene_in_shadow s = {.o = o, .places = places, .sum = scene, .none = params->no_shadows};
     relume_status status = relume_image_create(scene, places->width, places->height, 3);
     for (int i = 0; i < n && !status; i++)
         status = add_light(&s, renderer, camera, &lights[i], params->threads);
@@ -247,11 +215,6 @@ static relume_status light_objects(struct lighting *lighting, relume_renderer *r
     return status;
 }
 
-static vec3 middle_of(const relume_objects *o)
-{
-    return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
-}
-
 // One light alone, and what it does between the scene and the objects, in a frame that may have
 // fewer pixels than the camera says.
 static relume_status exchange_one(struct exchange *e, struct relume_image *scene,
@@ -268,7 +231,7 @@ static relume_status exchange_one(struct exchange *e, struct relume_image *scene
     if (!status)
         status = renderer_bare_frame(&relit, renderer, &whole);
     if (!status)
-        status = scenery_light(in->scenery, &relit, middle_of(in->objects));
+        status = scenery_light(in->scenery, &relit, objects_middle(in->objects));
     if (!status) {
         coarse_means(&lone, scene->width, scene->height);
         status = exchange_light(e, scene, reflected, share, &lone, light);
@@ -357,9 +320,11 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     if (!status)
         status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), camera,
                                        places.width, places.height);
-    if (!status)
+    if (!status) {
+        objects_say_around(&in->said_within, objects, relume_viewport_eye(&viewport), params->log);
         status = light_objects(&lighting, renderer, camera, lights, n);
-    if (!status && exchanges_light(in)) {
+    }
+    if (!status && render_exchanges(&in->params)) {
         status = need_scenery(in, renderer, &whole);
         lighting.scenery = (const struct scenery *const *)&in->scenery, lighting.sceneries = 1;
         shares = mem_zeroed((size_t)n, sizeof *shares);
@@ -370,7 +335,7 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
         status = bodies_need(&in->bodies, objects, params->threads, params->log);
     if (!status)
         status = lighting_enters(&lighting, objects, in->bodies, params->threads, params->log);
-    if (!status && exchanges_light(in)) {
+    if (!status && render_exchanges(&in->params)) {
         status = exchange_all(&scene, &reflected, shares, &places, &viewport, renderer, camera,
                               lights, n);
         if (!status && mirrors_surroundings(renderer, in))
@@ -401,6 +366,11 @@ bool render_params_good(const struct relume_render_params *params)
     return params->transport_samples >= 0 && params->transport_samples <= MOST_SAMPLES &&
            params->bounces <= MOST_BOUNCES && params->transport_spacing >= 0 &&
            params->transport_spacing <= MOST_SPACING;
+}
+
+bool render_exchanges(const struct relume_render_params *p)
+{
+    return p->transport && p->transport->gather && !p->no_shadows;
 }
 
 relume_status relume_renderer_set_objects(relume_renderer *renderer, const relume_objects *objects,

@@ -39,6 +39,12 @@ struct relume_objects {
 
 // Whether a file is one by its name.
 bool objects_named_exr(const char *path);
+
+static inline vec3 objects_middle(const relume_objects *o)
+{
+    return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
+}
+
 // The part's material, opened when it is not there yet; its number. An input status, RELUME_ENOMEM.
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params);
@@ -121,6 +127,11 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
 // What a ray in `direction` has hit.
 void objects_point(struct surface_point *out, const relume_objects *o, const struct trace_hit *hit,
                    vec3 direction);
+// The object whose surface is all around a place, as that of a closed mesh is; -1: there is none.
+int objects_around(const relume_objects *o, vec3 place);
+// A note that the eye is within an object, unless that was `said` before.
+void objects_say_around(bool *said, const relume_objects *o, vec3 eye,
+                        const struct relume_log *log);
 // Where rays from the point begin: just off the surface.
 vec3 point_leave(const struct surface_point *point);
 // How far a pixel spreads over the surface: from the ray that hit the point to the rays of the
@@ -281,6 +292,8 @@ bool seen_shade(float rgb[3], const struct seen *s, const struct surface_point *
 
 // Whether what it says of transport is within its ranges.
 bool render_params_good(const struct relume_render_params *params);
+// Whether light goes between a scene and the objects.
+bool render_exchanges(const struct relume_render_params *params);
 
 // A scene and the objects, where they are before it.
 struct layered {
@@ -303,6 +316,17 @@ vec3 scene_normal(const struct relume_image *places, int x, int y);
 // `every` of them looked for.
 double scene_share(const relume_objects *o, const struct relume_object_light *light_sample, int n,
                    vec3 place, vec3 normal, int every, uint64_t key);
+
+// What one light shows of a scene, each pixel times that share, is added to a picture.
+struct scene_in_shadow {
+    const relume_objects *o;
+    const struct relume_image *places, *lone;  // NaN: nowhere, where no object stands before it
+    struct relume_image *sum;
+    const struct relume_object_light *light_sample;
+    int light_samples;
+    bool none;  // no shadows
+};
+void scene_add(const struct scene_in_shadow *s, int threads);
 
 // Light between a scene and the objects in it at the pixels of a frame.
 struct exchange;

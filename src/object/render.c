@@ -11,16 +11,6 @@
 // may say so; these take the lowest view.
 static const double LOWEST = 1e-3;
 
-static void copy(float out[3], vec3 v)
-{
-    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
-}
-
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
 // The frame between the corners: the normal, the tangent across it, and the other as the corners'
 // handedness says (one for all three).
 static void interpolate(struct surface_point *p, const struct relume_object_vertex *v[3],
@@ -30,9 +20,9 @@ static void interpolate(struct surface_point *p, const struct relume_object_vert
     p->position = vec3_of(0, 0, 0);
     p->s = p->t = 0.0;
     for (int k = 0; k < 3; k++) {
-        p->position = vec3_along(p->position, vector(v[k]->position), weight[k]);
-        normal = vec3_along(normal, vector(v[k]->normal), weight[k]);
-        tangent = vec3_along(tangent, vector(v[k]->tangent), weight[k]);
+        p->position = vec3_along(p->position, vec3_floats(v[k]->position), weight[k]);
+        normal = vec3_along(normal, vec3_floats(v[k]->normal), weight[k]);
+        tangent = vec3_along(tangent, vec3_floats(v[k]->tangent), weight[k]);
         p->s += weight[k] * (double)v[k]->texture[0];
         p->t += weight[k] * (double)v[k]->texture[1];
     }
@@ -51,8 +41,8 @@ static vec3 lift(const struct surface_point *p, const struct relume_object_verte
 {
     vec3 lifted = p->position;
     for (int k = 0; k < 3; k++) {
-        const vec3 n = vec3_scale(vector(v[k]->normal), side);
-        const double under = vec3_dot(vec3_sub(p->position, vector(v[k]->position)), n);
+        const vec3 n = vec3_scale(vec3_floats(v[k]->normal), side);
+        const double under = vec3_dot(vec3_sub(p->position, vec3_floats(v[k]->position)), n);
         if (under < 0.0)
             lifted = vec3_sub(lifted, vec3_scale(n, under * weight[k]));
     }
@@ -67,9 +57,9 @@ void objects_point(struct surface_point *out, const relume_objects *o, const str
         v[k] = &o->vertices[o->triangles[hit->triangle][k]];
     const double u = (double)hit->u, w = (double)hit->v;
     const double weight[3] = {1.0 - u - w, u, w};
-    const vec3 first = vector(v[0]->position);
-    out->geometric = vec3_unit(vec3_cross(vec3_sub(vector(v[1]->position), first),
-                                          vec3_sub(vector(v[2]->position), first)));
+    const vec3 first = vec3_floats(v[0]->position);
+    out->geometric = vec3_unit(vec3_cross(vec3_sub(vec3_floats(v[1]->position), first),
+                                          vec3_sub(vec3_floats(v[2]->position), first)));
     out->distance = (double)hit->distance;
     out->triangle = hit->triangle;
     memcpy(out->corner, weight, sizeof weight);
@@ -87,10 +77,10 @@ void objects_point(struct surface_point *out, const relume_objects *o, const str
 vec3 point_leave(const struct surface_point *p)
 {
     float at[3], off[3], from[3];
-    copy(at, p->lifted);
-    copy(off, p->geometric);
+    vec3_store(at, p->lifted);
+    vec3_store(off, p->geometric);
     trace_leave(at, off, from);
-    return vector(from);
+    return vec3_floats(from);
 }
 
 // Whether a ray comes near the objects at all: to the ball about them.
@@ -108,12 +98,53 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
 {
     float from[3], along[3];
     struct trace_hit hit;
-    copy(from, origin);
-    copy(along, direction);
+    vec3_store(from, origin);
+    vec3_store(along, direction);
     if (!may_meet(o, origin, direction) || !trace_closest(o->tracer, from, along, &hit))
         return false;
     objects_point(out, o, &hit, direction);
     return true;
+}
+
+// The object that a ray meets first, and whether it meets that an odd number of times.
+static bool leaves_more_often(int *object, const relume_objects *o, vec3 from, vec3 direction)
+{
+    enum { MOST = 256 };
+    const double STEP = 1e-6;
+    struct surface_point at;
+    bool odd = false;
+    *object = -1;
+    for (int i = 0; i < MOST && objects_hit(&at, o, from, direction); i++) {
+        const int met = o->part[at.part].object;
+        *object = i ? *object : met;
+        odd ^= met == *object;
+        from = vec3_along(at.position, direction, STEP * (at.distance + vec3_length(at.position)));
+    }
+    return odd;
+}
+
+int objects_around(const relume_objects *o, vec3 place)
+{
+    static const vec3 ways[] = {{0.27, 0.91, 0.32}, {-0.88, 0.11, 0.46}, {0.51, -0.43, -0.74}};
+    int first = -1;
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        int object;
+        if (!leaves_more_often(&object, o, place, vec3_unit(ways[i])) || (i && object != first))
+            return -1;
+        first = object;
+    }
+    return first;
+}
+
+void objects_say_around(bool *said, const relume_objects *o, vec3 eye, const struct relume_log *log)
+{
+    const int object = objects_around(o, eye);
+    if (object >= 0 && !*said)
+        log_line(log, RELUME_NOTE,
+                 "the eye is within object %d: what it shows is the inside of that, which lamps do "
+                 "not reach",
+                 object);
+    *said = object >= 0;
 }
 
 // The step over the plane of the surface that a ray beside makes.
@@ -133,8 +164,8 @@ static void step_in_texture(double out[2], const relume_objects *o, size_t trian
     const struct relume_object_vertex *v[3];
     for (int k = 0; k < 3; k++)
         v[k] = &o->vertices[o->triangles[triangle][k]];
-    const vec3 a = vec3_sub(vector(v[1]->position), vector(v[0]->position));
-    const vec3 b = vec3_sub(vector(v[2]->position), vector(v[0]->position));
+    const vec3 a = vec3_sub(vec3_floats(v[1]->position), vec3_floats(v[0]->position));
+    const vec3 b = vec3_sub(vec3_floats(v[2]->position), vec3_floats(v[0]->position));
     const double aa = vec3_dot(a, a), bb = vec3_dot(b, b), ab = vec3_dot(a, b);
     const double sa = vec3_dot(step, a), sb = vec3_dot(step, b), area = aa * bb - ab * ab;
     const double along_a = area > 0.0 ? (sa * bb - sb * ab) / area : 0.0;
@@ -158,9 +189,9 @@ bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towa
     struct trace_hit hit;
     if (!may_meet(o, point, towards))
         return true;
-    copy(at, point);
-    copy(off, normal);
-    copy(along, towards);
+    vec3_store(at, point);
+    vec3_store(off, normal);
+    vec3_store(along, towards);
     trace_leave(at, off, from);
     return !trace_closest(o->tracer, from, along, &hit) || (double)hit.distance >= distance;
 }
@@ -391,6 +422,7 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
     const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
     struct view view = {.o = objects, .window = window, .width = out->width, .height = out->height};
     struct bodies *bodies = NULL;
+    objects_say_around(&(bool){false}, objects, window->eye, own.log);
     relume_status status = lighting_create(&view.lighting, objects, lights, n, &own);
     if (!status && surround_lacks(&view.lighting.surround, objects))
         log_line(own.log, RELUME_WARNING, "%s", SURROUND_LACKS);

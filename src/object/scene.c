@@ -1,11 +1,8 @@
 // scene.c - the scene that objects stand in: which way it faces, what reaches it past them
 #include "object/object.h"
 
-static vec3 place_at(const struct relume_image *places, size_t x, size_t y)
-{
-    const float *p = places->data + 3 * (y * (size_t)places->width + x);
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
+#include "base/thread.h"
+#include "mesh/places.h"
 
 // From one pixel to the next: of the steps to both sides the shorter one, which stays on the
 // surface.
@@ -21,14 +18,14 @@ static vec3 step_across(vec3 before, vec3 at, vec3 after)
 static vec3 place_beside(const struct relume_image *places, int x, int y, int dx, int dy)
 {
     enum { MOST = 64 };  // so far enlarged
-    const vec3 at = place_at(places, (size_t)x, (size_t)y);
+    const vec3 at = places_at_xy(places, x, y);
     vec3 beside = at;
     for (int i = 0; i < MOST && at.x == beside.x && at.y == beside.y && at.z == beside.z; i++) {
         x += dx;
         y += dy;
         if (x < 0 || y < 0 || x >= places->width || y >= places->height)
             break;
-        beside = place_at(places, (size_t)x, (size_t)y);
+        beside = places_at_xy(places, x, y);
     }
     return beside;
 }
@@ -36,7 +33,7 @@ static vec3 place_beside(const struct relume_image *places, int x, int y, int dx
 // Which way the scene faces in a pixel, from the places beside it; 0 where they are too far away.
 vec3 scene_normal(const struct relume_image *places, int x, int y)
 {
-    const vec3 at = place_at(places, (size_t)x, (size_t)y);
+    const vec3 at = places_at_xy(places, x, y);
     const vec3 across =
         step_across(place_beside(places, x, y, -1, 0), at, place_beside(places, x, y, 1, 0));
     const vec3 down =
@@ -70,4 +67,28 @@ double scene_share(const relume_objects *o, const struct relume_object_light *li
             arrived += value;
     }
     return sent > 0.0 ? arrived / sent : 1.0;
+}
+
+static void add_row(void *context, size_t row, int worker)
+{
+    (void)worker;
+    const struct scene_in_shadow *s = context;
+    const size_t width = (size_t)s->sum->width;
+    for (size_t x = 0; x < width; x++) {
+        const size_t pixel = row * width + x;
+        const float *lone = s->lone->data + 3 * pixel;
+        const bool lit = lone[0] != 0.0f || lone[1] != 0.0f || lone[2] != 0.0f;
+        const vec3 at = places_at(s->places, pixel);
+        const double part = lit && !s->none && !isnan(at.x)
+                                ? scene_share(s->o, s->light_sample, s->light_samples, at,
+                                              scene_normal(s->places, (int)x, (int)row), 1, 0)
+                                : 1.0;
+        for (size_t c = 0; c < 3; c++)
+            s->sum->data[3 * pixel + c] += (float)(part * (double)lone[c]);
+    }
+}
+
+void scene_add(const struct scene_in_shadow *s, int threads)
+{
+    thread_for(threads, (size_t)s->sum->height, add_row, (void *)s);
 }

@@ -29,16 +29,6 @@ struct seen {
     int step, first;
 };
 
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
-static void put(float out[3], vec3 v)
-{
-    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
-}
-
 static struct seen_pixel *pixel_at(const struct seen *s, int x, int y)
 {
     return &s->pixel[(size_t)y * (size_t)s->width + (size_t)x];
@@ -53,8 +43,8 @@ static void find_place(struct seen *s, int x, int y)
     if (!objects_hit(&point, s->o, ray.origin, ray.direction))
         return;
     p->body = translucent_body(s->lighting, point.part);
-    put(p->place, point.position);
-    put(p->normal, point.normal);
+    vec3_store(p->place, point.position);
+    vec3_store(p->normal, point.normal);
 }
 
 static void find_row(void *context, size_t item, int worker)
@@ -69,16 +59,16 @@ static void find_row(void *context, size_t item, int worker)
 static bool is_near(const struct seen_pixel *p, const struct seen_pixel *other)
 {
     const double STEEP = 0.5;
-    const vec3 to = vec3_sub(vector(other->place), vector(p->place));
+    const vec3 to = vec3_sub(vec3_floats(other->place), vec3_floats(p->place));
     return other->body == p->body &&
-           fabs(vec3_dot(to, vector(p->normal))) <= STEEP * vec3_length(to);
+           fabs(vec3_dot(to, vec3_floats(p->normal))) <= STEEP * vec3_length(to);
 }
 
 static bool are_alike(const struct seen_pixel *const four[4])
 {
     vec3 normal = {0, 0, 0};
     for (int i = 0; i < 4; i++)
-        normal = vec3_along(normal, vector(four[i]->normal), 0.25);
+        normal = vec3_along(normal, vec3_floats(four[i]->normal), 0.25);
     if (vec3_length(normal) < NORMALS)
         return false;
     for (int c = 0; c < 3; c++) {
@@ -124,7 +114,8 @@ static void fill_row(void *context, size_t item, int worker)
         const bool known = coarse <= COARSEST && x % coarse == 0 && y % coarse == 0;
         if (known || p->body < 0 || interpolate(s, x, y))
             continue;
-        translucent_leaves(p->leaves, s->lighting, p->body, vector(p->place), vector(p->normal));
+        translucent_leaves(p->leaves, s->lighting, p->body, vec3_floats(p->place),
+                           vec3_floats(p->normal));
     }
 }
 
@@ -186,9 +177,10 @@ bool seen_shade(float rgb[3], const struct seen *s, const struct surface_point *
         return false;
     const struct seen_pixel *p = pixel_at(s, (int)x, (int)y);
     struct seen_pixel here = {.body = translucent_body(s->lighting, point->part)};
-    put(here.place, point->position);
-    put(here.normal, point->normal);
-    if (here.body < 0 || !is_near(&here, p) || vec3_dot(vector(p->normal), point->normal) < NORMALS)
+    vec3_store(here.place, point->position);
+    vec3_store(here.normal, point->normal);
+    if (here.body < 0 || !is_near(&here, p) ||
+        vec3_dot(vec3_floats(p->normal), point->normal) < NORMALS)
         return false;
     for (int c = 0; c < 3; c++)
         rgb[c] = p->leaves[c] * (float)translucent_lets_out(s->lighting, here.body, point, eye);

@@ -85,16 +85,15 @@ static void measure(struct shape *s, const relume_objects *o)
 {
     vec3 min = vec3_of(INFINITY, INFINITY, INFINITY), max = vec3_scale(min, -1.0);
     for (size_t i = 0; i < s->count; i++) {
-        const uint32_t *v = o->mesh.triangles[s->triangle[i]].vertex;
         vec3 p[3];
+        mesh_corners(p, &o->mesh, s->triangle[i]);
         for (int k = 0; k < 3; k++) {
-            p[k] = vertex_position(&o->mesh.vertices[v[k]]);
             min = vec3_of(fmin(min.x, p[k].x), fmin(min.y, p[k].y), fmin(min.z, p[k].z));
             max = vec3_of(fmax(max.x, p[k].x), fmax(max.y, p[k].y), fmax(max.z, p[k].z));
         }
         const vec3 first =
             vertex_position(&o->mesh.vertices[o->mesh.triangles[s->triangle[0]].vertex[0]]);
-        const vec3 twice = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
+        const vec3 twice = mesh_twice_area(p);
         s->area += 0.5 * vec3_length(twice);
         s->volume += vec3_dot(twice, vec3_sub(p[0], first)) / 6.0;
     }
@@ -154,12 +153,9 @@ static bool is_thin(const relume_objects *o, const struct body *b, size_t i)
     if (!objects_hit(&on, o, point_leave(&from), from.geometric) ||
         o->part[on.part].object != b->object)
         return true;
-    const uint32_t *v = o->mesh.triangles[on.triangle].vertex;
     vec3 p[3];
-    for (int k = 0; k < 3; k++)
-        p[k] = vertex_position(&o->mesh.vertices[v[k]]);
-    const vec3 wound = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
-    return b->outwards * vec3_dot(wound, from.geometric) < 0.0;
+    mesh_corners(p, &o->mesh, on.triangle);
+    return b->outwards * vec3_dot(mesh_twice_area(p), from.geometric) < 0.0;
 }
 
 struct thinness {

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
+#include "mesh/places.h"
 
 #include <string.h>
 
@@ -34,12 +35,6 @@ struct drawing {
     float rest[3];  // what comes from everywhere; without transport 0
 };
 
-static vec3 place_at(const struct relume_image *places, size_t pixel)
-{
-    const float *p = places->data + 3 * pixel;
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
-
 static size_t pixels_of(const struct drawing *d)
 {
     return (size_t)d->camera.width * (size_t)d->camera.height;
@@ -60,7 +55,7 @@ static void find_owner(void *context, size_t row, int worker)
         for (int i = 0; i < d->t->info.captures; i++) {
             if (!d->shown[i])
                 continue;
-            const vec3 place = place_at(&d->seen[i], pixel);
+            const vec3 place = places_at(&d->seen[i], pixel);
             const double distance = vec3_length(vec3_sub(place, d->camera.eye));
             if (!(distance < least))
                 continue;
@@ -215,7 +210,7 @@ static void light_row(void *context, size_t row, int worker)
         const struct relume_image *shows = owner != NONE         ? &d->colour[owner]
                                            : d->t->info.captures ? &d->colour[0]
                                                                  : NULL;
-        const vec3 place = place_at(&d->places, pixel);
+        const vec3 place = places_at(&d->places, pixel);
         double part = 1.0;
         if (owner != NONE && d->sceneries > 1 && !d->params.no_shadows)
             part = share_of(d, d->t->capture[owner].scenery, place,
@@ -223,25 +218,6 @@ static void light_row(void *context, size_t row, int worker)
         for (size_t c = 0; c < 3; c++)
             d->lone.data[3 * pixel + c] =
                 shows && shows->data ? (float)part * shows->data[3 * pixel + c] : 0.0f;
-    }
-}
-
-static void shade_row(void *context, size_t row, int worker)
-{
-    (void)worker;
-    struct drawing *d = context;
-    const size_t width = (size_t)d->camera.width;
-    for (size_t x = 0; x < width; x++) {
-        const size_t pixel = row * width + x;
-        const float *lone = d->lone.data + 3 * pixel;
-        const bool lit = lone[0] != 0.0f || lone[1] != 0.0f || lone[2] != 0.0f;
-        const double part = lit && d->owner[pixel] != NONE && !d->params.no_shadows
-                                ? scene_share(d->t->objects, d->light_sample, d->light_samples,
-                                              place_at(&d->places, pixel),
-                                              scene_normal(&d->places, (int)x, (int)row), 1, 0)
-                                : 1.0;
-        for (size_t c = 0; c < 3; c++)
-            d->scene.data[3 * pixel + c] += (float)part * lone[c];
     }
 }
 
@@ -260,11 +236,6 @@ static relume_status add_surround(struct drawing *d)
     for (size_t i = 0; i < 3 * (size_t)relit->width * (size_t)relit->height; i++)
         sum->data[i] += relit->data[i];
     return RELUME_OK;
-}
-
-static vec3 middle_of(const relume_objects *o)
-{
-    return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
 }
 
 static relume_status relight_captures(struct drawing *d, const struct relume_light *light)
@@ -291,7 +262,8 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
         return status;
     d->light_sample = light_samples;
     if (d->exchange)
-        status = scenery_light(t->capture[0].scenery, &t->capture[0].relit, middle_of(t->objects));
+        status =
+            scenery_light(t->capture[0].scenery, &t->capture[0].relit, objects_middle(t->objects));
     if (!status && d->exchange)
         scenery_mean(d->rest, t->capture[0].scenery);
     if (!status)
@@ -301,22 +273,19 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
     if (!status && d->exchange)
         status = exchange_light(d->exchange, &d->scene, &d->reflected, NULL, &d->lone, light);
     else if (!status)
-        thread_for(d->params.threads, rows, shade_row, d);
+        scene_add(&(struct scene_in_shadow){t->objects, &d->places, &d->lone, &d->scene,
+                                            light_samples, d->light_samples, d->params.no_shadows},
+                  d->params.threads);
     mem_free(light_samples);
     return status;
 }
 
 // ---------------------------------------------------------------- frames
 
-static bool exchanges_light(const struct drawing *d)
-{
-    return d->params.transport && d->params.transport->gather && !d->params.no_shadows;
-}
-
 static relume_status begin_exchange(struct drawing *d)
 {
     relume_tableau *t = d->t;
-    if (!exchanges_light(d) || !t->objects->info.triangle_count) {
+    if (!render_exchanges(&d->params) || !t->objects->info.triangle_count) {
         d->params.transport = NULL;
         return RELUME_OK;
     }
@@ -366,6 +335,8 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
         return RELUME_EINVAL;
     relume_status status = begin(&d, tableau, camera);
     if (!status)
+        objects_say_around(&tableau->said_within, tableau->objects, d.camera.eye, d.params.log);
+    if (!status)
         status = relume_image_create(&d.lone, d.camera.width, d.camera.height, 3);
     if (!status)
         status = relume_image_create(&d.scene, d.camera.width, d.camera.height, 3);
@@ -410,7 +381,7 @@ static void which_row(void *context, size_t row, int worker)
     const size_t width = (size_t)d->camera.width;
     for (size_t x = 0; x < width; x++) {
         const size_t pixel = row * width + x;
-        const vec3 place = place_at(&d->places, pixel);
+        const vec3 place = places_at(&d->places, pixel);
         struct surface_point point;
         struct ray ray;
         relume_viewport_ray(&ray.origin, &ray.direction, &d->viewport, (double)x + 0.5,

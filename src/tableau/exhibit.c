@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "frame/renderer.h"
+#include "mesh/places.h"
 #include "math/bilinear.h"
 
 #include <relume/exchange.h>
@@ -31,24 +32,12 @@ static vec3 point_within(const struct exhibit *c, vec3 p)
     return vector_within(c, vec3_sub(p, c->pose.origin));
 }
 
-static vec3 place_at(const struct relume_image *places, size_t pixel)
-{
-    const float *p = places->data + 3 * pixel;
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
-
-static void put(const struct relume_image *image, size_t pixel, vec3 v)
-{
-    float *p = image->data + 3 * pixel;
-    p[0] = (float)v.x, p[1] = (float)v.y, p[2] = (float)v.z;
-}
-
 // Of places in its own world.
 static void into_scene(const struct exhibit *c, const struct relume_image *places)
 {
     const size_t pixels = (size_t)places->width * (size_t)places->height;
     for (size_t i = 0; i < pixels; i++)
-        put(places, i, frame_point(&c->pose, place_at(places, i)));
+        places_put(places, i, frame_point(&c->pose, places_at(places, i)));
 }
 
 static struct relume_camera camera_within(const struct exhibit *c,
@@ -208,7 +197,7 @@ static void meet_row(void *context, size_t row, int worker)
         struct scenery_hit hit;
         const vec3 towards = direction_of(p->window, p->out, x, row);
         const bool is = scenery_meet(&hit, p->c->scenery, p->window->eye, towards);
-        put(p->out, row * width + x, is ? hit.place : vec3_of(NAN, NAN, NAN));
+        places_put(p->out, row * width + x, is ? hit.place : vec3_of(NAN, NAN, NAN));
     }
 }
 
@@ -222,8 +211,8 @@ static relume_status slab_places(struct relume_image *out, const struct exhibit 
         return status;
     into_scene(c, out);
     for (size_t i = 0; i < (size_t)out->width * (size_t)out->height; i++)
-        if (!scenery_holds(c->scenery, place_at(out, i)))
-            put(out, i, vec3_of(NAN, NAN, NAN));
+        if (!scenery_holds(c->scenery, places_at(out, i)))
+            places_put(out, i, vec3_of(NAN, NAN, NAN));
     return RELUME_OK;
 }
 
@@ -274,7 +263,7 @@ static void light_row(void *context, size_t row, int worker)
     const size_t width = (size_t)p->out->width;
     for (size_t x = 0; x < width; x++) {
         const size_t pixel = row * width + x;
-        const vec3 place = place_at(p->places, pixel);
+        const vec3 place = places_at(p->places, pixel);
         float *rgb = p->out->data + 3 * pixel;
         if (isnan(place.x))
             far_value(rgb, p->c, direction_of(p->window, p->out, x, row));
@@ -292,9 +281,9 @@ static relume_status check_turned(const struct exhibit *c, const struct relume_l
     if (!c->turned_aside || !has_up)
         return RELUME_OK;
     return log_fail(log, RELUME_EUNFIT,
-                    "light '%s' cannot fall on a capture that is turned about another axis than y; "
-                    "turn the capture about [0, 1, 0], or take another light",
-                    relume_light_kind_name(light->kind));
+                    "light '%s' cannot fall on capture '%s', which is turned about another axis "
+                    "than y; turn it about [0, 1, 0], or take another light",
+                    relume_light_kind_name(light->kind), c->name);
 }
 
 // Its whole view, which an eye that moves needs again.

@@ -10,6 +10,7 @@
 #include <relume/viewport.h>
 
 struct exhibit {
+    const char *name;  // for sentences; borrowed
     relume_pack *pack;
     relume_renderer *renderer;
     struct frame pose;           // of its own world in the scene's: turned, moved, scaled evenly

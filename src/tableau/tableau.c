@@ -58,29 +58,19 @@ bool relume_tableau_is(const char *path)
 
 // ---------------------------------------------------------------- the file
 
-static relume_status know(const jvalue *object, const char *const *known,
-                          const struct relume_log *log)
-{
-    const char *stranger = jvalue_unknown(object, known);
-    const char *near = stranger ? relume_name_nearest(stranger, known) : NULL;
-    return stranger ? log_fail(log, RELUME_EFORMAT, "unknown member '%s'%s%s%s", stranger,
-                               near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "")
-                    : RELUME_OK;
-}
-
 static const jvalue *list_of(const relume_tableau *t, const char *name)
 {
     return jvalue_member(t->root, name);
 }
 
-static relume_status count(int *n, const relume_tableau *t, const char *name, int most)
+static relume_status count(int *n, const relume_tableau *t, const char *name, int least, int most)
 {
     const jvalue *list = list_of(t, name);
     *n = list ? (int)jvalue_count(list) : 0;
-    if (!list || (jvalue_is_array(list) && *n >= 1 && *n <= most))
+    if (!list || (jvalue_is_array(list) && *n >= least && *n <= most))
         return RELUME_OK;
-    return log_fail(t->params.log, RELUME_EFORMAT, "%s: %s: expected a list of 1 to %d", t->path,
-                    name, most);
+    return log_fail(t->params.log, RELUME_EFORMAT, "%s: %s: expected a list of %d to %d", t->path,
+                    name, least, most);
 }
 
 // What an entry calls itself, or else the last word of its file's path.
@@ -126,7 +116,7 @@ static relume_status read_capture(relume_tableau *t, int number)
         return log_fail(log, RELUME_EFORMAT, "file: expected the name of a file");
     e->name = name_of(entry, file);
     char *path = mesh_beside(t->path, file);
-    relume_status status = e->name && path ? know(entry, known, log) : RELUME_ENOMEM;
+    relume_status status = e->name && path ? jvalue_check_known(entry, known, log) : RELUME_ENOMEM;
     if (!status && relume_tableau_is(path))
         status = log_fail(log, RELUME_EFORMAT,
                           "'%s' is a scene file itself; name what is in it here instead", file);
@@ -143,6 +133,7 @@ static relume_status read_capture(relume_tableau *t, int number)
         status = read_stand_in(t, e, entry, log);
     if (!status)
         status = exhibit_open(&t->capture[number], path, &pose, &t->params);
+    t->capture[number].name = e->name;
     e->pack = t->capture[number].pack;
     mem_free(path);
     return status;
@@ -194,11 +185,6 @@ static void widen(vec3 *min, vec3 *max, vec3 p)
     *max = vec3_of(fmax(max->x, p.x), fmax(max->y, p.y), fmax(max->z, p.z));
 }
 
-static vec3 corner_of(const relume_objects *o, size_t triangle, int k)
-{
-    return vertex_position(&o->mesh.vertices[o->mesh.triangles[triangle].vertex[k]]);
-}
-
 static void measure(relume_tableau *t)
 {
     const relume_objects *o = t->objects;
@@ -210,11 +196,11 @@ static void measure(relume_tableau *t)
         for (; part < o->info.parts && o->part[part].object == i; part++) {
             const size_t first = o->part[part].first, count = o->part[part].count;
             for (size_t k = first; k < first + count; k++) {
-                const vec3 a = corner_of(o, k, 0), b = corner_of(o, k, 1), c = corner_of(o, k, 2);
-                area += 0.5 * vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
-                widen(&min, &max, a);
-                widen(&min, &max, b);
-                widen(&min, &max, c);
+                vec3 corner[3];
+                mesh_corners(corner, &o->mesh, k);
+                area += 0.5 * vec3_length(mesh_twice_area(corner));
+                for (int c = 0; c < 3; c++)
+                    widen(&min, &max, corner[c]);
             }
             e->triangles += count;
         }
@@ -230,12 +216,12 @@ static relume_status read_rig(relume_tableau *t)
     relume_status status = relume_rig_create(&t->rig);
     int n = 0;
     if (!status)
-        status = count(&n, t, "lights", MOST_LIGHTS);
+        status = count(&n, t, "lights", 0, MOST_LIGHTS);
     const char *slash = strrchr(t->path, '/');
     char *folder = slash ? mem_format("%.*s", (int)(slash - t->path) + 1, t->path) : mem_text(".");
     if (!folder)
         status = RELUME_ENOMEM;
-    if (!status && !n)
+    if (!status && !lights)
         status = relume_rig_add(t->rig, "dir 0 0 1", NULL, t->params.log);
     for (int i = 0; i < n && !status; i++) {
         struct log_place place;
@@ -250,7 +236,7 @@ static relume_status read_rig(relume_tableau *t)
 
 static void look_at_objects(struct relume_camera *camera, const relume_objects *o)
 {
-    const vec3 middle = vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
+    const vec3 middle = objects_middle(o);
     const double radius = 0.5 * vec3_length(vec3_sub(o->info.max, o->info.min));
     *camera = (struct relume_camera){
         .framing = RELUME_FRAME_EYE,
@@ -305,9 +291,9 @@ static relume_status make_room(relume_tableau *t)
 {
     enum { MOST_OBJECTS = 4096 };
     int captures = 0, objects = 0;
-    relume_status status = count(&captures, t, "captures", MOST_CAPTURES);
+    relume_status status = count(&captures, t, "captures", 1, MOST_CAPTURES);
     if (!status)
-        status = count(&objects, t, "objects", MOST_OBJECTS);
+        status = count(&objects, t, "objects", 1, MOST_OBJECTS);
     if (!status && captures + objects == 0)
         status =
             log_fail(t->params.log, RELUME_EFORMAT, "%s: expected captures or objects", t->path);
@@ -336,7 +322,7 @@ static relume_status read_all(relume_tableau *t)
     struct log_place place;
     relume_status status = jvalue_check_format(t->root, t->path, FORMAT, VERSION, t->params.log);
     if (!status)
-        status = know(t->root, known, log_at(&place, t->params.log, "%s: ", t->path));
+        status = jvalue_check_known(t->root, known, log_at(&place, t->params.log, "%s: ", t->path));
     if (!status)
         status = make_room(t);
     if (!status)

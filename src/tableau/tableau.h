@@ -25,7 +25,8 @@ struct relume_tableau {
     jvalue *root;
     char *path;
     struct relume_tableau_params params;
-    bool said_black;  // that mirrors are black
+    bool said_black;   // that mirrors are black
+    bool said_within;  // that the eye is in an object
 };
 
 static inline int tableau_objects(const relume_tableau *t)

@@ -1,11 +1,7 @@
 // between.c - pixels between those that have gathered light
 #include "transport/transport.h"
 
-static vec3 three(const struct relume_image *image, size_t pixel)
-{
-    const float *p = image->data + 3 * pixel;
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
+#include "mesh/places.h"
 
 bool transport_gathers(int spacing, int x, int y)
 {
@@ -18,7 +14,7 @@ void transport_between(struct between_pixels *out, int spacing, int x, int y,
 {
     const double TOO_FEW = 0.05;
     const size_t width = (size_t)places->width, at = (size_t)y * width + (size_t)x;
-    const vec3 place = three(places, at), normal = three(normals, at);
+    const vec3 place = places_at(places, at), normal = places_at(normals, at);
     const double distance = vec3_length(vec3_sub(place, eye));
     // of the one to the upper left
     const int left = (x + spacing - spacing / 2) / spacing * spacing + spacing / 2 - spacing;
@@ -32,7 +28,8 @@ void transport_between(struct between_pixels *out, int spacing, int x, int y,
         if (u < 0 || v < 0 || u >= places->width || v >= places->height || !(weight > 0.0))
             continue;
         const size_t pixel = (size_t)v * width + (size_t)u;
-        if (!transport_same(place, normal, three(places, pixel), three(normals, pixel), distance))
+        if (!transport_same(place, normal, places_at(places, pixel), places_at(normals, pixel),
+                            distance))
             continue;
         out->pixel[out->count] = pixel;
         out->weight[out->count++] = weight;

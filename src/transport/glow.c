@@ -30,11 +30,6 @@ struct glow_sum {
 
 enum { AT_THE_END = 4 };  // points that are not divided further
 
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
 // ---------------------------------------------------------------- the hierarchy
 
 static void divide(struct glow_tree *t, size_t first, size_t end, int shift)
@@ -128,14 +123,14 @@ static void sum_points(struct glow_sum *s, const struct glow *g, const struct gl
     for (size_t i = n->first; i < n->first + n->count; i++) {
         float power[3];
         power_of(power, g, i);
-        weigh(&m, vector(g->tree->point[i].position), power, (double)g->tree->point[i].area);
+        weigh(&m, vec3_floats(g->tree->point[i].position), power, (double)g->tree->point[i].area);
         for (int c = 0; c < 3; c++)
             s->power[c] += power[c];
     }
     const vec3 at = middle_of(&m);
     double radius = 0.0;
     for (size_t i = n->first; i < n->first + n->count; i++)
-        radius = fmax(radius, vec3_length(vec3_sub(vector(g->tree->point[i].position), at)));
+        radius = fmax(radius, vec3_length(vec3_sub(vec3_floats(g->tree->point[i].position), at)));
     s->place[0] = (float)at.x, s->place[1] = (float)at.y, s->place[2] = (float)at.z;
     s->radius = (float)radius;
 }
@@ -146,14 +141,14 @@ static void sum_nodes(struct glow_sum *s, const struct glow *g, size_t number)
     const size_t end = node[number].next;
     struct middle m = {.light = 0.0};
     for (size_t i = number + 1; i < end; i = node[i].next) {
-        weigh(&m, vector(g->sum[i].place), g->sum[i].power, (double)node[i].area);
+        weigh(&m, vec3_floats(g->sum[i].place), g->sum[i].power, (double)node[i].area);
         for (int c = 0; c < 3; c++)
             s->power[c] += g->sum[i].power[c];
     }
     const vec3 at = middle_of(&m);
     double radius = 0.0;
     for (size_t i = number + 1; i < end; i = node[i].next)
-        radius = fmax(radius, vec3_length(vec3_sub(vector(g->sum[i].place), at)) +
+        radius = fmax(radius, vec3_length(vec3_sub(vec3_floats(g->sum[i].place), at)) +
                                   (double)g->sum[i].radius);
     s->place[0] = (float)at.x, s->place[1] = (float)at.y, s->place[2] = (float)at.z;
     s->radius = (float)radius;
@@ -193,7 +188,7 @@ static void add(struct asked *a, const struct dipole *d, double distance, double
 static bool is_beside(const struct asked *a, const struct glow_tree *t, size_t i)
 {
     const double TURNED = -0.3;
-    return t->thin[i] || vec3_dot(a->normal, vector(t->point[i].normal)) > TURNED;
+    return t->thin[i] || vec3_dot(a->normal, vec3_floats(t->point[i].normal)) > TURNED;
 }
 
 // The other side of something thinner than points are apart: each is a disc of its area, of which a
@@ -210,7 +205,7 @@ static void add_across(struct asked *a, const struct dipole *d, double distance,
 static void add_point(struct asked *a, const struct glow *g, size_t i)
 {
     const struct glow_tree *t = g->tree;
-    const double distance = vec3_length(vec3_sub(vector(t->point[i].position), a->place));
+    const double distance = vec3_length(vec3_sub(vec3_floats(t->point[i].position), a->place));
     float power[3];
     power_of(power, g, i);
     if (!(distance < t->near)) {
@@ -234,7 +229,7 @@ int glow_leaves(float rgb[3], const struct glow *g, vec3 place, vec3 normal, dou
     for (size_t i = 0; i < t->nodes;) {
         const struct glow_node *node = &t->node[i];
         const struct glow_sum *s = &g->sum[i];
-        const double d = vec3_length(vec3_sub(vector(s->place), place));
+        const double d = vec3_length(vec3_sub(vec3_floats(s->place), place));
         const double open = d - (double)s->radius;
         if (open > t->near && (open > t->reach || (double)node->area < error * d * d)) {
             add(&a, &t->dipole, d, 1.0, s->power);
@@ -281,7 +276,7 @@ static void weigh_nodes(void *context, size_t item, int worker)
         float rgb[3];
         if (!t->node[i].count)
             continue;
-        (void)glow_leaves(rgb, &w->even, vector(p->position), vector(p->normal), COARSE);
+        (void)glow_leaves(rgb, &w->even, vec3_floats(p->position), vec3_floats(p->normal), COARSE);
         for (int c = 0; c < 3; c++) {
             const double plane = dipole_disc(&t->dipole, c, INFINITY);
             w->of_node[i].part[c] = (double)rgb[c] > plane ? (float)plane / rgb[c] : 1.0f;

@@ -29,11 +29,6 @@ struct micro {
     int workers;
 };
 
-static void copy(float out[3], vec3 v)
-{
-    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
-}
-
 // ---------------------------------------------------------------- gathering
 
 struct gathering {
@@ -132,8 +127,8 @@ static void from_objects(float rgb[3], const struct gathering *g, const struct c
 {
     float from[3], along[3], nearest = INFINITY;
     struct trace_hit hit;
-    copy(from, g->site->start);
-    copy(along, towards);
+    vec3_store(from, g->site->start);
+    vec3_store(along, towards);
     if (!trace_closest(g->w->objects, from, along, &hit) || !(hit.distance < depth))
         return;
     const vec3 at = vec3_along(g->site->start, towards, (double)hit.distance);
@@ -215,18 +210,16 @@ static void put_scene_piece(struct piece *out, const struct world *w, size_t i, 
         *out = (struct piece){{0}, {0}};
         if (!(angle > 0.0))
             return;
-        copy(out->place, vec3_along(eye, towards, far));
-        copy(out->area, vec3_scale(towards, -angle * far * far));
+        vec3_store(out->place, vec3_along(eye, towards, far));
+        vec3_store(out->area, vec3_scale(towards, -angle * far * far));
         return;
     }
-    const uint32_t *v = mesh->triangles[i].vertex;
-    const vec3 a = vertex_position(&mesh->vertices[v[0]]),
-               b = vertex_position(&mesh->vertices[v[1]]),
-               d = vertex_position(&mesh->vertices[v[2]]);
-    const vec3 twice = vec3_cross(vec3_sub(b, a), vec3_sub(d, a));
-    const double side = vec3_dot(twice, vec3_sub(eye, a)) < 0.0 ? -0.5 : 0.5;
-    copy(out->place, vec3_scale(vec3_add(vec3_add(a, b), d), 1.0 / 3.0));
-    copy(out->area, vec3_scale(twice, side));
+    vec3 at[3];
+    mesh_corners(at, mesh, i);
+    const vec3 twice = mesh_twice_area(at);
+    const double side = vec3_dot(twice, vec3_sub(eye, at[0])) < 0.0 ? -0.5 : 0.5;
+    vec3_store(out->place, vec3_scale(vec3_add(vec3_add(at[0], at[1]), at[2]), 1.0 / 3.0));
+    vec3_store(out->area, vec3_scale(twice, side));
 }
 
 static double far_from(const struct world *w)
@@ -268,11 +261,6 @@ struct lighting_scene {
     const struct piece *pieces;
 };
 
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
 // The part of a leaf's light that the objects leave.
 static double left_of(const struct lighting_scene *l, size_t leaf)
 {
@@ -280,7 +268,8 @@ static double left_of(const struct lighting_scene *l, size_t leaf)
     const size_t middle = h->order[h->begins[leaf] + (h->begins[leaf + 1] - h->begins[leaf]) / 2];
     const struct piece *p = &l->pieces[middle];
     return middle < scenery_mesh(l->w->scenery)->triangle_count
-               ? l->w->dimmed(l->w->context, vector(p->place), vec3_unit(vector(p->area)), leaf)
+               ? l->w->dimmed(l->w->context, vec3_floats(p->place), vec3_unit(vec3_floats(p->area)),
+                              leaf)
                : 1.0;
 }
 
@@ -294,7 +283,7 @@ static void light_leaves(void *context, size_t item, int worker)
     for (size_t leaf = item * AT_ONCE; leaf < (item + 1) * AT_ONCE && leaf < h->leaves; leaf++) {
         double sum[3] = {0.0, 0.0, 0.0}, areas = 0.0;
         for (size_t i = h->begins[leaf]; i < h->begins[leaf + 1]; i++) {
-            const double area = vec3_length(vector(l->pieces[h->order[i]].area));
+            const double area = vec3_length(vec3_floats(l->pieces[h->order[i]].area));
             float rgb[3];
             sent_of_piece(rgb, l->w->scenery, h->order[i]);
             areas += area;
@@ -343,9 +332,9 @@ static relume_status build_objects(struct micro *m, const struct world *w)
             return RELUME_ENOMEM;
         for (size_t i = 0; i < m->points.count; i++) {
             const struct point *p = &m->points.at[i];
-            copy(pieces[i].place, p->place);
+            vec3_store(pieces[i].place, p->place);
             if (!k || p->both)
-                copy(pieces[i].area, vec3_scale(p->normal, k ? -p->area : p->area));
+                vec3_store(pieces[i].area, vec3_scale(p->normal, k ? -p->area : p->area));
         }
         status = hierarchy_create(&m->side[k], pieces, m->points.count, OBJECT_LEAVES, w->threads);
         mem_free(pieces);
@@ -383,11 +372,11 @@ static void light_point(const struct lighting_objects *l, size_t leaf)
     struct arrived all = {.towards = {0, 0, 0}};
     struct arrival one = {.share = 1.0};
     p.normal = l->side ? vec3_scale(p.normal, -1.0) : p.normal;
-    copy(at, p.place);
-    copy(off, p.normal);
+    vec3_store(at, p.place);
+    vec3_store(off, p.normal);
     trace_leave(at, off, start);
     const struct site site = {
-        .position = p.place, .normal = p.normal, .start = vector(start), .key = leaf};
+        .position = p.place, .normal = p.normal, .start = vec3_floats(start), .key = leaf};
     gather(l->w, &site, add_arrival, &all);
     one.towards = vec3_length(all.towards) > 0.0 ? vec3_unit(all.towards) : p.normal;
     for (int c = 0; c < 3; c++)

@@ -6,17 +6,12 @@
 // bounces are left, by one ray for each step.
 #include "transport/transport.h"
 
-static void copy(float out[3], vec3 v)
-{
-    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
-}
-
 static bool meets_objects(struct trace_hit *hit, const struct world *w, vec3 origin, vec3 direction,
                           double distance)
 {
     float from[3], along[3];
-    copy(from, origin);
-    copy(along, direction);
+    vec3_store(from, origin);
+    vec3_store(along, direction);
     return trace_closest(w->objects, from, along, hit) && (double)hit->distance < distance;
 }
 

@@ -9,28 +9,6 @@
 #include "math/random.h"
 #include "transport/bright.h"
 
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
-static void copy(float out[3], vec3 v)
-{
-    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
-}
-
-static void corners_of(vec3 corner[3], const struct mesh *mesh, size_t triangle)
-{
-    for (int k = 0; k < 3; k++)
-        corner[k] = vector(mesh->vertices[mesh->triangles[triangle].vertex[k]].position);
-}
-
-// Twice its area times its normal.
-static vec3 twice_area(const vec3 corner[3])
-{
-    return vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
-}
-
 // The digits of i in a base, mirrored at the point.
 static double mirrored(size_t i, size_t base)
 {
@@ -45,12 +23,12 @@ static void put(struct point *p, const struct mesh *mesh, const struct bright *a
     vec3 corner[3];
     size_t triangle = 0;
     (void)bright_draw(&triangle, areas, mirrored(i, 2));
-    corners_of(corner, mesh, triangle);
+    mesh_corners(corner, mesh, triangle);
     const double r = sqrt(mirrored(i + 1, 3)), s = mirrored(i + 1, 5);  // (Turk 1990)
     const double u = r * (1.0 - s), v = r * s;
     p->place = vec3_add(vec3_scale(corner[0], 1.0 - u - v),
                         vec3_add(vec3_scale(corner[1], u), vec3_scale(corner[2], v)));
-    p->normal = vec3_unit(twice_area(corner));
+    p->normal = vec3_unit(mesh_twice_area(corner));
     p->triangle = (uint32_t)triangle;
     p->u = (float)u, p->v = (float)v;
 }
@@ -64,8 +42,8 @@ static relume_status spread(struct points *out, const struct mesh *mesh, size_t 
         return RELUME_ENOMEM;
     for (size_t i = 0; i < mesh->triangle_count; i++) {
         vec3 corner[3];
-        corners_of(corner, mesh, i);
-        const double twice = vec3_length(twice_area(corner));
+        mesh_corners(corner, mesh, i);
+        const double twice = vec3_length(mesh_twice_area(corner));
         area[i] = isfinite(twice) ? 0.5 * twice : 0.0;
         all += area[i];
     }
@@ -94,9 +72,9 @@ static bool leaves(const tracer *objects, const struct point *p, vec3 normal, ve
 {
     float at[3], off[3], from[3], along[3];
     struct trace_hit hit;
-    copy(at, p->place);
-    copy(off, normal);
-    copy(along, direction);
+    vec3_store(at, p->place);
+    vec3_store(off, normal);
+    vec3_store(along, direction);
     trace_leave(at, off, from);
     return !trace_closest(objects, from, along, &hit);
 }

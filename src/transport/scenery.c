@@ -2,6 +2,7 @@
 #include "transport/scenery.h"
 
 #include "base/memory.h"
+#include "mesh/places.h"
 #include "transport/bright.h"
 
 #include <relume/view.h>
@@ -49,12 +50,6 @@ bool scenery_is_around(const struct scenery *c)
     return c->geometry.projection >= RELUME_CYLINDRICAL;
 }
 
-static vec3 place_at(const struct relume_image *places, int x, int y)
-{
-    const float *p = places->data + 3 * ((size_t)y * (size_t)places->width + (size_t)x);
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
-
 static double distance_to(const struct scenery *c, vec3 place)
 {
     return vec3_length(vec3_sub(place, c->eye));
@@ -67,7 +62,7 @@ static double part_at(const struct scenery *c, const struct relume_image *places
     size_t n = 0;
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++)
-            n += distance_to(c, place_at(places, x, y)) >= ABOUT * most;
+            n += distance_to(c, places_at_xy(places, x, y)) >= ABOUT * most;
     return (double)n / ((double)c->width * c->height);
 }
 
@@ -80,7 +75,7 @@ static double find_farthest(const struct scenery *c, const struct relume_image *
     double least = INFINITY, most = 0.0;
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++) {
-            const double d = distance_to(c, place_at(places, x, y));
+            const double d = distance_to(c, places_at_xy(places, x, y));
             least = fmin(least, d);
             most = fmax(most, d);
         }
@@ -113,8 +108,8 @@ static void add_vertices(struct scenery *c, const struct relume_image *places)
 {
     for (int row = 0; row < c->down; row++)
         for (int column = 0; column < c->across; column++) {
-            const vec3 place =
-                place_at(places, column * c->block + c->block / 2, row * c->block + c->block / 2);
+            const vec3 place = places_at_xy(places, column * c->block + c->block / 2,
+                                            row * c->block + c->block / 2);
             const bool is = is_surface(c, place);
             (void)mesh_vertex(&c->mesh, is ? place : c->eye, vec3_of(0, 0, 1), vec3_of(0, 0, 0));
         }
@@ -193,7 +188,7 @@ static relume_status mark_far(struct scenery *c, const struct relume_image *plac
         return status;
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++) {
-            const vec3 place = place_at(places, x, y);
+            const vec3 place = places_at_xy(places, x, y);
             float *to = c->far.data + 3 * ((size_t)y * (size_t)c->width + (size_t)x);
             const bool shows = !isnan(place.x) || c->farthest == 0.0;
             to[0] = to[1] = to[2] = shows && !is_surface(c, place) ? 1.0f : 0.0f;
@@ -250,17 +245,10 @@ static double luminous(const float rgb[3])
     return (double)(rgb[0] + rgb[1] + rgb[2]);
 }
 
-static void corners_of(vec3 corner[3], const struct scenery *c, size_t triangle)
-{
-    for (int k = 0; k < 3; k++)
-        corner[k] = vertex_position(&c->mesh.vertices[c->mesh.triangles[triangle].vertex[k]]);
-}
-
 // Its area times its normal.
 static vec3 area_of(const vec3 corner[3])
 {
-    return vec3_scale(vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0])),
-                      0.5);
+    return vec3_scale(mesh_twice_area(corner), 0.5);
 }
 
 // The light of a triangle as it arrives at a place, but for what turns away.
@@ -268,7 +256,7 @@ static double light_of(const struct scenery *c, size_t triangle, vec3 middle)
 {
     const uint32_t *v = c->mesh.triangles[triangle].vertex;
     vec3 corner[3];
-    corners_of(corner, c, triangle);
+    mesh_corners(corner, &c->mesh, triangle);
     const vec3 to = vec3_sub(corner[0], middle), area = area_of(corner);
     const double distance = fmax(vec3_length(to), 1e-9);
     const double sent = luminous(c->sent[v[0]]) + luminous(c->sent[v[1]]) + luminous(c->sent[v[2]]);
@@ -324,7 +312,7 @@ bool scenery_draw(vec3 *towards, size_t *source, const struct scenery *c, vec3 o
         *towards = block_direction(c, *source - c->mesh.triangle_count, random[1], random[2]);
         return true;
     }
-    corners_of(corner, c, *source);
+    mesh_corners(corner, &c->mesh, *source);
     const double r = sqrt(random[1]);  // evenly over the triangle (Turk 1990)
     const vec3 place =
         vec3_along(vec3_along(vec3_scale(corner[0], 1.0 - r), corner[1], r * (1.0 - random[2])),
@@ -341,7 +329,7 @@ double scenery_density(const struct scenery *c, const struct scenery_hit *hit, v
     const double chance = bright_chance(&c->bright, hit->source);
     if (hit->source >= c->mesh.triangle_count)
         return chance / fmax(block_angle(c, hit->source - c->mesh.triangle_count), 1e-12);
-    corners_of(corner, c, hit->source);
+    mesh_corners(corner, &c->mesh, hit->source);
     const double facing = fabs(vec3_dot(area_of(corner), direction));
     return chance * hit->distance * hit->distance / fmax(facing, 1e-30);
 }
@@ -442,11 +430,6 @@ void scenery_sent(float rgb[3], const struct scenery *c, size_t triangle, float 
 
 // ---------------------------------------------------------------- rays
 
-static void copy(float out[3], vec3 v)
-{
-    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
-}
-
 static vec3 normal_of(const struct scenery *c, const struct triangle *t, vec3 towards)
 {
     const vec3 a = vertex_position(&c->mesh.vertices[t->vertex[0]]);
@@ -460,8 +443,8 @@ bool scenery_meet(struct scenery_hit *out, const struct scenery *c, vec3 origin,
 {
     float from[3], along[3];
     struct trace_hit hit;
-    copy(from, origin);
-    copy(along, direction);
+    vec3_store(from, origin);
+    vec3_store(along, direction);
     if (!c->tracer || !trace_closest(c->tracer, from, along, &hit)) {
         background(out, c, direction);
         return false;
@@ -484,8 +467,8 @@ bool scenery_reached(const struct scenery *c, vec3 start, vec3 towards, double d
 {
     float from[3], along[3];
     struct trace_hit hit;
-    copy(from, start);
-    copy(along, towards);
+    vec3_store(from, start);
+    vec3_store(along, towards);
     return !c->tracer || !trace_closest(c->tracer, from, along, &hit) ||
            (double)hit.distance >= distance;
 }

@@ -11,14 +11,9 @@
 // all around, and blockers send none.
 #include "transport/transport.h"
 
+#include "mesh/places.h"
 #include "math/random.h"
 #include "math/scalar.h"
-
-static vec3 three(const struct relume_image *image, size_t pixel)
-{
-    const float *p = image->data + 3 * pixel;
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
 
 // The pixel at which a place appears; false outside.
 static bool pixel_of(size_t *pixel, const struct world *w, vec3 place)
@@ -37,7 +32,7 @@ static double part_blocked(const struct world *w, const struct screen *screen, s
                            const struct site *site, vec3 tried)
 {
     const double BEGIN = 0.7;  // of the radius: from there on blockers fade
-    const vec3 eye = relume_viewport_eye(w->viewport), seen = three(screen->places, pixel);
+    const vec3 eye = relume_viewport_eye(w->viewport), seen = places_at(screen->places, pixel);
     const double away = vec3_length(vec3_sub(seen, site->position)) / w->radius;
     const double depth = vec3_length(vec3_sub(tried, eye));
     const bool inside = depth > vec3_length(vec3_sub(seen, eye)) &&
@@ -48,8 +43,8 @@ static double part_blocked(const struct world *w, const struct screen *screen, s
 static void from_pixel(float rgb[3], const struct screen *screen, size_t pixel,
                        const struct site *site)
 {
-    const vec3 to = vec3_sub(site->position, three(screen->places, pixel));
-    const bool faces = vec3_dot(to, three(screen->normals, pixel)) > 0.0;
+    const vec3 to = vec3_sub(site->position, places_at(screen->places, pixel));
+    const bool faces = vec3_dot(to, places_at(screen->normals, pixel)) > 0.0;
     for (size_t c = 0; c < 3; c++)
         rgb[c] = faces ? fmaxf(screen->shown->data[3 * pixel + c], 0.0f) : 0.0f;
 }

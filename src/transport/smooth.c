@@ -1,6 +1,7 @@
 // smooth.c - means of neighbouring pixels that show one surface
 #include "base/memory.h"
 #include "base/thread.h"
+#include "mesh/places.h"
 #include "transport/transport.h"
 
 struct smoothing {
@@ -9,12 +10,6 @@ struct smoothing {
     vec3 eye;
     int size;
 };
-
-static vec3 three(const struct relume_image *image, int x, int y)
-{
-    const float *p = image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
-}
 
 bool transport_same(vec3 place, vec3 normal, vec3 other, vec3 other_normal, double distance)
 {
@@ -32,15 +27,15 @@ static void smooth_row(void *context, size_t row, int worker)
     const int y = (int)row;
     for (int x = 0; x < width; x++) {
         const size_t at = 3 * (row * (size_t)width + (size_t)x);
-        const vec3 place = three(s->places, x, y), normal = three(s->normals, x, y);
+        const vec3 place = places_at_xy(s->places, x, y), normal = places_at_xy(s->normals, x, y);
         const double distance = vec3_length(vec3_sub(place, s->eye));
         double sum[3] = {0.0, 0.0, 0.0};
         int n = 0;
         for (int j = y - before; j < y - before + s->size; j++)
             for (int i = x - before; i < x - before + s->size; i++) {
                 if (i < 0 || j < 0 || i >= width || j >= height ||
-                    !transport_same(place, normal, three(s->places, i, j), three(s->normals, i, j),
-                                    distance))
+                    !transport_same(place, normal, places_at_xy(s->places, i, j),
+                                    places_at_xy(s->normals, i, j), distance))
                     continue;
                 const float *v = s->from->data + 3 * ((size_t)j * (size_t)width + (size_t)i);
                 for (int c = 0; c < 3; c++)

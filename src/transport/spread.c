@@ -17,37 +17,19 @@ struct place {
     float u, v;
 };
 
-struct corners {
-    vec3 p[3];
-};
-
-static struct corners corners_of(const struct mesh *m, uint32_t triangle)
-{
-    struct corners c;
-    for (int k = 0; k < 3; k++)
-        c.p[k] = vertex_position(&m->vertices[m->triangles[triangle].vertex[k]]);
-    return c;
-}
-
-static vec3 twice_area(const struct corners *c)
-{
-    return vec3_cross(vec3_sub(c->p[1], c->p[0]), vec3_sub(c->p[2], c->p[0]));
-}
-
 static double wrapped(double x)
 {
     return x - floor(x);
 }
 
 // Place number i of a triangle (R2: Roberts 2018), folded into it.
-static void put_within(struct place *out, const struct corners *c, uint32_t triangle, size_t i)
+static void put_within(struct place *out, const vec3 c[3], uint32_t triangle, size_t i)
 {
     const double G1 = 0.7548776662466927, G2 = 0.5698402909980532;
     double u = wrapped(0.5 + G1 * (double)i), v = wrapped(0.5 + G2 * (double)i);
     if (u + v > 1.0)
         u = 1.0 - u, v = 1.0 - v;
-    const vec3 at = vec3_along(vec3_along(c->p[0], vec3_sub(c->p[1], c->p[0]), u),
-                               vec3_sub(c->p[2], c->p[0]), v);
+    const vec3 at = vec3_along(vec3_along(c[0], vec3_sub(c[1], c[0]), u), vec3_sub(c[2], c[0]), v);
     out->position[0] = (float)at.x, out->position[1] = (float)at.y, out->position[2] = (float)at.z;
     out->triangle = triangle;
     out->u = (float)u, out->v = (float)v;
@@ -102,9 +84,10 @@ static struct grid grid_over(const struct mesh *m, const uint32_t *triangle, siz
     const double ACROSS = 1.5;  // cells that a piece of the size of one goes through, on average
     vec3 min = vec3_of(INFINITY, INFINITY, INFINITY), max = vec3_scale(min, -1.0);
     for (size_t i = 0; i < count; i++) {
-        const struct corners c = corners_of(m, triangle[i]);
+        vec3 c[3];
+        mesh_corners(c, m, triangle[i]);
         for (int k = 0; k < 3; k++) {
-            const vec3 p = c.p[k];
+            const vec3 p = c[k];
             min = vec3_of(fmin(min.x, p.x), fmin(min.y, p.y), fmin(min.z, p.z));
             max = vec3_of(fmax(max.x, p.x), fmax(max.y, p.y), fmax(max.z, p.z));
         }
@@ -124,11 +107,12 @@ static size_t put_places(struct place *out, size_t room, const struct mesh *m,
     double before = 0.0;
     size_t n = 0;
     for (size_t i = 0; i < count; i++) {
-        const struct corners c = corners_of(m, triangle[i]);
-        const vec3 twice = twice_area(&c);
+        vec3 c[3];
+        mesh_corners(c, m, triangle[i]);
+        const vec3 twice = mesh_twice_area(c);
         before += 0.5 * vec3_length(twice);
         while (n < room && ((double)n + 0.5) * step < before) {
-            put_within(&out[n], &c, triangle[i], n);
+            put_within(&out[n], c, triangle[i], n);
             out[n].cell = cell_of(g, out[n].position) << 3 | (uint64_t)side_of(twice);
             n++;
         }
@@ -142,10 +126,11 @@ static void join(struct spread_point *out, const struct mesh *m, const struct pl
     vec3 middle = {0, 0, 0}, normal = {0, 0, 0};
     double least = INFINITY;
     for (size_t i = 0; i < n; i++) {
-        const struct corners c = corners_of(m, place[i].triangle);
+        vec3 c[3];
+        mesh_corners(c, m, place[i].triangle);
         const float *p = place[i].position;
         middle = vec3_along(middle, vec3_of(p[0], p[1], p[2]), 1.0 / (double)n);
-        normal = vec3_add(normal, vec3_unit(twice_area(&c)));
+        normal = vec3_add(normal, vec3_unit(mesh_twice_area(c)));
     }
     *out = (struct spread_point){.cell = place->cell >> 3, .area = (float)(step * (double)n)};
     for (size_t i = 0; i < n; i++) {
@@ -168,8 +153,9 @@ static double area_of(const struct mesh *m, const uint32_t *triangle, size_t cou
 {
     double area = 0.0;
     for (size_t i = 0; i < count; i++) {
-        const struct corners c = corners_of(m, triangle[i]);
-        area += 0.5 * vec3_length(twice_area(&c));
+        vec3 c[3];
+        mesh_corners(c, m, triangle[i]);
+        area += 0.5 * vec3_length(mesh_twice_area(c));
     }
     return area;
 }

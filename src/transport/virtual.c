@@ -24,10 +24,8 @@ struct triangle_of {
 static struct triangle_of triangle_of(const struct mesh *mesh, size_t i)
 {
     struct triangle_of t;
-    for (int k = 0; k < 3; k++)
-        t.corner[k] = vertex_position(&mesh->vertices[mesh->triangles[i].vertex[k]]);
-    t.area = vec3_scale(
-        vec3_cross(vec3_sub(t.corner[1], t.corner[0]), vec3_sub(t.corner[2], t.corner[0])), 0.5);
+    mesh_corners(t.corner, mesh, i);
+    t.area = vec3_scale(mesh_twice_area(t.corner), 0.5);
     return t;
 }
 

@@ -45,6 +45,17 @@ check 'and objects' grep -q 'object        ball: ' out.txt
 expect_ok 'info for programs' - "$RELUME" info scene.json --json
 check 'has all of it' grep -q '"name": "ball", "kind": "mesh", "triangles": ' out.txt
 
+scene ',"lights":[]' >dark.json
+expect_ok 'a scene without lights' - "$RELUME" relight dark.json -o dark.exr -q
+check 'is black' sh -c "'$RELUME' relight scene.json -o black.exr --light 'dir 0 1 0 rgb 0 0 0' -q && cmp dark.exr black.exr"
+expect_ok 'in the viewer, too' - "$VIEWER" dark.json --offscreen viewed.exr
+check 'byte for byte' cmp dark.exr viewed.exr
+expect_ok 'an eye within an object' 'the eye is within object 0' "$RELUME" relight scene.json -o in.exr --eye 0.7,-0.8,-1.5
+expect_ok 'one without' - "$RELUME" relight scene.json -o in.exr --eye 0.7,-0.3,-1.5
+check 'hears nothing of it' sh -c '! grep -q within err.txt'
+sed 's/{"diffuse":0.7}/{}/' scene.json >nothing.json
+expect_fail 'a material that is none' 1 'expected one of diffuse, mirror and translucent' x.png "$RELUME" relight nothing.json -o x.png
+
 # the viewer: the picture of relight, an eye and lights that move, files one after the other
 expect_ok 'the viewer shows it' - "$VIEWER" lit.json --offscreen viewed.exr
 check 'byte for byte' cmp viewed.exr c.exr
@@ -101,6 +112,6 @@ sed 's/\[0,1,0,30\]/[1,0,0,30]/' scene.json >tilted.json
 expect_ok 'a capture that lies on its back' - "$RELUME" relight tilted.json -o x.png -q --light 'dir 0 1 0'
 rm -f x.png
 printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\200\200\201\200\200\200\201' >sky.hdr
-expect_fail 'takes no sky' 1 "turned about another axis than y" x.png "$RELUME" relight tilted.json -o x.png -q --light 'env sky.hdr'
+expect_fail 'takes no sky' 1 "capture 'the pot', which is turned about another axis than y" x.png "$RELUME" relight tilted.json -o x.png -q --light 'env sky.hdr'
 expect_fail 'other commands' 1 "a scene file, which 'relume relight' and 'relume info' open" x.png "$RELUME" export scene.json -o x.ptm
 finish

@@ -363,24 +363,25 @@ static void put_vec3(float *texel, struct relume_vec3 v)
     texel[2] = (float)v.z;
 }
 
-// Rows: position, normal, radiance. Sets `n`, how many there are.
-static void use_patches(const struct nearby *near, const struct nearby_view *view,
+// Rows: position, normal, radiance. Sets `n`, how many there are. RELUME_ENOMEM.
+static relume_status use_patches(const struct nearby *near, const struct nearby_view *view,
                         const struct relume_light *light, int *n)
 {
     struct relume_light_patch patch[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
-    float texels[3][RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST][3];
     const int side = relume_light_patch_side(light, relume_area_distance(light, &view->surface));
     relume_light_patches(patch, light, side);
     *n = side * side;
+    float *texels = malloc((size_t)*n * 9 * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
     for (int i = 0; i < *n; i++) {
-        put_vec3(texels[0][i], patch[i].position);
-        put_vec3(texels[1][i], patch[i].normal);
-        memcpy(texels[2][i], patch[i].rgb, sizeof patch[i].rgb);
+        put_vec3(texels + 3 * i, patch[i].position);
+        put_vec3(texels + 3 * (*n + i), patch[i].normal);
+        memcpy(texels + 3 * (2 * *n + i), patch[i].rgb, sizeof patch[i].rgb);
     }
-    for (int row = 1; row < 3; row++)
-        memmove(&texels[0][0][0] + row * *n * 3, texels[row], (size_t)*n * sizeof *texels[row]);
-    light_uniforms_upload(near->gl, UNIT_PICTURE, near->patches, GL_RGB32F, GL_RGB, *n, 3,
-                          &texels[0][0][0]);
+    light_uniforms_upload(near->gl, UNIT_PICTURE, near->patches, GL_RGB32F, GL_RGB, *n, 3, texels);
+    free(texels);
+    return RELUME_OK;
 }
 
 static relume_status set_light(struct nearby *near, const struct nearby_view *view,
@@ -388,8 +389,10 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
 {
     const GLint *at = near->program.at;
     int patches = 0;
-    if (l->kind == RELUME_LIGHT_AREA)
-        use_patches(near, view, l, &patches);
+    const relume_status status =
+        l->kind == RELUME_LIGHT_AREA ? use_patches(near, view, l, &patches) : RELUME_OK;
+    if (status)
+        return status;
     near->gl->Uniform1i(at[PATCHES], patches);
     return light_uniforms_set(&near->uniforms, at + LIGHT, UNIT_PICTURE, l);
 }

@@ -104,6 +104,12 @@ static relume_status start_app(struct app *app, struct session *s, const struct 
     if (!light_list_copy(&from, start))
         return RELUME_ENOMEM;
     relume_status status = from.lights ? RELUME_OK : session_append_lights(s, &from, rig);
+    const struct relume_light front = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+    if (!status && !from.lights) {  // the file has none: one that is off, to begin with
+        status = light_list_add(&from, &front, -1) ? RELUME_OK : RELUME_ENOMEM;
+        if (!status)
+            from.light_state[0].off = true;
+    }
     from.selected = 0;
     if (!status)
         status = app_start(app, file, &from, true, s->log);

@@ -57,9 +57,10 @@ static const struct option options[] = {
             "--size; reads only that part of the file",
             4),
     POINT("--eye", eye, "x,y,z",
-          "slab: look at the window from this point; default: the middle of the cameras"),
+          "slab, scene file: look from this point; default: the middle of the cameras, the file's "
+          "eye"),
     POINT("--look-at", look_at, "x,y,z",
-          "--eye: the point looked at; default: the middle of the object"),
+          "--eye, scene file: the point looked at; default: the middle of the object"),
     POINT("--up", up, "x,y,z", "--eye: the direction that is up in the picture; default: 0,1,0"),
     NUMBER("--fov", fov, "DEG",
            "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a "
@@ -127,8 +128,8 @@ static const struct option options[] = {
             "--reflections",
             2),
     OWN("--transport", transport, "NAME",
-        "--objects: how light goes between them and the scene: none (default), ssao, ssdo, ism, "
-        "radiosity, micro, path (docs/transport.md)",
+        "--objects, scene files: how light goes between them and the scene: none (default), ssao, "
+        "ssdo, ism, radiosity, micro, path (docs/transport.md)",
         take_transport),
     INT("--bounces", bounces, "N", "--transport: of light off objects; default: 2", 0, 16),
     INT("--spacing", spacing, "N",
@@ -136,8 +137,8 @@ static const struct option options[] = {
         "default: 4 (micro), 1 (path)",
         1, 16),
     INT("--samples", samples, "N",
-        "--objects: N x N rays a pixel, at most 16; default: 3; with --transport: directions that "
-        "light is gathered from at a pixel",
+        "--objects, scene files: N x N rays a pixel, at most 16; default: 3; with --transport: "
+        "directions that light is gathered from at a pixel",
         1, 65536),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
@@ -215,8 +216,8 @@ static relume_status check_pass(const struct relight_options *o)
         return usage_error("--reflections and --reflection-at work only with --objects; add "
                            "--objects FILE");
     if ((o->transport || given(o, &o->bounces)) && !o->objects)
-        return usage_error("--transport and --bounces work only with --objects; add "
-                           "--objects FILE");
+        return usage_error("--transport and --bounces work only with --objects or a scene file; "
+                           "add --objects FILE");
     if (given(o, &o->spacing) && !(o->transport && relume_transport_spacing(o->transport)))
         return usage_error("--spacing works only with --transport micro and path");
     if (o->samples > MOST_ACROSS && !(o->transport && relume_transport_samples(o->transport)))

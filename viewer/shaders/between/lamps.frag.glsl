@@ -4,6 +4,7 @@
 #include "texels.glsl"
 #include "cube.glsl"
 #include "light.glsl"
+#include "light_sample.glsl"
 #include "shadow.glsl"
 uniform sampler2D scene, scene_facing;
 uniform vec3 centre;                    // the eye that captured it
@@ -33,23 +34,6 @@ float let_through(vec3 point, vec3 normal)
     if (clip.w <= 0.0 || any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0))))
         return 1.0;
     return texture(captured, vec4(at.xy, float(layer), clamp(at.z, 0.0, 1.0)));
-}
-
-// Twin: sample_at of btf.glsl.
-bool sample_at(out vec3 towards, out vec3 rgb, vec3 point)
-{
-    if (light.kind == DIRECTIONAL) {
-        towards = light.axis;
-        rgb = light.rgb;
-        return true;
-    }
-    if (light.kind != AREA)
-        return light_at(towards, rgb, point);
-    float distance;
-    bool arrives = ray_to(towards, distance, light.position, point);
-    float cosine = -dot(towards, light.axis);
-    rgb = light.rgb * cosine / (distance * distance);
-    return arrives && cosine > 0.0;
 }
 
 void main()

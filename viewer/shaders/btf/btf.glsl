@@ -8,6 +8,7 @@
 #include "texels.glsl"
 #include "cube.glsl"
 #include "light.glsl"
+#include "light_sample.glsl"
 #include "shadow.glsl"
 #include "sky.glsl"
 
@@ -227,23 +228,6 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 }
 
 #else
-
-// Twin: relume_object_light_at. A patch's place and normal are those of the light.
-bool sample_at(out vec3 towards, out vec3 rgb, vec3 point)
-{
-    if (light.kind == DIRECTIONAL) {
-        towards = light.axis;
-        rgb = light.rgb;
-        return true;
-    }
-    if (light.kind != AREA)
-        return light_at(towards, rgb, point);
-    float distance;
-    bool arrives = ray_to(towards, distance, light.position, point);
-    float cosine = -dot(towards, light.axis);
-    rgb = light.rgb * cosine / (distance * distance);
-    return arrives && cosine > 0.0;
-}
 
 // Twin: add_sample.
 vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)

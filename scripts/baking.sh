@@ -19,17 +19,21 @@ for way in sh table; do
         "$relume" bake "$out/cow.json" -o "$out/cow-$way.exr" --basis $way $([ $way = sh ] && echo '-k 100' || echo '-k 400') --bounces 3 --components 24 -q
     description "{\"baked\":\"cow-$way.exr\"}" >"$out/cow-$way.json"
 done
+lamp='dir -0.6 0.9 0.9'
+[ -e "$out/cow-fixed.exr" ] || "$relume" bake "$out/cow.json" -o "$out/cow-fixed.exr" --bounces 3 --light "$lamp" -q
+description '{"baked":"cow-fixed.exr"}' >"$out/cow-fixed.json"
 list=
-shot() { # description, name, light, exposure
+shot() { # description, name, light
     "$relume" btf render "$out/$1.json" -o "$out/$2.exr" --picture 288x288 --eye 1.3,0.9,2.6 --look-at 0,-0.2,0 --fov 38 --light "$3" -q 2>/dev/null
     list="$list $out/$2.exr"
 }
-shot cow lamp 'dir -0.6 0.9 0.9'
-shot cow-sh sh 'dir -0.6 0.9 0.9'
-shot cow-table table 'dir -0.6 0.9 0.9'
+shot cow lamp "$lamp"
+shot cow-fixed fixed "$lamp"
+shot cow-table table "$lamp"
+shot cow-sh sh "$lamp"
 shot cow-sh sunset "env $sky/sunset.hdr"
-shot cow-sh studio "env $sky/studio.hdr rgb 2 2 2"
-"$draw" row "$pictures/baking.jpg" columns=5 $list
+shot cow-sh studio "env $sky/studio.hdr rgb .35 .35 .35"
+"$draw" row "$pictures/baking.jpg" columns=6 $list
 echo "  $pictures/baking.jpg"
 
 # a leather cushion in light that stays, and its components

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CHUNK = 16, AT_ONCE = 16, TAUGHT = 3072 };
+enum { CHUNK = 16, AT_ONCE = 16, TAUGHT = 32768 };
 static const size_t TAUGHT_BYTES = (size_t)512 << 20;
 
 // ---------------------------------------------------------------- over texels
@@ -237,9 +237,9 @@ static void write_block(const struct writing *w, int number, size_t texel, const
     const struct local_components *c = &w->components[number];
     const size_t own = (size_t)number * (size_t)out->info.width * (size_t)out->info.height + texel;
     float *weight = out->weight + own * (size_t)c->components;
-    const int cluster = components_nearest(c, y);
-    out->cluster[own] = (uint16_t)cluster;
-    square[0] += components_weights(weight, c, cluster, y, left);
+    double rest;
+    out->cluster[own] = (uint16_t)components_best(weight, &rest, c, y, left);
+    square[0] += rest;
     round_to_halves(weight, (size_t)c->components);
     for (size_t j = 0; j < c->length; j++)
         square[1] += (double)y[j] * (double)y[j];

@@ -6,13 +6,15 @@
 
 #include <string.h>
 
-// An allocation of a product that may be large, with a sentence when it is above the limit.
-static uint64_t bytes_of(const relume_baked *b)
+// In memory, or as the file has it before it packs: halves in place of floats.
+static uint64_t bytes_of(const relume_baked *b, bool stored)
 {
-    const uint64_t texels = (uint64_t)b->info.width * (uint64_t)b->info.height;
-    const uint64_t blocks = (uint64_t)b->blocks;
-    return texels * blocks * (2 + 4 * (uint64_t)b->info.components) + texels * 24 +
-           (uint64_t)b->vectors * (uint64_t)b->kept * (12 + (b->info.cube ? 2 : 0)) +
+    const uint64_t number = stored ? 2 : 4,
+                   whole = (uint64_t)b->info.width * (uint64_t)b->info.height;
+    const uint64_t texel = (uint64_t)b->blocks * (2 + number * (uint64_t)b->info.components) +
+                           (stored && b->info.side == 1 ? 0 : 6 * number);
+    return whole * texel +
+           (uint64_t)b->vectors * (uint64_t)b->kept * (3 * number + (b->info.cube ? 2 : 0)) +
            (uint64_t)b->info.triangles * sizeof *b->triangle;
 }
 
@@ -23,8 +25,8 @@ relume_status baked_make(relume_baked *b, const struct relume_log *log)
     const int views = b->info.side * b->info.side;
     b->vectors = (size_t)b->blocks * (size_t)b->info.clusters * (size_t)(1 + b->info.components) *
                  (size_t)(views / b->blocks);
-    b->info.bytes = bytes_of(b);
-    const relume_status status = limits_memory(b->info.bytes, "the baked object", log);
+    b->info.bytes = bytes_of(b, true);
+    const relume_status status = limits_memory(bytes_of(b, false), "the baked object", log);
     if (status)
         return status;
     b->cluster = mem_array(n, sizeof *b->cluster);

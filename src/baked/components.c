@@ -1,6 +1,6 @@
 // components.c - local principal components by the products of the taught vectors: vectors are
-// longer than they are many, so that all is found from their Gram matrix, that of a cluster from a
-// part of it (the "snapshots" of Sirovich 1987)
+// longer than they are many, so that all is found from their Gram matrices (the "snapshots" of
+// Sirovich 1987)
 #include "baked/components.h"
 
 #include "base/memory.h"
@@ -11,7 +11,7 @@
 #include <relume/codebook.h>
 #include <string.h>
 
-enum { ROWS = 64, COLUMNS = 512, REDUCED = 32 };
+enum { ROWS = 64, COLUMNS = 512, REDUCED = 32, CANDIDATES = 4 };
 
 // ---------------------------------------------------------------- products
 
@@ -23,7 +23,7 @@ struct products {
 };
 
 // Some rows with all, some columns at a time.
-static bool add_products(const struct products *p, size_t first, size_t n, float *turned,
+static void add_products(const struct products *p, size_t first, size_t n, float *turned,
                          float *part)
 {
     for (size_t at = 0; at < p->length; at += COLUMNS) {
@@ -36,7 +36,6 @@ static bool add_products(const struct products *p, size_t first, size_t n, float
         for (size_t i = 0; i < n * p->count; i++)
             p->gram[first * p->count + i] += (double)part[i];
     }
-    return true;
 }
 
 static void products_of_rows(void *context, size_t item, int worker)
@@ -46,7 +45,9 @@ static void products_of_rows(void *context, size_t item, int worker)
     const size_t first = item * ROWS, left = p->count - first;
     float *turned = mem_array(COLUMNS * p->count, sizeof *turned);
     float *part = mem_array(ROWS * p->count, sizeof *part);
-    if (!turned || !part || !add_products(p, first, left < ROWS ? left : ROWS, turned, part))
+    if (turned && part)
+        add_products(p, first, left < ROWS ? left : ROWS, turned, part);
+    else
         __atomic_store_n(&p->failed, true, __ATOMIC_RELAXED);
     mem_free(turned);
     mem_free(part);
@@ -74,9 +75,10 @@ static void centre(double *out, const double *gram, size_t count, const size_t *
 
 struct learning {
     const struct local_components *out;
-    const struct products *p;
-    const uint16_t *which;
-    bool failed;  // set by any worker, read after all
+    const float *rows;
+    size_t count, stride;
+    uint16_t *which;  // [count]
+    bool failed;      // set by any worker, read after all
 };
 
 static relume_status reduce(float *reduced, const struct products *p, size_t *member)
@@ -116,51 +118,101 @@ static relume_status find_clusters(uint16_t *which, int clusters, const float *r
     return status;
 }
 
-// A unit component is the sum of the members' differences from the mean by an eigenvector.
-static void add_component(float *to, const float *mean, const struct products *p,
-                          const size_t *member, size_t n, const double *share, double value)
+// The mean of each cluster of the `n` vectors that it was found from.
+static void find_means(const struct learning *l, const uint16_t *which, size_t n)
 {
-    const double scale = value > 0.0 ? 1.0 / sqrt(value) : 0.0;
-    double sum = 0.0;
-    memset(to, 0, p->length * sizeof *to);
-    for (size_t i = 0; i < n; i++) {
-        const float part = (float)(share[i] * scale);
-        const float *row = p->rows + member[i] * p->stride;
-        for (size_t j = 0; j < p->length; j++)
-            to[j] += part * (row[j] - mean[j]);
+    const size_t length = l->out->length, apart = (size_t)(1 + l->out->components) * length;
+    memset(l->out->vector, 0, (size_t)l->out->clusters * apart * sizeof(float));
+    for (int c = 0; c < l->out->clusters; c++) {
+        float *mean = l->out->vector + (size_t)c * apart;
+        size_t members = 0;
+        for (size_t i = 0; i < n; i++)
+            members += which[i] == c;
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; which[i] == c && j < length; j++)
+                mean[j] += l->rows[i * l->count / n * l->stride + j] / (float)members;
     }
-    for (size_t j = 0; j < p->length; j++)
+}
+
+static void assign_rows(void *context, size_t item, int worker)
+{
+    (void)worker;
+    struct learning *l = context;
+    const size_t end = (item + 1) * ROWS;
+    for (size_t i = item * ROWS; i < (end < l->count ? end : l->count); i++)
+        l->which[i] = (uint16_t)components_nearest(l->out, l->rows + i * l->stride);
+}
+
+// A unit component is the sum of the members' differences from the mean by an eigenvector.
+static void add_component(float *to, const float *difference, size_t n, size_t length,
+                          const double *share)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < length; j++)
+            to[j] += (float)share[i] * difference[i * length + j];
+    for (size_t j = 0; j < length; j++)
         sum += (double)to[j] * (double)to[j];
-    for (size_t j = 0; j < p->length && sum > 0.0; j++)
+    for (size_t j = 0; j < length && sum > 0.0; j++)
         to[j] = (float)((double)to[j] / sqrt(sum));
 }
 
-static bool solve(const struct learning *l, int cluster, const size_t *member, size_t n)
+// What one cluster needs.
+struct cluster {
+    float *difference;  // [n][length]
+    float *turned, *part;
+    double *gram, *vectors, *values;
+};
+
+static void cluster_free(struct cluster *k)
 {
-    const size_t length = l->p->length, most = (size_t)l->out->components;
+    mem_free(k->difference);
+    mem_free(k->turned);
+    mem_free(k->part);
+    mem_free(k->gram);
+    mem_free(k->vectors);
+    mem_free(k->values);
+}
+
+static bool cluster_alloc(struct cluster *k, size_t n, size_t length, size_t kept)
+{
+    *k = (struct cluster){
+        .difference = mem_array(n * length, sizeof *k->difference),
+        .turned = mem_array(COLUMNS * n, sizeof *k->turned),
+        .part = mem_array(n * n, sizeof *k->part),
+        .gram = mem_zeroed(n * n, sizeof *k->gram),
+        .vectors = mem_array(kept * n, sizeof *k->vectors),
+        .values = mem_array(kept, sizeof *k->values),
+    };
+    return k->difference && k->turned && k->part && k->gram && k->vectors && k->values;
+}
+
+// By at most so many members, which are evenly spread.
+static bool solve(const struct learning *l, int cluster, const size_t *member, size_t members)
+{
+    enum { MOST = 512 };
+    const size_t length = l->out->length, n = members < MOST ? members : MOST;
+    const size_t most = (size_t)l->out->components, kept = most < n ? most : n;
     float *mean = l->out->vector + (size_t)cluster * (1 + most) * length;
-    const int kept = (int)(most < n ? most : n);
-    double *gram = mem_array(n * (n + 1), sizeof *gram);
-    double *vectors = mem_array((size_t)kept * n, sizeof *vectors);
-    double *values = mem_array((size_t)kept, sizeof *values);
-    bool good = gram && vectors && values;
+    struct cluster k;
     memset(mean, 0, (1 + most) * length * sizeof *mean);
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < members; i++)
         for (size_t j = 0; j < length; j++)
-            mean[j] += l->p->rows[member[i] * l->p->stride + j] / (float)n;
+            mean[j] += l->rows[member[i] * l->stride + j] / (float)members;
+    bool good = cluster_alloc(&k, n, length, kept);
+    for (size_t i = 0; good && i < n; i++)
+        for (size_t j = 0; j < length; j++)
+            k.difference[i * length + j] =
+                l->rows[member[i * members / n] * l->stride + j] - mean[j];
     if (good && kept) {
-        centre(gram, l->p->gram, l->p->count, member, n);
-        const double all = gram[0];
-        good = lsq_eigenvectors(gram, (int)n, kept, values, vectors);
-        for (int k = 0; good && k < kept; k++)
-            // beyond the rank what is left is rounding
-            if (values[k] > 1e-6 * fmax(values[0], all))
-                add_component(mean + (size_t)(k + 1) * length, mean, l->p, member, n,
-                              vectors + (size_t)k * n, values[k]);
+        const struct products p = {k.difference, n, length, length, k.gram, false};
+        add_products(&p, 0, n, k.turned, k.part);
+        good = lsq_eigenvectors(k.gram, (int)n, (int)kept, k.values, k.vectors);
+        for (size_t i = 0; good && i < kept; i++)
+            if (k.values[i] > 1e-6 * k.values[0])  // beyond the rank what is left is rounding
+                add_component(mean + (i + 1) * length, k.difference, n, length, k.vectors + i * n);
     }
-    mem_free(gram);
-    mem_free(vectors);
-    mem_free(values);
+    cluster_free(&k);
     return good;
 }
 
@@ -168,8 +220,8 @@ static void learn_cluster(void *context, size_t item, int worker)
 {
     (void)worker;
     struct learning *l = context;
-    size_t *member = mem_array(l->p->count, sizeof *member), n = 0;
-    for (size_t i = 0; member && i < l->p->count; i++)
+    size_t *member = mem_array(l->count, sizeof *member), n = 0;
+    for (size_t i = 0; member && i < l->count; i++)
         if (l->which[i] == item)
             member[n++] = i;
     if (!member || !solve(l, (int)item, member, n))
@@ -177,54 +229,98 @@ static void learn_cluster(void *context, size_t item, int worker)
     mem_free(member);
 }
 
-relume_status components_learn(const struct local_components *out, const float *rows, size_t taught,
-                               size_t stride, int threads)
+// Clusters of some of the vectors, by their products.
+static relume_status begin_clusters(struct learning *l, int threads)
 {
-    struct products p = {
-        rows, taught, stride, out->length, mem_zeroed(taught * taught, sizeof *p.gram), false};
-    float *reduced = mem_array(taught * REDUCED, sizeof *reduced);
-    size_t *member = mem_array(taught, sizeof *member);
-    uint16_t *which = mem_array(taught, sizeof *which);
-    relume_status status = p.gram && reduced && member && which ? RELUME_OK : RELUME_ENOMEM;
+    enum { SOME = 2048 };
+    const size_t n = l->count < SOME ? l->count : SOME, length = l->out->length;
+    float *some = mem_array(n * length, sizeof *some);
+    float *reduced = mem_array(n * REDUCED, sizeof *reduced);
+    size_t *member = mem_array(n, sizeof *member);
+    uint16_t *which = mem_array(n, sizeof *which);
+    struct products p = {some, n, length, length, mem_zeroed(n * n, sizeof *p.gram), false};
+    relume_status status = p.gram && some && reduced && member && which ? RELUME_OK : RELUME_ENOMEM;
+    for (size_t i = 0; i < n && !status; i++)
+        memcpy(some + i * length, l->rows + i * l->count / n * l->stride, length * sizeof *some);
     if (!status) {
-        thread_for(threads, (taught + ROWS - 1) / ROWS, products_of_rows, &p);
+        thread_for(threads, (n + ROWS - 1) / ROWS, products_of_rows, &p);
         status = p.failed ? RELUME_ENOMEM : reduce(reduced, &p, member);
     }
     if (!status)
-        status = find_clusters(which, out->clusters, reduced, taught, threads);
-    if (!status) {
-        struct learning l = {out, &p, which, false};
-        thread_for(threads, (size_t)out->clusters, learn_cluster, &l);
-        status = l.failed ? RELUME_ENOMEM : RELUME_OK;
-    }
+        status = find_clusters(which, l->out->clusters, reduced, n, threads);
+    if (!status)
+        find_means(l, which, n);
     mem_free(p.gram);
+    mem_free(some);
     mem_free(reduced);
     mem_free(member);
     mem_free(which);
     return status;
 }
 
+relume_status components_learn(const struct local_components *out, const float *rows, size_t taught,
+                               size_t stride, int threads)
+{
+    struct learning l = {out, rows, taught, stride, mem_array(taught, sizeof *l.which), false};
+    relume_status status = l.which ? begin_clusters(&l, threads) : RELUME_ENOMEM;
+    if (!status) {
+        thread_for(threads, (taught + ROWS - 1) / ROWS, assign_rows, &l);
+        thread_for(threads, (size_t)out->clusters, learn_cluster, &l);
+        status = l.failed ? RELUME_ENOMEM : RELUME_OK;
+    }
+    mem_free(l.which);
+    return status;
+}
+
 // ---------------------------------------------------------------- of a vector
+
+static float distance(const struct local_components *c, int cluster, const float *y)
+{
+    const float *mean = c->vector + (size_t)cluster * (size_t)(1 + c->components) * c->length;
+    float sum = 0.0f;
+    for (size_t j = 0; j < c->length; j++)
+        sum += (y[j] - mean[j]) * (y[j] - mean[j]);
+    return sum;
+}
 
 int components_nearest(const struct local_components *c, const float *y)
 {
     int best = 0;
     float least = INFINITY;
     for (int k = 0; k < c->clusters; k++) {
-        const float *mean = c->vector + (size_t)k * (size_t)(1 + c->components) * c->length;
-        float sum = 0.0f;
-        for (size_t j = 0; j < c->length; j++)
-            sum += (y[j] - mean[j]) * (y[j] - mean[j]);
-        if (sum < least) {
-            least = sum;
+        const float d = distance(c, k, y);
+        if (d < least) {
+            least = d;
             best = k;
         }
     }
     return best;
 }
 
-double components_weights(float *weights, const struct local_components *c, int cluster,
-                          const float *y, float *left)
+// The nearest ones, nearest first.
+static int some_nearest(int cluster[CANDIDATES], const struct local_components *c, const float *y)
+{
+    float d[CANDIDATES + 1];
+    int own[CANDIDATES + 1], n = 0;
+    for (int k = 0; k < c->clusters; k++) {
+        int at = n;
+        const float value = distance(c, k, y);
+        for (; at > 0 && value < d[at - 1]; at--) {
+            d[at] = d[at - 1];
+            own[at] = own[at - 1];
+        }
+        d[at] = value;
+        own[at] = k;
+        n = n < CANDIDATES ? n + 1 : n;
+    }
+    memcpy(cluster, own, (size_t)n * sizeof *cluster);
+    return n;
+}
+
+// Weights of a cluster, one component after the other, so that these need not be quite orthogonal;
+// the square of what is left.
+static double weights_of(float *weights, const struct local_components *c, int cluster,
+                         const float *y, float *left)
 {
     const float *mean = c->vector + (size_t)cluster * (size_t)(1 + c->components) * c->length;
     const float *e = mean + c->length;
@@ -244,4 +340,21 @@ double components_weights(float *weights, const struct local_components *c, int 
     for (size_t j = 0; j < c->length; j++)
         square += (double)(left[j] * left[j]);
     return square;
+}
+
+int components_best(float *weights, double *square, const struct local_components *c,
+                    const float *y, float *left)
+{
+    int cluster[CANDIDATES], best = 0;
+    const int n = some_nearest(cluster, c, y);
+    *square = INFINITY;
+    for (int i = 0; i < n; i++) {
+        const double own = weights_of(weights, c, cluster[i], y, left);
+        if (own < *square) {
+            *square = own;
+            best = cluster[i];
+        }
+    }
+    *square = weights_of(weights, c, best, y, left);
+    return best;
 }

@@ -5,7 +5,8 @@
 #include <relume/base.h>
 
 // y ~ mean[c] + sum_i a_i e_i[c]: clusters by k-means, components of each (Meseth 2008, 10.1.2;
-// Mueller, Meseth, Klein 2003). Learned from `taught` vectors that are evenly spread.
+// Mueller, Meseth, Klein 2003). Learned from `taught` vectors that are
+// evenly spread.
 struct local_components {
     int clusters, components;  // of each, which some of may be zero
     size_t length;             // of a vector
@@ -18,9 +19,9 @@ relume_status components_learn(const struct local_components *out, const float *
 
 // The cluster whose mean is nearest to a vector. Lowest number where several are.
 int components_nearest(const struct local_components *c, const float *y);
-// Its weights there, one component after the other, so that these need not be quite orthogonal; the
+// The one of some nearest that says it best (Kambhatla and Leen 1997), and its weights there; the
 // square of what is left, which lies in left[length].
-double components_weights(float *weights, const struct local_components *c, int cluster,
-                          const float *y, float *left);
+int components_best(float *weights, double *square, const struct local_components *c,
+                    const float *y, float *left);
 
 #endif

@@ -60,6 +60,7 @@ program:base:base image
 cli:program:*
 mpi::io team
 cli/materials:materials program:*
+cli/studies:studies program:*
 cli/commands:commands materials program measure:*
 viewer/common::base vec
 viewer/app:common program:*

@@ -1,5 +1,5 @@
 // study_make.c - relume study make: stimuli of several conditions in one folder
-#include "commands/study_tasks.h"
+#include "studies/study_tasks.h"
 
 #include <string.h>
 

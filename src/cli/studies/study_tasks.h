@@ -1,6 +1,6 @@
 // study_tasks.h - the tasks of `relume study` that make things
-#ifndef COMMANDS_STUDY_TASKS_H
-#define COMMANDS_STUDY_TASKS_H
+#ifndef STUDIES_STUDY_TASKS_H
+#define STUDIES_STUDY_TASKS_H
 
 #include "cli.h"
 

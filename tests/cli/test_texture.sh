@@ -51,6 +51,8 @@ expect_fail 'an unknown ending' 2 'x.abc' x.abc "$RELUME" btf synth cord.ppm -o 
 expect_fail 'an even neighbourhood' 2 'an odd number from 3 to 9; found 4' x.ppm "$RELUME" btf synth cord.ppm -o x.ppm --method pixel --neighbourhood 4
 expect_fail 'a patch larger than the sample' 2 'an even number from 4 to 24; found 26' x.ppm "$RELUME" btf synth cord.ppm -o x.ppm --patch 26
 expect_fail 'a method that is none' 2 "--method" x.ppm "$RELUME" btf synth cord.ppm -o x.ppm --method tiles
+expect_fail 'a map over the limits' 1 'the map takes 2 MB; expected at most 1 MB' x.ppm "$RELUME" btf synth cord.ppm -o x.ppm --size 700x700 --max-memory 1M
+expect_fail 'a size that is too large' 2 'at most 65536 a side and 2.30 pixels' x.ppm "$RELUME" btf synth cord.ppm -o x.ppm --size 65536x65536
 expect_fail 'a size with a map' 2 'the size is that of the map' x.ppm "$RELUME" btf synth cord.ppm -o x.ppm --map more.npy --size 8x8
 expect_fail 'waves of no structure' 2 'looks for no structure' x.ppm "$RELUME" btf synth cord.ppm -o x.ppm --plain --waves
 expect_fail 'a map of a larger sample' 1 'expected a texel of 8 x 8; found number' x.ppm sh -c '"$1" btf render cord -o small.ppm --picture 8x8 --light "dir 0 0 1" -q && "$1" btf synth small.ppm -o x.ppm --map more.npy' - "$RELUME"

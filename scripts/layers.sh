@@ -62,6 +62,7 @@ mpi::io team
 cli/materials:materials program:*
 cli/studies:studies program:*
 cli/commands:commands materials program measure:*
+cli/meshes:meshes program:*
 viewer/common::base vec
 viewer/app:common program:*
 viewer/gl:common program:base image

@@ -30,8 +30,8 @@ struct relume_fusion_params {
     int block;            // as relume_isosurface_params; default 2
     bool no_colours;      // without the colours of the photographs
     const char *scratch;  // as relume_volume_params
-    // Lights that the photographs are relit by. `lights` NULL: one from before, of panoramas one from
-    // each side.
+    // Lights that the photographs are relit by. `lights` NULL: one from before, of panoramas one
+    // from each side.
     const struct relume_light *lights;
     int light_count;
 };

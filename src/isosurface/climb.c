@@ -293,6 +293,9 @@ static relume_status run(struct relume_mesh *out, struct relume_isosurface_repor
 {
     const struct signs *g = k->g;
     thread_for(g->threads, (size_t)k->blocks[2], climb_layer, k);
+    for (int z = 0; z < k->blocks[2]; z++)
+        if (k->layer[z].failed)
+            return RELUME_ENOMEM;
     for (int i = 0; i < g->threads; i++)
         faces_begin(&k->worker[i].faces, g, k->share);
     thread_for(g->threads, (size_t)k->blocks[2], put_layer, k);

@@ -43,6 +43,7 @@ relume_status unpack_open(unpack **out, const char *path, uint64_t offset, const
         return RELUME_ENOMEM;
     if (!infile_open(&u->in, path, NULL, log)) {
         const int error = errno;
+        infile_close(&u->in);
         mem_free(u);
         *out = NULL;
         return relume_input_fail(log, path, "cannot be opened", error);

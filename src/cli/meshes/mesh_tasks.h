@@ -1,6 +1,6 @@
 // mesh_tasks.h - `relume mesh`: its tasks, and what they share
-#ifndef COMMANDS_MESH_TASKS_H
-#define COMMANDS_MESH_TASKS_H
+#ifndef MESHES_MESH_TASKS_H
+#define MESHES_MESH_TASKS_H
 
 #include "cli.h"
 

@@ -1,5 +1,5 @@
 // mesh_depth.c - relume mesh FILE.exr: the depth of all views as one surface
-#include "commands/mesh_depth.h"
+#include "meshes/mesh_depth.h"
 
 static void print(const struct args *args, const struct mesh_made *made,
                   const struct relume_fusion_report *r, bool json)

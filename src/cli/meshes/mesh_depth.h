@@ -1,8 +1,8 @@
 // mesh_depth.h - the part of `relume mesh` that is about depth
-#ifndef COMMANDS_MESH_DEPTH_H
-#define COMMANDS_MESH_DEPTH_H
+#ifndef MESHES_MESH_DEPTH_H
+#define MESHES_MESH_DEPTH_H
 
-#include "commands/mesh_tasks.h"
+#include "meshes/mesh_tasks.h"
 #include "frame_options.h"
 
 struct depth_options {

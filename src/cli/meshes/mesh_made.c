@@ -1,5 +1,5 @@
 // mesh_made.c - what `relume mesh` and its tasks say of a mesh
-#include "commands/mesh_tasks.h"
+#include "meshes/mesh_tasks.h"
 
 #include <time.h>
 

@@ -1,8 +1,8 @@
 // mesh_volume.h - the part of `relume mesh` that is about volumes
-#ifndef COMMANDS_MESH_VOLUME_H
-#define COMMANDS_MESH_VOLUME_H
+#ifndef MESHES_MESH_VOLUME_H
+#define MESHES_MESH_VOLUME_H
 
-#include "commands/mesh_tasks.h"
+#include "meshes/mesh_tasks.h"
 
 // "XxYxZ".
 struct volume_size {

@@ -43,15 +43,16 @@ edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
 synthesis:base math image:base image synthesis
 surface:base math synthesis btf btf_model:base image btf btf_environment surface synthesis
-mesh:base math geometry:base io image object mesh jnd simplify
+mesh:base math geometry:base io image object mesh jnd simplify billboards
 volume:base image:base image photograph volume
 isosurface:base volume:base mesh volume
 fusion:base math geometry volume:base image light relight pack frame view slab_set renderer capture mesh volume fusion
+distance:base math:base image mesh billboards
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport
 baked:base math geometry image:base coder codebook directions light bake
-object:base math mesh transport frame baked:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport object renderer bake
+object:base math mesh transport frame baked:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport object renderer bake mesh billboards
 bake:base math mesh baked object:base light surface btf object bake
 tableau:base math geometry mesh transport frame object:base image light relight view slab_set pack frame viewport object renderer exchange rig tableau
 helper:base image mesh:base

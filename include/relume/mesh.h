@@ -29,6 +29,7 @@ struct relume_mesh {
     char **part_name;         // [parts]; NULL: none
     int parts;                // at most 1024
     char *picture;            // the file of the texture's picture; NULL: none
+    bool cut_out;             // where the picture is more than half transparent there is nothing
 };
 RELUME_API void relume_mesh_free(struct relume_mesh *mesh);
 

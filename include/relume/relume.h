@@ -7,6 +7,7 @@
 #include <relume/base.h>
 #include <relume/bake.h>
 #include <relume/ball.h>
+#include <relume/billboards.h>
 #include <relume/btf.h>
 #include <relume/capture.h>
 #include <relume/codebook.h>

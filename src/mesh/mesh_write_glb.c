@@ -111,16 +111,18 @@ static void print_accessors(FILE *f, const struct relume_mesh *m, const struct v
     fputs("]", f);
 }
 
-static void print_mesh(FILE *f, const struct view *view, int count, const struct picture *p)
+static void print_mesh(FILE *f, const struct relume_mesh *m, const struct view *view, int count,
+                       const struct picture *p)
 {
     fputs(",\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
           "\"meshes\":[{\"primitives\":[{\"indices\":0,\"material\":0,\"attributes\":{",
           f);
     for (int i = 1; i < count && view[i].name; i++)
         fprintf(f, "%s\"%s\":%d", i > 1 ? "," : "", view[i].name, i);
-    fputs("}}]}],\"materials\":[{\"doubleSided\":true,\"pbrMetallicRoughness\":{"
-          "\"metallicFactor\":0,\"roughnessFactor\":1",
-          f);
+    fprintf(f,
+            "}}]}],\"materials\":[{\"doubleSided\":true%s,\"pbrMetallicRoughness\":{"
+            "\"metallicFactor\":0,\"roughnessFactor\":1",
+            m->cut_out && p->bytes ? ",\"alphaMode\":\"MASK\"" : "");
     if (p->bytes)
         fprintf(f,
                 ",\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{\"source\":0}],"
@@ -139,7 +141,7 @@ static relume_status make_json(char **out, size_t *size, const struct relume_mes
         return RELUME_ENOMEM;
     fputs("{\"asset\":{\"version\":\"2.0\",\"generator\":\"relume\"}", f);
     if (m->triangle_count) {
-        print_mesh(f, view, count, p);
+        print_mesh(f, m, view, count, p);
         print_accessors(f, m, view, count);
         const struct view *last = &view[count - 1];
         fprintf(f, ",\"buffers\":[{\"byteLength\":%zu}]", last->offset + padded(last->bytes));

@@ -5,11 +5,20 @@
 #include "base/memory.h"
 
 #include <embree3/rtcore.h>
+#include <math.h>
 #include <string.h>
+
+// What the parts of the scene are, by their numbers.
+struct base {
+    size_t first;                     // triangle of the mesh
+    const struct trace_cloud *cloud;  // NULL: triangles
+};
 
 struct tracer {
     RTCDevice device;
     RTCScene scene;
+    struct trace_cloud *cloud;
+    struct base *base;
 };
 
 // `stride` * `count` bytes of ours, shared with Embree, which reads 16 bytes at each position: the
@@ -20,28 +29,112 @@ static void share(RTCGeometry g, enum RTCBufferType type, enum RTCFormat format,
     rtcSetSharedGeometryBuffer(g, type, 0, format, data, 0, stride, count);
 }
 
-static void build(tracer *t, const struct mesh *mesh)
+// Triangles `first` to `first + count` of the mesh.
+static void add_triangles(tracer *t, const struct mesh *mesh, size_t first, size_t count)
 {
-    t->scene = rtcNewScene(t->device);
-    rtcSetSceneFlags(t->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(t->scene, RTC_BUILD_QUALITY_HIGH);
+    if (!count)
+        return;
     RTCGeometry g = rtcNewGeometry(t->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     share(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh->vertices, sizeof *mesh->vertices,
           mesh->vertex_count);
-    share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh->triangles, sizeof *mesh->triangles,
-          mesh->triangle_count);
+    share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh->triangles + first,
+          sizeof *mesh->triangles, count);
     rtcCommitGeometry(g);
-    rtcAttachGeometry(t->scene, g);
+    t->base[rtcAttachGeometry(t->scene, g)] = (struct base){first, NULL};
     rtcReleaseGeometry(g);
-    rtcCommitScene(t->scene);
 }
 
-relume_status trace_create(tracer **out, const struct mesh *mesh, const struct relume_log *log)
+static const struct relume_billboard_texel *texel_at(const struct relume_billboards *cloud,
+                                                     unsigned number, float u, float v)
+{
+    const struct relume_billboard *const b = &cloud->billboard[number];
+    const int x = (int)fminf(fmaxf(u, 0.0f) * (float)b->width, (float)(b->width - 1));
+    const int y = (int)fminf(fmaxf(v, 0.0f) * (float)b->height, (float)(b->height - 1));
+    return &cloud->texel[b->first + (size_t)y * (size_t)b->width + (size_t)x];
+}
+
+// Rays pass through what is mostly empty, and through planes that they begin on. Of N rays Embree
+// gives each number in a row of N: places in rows 0 to 2, what they hit by u, v and number in rows
+// 3 to 5.
+static void pass(const struct RTCFilterFunctionNArguments *args)
+{
+    const struct trace_cloud *const c = args->geometryUserPtr;
+    const float *const ray = (const void *)args->ray, *const hit = (const void *)args->hit;
+    const unsigned *const numbers = (const void *)args->hit;
+    const size_t n = args->N;
+    for (size_t i = 0; i < n; i++) {
+        if (!args->valid[i])
+            continue;
+        const unsigned number = numbers[5 * n + i];
+        const struct relume_billboard *const b = &c->cloud->billboard[number];
+        float off = 0.0f;
+        for (size_t k = 0; k < 3; k++)
+            off += (ray[k * n + i] - b->corner[k]) * b->normal[k];
+        const struct relume_billboard_texel *const t =
+            texel_at(c->cloud, number, hit[3 * n + i], hit[4 * n + i]);
+        if (t->coverage < 0.5f || fabsf(off) <= c->slack)
+            args->valid[i] = 0;
+    }
+}
+
+static bool add_cloud(tracer *t, const struct trace_cloud *c)
+{
+    enum { CORNERS = 4 };
+    RTCGeometry g = rtcNewGeometry(t->device, RTC_GEOMETRY_TYPE_QUAD);
+    float(*const corner)[3] = rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof *corner, CORNERS * c->cloud->count);
+    unsigned *const number = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4,
+                                                     CORNERS * sizeof *number, c->cloud->count);
+    for (size_t i = 0; corner && number && i < CORNERS * c->cloud->count; i++) {
+        const struct relume_billboard *const b = &c->cloud->billboard[i / CORNERS];
+        const float x = (float)(i % CORNERS == 1 || i % CORNERS == 2 ? b->width : 0);
+        const float y = (float)(i % CORNERS >= 2 ? b->height : 0);
+        for (int k = 0; k < 3; k++)
+            corner[i][k] = b->corner[k] + c->cloud->side * (x * b->across[k] + y * b->up[k]);
+        number[i] = (unsigned)i;
+    }
+    rtcSetGeometryUserData(g, (void *)c);
+    rtcSetGeometryIntersectFilterFunction(g, pass);
+    rtcSetGeometryOccludedFilterFunction(g, pass);
+    rtcCommitGeometry(g);
+    t->base[rtcAttachGeometry(t->scene, g)] = (struct base){c->first, c};
+    rtcReleaseGeometry(g);
+    return corner && number;
+}
+
+static bool build(tracer *t, const struct mesh *mesh, int clouds)
+{
+    size_t done = 0;
+    bool good = true;
+    t->scene = rtcNewScene(t->device);
+    rtcSetSceneFlags(t->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(t->scene, RTC_BUILD_QUALITY_HIGH);
+    for (int i = 0; i < clouds && good; i++) {
+        add_triangles(t, mesh, done, t->cloud[i].first - done);
+        good = add_cloud(t, &t->cloud[i]);
+        done = t->cloud[i].first + t->cloud[i].count;
+    }
+    add_triangles(t, mesh, done, mesh->triangle_count - done);
+    rtcCommitScene(t->scene);
+    return good && rtcGetDeviceError(t->device) == RTC_ERROR_NONE;
+}
+
+relume_status trace_create_clouds(tracer **out, const struct mesh *mesh,
+                                  const struct trace_cloud *cloud, int n,
+                                  const struct relume_log *log)
 {
     *out = NULL;
     tracer *t = mem_zeroed(1, sizeof *t);
     if (!t)
         return RELUME_ENOMEM;
+    t->cloud = mem_array((size_t)n, sizeof *t->cloud);
+    t->base = mem_array(2 * (size_t)n + 1, sizeof *t->base);
+    if (!t->cloud || !t->base) {
+        trace_destroy(&t);
+        return RELUME_ENOMEM;
+    }
+    for (int i = 0; i < n; i++)
+        t->cloud[i] = cloud[i];
     // One thread builds: the tree, and with it every tie between equal hits, is always the same.
     t->device = rtcNewDevice("threads=1");
     if (!t->device) {
@@ -52,13 +145,17 @@ relume_status trace_create(tracer **out, const struct mesh *mesh, const struct r
         trace_destroy(&t);
         return status;
     }
-    build(t, mesh);
-    if (rtcGetDeviceError(t->device) != RTC_ERROR_NONE) {
+    if (!build(t, mesh, n)) {
         trace_destroy(&t);
         return RELUME_ENOMEM;
     }
     *out = t;
     return RELUME_OK;
+}
+
+relume_status trace_create(tracer **out, const struct mesh *mesh, const struct relume_log *log)
+{
+    return trace_create_clouds(out, mesh, NULL, 0, log);
 }
 
 void trace_destroy(tracer **t)
@@ -67,8 +164,28 @@ void trace_destroy(tracer **t)
         rtcReleaseScene((*t)->scene);
     if (*t && (*t)->device)
         rtcReleaseDevice((*t)->device);
+    if (*t) {
+        mem_free((*t)->cloud);
+        mem_free((*t)->base);
+    }
     mem_free(*t);
     *t = NULL;
+}
+
+// What a texel shows takes the place of the billboard.
+static struct trace_hit hit_of(const tracer *t, const struct RTCRayHit *r)
+{
+    const struct base base = t->base[r->hit.geomID];
+    if (!base.cloud)
+        return (struct trace_hit){(uint32_t)base.first + r->hit.primID, r->hit.u, r->hit.v,
+                                  r->ray.tfar, 0};
+    const struct relume_billboards *const cloud = base.cloud->cloud;
+    const struct relume_billboard_texel *const texel =
+        texel_at(cloud, r->hit.primID, r->hit.u, r->hit.v);
+    const float *const n = cloud->billboard[r->hit.primID].normal;
+    const bool before = r->ray.dir_x * n[0] + r->ray.dir_y * n[1] + r->ray.dir_z * n[2] <= 0.0f;
+    return (struct trace_hit){(uint32_t)base.first + texel->triangle, texel->weight[0],
+                              texel->weight[1], r->ray.tfar, before ? 1 : -1};
 }
 
 bool trace_closest(const tracer *t, const float origin[3], const float direction[3],
@@ -90,7 +207,7 @@ bool trace_closest(const tracer *t, const float origin[3], const float direction
     rtcIntersect1(t->scene, &context, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
-    *hit = (struct trace_hit){r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar};
+    *hit = hit_of(t, &r);
     return true;
 }
 

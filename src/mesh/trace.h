@@ -4,18 +4,34 @@
 
 #include "mesh/mesh.h"
 
+#include <relume/billboards.h>
+
 // Triangles ready for rays. Never changes. Thread-safety: safe.
 typedef struct tracer tracer;
+
+// A cloud of billboards in place of a stretch of triangles: rays meet its texels of which half or
+// more is covered, and get what these show.
+struct trace_cloud {
+    const struct relume_billboards *cloud;
+    size_t first, count;  // triangles of the mesh; those of the cloud are counted from `first`
+    float slack;          // rays that begin so near to a billboard's plane pass through it: they
+                          // begin on the surface that it stands for
+};
 
 // Borrows `mesh`, which must outlive the tracer and stay as it is. Returns RELUME_ENOMEM,
 // RELUME_ESYSTEM when Embree cannot run here.
 relume_status trace_create(tracer **out, const struct mesh *mesh, const struct relume_log *log);
+// The same with `n` clouds, in order of their triangles, which are borrowed too.
+relume_status trace_create_clouds(tracer **out, const struct mesh *mesh,
+                                  const struct trace_cloud *cloud, int n,
+                                  const struct relume_log *log);
 void trace_destroy(tracer **t);
 
 struct trace_hit {
     uint32_t triangle;
     float u, v;  // weights of the second and third corner
     float distance;
+    signed char side;  // 0, or of a billboard: 1 seen from where its normal points, -1 from behind
 };
 // The nearest triangle along `direction` (unit) from `origin`; false when there is none.
 bool trace_closest(const tracer *t, const float origin[3], const float direction[3],

@@ -205,6 +205,7 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
                           const struct relume_objects_params *params)
 {
     const struct relume_log *log = params ? params->log : NULL;
+    const size_t first = o->mesh.triangle_count;
     struct mesh_file file;
     relume_status status = mesh_read(&file, path, log);
     if (!status)
@@ -215,6 +216,8 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
         if (standing->covering[i].part && !standing->covering[i].used)
             status = log_fail(log, RELUME_EUNFIT, "%s: no part '%s'; its first is '%s'", path,
                               standing->covering[i].part, file.part[0]);
+    if (!status && standing->billboards > 0.0)
+        status = objects_add_cloud(o, first, standing->billboards, log);
     mesh_file_free(&file);
     return status;
 }
@@ -276,5 +279,5 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     o->info.triangle_count = o->mesh.triangle_count;
     o->info.part = o->part, o->info.material = o->material;
     o->info.min = b.min, o->info.max = b.max;
-    return trace_create(&o->tracer, &o->mesh, log);
+    return trace_create_clouds(&o->tracer, &o->mesh, o->cloud, o->clouds, log);
 }

@@ -200,9 +200,21 @@ static relume_status read_baked(const struct reader *r, const jvalue *object)
     return status;
 }
 
+static relume_status read_billboards(const struct reader *r, const jvalue *error,
+                                     struct standing *s)
+{
+    if (!error ||
+        (jvalue_number(error, &s->billboards) && s->billboards > 0.0 && s->billboards <= 1.0))
+        return RELUME_OK;
+    return log_fail(r->log, RELUME_EFORMAT,
+                    "billboards: expected their error, above 0 and at most 1, of the longest side "
+                    "of the object");
+}
+
 static relume_status read_object(const struct reader *r, const jvalue *object)
 {
-    static const char *const known[] = {"mesh", "name", "pose", "parts", "reflections", NULL};
+    static const char *const known[] = {"mesh",        "name",       "pose", "parts",
+                                        "reflections", "billboards", NULL};
     struct standing s = {.frame = frame_world};
     const char *mesh = jvalue_text(jvalue_member(object, "mesh"));
     if (!jvalue_is_object(object) || !mesh || !*mesh)
@@ -211,6 +223,8 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
     relume_status status = path ? jvalue_check_known(object, known, r->log) : RELUME_ENOMEM;
     if (!status)
         status = objects_read_pose(&s.frame, jvalue_member(object, "pose"), r->log);
+    if (!status)
+        status = read_billboards(r, jvalue_member(object, "billboards"), &s);
     if (!status)
         status = read_coverings(r, object, &s);
     if (!status)
@@ -317,7 +331,7 @@ relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
     relume_objects *o = mem_zeroed(1, sizeof *o);
     const double times = repeat != 0.0 ? repeat : 1.0;
     struct covering c = {.repeat = {times, times}};
-    struct standing s = {frame_world, &c, 1};
+    struct standing s = {.frame = frame_world, .covering = &c, .coverings = 1};
     relume_status status = o ? RELUME_OK : RELUME_ENOMEM;
     *out = NULL;
     for (int i = 0, number; i < count && !status; i++)

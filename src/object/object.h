@@ -27,6 +27,8 @@ struct relume_objects {
     struct relume_objects_info info;  // points to what is below
     struct mesh mesh;  // the same triangles for rays; their material is the number of the part
     tracer *tracer;
+    struct trace_cloud *cloud;  // [clouds]: of objects that are shown as billboards; owned
+    int clouds;
     struct relume_object_vertex *vertices;
     uint32_t (*triangles)[3];
     struct relume_object_part *part;  // [parts]
@@ -76,12 +78,17 @@ struct covering {
 };
 struct standing {
     struct frame frame;
+    double billboards;  // their error, of the longest side of the object; 0: it is shown itself
     struct covering *covering;
     int coverings;
 };
 // Add a mesh file. An input status, RELUME_ENOMEM.
 relume_status objects_add(relume_objects *o, const char *path, struct standing *standing,
                           const struct relume_objects_params *params);
+// Show the triangles from `first` on as billboards of that error. Errors of
+// relume_billboards_create.
+relume_status objects_add_cloud(relume_objects *o, size_t first, double error,
+                                const struct relume_log *log);
 // The same for a cushion: a square of side 2 that lies on z = 0 by its rim and rises to its middle.
 relume_status objects_add_cushion(relume_objects *o, struct standing *standing,
                                   const struct relume_objects_params *params);

@@ -29,6 +29,11 @@ void relume_objects_destroy(relume_objects **objects)
     if (!o)
         return;
     trace_destroy(&o->tracer);
+    for (int i = 0; i < o->clouds; i++) {
+        relume_billboards_free((struct relume_billboards *)o->cloud[i].cloud);
+        mem_free((void *)o->cloud[i].cloud);
+    }
+    mem_free(o->cloud);
     mesh_free(&o->mesh);
     for (int i = 0; i < o->info.parts; i++)
         mem_free((void *)o->part[i].name);

@@ -68,7 +68,9 @@ void objects_point(struct surface_point *out, const relume_objects *o, const str
     out->part = (int)o->mesh.triangles[hit->triangle].material;
     interpolate(out, v, weight);
     // from behind: the same sample seen through, its normal on this side
-    const double side = vec3_dot(out->geometric, direction) > 0.0 ? -1.0 : 1.0;
+    const double side = hit->side                                   ? hit->side
+                        : vec3_dot(out->geometric, direction) > 0.0 ? -1.0
+                                                                    : 1.0;
     out->geometric = vec3_scale(out->geometric, side);
     out->normal = vec3_scale(out->normal, side);
     out->lifted = lift(out, v, weight, side);

@@ -150,7 +150,7 @@ void points_scene_sent(float rgb[3], const struct scenery *c, const struct point
 void points_object_sent(float rgb[3], const struct world *w, const struct point *p, uint64_t key,
                         const struct arrival *arrivals, int n)
 {
-    const struct trace_hit hit = {p->triangle, p->u, p->v, 1.0f};
+    const struct trace_hit hit = {p->triangle, p->u, p->v, 1.0f, 0};
     w->sent(rgb, w->context, &hit, vec3_add(p->place, p->normal), vec3_scale(p->normal, -1.0), key,
             arrivals, n);
 }

@@ -121,7 +121,7 @@ relume_status virtual_of_scene(struct virtual_light *out, size_t *found, const s
 static void add_sender(struct sender *s, const struct world *w, const struct point *point,
                        vec3 normal)
 {
-    const struct trace_hit hit = {point->triangle, point->u, point->v, 1.0f};
+    const struct trace_hit hit = {point->triangle, point->u, point->v, 1.0f, 0};
     *s = (struct sender){.point = *point};
     s->point.normal = normal;
     w->site(&s->site, w->context, &hit, vec3_scale(normal, -1.0));

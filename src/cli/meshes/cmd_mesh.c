@@ -83,7 +83,7 @@ static relume_status run(const struct args *args)
     return mesh_of_depth(args, &o->depth, block, o->output, o->json);
 }
 
-static const struct command *const tasks[] = {&mesh_task_simplify, NULL};
+static const struct command *const tasks[] = {&mesh_task_simplify, &mesh_task_billboards, NULL};
 
 const struct command command_mesh = {
     .tasks = tasks,

@@ -18,6 +18,6 @@ struct mesh_made {
 void mesh_print_json(const struct mesh_made *m);
 void mesh_say(const struct args *args, const struct mesh_made *m);
 
-extern const struct command mesh_task_simplify;
+extern const struct command mesh_task_simplify, mesh_task_billboards;
 
 #endif

@@ -150,11 +150,17 @@ static relume_status teach(const struct sweep *s, size_t i, struct texel_scratch
     return whole(t->rows + i * baking_length(s->b), s->b, s->b->used[from], &p, scratch);
 }
 
-// Vectors that are far smaller than what halves hold never matter.
-static void round_to_halves(float *value, size_t n)
+// Vectors that are far smaller than what halves hold never matter; larger ones cannot be kept.
+static relume_status round_to_halves(float *value, size_t n, const struct relume_log *log)
 {
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
         value[i] = float_from_half(half_from_float(value[i]));
+        if (!isfinite(value[i]))
+            return log_fail(log, RELUME_EUNFIT,
+                            "baking: the light is brighter than half floats can hold; expected "
+                            "weaker lamps, and --gain or --exposure afterwards");
+    }
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- wavelets
@@ -175,7 +181,7 @@ static int by_energy(const void *a, const void *b)
 static void keep_largest(relume_baked *out, size_t number, float *dense)
 {
     const size_t face = (size_t)(out->info.cube * out->info.cube), kept = (size_t)out->info.kept;
-    struct ranked rank[RELUME_BAKED_MOST_CUBE * RELUME_BAKED_MOST_CUBE];
+    struct ranked rank[RELUME_BAKED_MOST_CUBE * RELUME_BAKED_MOST_CUBE] = {{0}};
     uint16_t *place = out->place + number * (size_t)out->kept;
     float *value = out->value + 3 * number * (size_t)out->kept;
     for (size_t f = 0; f < 6; f++) {
@@ -210,11 +216,12 @@ static relume_status learn_block(const struct block *bl, const struct baking *b,
     relume_baked *out = bl->out;
     const size_t vectors = (size_t)c->clusters * (size_t)(1 + c->components) * (size_t)out->views;
     const size_t first = (size_t)bl->number * vectors, length = 3 * (size_t)b->count;
-    const relume_status status =
+    relume_status status =
         components_learn(c, t->rows + bl->offset, t->count, baking_length(b), b->threads);
+    if (!status)
+        status = round_to_halves(c->vector, vectors * length, b->log);
     if (status)
         return status;
-    round_to_halves(c->vector, vectors * length);
     for (size_t i = 0; i < vectors && out->info.cube; i++)
         keep_largest(out, first + i, c->vector + i * length);
     if (!out->info.cube)
@@ -230,8 +237,8 @@ struct writing {
     double (*square)[2];                        // [used]: of what is left, of all
 };
 
-static void write_block(const struct writing *w, int number, size_t texel, const float *y,
-                        float *left, double square[2])
+static relume_status write_block(const struct writing *w, int number, size_t texel, const float *y,
+                                 float *left, double square[2], const struct relume_log *log)
 {
     relume_baked *out = w->out;
     const struct local_components *c = &w->components[number];
@@ -240,12 +247,12 @@ static void write_block(const struct writing *w, int number, size_t texel, const
     double rest;
     out->cluster[own] = (uint16_t)components_best(weight, &rest, c, y, left);
     square[0] += rest;
-    round_to_halves(weight, (size_t)c->components);
     for (size_t j = 0; j < c->length; j++)
         square[1] += (double)y[j] * (double)y[j];
+    return round_to_halves(weight, (size_t)c->components, log);
 }
 
-static void write_frame(float frame[6], const struct surface_point *p)
+static relume_status write_frame(float frame[6], const struct surface_point *p)
 {
     const vec3 v[2] = {p->normal, p->tangent};
     for (int i = 0; i < 2; i++) {
@@ -253,7 +260,7 @@ static void write_frame(float frame[6], const struct surface_point *p)
         frame[3 * i + 1] = (float)v[i].y;
         frame[3 * i + 2] = (float)v[i].z;
     }
-    round_to_halves(frame, 6);
+    return round_to_halves(frame, 6, NULL);
 }
 
 static relume_status write_texel(const struct sweep *s, size_t i, struct texel_scratch *scratch)
@@ -266,10 +273,11 @@ static relume_status write_texel(const struct sweep *s, size_t i, struct texel_s
         left ? whole(scratch->vector, b, b->used[i], &p, scratch) : RELUME_ENOMEM;
     w->square[i][0] = w->square[i][1] = 0.0;
     for (int k = 0; k < w->out->blocks && !status; k++)
-        write_block(w, k, b->used[i], scratch->vector + (size_t)k * w->components[k].length, left,
-                    w->square[i]);
+        status =
+            write_block(w, k, b->used[i], scratch->vector + (size_t)k * w->components[k].length,
+                        left, w->square[i], b->log);
     if (!status)
-        write_frame(w->out->frame[b->used[i]], &p);
+        status = write_frame(w->out->frame[b->used[i]], &p);
     mem_free(left);
     return status;
 }

@@ -264,16 +264,17 @@ void texel_gather(float *out, const struct baking *b, const struct surface_point
 void texel_mean(float *out, const struct baking *b, const float *vector)
 {
     const size_t row = 3 * (size_t)b->count;
+    const bool rim = b->side == 2;  // a map of corners, which are all alike
     double sum = 0.0;
     memset(out, 0, row * sizeof *out);
     for (int v = 0; v < b->views; v++) {
         const double s = b->side > 1 ? 2.0 * (v % b->side) / (b->side - 1) - 1.0 : 0.0;
         const double t = b->side > 1 ? 2.0 * (v / b->side) / (b->side - 1) - 1.0 : 0.0;
         const double q = s * s + t * t;
-        if (!(q < 1.0))
+        if (!(q < 1.0) && !rim)
             continue;
         // n.v times the solid angle of a piece of the map
-        const double weight = (1.0 - q) / pow(1.0 + q, 3.0);
+        const double weight = rim ? 1.0 : (1.0 - q) / pow(1.0 + q, 3.0);
         sum += weight;
         for (size_t k = 0; k < row; k++)
             out[k] += (float)weight * vector[(size_t)v * row + k];

@@ -174,6 +174,9 @@ static bool pack(const struct packing *p, double scale)
     return true;
 }
 
+// Charts that fit only where they have no size do not fit.
+enum { MOST_HALVED = 40 };
+
 // The largest scale at which all fit, to a hundredth; 0: none.
 static double find_scale(const struct packing *p)
 {
@@ -184,7 +187,7 @@ static double find_scale(const struct packing *p)
     most = most > 0.0 ? (p->width > p->height ? p->width : p->height) / most : 1.0;
     if (!pack(p, 0.0))
         return 0.0;
-    while (most - least > 0.01 * most) {
+    for (int i = 0; i < MOST_HALVED && most - least > 0.01 * most; i++) {
         const double middle = 0.5 * (least + most);
         if (pack(p, middle))
             least = middle;

@@ -301,7 +301,7 @@ int components_nearest(const struct local_components *c, const float *y)
 static int some_nearest(int cluster[CANDIDATES], const struct local_components *c, const float *y)
 {
     float d[CANDIDATES + 1];
-    int own[CANDIDATES + 1], n = 0;
+    int own[CANDIDATES + 1] = {0}, n = 0;
     for (int k = 0; k < c->clusters; k++) {
         int at = n;
         const float value = distance(c, k, y);

@@ -196,7 +196,7 @@ static bool fits(const struct work *w, const struct cluster *a, const struct clu
 // The vertices of both that are farthest along the directions.
 static void farthest(struct cluster *to, const struct soup *s, const struct cluster *b)
 {
-    uint32_t from[2 * POINTS], kept[POINTS];
+    uint32_t from[2 * POINTS], kept[POINTS] = {0};
     int n = 0, count = 0;
     for (int i = 0; i < to->points; i++)
         from[n++] = to->point[i];

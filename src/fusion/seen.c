@@ -16,7 +16,7 @@ struct looking {
     double near;
     bool *seen;
     // of colours
-    const struct relume_image *relit;
+    struct relume_image relit;
     float (*sum)[4];  // of red, green, blue, each times its weight, and of the weights
 };
 
@@ -130,7 +130,7 @@ static void sum_chunk(void *context, size_t chunk, int worker)
 {
     (void)worker;
     struct looking *k = context;
-    const struct relume_image *relit = k->relit;
+    const struct relume_image *relit = &k->relit;
     const size_t end = (chunk + 1) * CHUNK;
     for (size_t i = chunk * CHUNK; i < end && i < k->mesh->vertex_count; i++) {
         struct sighting at;
@@ -147,14 +147,12 @@ static void sum_chunk(void *context, size_t chunk, int worker)
 
 static relume_status sum_view(struct looking *k, relume_renderer *renderer, int view, int threads)
 {
-    struct relume_image relit;
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .view = view};
-    relume_status status = relume_renderer_frame(&relit, renderer, &camera);
+    relume_status status = relume_renderer_frame(&k->relit, renderer, &camera);
     if (status)
         return status;
-    k->relit = &relit;
     thread_for(threads, (k->mesh->vertex_count + CHUNK - 1) / CHUNK, sum_chunk, k);
-    relume_image_destroy(&relit);
+    relume_image_destroy(&k->relit);
     return RELUME_OK;
 }
 

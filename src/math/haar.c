@@ -9,7 +9,7 @@ enum { MOST = 32 };
 static void line(float *data, int n, size_t step, bool back)
 {
     const float root = 0.70710678118654752f;
-    float made[MOST];
+    float made[MOST] = {0};
     for (int i = 0; i < n / 2; i++) {
         const size_t first = back ? (size_t)i : 2 * (size_t)i;
         const size_t second = back ? (size_t)(i + n / 2) : first + 1;

@@ -44,6 +44,14 @@ void sink_print(struct sink *s, const char *format, ...)
     sink_put(s, line, (size_t)length < sizeof line ? (size_t)length : sizeof line - 1);
 }
 
+// Names may be longer than sink_print takes.
+static void put_name(struct sink *to, const char *before, const char *name)
+{
+    sink_put(to, before, strlen(before));
+    sink_put(to, name, strlen(name));
+    sink_put(to, "\n", 1);
+}
+
 // ---------------------------------------------------------------- Wavefront OBJ
 
 static void put_vertices(struct sink *to, const struct relume_mesh *m)
@@ -70,7 +78,7 @@ relume_status mesh_write_obj(struct sink *to, const struct relume_mesh *m, const
     put_vertices(to, m);
     for (size_t i = 0; i < m->triangle_count; i++) {
         if (m->part && m->part_name && (i == 0 || m->part[i] != m->part[i - 1]))
-            sink_print(to, "usemtl %s\n", m->part_name[m->part[i]]);
+            put_name(to, "usemtl ", m->part_name[m->part[i]]);
         sink_put(to, "f", 1);
         for (int k = 0; k < 3; k++) {
             const unsigned long v = (unsigned long)m->triangle[i][k] + 1;
@@ -91,7 +99,7 @@ static void put_ply_header(struct sink *to, const struct relume_mesh *m)
 {
     sink_print(to, "ply\nformat binary_little_endian 1.0\n");
     if (m->picture)
-        sink_print(to, "comment TextureFile %s\n", m->picture);
+        put_name(to, "comment TextureFile ", m->picture);
     sink_print(to, "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n",
                m->vertex_count);
     if (m->normal)

@@ -425,7 +425,7 @@ relume_status relume_mesh_simplify(struct relume_mesh *out, struct relume_simpli
         *report = (struct relume_simplified){
             .triangles = out->triangle_count,
             .vertices = out->vertex_count,
-            .error = r->done.length,
+            .error = r->last_resort || p.quadrics ? (double)INFINITY : r->done.length,
             .distance = r->last_resort ? (double)INFINITY : r->done.distance,
             .steps = r->steps,
             .step = r->step,

@@ -8,7 +8,7 @@ relume_status queue_create(struct queue *q, uint32_t points)
     *q = (struct queue){
         .heap = mem_array(points, sizeof *q->heap),
         .at = mem_array(points, sizeof *q->at),
-        .key = mem_array(points, sizeof *q->key),
+        .key = mem_zeroed(points, sizeof *q->key),
     };
     if (!q->heap || !q->at || !q->key)
         return RELUME_ENOMEM;

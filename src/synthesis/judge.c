@@ -18,6 +18,7 @@ enum {
     SITES = 600,    // neighbourhoods that are compared
     RADIUS = 2,
     SIDE = 2 * RADIUS + 1,
+    LEAST = 2 * SIDE + 2 * RADIUS,  // side from which on every neighbourhood has one apart
     MOST_VALUES = 8,
 };
 
@@ -223,7 +224,7 @@ static relume_status judge_likeness(struct relume_grow_quality *out, const uint3
                          .width = width,
                          .height = height,
                          .values = smaller_of(t->channels, MOST_VALUES)};
-    if (width < SIDE || height < SIDE)
+    if (width < SIDE || height < SIDE || (t->width < LEAST && t->height < LEAST))
         return RELUME_OK;
     l.distance = mem_array(2 * (size_t)SITES, sizeof *l.distance);
     if (!l.distance)
@@ -279,7 +280,9 @@ relume_status relume_grow_judge(struct relume_grow_quality *out, const uint32_t 
     const size_t all = (size_t)texture->width * (size_t)texture->height;
     *out = (struct relume_grow_quality){0};
     relume_status status = texture_check(texture, p.log);
-    if (!status && (width < 1 || height < 1))
+    if (!status && (width < 1 || height < 1 ||
+                    (p.regular &&
+                     (p.regular->width != texture->width || p.regular->height != texture->height))))
         status = RELUME_EINVAL;
     for (size_t i = 0; !status && i < (size_t)width * (size_t)height; i++)
         if (texel[i] >= all)

@@ -55,7 +55,7 @@ struct quilt {
     float unit;   // the squared step between neighbours in the sample
     float weight;
     struct worker *worker;
-    int diagonal;
+    int diagonal, low;
     bool failed;  // set by any worker
 };
 
@@ -309,23 +309,27 @@ static void lay_one(struct quilt *q, int i, int j, int worker)
 static void lay_item(void *context, size_t item, int worker)
 {
     struct quilt *q = context;
-    const int low = larger_of(0, (q->diagonal - q->across + 2) / 2), j = low + (int)item;
+    const int j = q->low + (int)item;
     lay_one(q, q->diagonal - 2 * j, j, worker);
 }
 
 static relume_status lay_all(struct quilt *q)
 {
     const bool several = q->across >= LEAST_ACROSS && q->down >= LEAST_DOWN;
-    const int last = q->across - 1 + 2 * (q->down - 1);
+    // where the map closes, the last column meets the first, and waits for all others
+    const int columns = q->wrap ? q->across - 1 : q->across;
+    const int last = columns - 1 + 2 * (q->down - 1);
     for (int d = 0; several && d <= last && !q->failed; d++) {
-        const int low = larger_of(0, (d - q->across + 2) / 2),
-                  high = smaller_of(q->down - 1, d / 2);
+        const int low = larger_of(0, (d - columns + 2) / 2), high = smaller_of(q->down - 1, d / 2);
         q->diagonal = d;
+        q->low = low;
         if (high >= low)
             thread_for(q->g->params->threads, (size_t)(high - low + 1), lay_item, q);
         if (!log_progress(q->g->params->log, "patches", (d + 1.0) / (last + 1.0)))
             return RELUME_ECANCEL;
     }
+    for (int j = 0; several && q->wrap && j < q->down && !q->failed; j++)
+        lay_one(q, columns, j, 0);
     for (int i = 0; !several && i < q->across * q->down && !q->failed; i++)
         lay_one(q, i % q->across, i / q->across, 0);
     return q->failed ? RELUME_ENOMEM : RELUME_OK;

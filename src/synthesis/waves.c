@@ -348,8 +348,8 @@ relume_status waves_find(struct waves *out, const struct plane *plane, double th
     s.line = s.power + n;
     s.turn = s.line + 2 * longest;
     relume_status status = transform(&s);
-    const struct relume_wave mean = {.re = s.bin_re[0]};
     if (!status) {
+        const struct relume_wave mean = {.re = s.bin_re[0]};
         take_off(&s, &mean);
         if (!add(out, &mean))
             status = RELUME_ENOMEM;

@@ -107,7 +107,7 @@ static relume_status open_image(unpack **out, const char *path, const struct rel
 relume_status volume_read_nifti(struct store *s, const char *path,
                                 const struct relume_volume_params *p)
 {
-    struct header h;
+    struct header h = {0};
     int64_t size[3];
     double spacing[3];
     unpack *from;
@@ -117,17 +117,17 @@ relume_status volume_read_nifti(struct store *s, const char *path,
     status = unpack_all(from, h.bytes, sizeof h.bytes, "a header of 348 bytes");
     if (!status)
         status = understand(s, &h, size, spacing);
-    if (!status && !memcmp(h.bytes + AT_MAGIC, "ni1", 4)) {
+    const bool pair = !memcmp(h.bytes + AT_MAGIC, "ni1", 4);
+    const float offset = float_at(&h, AT_VOX_OFFSET), first = pair ? 0.0f : (float)HEADER_BYTES;
+    if (!status && !(offset >= first && offset < 1e9f))
+        status = log_fail(p->log, RELUME_EDAMAGED, "%s: samples at byte %g; expected %g", path,
+                          (double)offset, pair ? 0.0 : 352.0);
+    if (!status && pair) {
         unpack_close(&from);
         status = open_image(&from, path, p->log);
-    } else if (!status) {
-        const float offset = float_at(&h, AT_VOX_OFFSET);
-        if (!(offset >= HEADER_BYTES && offset < 1e9f))
-            status = log_fail(p->log, RELUME_EDAMAGED, "%s: samples at byte %g; expected 352", path,
-                              (double)offset);
-        else
-            status = unpack_skip(from, (uint64_t)offset - HEADER_BYTES, "more");
     }
+    if (!status)
+        status = unpack_skip(from, (uint64_t)(offset - first), "more");
     if (!status)
         status = volume_take(s, from, size, false, p);
     if (!status)

@@ -128,7 +128,7 @@ has_sections() { # page
 }
 has_example() { "$@" --help | sed -n '/^example:/,$p' | grep -q "^  relume"; }
 tasks=$("$RELUME" btf --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p')
-[ "$(echo "$tasks" | wc -w)" -eq 10 ] || not_ok "btf lists its tasks" "$tasks"
+[ "$(echo "$tasks" | wc -w)" -eq 11 ] || not_ok "btf lists its tasks" "$tasks"
 for page in relume relume-view $(for c in $commands; do echo "relume-$c"; done) $(for t in $tasks; do echo "relume-btf-$t"; done); do
     check "$page.1 has every section" has_sections "$man/$page.1"
 done

@@ -307,10 +307,11 @@ static void test_nifti(void **state)
     unlink(name(".nii"));
     // a header and its samples beside it
     make_nifti(file, false, 4, 0.0f, "ni1");
+    put_float(file + 108, 16.0f, false);
     write_file(name(".hdr"), file, 352);
     assert_true(relume_status_is_input(
         open_it(&v, name(".hdr"), *relume_volume_params(.own_spacing = true))));
-    write_file(name(".img"), file + 352, 48);
+    write_file(name(".img"), file + 336, 64);
     assert_int_equal(open_it(&v, name(".hdr"), *relume_volume_params(.own_spacing = true)),
                      RELUME_OK);
     expect_samples(v, (const int[3]){2, 3, 4}, 0, 100, 2300);

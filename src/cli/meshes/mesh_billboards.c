@@ -93,8 +93,9 @@ static relume_status write(const struct billboards_options *o, const struct relu
                            const struct relume_image *picture, const char *png)
 {
     relume_status status = relume_image_save(picture, png, relume_image_params(.log = o->args.log));
-    if (!status)
-        status = relume_mesh_write(quads, o->output, relume_mesh_params(.log = o->args.log));
+    if (status)
+        return status;
+    status = relume_mesh_write(quads, o->output, relume_mesh_params(.log = o->args.log));
     if (status)
         remove(png);
     return status;

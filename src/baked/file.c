@@ -347,7 +347,7 @@ static relume_status read_about(relume_baked *b, const struct reader *r)
     b->blocks = per_view ? i->side * i->side : 1;
     b->views = i->side * i->side / b->blocks;
     const float *error = exr_get_floats(r->file, 0, "compressionError", &n);
-    i->error = error && n == 1 ? (double)*error : 0.0;
+    i->error = error && n == 1 && isfinite(*error) ? (double)*error : 0.0;
     return status;
 }
 
@@ -403,7 +403,18 @@ static relume_status read_part(relume_baked *b, int part, const struct reader *r
     return status || good ? status : wrong(r, parts[part].name, "values within their range");
 }
 
-// A texel holds something in all blocks, or in none.
+// A normal and a tangent that are about as long as halves can be of 1.
+static bool good_frame(const float frame[6])
+{
+    for (int k = 0; k < 6; k += 3) {
+        const float *v = frame + k, squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        if (!(fabsf(squared - 1.0f) < 0.02f))
+            return false;
+    }
+    return true;
+}
+
+// A texel holds something in all blocks, or in none; where it does it has a frame.
 static relume_status check_texels(relume_baked *b, const struct reader *r)
 {
     const size_t n = texels(b);
@@ -411,6 +422,8 @@ static relume_status check_texels(relume_baked *b, const struct reader *r)
     for (size_t i = 0; i < n; i++) {
         const bool none = b->cluster[i] == BAKED_NONE;
         b->info.texels += !none;
+        if (!none && has_part(b, FRAMES) && !good_frame(b->frame[i]))
+            return wrong(r, "frames", "normals and tangents of length 1");
         for (int k = 1; k < b->blocks; k++)
             if ((b->cluster[(size_t)k * n + i] == BAKED_NONE) != none)
                 return wrong(r, "a texel has clusters for some views only", "for all or none");

@@ -22,8 +22,10 @@ void view_place(double place[2], int side, vec3 v)
     const double z = fmax(v.z, LOWEST), across = sqrt(v.x * v.x + v.y * v.y);
     // what is lower goes to the rim at its azimuth
     const double scale = v.z < LOWEST && across > 0.0 ? 1.0 / across : 1.0;
-    place[0] = (v.x * scale / (1.0 + z) + 1.0) * 0.5 * (side - 1);
-    place[1] = (v.y * scale / (1.0 + z) + 1.0) * 0.5 * (side - 1);
+    const double x = fmin(fmax(v.x * scale / (1.0 + z), -1.0), 1.0);
+    const double y = fmin(fmax(v.y * scale / (1.0 + z), -1.0), 1.0);
+    place[0] = (x + 1.0) * 0.5 * (side - 1);
+    place[1] = (y + 1.0) * 0.5 * (side - 1);
 }
 
 vec3 view_direction(int side, int number)

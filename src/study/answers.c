@@ -8,14 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_COLUMNS = 32, MOST_WORDS = 4096, MOST_BYTES = 64 << 20 };
+enum { MOST_COLUMNS = 32, MOST_SUBJECTS = 4096, MOST_NAMES = 256, MOST_BYTES = 64 << 20 };
 
 int words_number(struct words *w, const char *text)
 {
     for (int i = 0; i < w->count; i++)
         if (!strcmp(w->text[i], text))
             return i;
-    char *copy = w->count < MOST_WORDS ? mem_text(text) : NULL;
+    char *copy = mem_text(text);
     if (!copy || !mem_grow(&w->text, (size_t)w->count, sizeof *w->text)) {
         mem_free(copy);
         return -1;
@@ -196,6 +196,12 @@ static relume_status read_lines(struct answers *a, char *text, const char *path,
         if (split(line, field) == table.columns &&
             !(a->ratings ? add_rating : add_pair)(a, &table, field, &fits))
             return RELUME_ENOMEM;
+        if (a->subjects.count > MOST_SUBJECTS || a->questions.count > MOST_NAMES ||
+            a->conditions.count > MOST_NAMES)
+            return log_fail(log, RELUME_ELIMIT,
+                            "%s: line %d: too many names; expected at most %d subjects, and %d "
+                            "questions and conditions",
+                            path, number, MOST_SUBJECTS, MOST_NAMES);
         if (!fits)
             return log_fail(log, RELUME_EFORMAT, "%s: line %d: expected %d fields, %s", path,
                             number, table.columns,

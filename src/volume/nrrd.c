@@ -188,14 +188,12 @@ static relume_status take_file(struct store *s, const struct nrrd *n, const char
     uint64_t left, bytes = (uint64_t)n->type->bytes;
     for (int c = 0; c < 3; c++)
         bytes *= n->size[c] > 0 && n->size[c] < 1 << 20 ? (uint64_t)n->size[c] : 1;
-    relume_status status =
-        unpack_open(&from, file, offset + (n->packed || n->skip == UINT64_MAX ? 0 : n->skip),
-                    &n->packed, s->log);
+    relume_status status = unpack_open(&from, file, offset, &n->packed, s->log);
     if (status)
         return status;
     if (n->skip == UINT64_MAX && unpack_left(from, &left) && left > bytes)
         status = unpack_skip(from, left - bytes, "more");  // the samples end the file
-    else if (n->packed && n->skip && n->skip != UINT64_MAX)
+    else if (n->skip && n->skip != UINT64_MAX)
         status = unpack_skip(from, n->skip, "more");
     if (!status)
         status = volume_take(s, from, n->size, false, p);

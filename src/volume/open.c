@@ -21,35 +21,41 @@ void volume_set_spacing(struct store *s, const double spacing[3],
 
 // ---------------------------------------------------------------- raw samples
 
-static relume_status check_exact(const struct store *s, unpack *from, uint64_t bytes)
+static relume_status check_exact(const struct store *s, unpack *from, const int64_t size[3],
+                                 uint64_t bytes)
 {
     uint64_t left;
     if (unpack_left(from, &left))
-        return left == bytes ? RELUME_OK
-                             : log_fail(s->log, RELUME_EUNFIT,
-                                        "%s: %llu bytes of samples; expected %llu for %d x %d x "
-                                        "%d of %s (--size, --type)",
-                                        s->path, (unsigned long long)left,
-                                        (unsigned long long)bytes, s->volume->size[0],
-                                        s->volume->size[1], s->volume->size[2], s->type->name);
+        return left == bytes
+                   ? RELUME_OK
+                   : log_fail(s->log, RELUME_EUNFIT,
+                              "%s: %llu bytes of samples; expected %llu for %d x %d x "
+                              "%d of %s (--size, --type)",
+                              s->path, (unsigned long long)left, (unsigned long long)bytes,
+                              (int)size[0], (int)size[1], (int)size[2], s->type->name);
     return RELUME_OK;
 }
 
-static relume_status take_layers(struct store *s, unpack *from, const char *expected, bool exact)
+// In pieces of rows: layers may be larger than the memory that there is.
+static relume_status take_rows(struct store *s, unpack *from, const char *expected, bool exact)
 {
-    const size_t bytes = store_layer_bytes(s);
-    void *layer = mem_array(bytes, 1);
-    relume_status status = layer ? RELUME_OK : RELUME_ENOMEM;
+    enum { PIECE = 1 << 22 };
+    const size_t row = (size_t)s->volume->size[0] * (size_t)s->type->bytes;
+    const size_t rows = (size_t)s->volume->size[1] * (size_t)s->volume->size[2];
+    const size_t most = row < PIECE ? PIECE / row : 1, piece = most < rows ? most : rows;
+    void *bytes = mem_array(piece, row);
+    relume_status status = bytes ? RELUME_OK : RELUME_ENOMEM;
     char more;
     size_t got;
-    for (int z = 0; z < s->volume->size[2] && !status; z++) {
-        status = unpack_all(from, layer, bytes, expected);
+    for (size_t y = 0, n; y < rows && !status; y += n) {
+        n = rows - y < piece ? rows - y : piece;
+        status = unpack_all(from, bytes, n * row, expected);
         if (!status)
-            status = store_put(s, layer, bytes / (size_t)s->type->bytes);
-        if (!status && !log_progress(s->log, "reading", (z + 1.0) / s->volume->size[2]))
+            status = store_put(s, bytes, n * (size_t)s->volume->size[0]);
+        if (!status && !log_progress(s->log, "reading", (double)(y + n) / (double)rows))
             status = RELUME_ECANCEL;
     }
-    mem_free(layer);
+    mem_free(bytes);
     if (!status && exact)
         status = unpack_read(from, &more, 1, &got);
     if (!status && exact && got)
@@ -62,15 +68,20 @@ relume_status volume_take(struct store *s, unpack *from, const int64_t size[3], 
                           const struct relume_volume_params *p)
 {
     char expected[128];
-    relume_status status = store_begin(s, size, p);
+    relume_status status = store_check(s, size);
     if (status)
         return status;
-    const uint64_t bytes = (uint64_t)store_layer_bytes(s) * (uint64_t)size[2];
+    const uint64_t bytes =
+        (uint64_t)size[0] * (uint64_t)size[1] * (uint64_t)size[2] * (uint64_t)s->type->bytes;
     snprintf(expected, sizeof expected, "%llu, for %d x %d x %d samples of %s",
              (unsigned long long)bytes, (int)size[0], (int)size[1], (int)size[2], s->type->name);
     if (exact)
-        status = check_exact(s, from, bytes);
-    return status ? status : take_layers(s, from, expected, exact);
+        status = check_exact(s, from, size, bytes);
+    if (!status)
+        status = unpack_expect(from, bytes, expected);  // before there is room for them
+    if (!status)
+        status = store_begin(s, size, p);
+    return status ? status : take_rows(s, from, expected, exact);
 }
 
 relume_status volume_read_raw(struct store *s, const char *path,

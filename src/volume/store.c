@@ -57,7 +57,7 @@ static size_t samples_of(const relume_volume *v)
     return (size_t)v->size[0] * (size_t)v->size[1] * (size_t)v->size[2];
 }
 
-static relume_status check_size(const struct store *s, const int64_t size[3])
+relume_status store_check(const struct store *s, const int64_t size[3])
 {
     const int64_t most = 65536;
     for (int c = 0; c < 3; c++)
@@ -91,7 +91,7 @@ static relume_status make_room(struct store *s, const struct relume_volume_param
 relume_status store_begin(struct store *s, const int64_t size[3],
                           const struct relume_volume_params *p)
 {
-    relume_status status = check_size(s, size);
+    relume_status status = store_check(s, size);
     if (status)
         return status;
     relume_volume *v = s->volume = mem_zeroed(1, sizeof *v);

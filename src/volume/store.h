@@ -24,6 +24,8 @@ struct store {
     const char *path;         // of messages
     const struct relume_log *log;
 };
+// Whether a volume may have that size: RELUME_EUNFIT, RELUME_ELIMIT with a sentence.
+relume_status store_check(const struct store *s, const int64_t size[3]);
 // The empty volume of that size. `path` is what sentences call it. RELUME_EUNFIT, RELUME_ELIMIT
 // with a sentence, RELUME_ENOMEM, RELUME_EIO.
 relume_status store_begin(struct store *s, const int64_t size[3],

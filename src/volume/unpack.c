@@ -80,6 +80,18 @@ bool unpack_left(const unpack *u, uint64_t *bytes)
     return !u->packed && u->in.regular;
 }
 
+// A byte that zlib has packed is at most 1032: pairs of a length of 258 take two bits. What it
+// holds already is less than another 64.
+relume_status unpack_expect(const unpack *u, uint64_t bytes, const char *expected)
+{
+    const uint64_t left = u->in.size > u->at ? u->in.size - u->at : 0;
+    const uint64_t most = u->packed ? (u->z.avail_in + left + 64) * 1032 : left;
+    if (!u->in.regular || most >= bytes)
+        return RELUME_OK;
+    return log_fail(u->log, RELUME_EUNFIT, "%s: ends after %s%llu bytes; expected %s", u->path,
+                    u->packed ? "less than " : "", (unsigned long long)(u->given + most), expected);
+}
+
 static relume_status read_file(unpack *u, void *bytes, size_t size, size_t *got)
 {
     *got = 0;
@@ -149,7 +161,7 @@ relume_status unpack_skip(unpack *u, uint64_t bytes, const char *expected)
     char passed[4096];
     relume_status status = RELUME_OK;
     if (!u->packed) {
-        u->at += bytes;
+        u->at += bytes < UINT64_MAX - u->at ? bytes : UINT64_MAX - u->at;
         return RELUME_OK;
     }
     for (size_t part; bytes && !status; bytes -= part) {

@@ -27,7 +27,8 @@ void queue_free(struct queue *q)
 // Equal keys in the order of the points, so that nothing depends on history.
 static bool is_before(const struct queue *q, uint32_t a, uint32_t b)
 {
-    return q->key[a] < q->key[b] || (q->key[a] == q->key[b] && a < b);
+    const float first = q->key[a], second = q->key[b];
+    return first < second || (first == second && a < b);
 }
 
 static void set(struct queue *q, uint32_t i, uint32_t point)

@@ -46,7 +46,7 @@ static relume_status take_rows(struct store *s, unpack *from, const char *expect
     void *bytes = mem_array(piece, row);
     relume_status status = bytes ? RELUME_OK : RELUME_ENOMEM;
     char more;
-    size_t got;
+    size_t got = 0;
     for (size_t y = 0, n; y < rows && !status; y += n) {
         n = rows - y < piece ? rows - y : piece;
         status = unpack_all(from, bytes, n * row, expected);
@@ -126,7 +126,7 @@ static relume_status find(const struct format **out, const char *path,
                           const struct relume_volume_params *p)
 {
     char head[NIFTI_BYTES] = {0};
-    size_t got;
+    size_t got = 0;
     unpack *from;
     *out = &raw;
     if (input_kind(path, p->log) == INPUT_FOLDER) {

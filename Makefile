@@ -160,8 +160,9 @@ $B/obj/src/%_avx2.o: own_flags = $(AVX2)
 $B/obj/src/%_avx512.o: own_flags = $(AVX512)
 # One source, three objects: see its head. Without optimising Eigen is a hundred times slower, and its
 # debug symbols are ten times the rest of the library. gcc 12 warns of its own headers (PR 105593). Looked at by
-# ASan alone: UBSan triples the minute that compiling them takes, and its findings would be Eigen's.
-eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) $(if $(filter asan,$(config)),-O1 -fno-sanitize=undefined,-O2) -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=24576 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
+# ASan alone, of the one that most machines run: all sanitizers take minutes to compile them, for findings in Eigen.
+eigen_mode = $(if $(filter asan tsan,$(config)),-O1 -fno-sanitize=$(if $(filter asanavx2,$(config)$1),undefined,all),-O2)
+eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) $(call eigen_mode,$1) -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=24576 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
 $B/obj/src/kernel/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
 $B/obj/src/kernel/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) $(AVX2)
 $B/obj/src/kernel/lsq_eigen_avx512.o: own_flags = $(call eigen_flags,avx512) $(AVX512) -Wno-uninitialized -Wno-maybe-uninitialized

@@ -194,7 +194,7 @@ static void a_furnace_hides_what_is_white(void **state)
     static const char *const ways[] = {"ssdo", "path", "micro", "ism", "radiosity"};
     static const double most[] = {0.12, 0.03, 0.005, 0.05,
                                   0.05};  // ssdo: from hidden pixels is none
-    enum { WAYS = sizeof ways / sizeof *ways };
+    enum { WAYS = TEST_SANITIZED ? 3 : sizeof ways / sizeof *ways };  // test_instant has the others
     const struct relume_light light = {.direction = {0, 1, 0}, .rgb = {1, 1, 1}};
     relume_objects *o = place_ball(1.0f);
     for (int way = 0; way < WAYS; way++) {

@@ -61,14 +61,15 @@ static void look(const relume_volume *v)
     for (int c = 0; c < 3; c++)
         if (info.size[c] < 2 || !(info.spacing[c] > 0.0 && isfinite(info.spacing[c])))
             abort();
-    const double middle = 0.5 * (double)info.min + 0.5 * (double)info.max;
+    // thresholds go to 1e38, samples as far as floats do
+    const double middle = fmin(fmax(0.5 * (double)info.min + 0.5 * (double)info.max, -1e38), 1e38);
     mem_fail_after(0);
     if (relume_isosurface(&mesh, NULL, v, middle,
                           relume_isosurface_params(.threads = 1, .blocks = {2})))
         abort();
     for (size_t i = 0; i < mesh.vertex_count; i++)
         for (int c = 0; c < 3; c++)
-            if (!isfinite(mesh.position[i][c]))
+            if (!isfinite(mesh.position[i][c]) || !isfinite(mesh.normal[i][c]))
                 abort();
     relume_mesh_free(&mesh);
 }

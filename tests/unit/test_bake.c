@@ -499,6 +499,30 @@ static void broken_files_are_told(void **state)
     relume_objects_destroy(&o);
 }
 
+// Frames that are longer than 1 would be looked at beyond the map of views.
+static void long_frames_are_refused(void **state)
+{
+    (void)state;
+    struct test_log log;
+    test_log_init(&log);
+    relume_objects *o = of("hanging.obj", "\"sample\"");
+    relume_baked *b;
+    CHECK_OK(relume_bake(&b, o,
+                         relume_bake_params(.width = 8, .coefficients = 4, .side = 3, .clusters = 2,
+                                            .components = 1, .rays = 4)));
+    CHECK_OK(relume_baked_save(b, path_of("frames.exr"), NULL));
+    for (int i = 0; i < b->info.width * b->info.height; i++)
+        for (int k = 0; k < 6; k++)
+            b->frame[i][k] = 1.0f;
+    CHECK_OK(relume_baked_save(b, path_of("long.exr"), NULL));
+    relume_baked_destroy(&b);
+    CHECK_OK(relume_baked_open(&b, path_of("frames.exr"), NULL, NULL));
+    relume_baked_destroy(&b);
+    assert_int_equal(relume_baked_open(&b, path_of("long.exr"), NULL, &log.log), RELUME_EFORMAT);
+    assert_non_null(strstr(log.text, "frames"));
+    relume_objects_destroy(&o);
+}
+
 static void what_cannot_be_is_refused(void **state)
 {
     (void)state;
@@ -526,11 +550,12 @@ static void what_cannot_be_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sphere_is_lamberts),     cmocka_unit_test(a_bowl_adds_its_bounces),
-        cmocka_unit_test(full_rank_is_brute_force), cmocka_unit_test(more_is_closer),
-        cmocka_unit_test(skies_are_their_cells),    cmocka_unit_test(fixed_light_stays),
-        cmocka_unit_test(it_stands_in_the_world),   cmocka_unit_test(threads_agree),
-        cmocka_unit_test(broken_files_are_told),    cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(a_sphere_is_lamberts),      cmocka_unit_test(a_bowl_adds_its_bounces),
+        cmocka_unit_test(full_rank_is_brute_force),  cmocka_unit_test(more_is_closer),
+        cmocka_unit_test(skies_are_their_cells),     cmocka_unit_test(fixed_light_stays),
+        cmocka_unit_test(it_stands_in_the_world),    cmocka_unit_test(threads_agree),
+        cmocka_unit_test(long_frames_are_refused),   cmocka_unit_test(broken_files_are_told),
+        cmocka_unit_test(what_cannot_be_is_refused),
     };
     return cmocka_run_group_tests(tests, make_all, remove_folder);
 }

@@ -178,6 +178,12 @@ static void test_refused(void **state)
     refused("subject,question,left,right,chosen\n1,\"q,a,b,a\n", RELUME_EFORMAT, "line 2");
     refused("subject,condition,score\n1,a,nan\n", RELUME_EFORMAT, "line 2");
     refused("subject,condition,score\n1,a,\n", RELUME_EFORMAT, "line 2");
+    // 256 conditions, and one more
+    char text[8192];
+    int n = snprintf(text, sizeof text, "subject,condition,score\n");
+    for (int i = 0; i < 257; i++)
+        n += snprintf(text + n, sizeof text - (size_t)n, "1,c%d,%d\n", i, i % 7);
+    refused(text, RELUME_ELIMIT, "line 258");
 }
 
 int main(void)

@@ -320,6 +320,30 @@ static void test_nifti(void **state)
     unlink(name(".hdr"));
 }
 
+// What a file only claims gets no room: where there is none the sentence is still about the file.
+static void test_claims_without_samples(void **state)
+{
+    (void)state;
+    static const char *const claims[] = {
+        "NRRD0004\ntype: double\ndimension: 3\nsizes: 65536 65536 65536\nencoding: raw\n\n",
+        "NRRD0004\ntype: double\ndimension: 3\nsizes: 65536 65536 2\nencoding: gzip\n\n",
+        // beyond the end, and once around to the samples
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
+        "byte skip: 18446744073709551607\n\n"};
+    relume_volume *v;
+    for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
+        char file[512];
+        const size_t length = strlen(claims[i]);
+        memcpy(file, claims[i], length);
+        memcpy(file + length, "12345678", 8);
+        write_file(name(".nrrd"), file, length + 8);
+        assert_int_equal(
+            open_it(&v, name(".nrrd"), *relume_volume_params(.scratch = "/nonexistent")),
+            RELUME_EUNFIT);
+    }
+    unlink(name(".nrrd"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -328,6 +352,7 @@ int main(void)
         cmocka_unit_test(test_packed_that_is_damaged),
         cmocka_unit_test(test_nrrd),
         cmocka_unit_test(test_nifti),
+        cmocka_unit_test(test_claims_without_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,7 +101,7 @@ jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
 aom/:src/lossy/av1_write.c tests/tools/preload/msan.c
 dav1d:src/lossy/av1_read.c tests/tools/preload/msan.c
-zlib:src/image/exr_sums.c src/lossy/lossy.c src/lossy/disparity.c src/volume/unpack.c tests/unit/test_volume.c
+zlib:src/image/exr_sums.c src/lossy/lossy.c src/lossy/disparity.c src/volume/unpack.c tests/unit/test_volume.c tests/fuzz/fuzz_volume.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 mpi[.]h:src/mpi/relume_mpi.c

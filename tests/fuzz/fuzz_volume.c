@@ -163,7 +163,8 @@ static void add_nrrds(struct fuzz *f, const float samples[COUNT])
 // Little-endian, of 3 x 4 x 2 shorts or floats.
 static void nifti_header(uint8_t h[352], int type, const char *magic)
 {
-    static const float one = 1.0f, offset = 352.0f;
+    static const float one = 1.0f;
+    const float offset = strcmp(magic, "n+1") ? 0.0f : 352.0f;  // a pair has its samples apart
     const int size = 348, dim[4] = {3, 3, 4, 2};
     memset(h, 0, 352);
     memcpy(h, &size, 4);

@@ -38,7 +38,8 @@ static fftwf_plan plan_line(int n, enum fft_kind kind, float *in, float *out)
 {
     fftwf_complex *const complex_in = (fftwf_complex *)in, *const complex_out =
                                                                (fftwf_complex *)out;
-    const unsigned flags = FFTW_ESTIMATE | FFTW_DESTROY_INPUT;
+    // lines of an odd length follow each other at places that SIMD would not expect
+    const unsigned flags = FFTW_ESTIMATE | FFTW_DESTROY_INPUT | (n % 2 ? FFTW_UNALIGNED : 0);
     switch (kind) {
     case FFT_REAL: return fftwf_plan_dft_r2c_1d(n, in, complex_out, flags);
     case FFT_REAL_INVERSE: return fftwf_plan_dft_c2r_1d(n, complex_in, out, flags);

@@ -342,13 +342,15 @@ static relume_status read_about(relume_baked *b, const struct reader *r)
         status = read_number(&i->bounces, r, "bounces", 0, 64);
     if (!status)
         status = read_number(&triangles, r, "triangles", 1, ACROSS * SIDE_MOST);
+    if (status)
+        return status;
     i->per_view = per_view;
     i->triangles = (size_t)triangles;
     b->blocks = per_view ? i->side * i->side : 1;
     b->views = i->side * i->side / b->blocks;
     const float *error = exr_get_floats(r->file, 0, "compressionError", &n);
     i->error = error && n == 1 && isfinite(*error) ? (double)*error : 0.0;
-    return status;
+    return RELUME_OK;
 }
 
 // The atlas says how large all is.

@@ -22,6 +22,7 @@ static const char *const words[] = {"format",      "version",     "relume-object
                                     "target",      "original",    "ball",
                                     "geodesic",    "stroke",      "radius",
                                     "border",      "distance",    "frozen",
+                                    "billboards",  "baked",       "red",
                                     NULL};
 
 static const char *const extensions[] = {"json", "obj", "ply"};
@@ -76,7 +77,19 @@ int main(int argc, char **argv)
         "\"original\":[0,0,1],\"target\":[3,2,1]}],\"regions\":[{\"ball\":[0,0,0],\"radius\":1},"
         "{\"geodesic\":[0,0,0],\"radius\":1,\"border\":2},{\"stroke\":[[0,0,0],[1,0,0]],"
         "\"radius\":0.1,\"border\":0.5}]}}]}");
+    add(&f, 0,
+        "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"good.obj\","
+        "\"billboards\":0.1,\"parts\":[{\"material\":{\"diffuse\":0.5}}]}]}");
     add(&f, 1, obj);
+    add(&f, 1,
+        "v 0 0 0 1 0 0\nv 1 0 0 0 .5 1\nv 0 1 0 .1 .2 .3\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n"
+        "f 1/1/1 2/2/1 3/3/1\n");
+    add(&f, 2,
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float s\nproperty float t\nproperty uchar red\n"
+        "property uchar green\nproperty uchar blue\nproperty uchar alpha\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 255 0 0 255\n"
+        "1 0 0 1 0 0 255 0 9\n0 1 0 0 1 7 8 9 0\n3 0 1 2\n");
     add(&f, 2,
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
         "property float z\nproperty float s\nproperty float t\nelement face 2\n"

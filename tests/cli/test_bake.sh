@@ -16,6 +16,8 @@ expect_ok 'bake' - "$RELUME" bake ball.json -o any.exr $small --lights 128 -q
 expect_ok 'the same again' - "$RELUME" bake ball.json -o again.exr $small --lights 128 -q --threads 1
 check 'byte for byte' cmp any.exr again.exr
 expect_ok 'draw it' - "$RELUME" btf render alone.json -o any.pfm --picture 32x32 --light 'dir 0 1 1'
+"$RELUME" btf render any.exr -o direct.pfm --picture 32x32 --light 'dir 0 1 1' -q
+check 'the file itself, too' cmp any.pfm direct.pfm
 "$RELUME" btf render alone.json -o a.exr --picture 32x32 --light 'dir 0 1 1' -q
 "$RELUME" btf render ball.json -o b.exr --picture 32x32 --light 'dir 0 1 1' -q
 check 'as the ball itself' sh -c "'$RELUME' compare a.exr b.exr | awk '/^rms/ { exit !(\$2 < 0.04) }'"

@@ -3,14 +3,24 @@
 #include "frame_options.h"
 
 #include <math.h>
+#include <relume/bake.h>
 #include <relume/vec.h>
 #include <stdio.h>
 #include <string.h>
 
+// Not a g-BRDF, which is an .exr file, too.
+static bool is_baked(const char *path)
+{
+    relume_baked *baked = NULL;
+    const bool is = btf_is_model_file(path) && !relume_baked_open(&baked, path, NULL, NULL);
+    relume_baked_destroy(&baked);
+    return is;
+}
+
 bool btf_is_objects(const struct btf_options *o)
 {
     const char *name = o->args.input[0], *dot = strrchr(name, '.');
-    return o->mesh || (dot && !strcmp(dot, ".json"));
+    return o->mesh || (dot && !strcmp(dot, ".json")) || is_baked(name);
 }
 
 relume_status objects_open(relume_objects **out, const char *path, const char *reflections,

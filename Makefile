@@ -300,7 +300,8 @@ $B/relume $(MPI) $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MOD
 # `make test` is everything; `make check` is the part that one config runs.
 test: all
 	@tests/run.sh $(MAKE)
-check: all $(UNIT) $(GL) $(TOOLS) $(FUZZ) $(FAULTS) $(GROWN)
+# Sanitizers run few scripts (tests/check.sh), none of which needs these.
+check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS) $(if $(filter asan tsan,$(config)),,$(FUZZ) $(GROWN))
 	@tests/check.sh $B
 # Does every test still compile? A minute where check takes five.
 compile-tests: $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(FUZZ_C) $(BENCH_C))

@@ -172,14 +172,9 @@ static void add_view(float rgb[3], const struct shown *s, size_t texel, int view
                    factor * (double)b->weight[own * n + i]);
 }
 
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
 static vec3 view_of(const relume_baked *b, size_t texel, vec3 eye)
 {
-    const vec3 normal = vector(b->frame[texel]), tangent = vector(b->frame[texel] + 3);
+    const vec3 normal = vec3_floats(b->frame[texel]), tangent = vec3_floats(b->frame[texel] + 3);
     return vec3_of(vec3_dot(eye, tangent), vec3_dot(eye, vec3_cross(normal, tangent)),
                    vec3_dot(eye, normal));
 }

@@ -74,16 +74,6 @@ static struct box least_box(const vec3 *hull, size_t n)
     return best;
 }
 
-static void copy(float out[3], vec3 v)
-{
-    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
-}
-
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
 void texels_lay(struct relume_billboard *out, const struct soup *s, const struct partition *p,
                 size_t number, vec3 *scratch)
 {
@@ -104,11 +94,12 @@ void texels_lay(struct relume_billboard *out, const struct soup *s, const struct
     vec3 corner = vec3_along(s->middle, plane->normal, middle);
     corner = vec3_along(vec3_along(corner, across, b.across.low), up, b.up.low);
     *out = (struct relume_billboard){.error = (float)(0.5 * (height.high - height.low))};
-    copy(out->corner, corner);
+    vec3_store(out->corner, corner);
     // their lengths, until there are texels
-    copy(out->across, vec3_scale(across, fmax(b.across.high - b.across.low, 1e-6 * s->longest)));
-    copy(out->up, vec3_scale(up, fmax(b.up.high - b.up.low, 1e-6 * s->longest)));
-    copy(out->normal, plane->normal);
+    vec3_store(out->across,
+               vec3_scale(across, fmax(b.across.high - b.across.low, 1e-6 * s->longest)));
+    vec3_store(out->up, vec3_scale(up, fmax(b.up.high - b.up.low, 1e-6 * s->longest)));
+    vec3_store(out->normal, plane->normal);
 }
 
 // A rectangle of whole texels is no larger for rounding.
@@ -119,7 +110,7 @@ static double texels_in(double length, double side)
 
 bool texels_size(struct relume_billboard *b, double side, size_t most)
 {
-    const vec3 across = vector(b->across), up = vector(b->up);
+    const vec3 across = vec3_floats(b->across), up = vec3_floats(b->up);
     const double w = vec3_length(across), h = vec3_length(up);
     const double columns = texels_in(w, side), rows = texels_in(h, side);
     if (!(columns * rows <= (double)most))
@@ -127,10 +118,11 @@ bool texels_size(struct relume_billboard *b, double side, size_t most)
     b->width = (int)columns;
     b->height = (int)rows;
     const vec3 x = vec3_unit(across), y = vec3_unit(up);
-    copy(b->corner, vec3_along(vec3_along(vector(b->corner), x, -0.5 * (columns * side - w)), y,
-                               -0.5 * (rows * side - h)));
-    copy(b->across, x);
-    copy(b->up, y);
+    vec3_store(b->corner,
+               vec3_along(vec3_along(vec3_floats(b->corner), x, -0.5 * (columns * side - w)), y,
+                          -0.5 * (rows * side - h)));
+    vec3_store(b->across, x);
+    vec3_store(b->up, y);
     return true;
 }
 
@@ -226,9 +218,10 @@ static void project(vec3 out[3], const struct canvas *c, size_t triangle, double
     const struct relume_billboard *const b = c->b;
     for (int k = 0; k < 3; k++) {
         const vec3 at =
-            vec3_sub(vec3_add(c->s->corner[triangle][k], c->s->middle), vector(b->corner));
-        out[k] = vec3_of(vec3_dot(at, vector(b->across)) / side, vec3_dot(at, vector(b->up)) / side,
-                         vec3_dot(at, vector(b->normal)));
+            vec3_sub(vec3_add(c->s->corner[triangle][k], c->s->middle), vec3_floats(b->corner));
+        out[k] =
+            vec3_of(vec3_dot(at, vec3_floats(b->across)) / side,
+                    vec3_dot(at, vec3_floats(b->up)) / side, vec3_dot(at, vec3_floats(b->normal)));
     }
 }
 
@@ -286,7 +279,7 @@ void texels_fill(struct relume_billboards *cloud, size_t number, const struct so
     const size_t texels = (size_t)b->width * (size_t)b->height;
     struct canvas c = {cloud->texel + b->first, b, s, f->shown, false, INFINITY};
     struct plane plane = p->plane[number];
-    plane.offset = vec3_dot(vec3_sub(vector(b->corner), s->middle), plane.normal);
+    plane.offset = vec3_dot(vec3_sub(vec3_floats(b->corner), s->middle), plane.normal);
     vec3 corner[3];
     for (size_t i = 0; i < texels; i++)
         c.texel[i] = (struct relume_billboard_texel){.triangle = RELUME_BILLBOARD_NONE};

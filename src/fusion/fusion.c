@@ -1,4 +1,5 @@
 // fusion.c - the depth of a captured file as one mesh, as callers ask for it
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -7,14 +8,6 @@
 #include "fusion/seen.h"
 
 #include <relume/fusion.h>
-#include <time.h>
-
-static double seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 // Where none is given: one light from before, in panoramas a weaker one from each side.
 #define DISTANT(x, y, z, value)                                                                    \
@@ -124,11 +117,11 @@ static relume_status work(struct relume_mesh *out, struct relume_fusion_report *
                           relume_pack *pack, struct witness *witness,
                           const struct relume_fusion_params *p)
 {
-    const double start = seconds();
+    const double start = now_s();
     relume_status status = open_witnesses(witness, pack, p);
     if (!status)
         status = fuse(out, report, witness, relume_pack_info(pack)->views, p);
-    report->seconds = seconds() - start;
+    report->seconds = now_s() - start;
     if (!status && !p->no_colours && out->vertex_count)
         status = colour(out, pack, witness, report->voxel, p);
     return status;

@@ -1,4 +1,5 @@
 // isosurface.c - surfaces of a volume, as callers ask for them
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -8,14 +9,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
-
-static double seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static int level_count(const int blocks[RELUME_ISOSURFACE_LEVELS])
 {
@@ -58,7 +51,7 @@ relume_status relume_isosurface(struct relume_mesh *out, struct relume_isosurfac
                                                   p.blocks[2], p.blocks[3], p.blocks[4]};
     const int levels = level_count(blocks);
     struct signs g = {.bits = NULL};
-    double start = seconds();
+    double start = now_s();
     for (int i = 0; i < levels; i++)
         out[i] = (struct relume_mesh){0};
     relume_status status = check(blocks, levels, volume, threshold, p.log);
@@ -69,7 +62,7 @@ relume_status relume_isosurface(struct relume_mesh *out, struct relume_isosurfac
         status = log_progress(p.log, "surface", (double)i / levels)
                      ? mesh_level(&out[i], &own, &g, blocks[i])
                      : RELUME_ECANCEL;
-        own.seconds = seconds() - start;
+        own.seconds = now_s() - start;
         start += own.seconds;
         if (report)
             report[i] = own;

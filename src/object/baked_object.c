@@ -10,23 +10,18 @@
 
 // ---------------------------------------------------------------- in the world
 
-static vec3 vector(const float v[3])
-{
-    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
 static void add_triangle(relume_objects *o, const struct baked_corner corner[3],
                          const struct frame *frame)
 {
     uint32_t made[3];
     vec3 p[3];
     for (int k = 0; k < 3; k++)
-        p[k] = vector(corner[k].position);
+        p[k] = vec3_floats(corner[k].position);
     if (!(vec3_length(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]))) > 0.0))
         return;
     for (int k = 0; k < 3; k++)
         made[k] = mesh_vertex(&o->mesh, frame_point(frame, p[k]),
-                              frame_normal(frame, vector(corner[k].normal)),
+                              frame_normal(frame, vec3_floats(corner[k].normal)),
                               vec3_of((double)corner[k].place[0], (double)corner[k].place[1], 0));
     mesh_triangle(&o->mesh, made[0], made[1], made[2], (uint32_t)o->info.parts - 1);
 }

@@ -2,7 +2,6 @@
 #include "meshes/mesh_tasks.h"
 
 #include <math.h>
-#include <time.h>
 
 struct simplify_options {
     struct args args;
@@ -35,13 +34,6 @@ static const struct option options[] = {
     FLAG("--quadrics", quadrics, "test nothing; --error is that of quadrics"),
     {0},
 };
-
-static double seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void print_steps(const void *context, FILE *to)
 {
@@ -83,7 +75,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = relume_mesh_read(&mesh, args->input[0], p);
     if (!status) {
-        const double start = seconds();
+        const double start = mesh_clock();
         status = relume_mesh_simplify(
             &small, &done, &mesh,
             relume_simplify_params(.log = args->log, .error = o->error,
@@ -92,7 +84,7 @@ static relume_status run(const struct args *args)
                                    .gloss =
                                        given(o, &o->gloss) && o->gloss <= 0.0 ? -1.0 : o->gloss,
                                    .white = o->white, .quadrics = o->quadrics));
-        time = seconds() - start;
+        time = mesh_clock() - start;
     }
     if (!status)
         status = relume_mesh_write(&small, o->output, p);

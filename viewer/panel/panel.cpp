@@ -173,8 +173,8 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
 
 extern "C" bool panel_shown(const struct app *app)
 {
-    return app->panel || app->help || app->inspect || app->gizmos || app->reflects || app->asks ||
-           app->recording || app->browse || app->file.empty || app->picks_focus ||
+    return app->panel || app->help || app->inspect || app->gizmos || app->reflects || app->noting ||
+           app->asks || app->recording || app->browse || app->file.empty || app->picks_focus ||
            app->toast_s > 0 || app->hint_s > 0;
 }
 
@@ -239,6 +239,8 @@ static bool section(const char *name, const char *what, bool open = true)
 static bool sections(panel *panel, app *app, const panel_facts *facts)
 {
     bool changed = false;
+    if (app->noting && section("Notes", "notes and measures on the picture (Ctrl+N)"))
+        changed |= panel_jottings(panel, app);
     if (section("Lights", "the lights: direction, place, colour and brightness"))
         changed |= panel_lights(panel, app, facts);
     if (app->file.objects && section("Objects", "the materials of the objects"))
@@ -298,6 +300,8 @@ static void one_frame(panel *panel, app *app, const panel_facts *facts)
         panel_handles(app, panel->scale);
     if (app->reflects)
         panel_reflection_handles(app, panel->scale);
+    if (app->noting)
+        panel_jotted(app, panel->scale);
     if (app->file.empty && !app->browse)
         panel_start(app, panel->scale);
     if (app->panel && !app->file.empty)

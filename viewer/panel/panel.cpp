@@ -61,6 +61,7 @@ extern "C" relume_status panel_create(struct panel **out, double scale, const ch
     ImGuiIO &io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.LogFilename = nullptr;
+    io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;  // as collect_runs has them
     io.MousePos = ImVec2(-FLT_MAX, -FLT_MAX);
     p->has_font = font && panel_add_font(font, p->scale);
     if (!p->has_font)
@@ -289,7 +290,8 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
 
 // ---------------------------------------------------------------- frame
 
-static void one_frame(panel *panel, app *app, const panel_facts *facts)
+// `shown`: it is the one that people see, and not only hears of events.
+static void one_frame(panel *panel, app *app, const panel_facts *facts, bool shown)
 {
     ImGuiIO &io = ImGui::GetIO();
     io.DisplaySize = ImVec2((float)app_window_width(app), (float)app->height);
@@ -300,7 +302,7 @@ static void one_frame(panel *panel, app *app, const panel_facts *facts)
         panel_handles(app, panel->scale);
     if (app->reflects)
         panel_reflection_handles(app, panel->scale);
-    if (app->noting)
+    if (app->noting && shown)
         panel_jotted(app, panel->scale);
     if (app->file.empty && !app->browse)
         panel_start(app, panel->scale);
@@ -329,9 +331,10 @@ static void collect_runs(panel *panel)
         const ImDrawList *list = data->CmdLists[n];
         for (const ImDrawCmd &cmd : list->CmdBuffer) {
             panel_run run = {};
-            run.vertex = reinterpret_cast<const panel_vertex *>(list->VtxBuffer.Data);
+            run.vertex =
+                reinterpret_cast<const panel_vertex *>(list->VtxBuffer.Data) + cmd.VtxOffset;
             run.index = list->IdxBuffer.Data;
-            run.vertices = list->VtxBuffer.Size;
+            run.vertices = list->VtxBuffer.Size - (int)cmd.VtxOffset;
             run.indices = list->IdxBuffer.Size;
             run.first = (int)cmd.IdxOffset;
             run.count = (int)cmd.ElemCount;
@@ -352,13 +355,13 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
     panel->changed = false;
     for (const app_event &e : panel->queue) {
         feed_imgui(e);
-        one_frame(panel, app, facts);
+        one_frame(panel, app, facts, false);
     }
     panel->queue.clear();
-    one_frame(panel, app, facts);
-    one_frame(panel, app, facts);
+    one_frame(panel, app, facts, false);
+    one_frame(panel, app, facts, panel->browsing == browsed);
     if (panel->browsing != browsed)
-        one_frame(panel, app, facts);
+        one_frame(panel, app, facts, true);
     collect_runs(panel);
     return panel->changed;
 }

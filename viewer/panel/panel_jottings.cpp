@@ -159,6 +159,19 @@ static ImVec2 at(const app *app, const double place[2])
     return ImVec2((float)(app->beside[0] + xy[0]), (float)xy[1]);
 }
 
+// One of very many: without borders and smooth edges.
+static void draw_plain(ImDrawList *draw, const app *app, const relume_note &note, float scale)
+{
+    const bool closed = note.kind == RELUME_NOTE_POLYGON;
+    for (int i = 0; i + 1 < note.places + (int)closed; i++)
+        draw->AddLine(at(app, note.place[i]), at(app, note.place[(i + 1) % note.places]), ink);
+    if (note.kind == RELUME_NOTE_POINT) {
+        const ImVec2 p = at(app, note.place[0]);
+        draw->AddRectFilled(ImVec2(p.x - 2 * scale, p.y - 2 * scale),
+                            ImVec2(p.x + 2 * scale, p.y + 2 * scale), ink);
+    }
+}
+
 static void draw_note(ImDrawList *draw, const app *app, const relume_note &note, bool strong,
                       float scale)
 {
@@ -221,11 +234,17 @@ void panel_jotted(const app *app, float scale)
     const double mm = relume_notes_scale(n->list);
     const int count = notes_have_places(app) ? relume_notes_count(n->list) : 0;
     enum { LABELS = 200 };  // more cannot be read
+    const ImDrawListFlags smooth = draw->Flags;
     for (int i = 0, labels = 0; i < count; i++) {
         const relume_note *note = relume_notes_get(n->list, i);
         if (!note->places || !is_near_frame(app, *note))
             continue;
-        draw_note(draw, app, *note, i == n->chosen, scale);
+        const bool plain = labels >= LABELS && i != n->chosen;
+        draw->Flags = plain ? smooth & ImDrawListFlags_AllowVtxOffset : smooth;
+        if (plain)
+            draw_plain(draw, app, *note, scale);
+        else
+            draw_note(draw, app, *note, i == n->chosen, scale);
         if (labels++ >= LABELS && i != n->chosen)
             continue;
         std::string text = note->text ? note->text : "";
@@ -233,6 +252,7 @@ void panel_jotted(const app *app, float scale)
         text += (text.empty() || measure.empty() ? "" : "  ") + measure;
         label(draw, at(app, note->place[0]), text, scale);
     }
+    draw->Flags = smooth;
     if (n->places) {
         const relume_note drawn = notes_drawn(n);
         draw_note(draw, app, drawn, true, scale);

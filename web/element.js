@@ -40,6 +40,7 @@ export class RelumeView extends HTMLElement {
     disconnectedCallback() {
         if (this.observer)
             this.observer.disconnect();
+        document.removeEventListener('keydown', this.bodyKey);
         if (this.viewer)
             this.viewer.close();
         this.root.replaceChildren();
@@ -120,10 +121,12 @@ export class RelumeView extends HTMLElement {
     // ------------------------------------------------------------ what can be done
 
     set(name, value) {
+        if (name === 'look')
+            return this.viewer.setLook(value);
         this.viewer[name] = value;
         if (name === 'pass' || name === 'exposure')
             this.viewer.range = null;
-        this.viewer.changed();
+        return this.viewer.changed();
     }
 
     choose(index) {
@@ -185,7 +188,7 @@ export class RelumeView extends HTMLElement {
 
     fit() {
         this.viewer.at = null;
-        this.viewer.zoom = 1;
+        this.viewer.zoom = this.viewer.look === 'planet' ? 0.5 : 1;
         this.viewer.changed();
     }
 
@@ -264,6 +267,8 @@ export class RelumeView extends HTMLElement {
             wheel: enlarge,
         });
         this.surface.addEventListener('keydown', (event) => this.key(event));
+        this.bodyKey = (event) => event.target === document.body && document.querySelector('relume-view') === this && this.key(event);
+        document.addEventListener('keydown', this.bodyKey);
         this.controls.ball.node.addEventListener('keydown', (event) => this.ballKey(event));
         this.surface.addEventListener('dragover', (event) => event.preventDefault());
         this.surface.addEventListener('drop', (event) => {

@@ -1,4 +1,5 @@
-// measure.js - what passes scale to the picture; after src/analysis/enhance_range.c
+// measure.js - what passes and the first exposure take from the picture; after
+// src/analysis/enhance_range.c and relume_tone_meter
 
 const LEAST = 1e-4;  // of the brightest: what is darker is background
 
@@ -41,4 +42,17 @@ export function measureRange(pass, light, albedo, lamps) {
     if (!(high > low))
         [low, high] = [0, 2 * Math.max(high, 1e-6)];
     return [low, high, pivot, scale];
+}
+
+// The exposure in EV that takes the mean of the logarithms to a mid grey, the darkest tenth and the
+// brightest fiftieth left out.
+export function meterExposure(light) {
+    const all = [];
+    for (let i = 0; i < light.length; i += 4)
+        if (luminance(light, i) > 1e-5)
+            all.push(luminance(light, i));
+    const kept = Float32Array.from(all).sort().subarray(Math.floor(0.1 * all.length), Math.ceil(0.98 * all.length));
+    if (!kept.length)
+        return 0;
+    return Math.log2(0.18) - kept.reduce((sum, y) => sum + Math.log2(y), 0) / kept.length;
 }

@@ -10,11 +10,12 @@ import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
 import { firstLight } from './lights.js';
 import { readState, writeState } from './state.js';
-import { measureRange } from './measure.js';
+import { measureRange, meterExposure } from './measure.js';
 import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
 
 const MOST_LAMPS = 8;  // that passes enhance
 const MEASURED = 128;  // pixels a side
+const GROUND = [22, 22, 23].map((v) => v / 255);  // --ground of relume.css
 const SLOW = 90, QUICK = 30;  // milliseconds from frame to frame
 const LEAST_PIXELS = 1 << 18, MOST_PIXELS = 1 << 25;  // relit in a frame
 
@@ -45,6 +46,7 @@ export class Viewer {
             : scene.projection === 'slab' ? new Slab(scene, this.painter, this.device)
             : new Panorama(scene, this.painter, this.device);
         this.reset();
+        this.metering = true;
         this.resize();
     }
 
@@ -128,6 +130,15 @@ export class Viewer {
         this.changed();
     }
 
+    // A little planet is seen from above, unless `values` say otherwise.
+    setLook(look, values = {}) {
+        const planet = look === 'planet';
+        this.look = look;
+        this.tilt = values.tilt ?? (planet ? -90 : 0);
+        this.zoom = values.zoom ?? (planet ? 0.5 : 1);
+        this.changed();
+    }
+
     resize() {
         const ratio = window.devicePixelRatio || 1, box = this.canvas.getBoundingClientRect();
         const width = Math.max(1, Math.round(box.width * ratio)), height = Math.max(1, Math.round(box.height * ratio));
@@ -157,13 +168,14 @@ export class Viewer {
     // Shows what a line says; what it does not name is as the page opens.
     setState(line) {
         const { values, lights, others, problem } = readState(line);
+        this.metering = false;
         this.reset();
         Object.assign(this, { others });
         for (const name of ['exposure', 'tone', 'pass', 'pan', 'tilt', 'zoom', 'aperture', 'focus', 'eye'])
             if (values[name] !== undefined)
                 this[name] = values[name];
         if (values.projection)
-            this.look = values.projection;
+            this.setLook(values.projection, values);
         if (values.at && !this.isPanorama)
             this.at = { x: values.at[0], y: values.at[1], scale: values.at[2] };
         if (lights)
@@ -214,7 +226,7 @@ export class Viewer {
 
     camera() {
         return { at: this.isPanorama ? null : this.framing(), eye: this.eye, pan: this.pan,
-                 tilt: this.tilt - (this.look === 'planet' ? 90 : 0), zoom: this.zoom, planet: this.look !== 'perspective',
+                 tilt: this.tilt, zoom: this.zoom, planet: this.look !== 'perspective',
                  aperture: this.aperture, focus: this.focus, coarser: this.coarser };
     }
 
@@ -231,6 +243,7 @@ export class Viewer {
         for (const kind of kinds)
             this.stage.draw(this.target(kind), kind, camera);
         this.findRange();
+        this.meter();
         this.tiles.end();
         this.present();
         this.settle(moving);
@@ -257,31 +270,44 @@ export class Viewer {
         return [0, 1, 2].map((c) => this.lamps().reduce((sum, lamp) => sum + lamp.rgb[c], 0));
     }
 
-    // Measured on the coarsest picture of the whole, when it is there.
-    findRange() {
+    // The whole picture, small, as floats of each kind; null where it is not there yet.
+    small(kinds) {
         const { scene, painter } = this, last = scene.levels.length - 1, { width, height } = scene.levels[last];
+        const scale = Math.min(1, MEASURED / Math.max(width, height)), before = painter.complete;
+        const target = this.device.target(Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale)));
+        painter.complete = true;
+        painter.allowed = Math.max(painter.allowed, 1);
+        const out = kinds.map((kind) => {
+            painter.paint(target, scene.views[0], kind, last, { scale: scale * 2 ** -last, left: 0, top: 0 },
+                          [0, 0, scene.width, scene.height]);
+            return this.device.read(target);
+        });
+        const there = painter.complete;
+        painter.complete = there && before;
+        this.device.drop(target);
+        return there ? out : null;
+    }
+
+    // Raking light is dim: the first picture is as bright as it should be.
+    meter() {
+        const read = this.metering && this.small(['light']);
+        if (!read)
+            return;
+        this.metering = false;
+        this.exposure = Math.round(10 * Math.min(Math.max(meterExposure(read[0]), 0), 2)) / 10;
+        this.told.changed();
+    }
+
+    findRange() {
         if (this.range && this.ranged === this.pass)
             return;
         this.range = [0, 1, 1, 1];
-        if (!['specular', 'diffuse-gain', 'false-colour'].includes(this.pass))
+        const gain = this.pass === 'diffuse-gain';
+        const read = ['specular', 'diffuse-gain', 'false-colour'].includes(this.pass) && this.small(gain ? ['light', 'albedo'] : ['light']);
+        if (!read)
             return;
-        const scale = Math.min(1, MEASURED / Math.max(width, height));
-        const small = this.device.target(Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale)), this.device.gl.RGBA16F);
-        const read = (kind) => {
-            painter.paint(small, scene.views[0], kind, last, { scale: scale * 2 ** -last, left: 0, top: 0 },
-                          [0, 0, scene.width, scene.height]);
-            return this.device.read(small);
-        };
-        const before = painter.complete;
-        painter.complete = true;
-        painter.allowed = Math.max(painter.allowed, 1);
-        const light = read('light'), albedo = this.pass === 'diffuse-gain' ? read('albedo') : light;
-        if (painter.complete) {
-            this.range = measureRange(this.pass, light, albedo, this.lampSum());
-            this.ranged = this.pass;
-        }
-        painter.complete = painter.complete && before;
-        this.device.drop(small);
+        this.range = measureRange(this.pass, read[0], read[1], this.lampSum());
+        this.ranged = this.pass;
     }
 
     present() {
@@ -291,7 +317,7 @@ export class Viewer {
         this.device.begin(null);
         program.set({
             light: of('light'), normals: of('normals'), albedos: of('albedo'), pass: { int: PASSES.indexOf(this.pass) },
-            tone: { int: TONES_BY_NAME.indexOf(this.tone) }, exposure: 2 ** this.exposure, ground: this.ground || [0, 0, 0],
+            tone: { int: TONES_BY_NAME.indexOf(this.tone) }, exposure: 2 ** this.exposure, ground: GROUND,
             scale: this.range, count: { int: lamps.length }, lampSum: this.lampSum(),
             radius: Math.max(4 * (at ? at.scale : 1), 1),
         });

@@ -5,8 +5,10 @@
 // is plain C here.
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "coder/basis.h"
+#include "coder/interpolant.h"
 #include "coder/pca.h"
 #include "math/lsq.h"
 
@@ -177,7 +179,7 @@ relume_status fit_map(relume_coder *coder, const double *roughness, const struct
     return RELUME_EUNFIT;
 }
 
-relume_status interpolant_choose(double parameter[4], double *rms, const vec3 *lights,
+relume_status interpolant_choose(double *parameter, double *rms, const vec3 *lights,
                                  const struct relume_samples *samples, int threads)
 {
     (void)parameter, (void)rms, (void)lights, (void)samples, (void)threads;

@@ -6,6 +6,8 @@
 // with F raw functions f(l) of the light
 //     value_c(l) = mean_c . f(l) + sum_k C_k T_{c,k} . f(l)
 // so that f is asked of a coder without functions of its own, and T and mean are applied here.
+#include "core.h"
+
 #include <relume/coder.h>
 #include <relume/light.h>
 

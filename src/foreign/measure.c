@@ -14,6 +14,7 @@ enum { LIGHTS = 16, BAND_ROWS = 8, SAMPLE_PIXELS = 1 << 18 };
 struct judge {
     const struct foreign *f;
     const struct source *s;
+    const struct measure_weights *weights;
     int lights, every;
     float *file, *file_constant;        // [lights][3][P], [lights][3]
     float *foreign, *foreign_constant;  // [lights][3][planes], [lights][3]
@@ -108,7 +109,10 @@ static relume_status prepare(struct judge *j, size_t bands)
     for (size_t i = 0; good && i < n; i++) {
         const struct relume_vec3 light = j->s->light[i * (size_t)j->s->lights / n];
         source_weights(j->s, light, file);
-        foreign_weights(j->f, light, foreign, constant);
+        if (j->weights)
+            j->weights->at(j->weights->user, light, foreign, constant);
+        else
+            foreign_weights(j->f, light, foreign, constant);
         fill_rows(j, i, file, foreign, constant);
     }
     mem_free(file);
@@ -134,10 +138,11 @@ static double mean_psnr(const struct judge *j, size_t bands)
 }
 
 relume_status measure_psnr(double *psnr_db, const struct foreign *f, const struct source *s,
-                           int threads)
+                           const struct measure_weights *weights, int threads)
 {
     const size_t pixels = (size_t)s->width * (size_t)s->height;
-    struct judge j = {.f = f, .s = s, .lights = s->lights < LIGHTS ? s->lights : LIGHTS};
+    struct judge j = {
+        .f = f, .s = s, .weights = weights, .lights = s->lights < LIGHTS ? s->lights : LIGHTS};
     j.every = (int)(pixels / SAMPLE_PIXELS) + 1;
     const int step = BAND_ROWS * j.every;
     const size_t bands = (size_t)((s->height + step - 1) / step);

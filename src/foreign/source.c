@@ -20,7 +20,7 @@ static bool is_srgb(const struct relume_codes *codes)
            (codes->display.curve == RELUME_CURVE_SRGB || codes->display.curve == RELUME_CURVE_AUTO);
 }
 
-static relume_status choose_lights(struct source *s)
+static relume_status choose_lights(struct source *s, bool whole)
 {
     const struct relume_coder_info *info = relume_coder_info(s->codes->coder);
     const bool stand_in = s->between == NULL && info->lights > STAND_INS;
@@ -29,26 +29,31 @@ static relume_status choose_lights(struct source *s)
     if (!s->light)
         return RELUME_ENOMEM;
     if (stand_in)
-        return relume_directions_make(s->light, s->lights, relume_pattern_find("hammersley"),
-                                      relume_directions_params(.hemisphere = true));
+        return relume_directions_make(
+            s->light, s->lights, relume_pattern_find("hammersley"),
+            relume_directions_params(.hemisphere = !whole || info->hemispherical,
+                                     .pole_y = whole && info->pole_y));
     memcpy(s->light, info->directions, (size_t)s->lights * sizeof *s->light);
     return RELUME_OK;
 }
 
-relume_status source_open(struct source *s, const struct relume_codes *codes,
+relume_status source_open(struct source *s, const struct relume_codes *codes, bool whole,
                           const struct relume_log *log)
 {
     *s =
         (struct source){.codes = codes, .width = codes->width, .height = codes->height, .log = log};
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     s->numbers = info->basis->joint ? info->coefficients : 3 * info->coefficients;
-    const relume_status status = choose_lights(s);
+    const relume_status status = choose_lights(s, whole);
     if (status || (is_srgb(codes) && s->numbers <= MOST_NUMBERS))
         return status;
     s->numbers = 3 * s->lights;
     // the file's own way between its lights, where it has one
     const bool own = info->interpolant && s->lights == info->lights;
-    struct relume_coder_params params = {.log = log, .hemispherical = true, .decode = true};
+    struct relume_coder_params params = {.log = log,
+                                         .hemispherical = !whole || info->hemispherical,
+                                         .pole_y = whole && info->pole_y,
+                                         .decode = true};
     params.interpolant = own ? info->interpolant : relume_interpolant_find("angular");
     if (own)
         memcpy(params.parameter, info->parameter, sizeof params.parameter);

@@ -18,7 +18,9 @@ struct source {
     const struct relume_log *log;
 };
 
-relume_status source_open(struct source *s, const struct relume_codes *codes,
+// `whole`: what the file knows of light from below the horizon and from every side counts too;
+// else it is taken for a hemisphere around z, which is all that other formats know.
+relume_status source_open(struct source *s, const struct relume_codes *codes, bool whole,
                           const struct relume_log *log);
 void source_close(struct source *s);
 

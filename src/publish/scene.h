@@ -1,0 +1,33 @@
+// scene.h - one file in the site: scene.json and the tiles of its views
+#ifndef PUBLISH_SCENE_H
+#define PUBLISH_SCENE_H
+
+#include "publish/common.h"
+#include "publish/levels.h"
+#include "publish/site.h"
+
+// What people want to know of a file or site; texts are borrowed, NULL: nothing is said.
+struct details {
+    const char *title, *maker, *licence, *object, *description;
+};
+
+// A file that is being published.
+struct scene {
+    const struct site *site;
+    relume_pack *pack;
+    const char *name;  // of its page and folder
+    struct details details;
+    struct common common;
+    struct levels levels;
+    int first_level;
+    struct relume_publish_report *report;
+};
+
+// Planes, tiles and scene.json of the file, in a folder of its name.
+relume_status scene_write(struct scene *s);
+void scene_free(struct scene *s);
+
+// scene.json alone, when all else is known.
+relume_status scene_write_json(const struct scene *s);
+
+#endif

@@ -125,7 +125,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $B/relume-view
 
-.PHONY: all lib cli viewer samples deps deps-web deps-stitch deps-mpi deps-python demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
+.PHONY: all lib cli viewer samples deps deps-web web deps-stitch deps-mpi deps-python demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -153,6 +153,22 @@ deps-docs:
 	@scripts/deps.sh docs
 deps-python:
 	@scripts/deps.sh python
+
+# ---------------------------------------------------------------- the page's core
+
+# What pages compute by the library itself (web/core/core.c), compiled for browsers. The result is kept in the tree: only
+# who changes these sources needs emscripten (Debian's 3.1.6; another one gives other bytes).
+CORE_C := $(wildcard web/core/*.c src/coder/interpolant_*.c) $(addprefix src/,$(addprefix coder/,coder.c basis_table.c \
+          basis_ptm.c basis_hsh.c basis_sh.c basis_dct.c basis_dct_resampled.c harmonics.c disc.c zone.c mesh.c) \
+          math/hull.c math/sh.c math/hsh.c $(addprefix relight/,environment.c directions.c cells.c triangles.c))
+web:
+	emcc -std=gnu11 -O3 -DNDEBUG -ffp-contract=off -Wall -Wextra -Iinclude -Isrc $(CORE_C) --no-entry -s STANDALONE_WASM=1 \
+	    -s ALLOW_MEMORY_GROWTH=1 -s INITIAL_MEMORY=4194304 -s TOTAL_STACK=1048576 -o web/core/relume-core.wasm
+# The same natively, for tests.
+$B/tests/core.so: $(CORE_C) | $(DEPS)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(filter-out -MMD -MP,$(C11)) -Iinclude -Isrc -shared -Wl,-z,defs -o $@ $(CORE_C) -lm
 
 # ---------------------------------------------------------------- compiling
 

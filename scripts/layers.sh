@@ -43,6 +43,7 @@ gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps
 btf_model:base math image btf gbrdf edit:base image light directions btf btf_environment edit
 synthesis:base math image:base image synthesis
+notes:base:base image notes
 surface:base math synthesis btf btf_model:base image btf btf_environment surface synthesis
 mesh:base math geometry:base io image object mesh jnd simplify billboards
 volume:base image:base image photograph volume

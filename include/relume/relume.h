@@ -31,6 +31,7 @@
 #include <relume/directions.h>
 #include <relume/edit.h>
 #include <relume/normals.h>
+#include <relume/notes.h>
 #include <relume/object.h>
 #include <relume/pack.h>
 #include <relume/photograph.h>

@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -150,7 +151,7 @@ bool jvalue_numbers(const jvalue *array, double *out, size_t count)
     return true;
 }
 
-static bool is_utf8(const char *text)
+bool jvalue_may_hold(const char *text)
 {
     uint32_t code = 0;
     int n = 1;
@@ -162,12 +163,26 @@ static bool is_utf8(const char *text)
 // JSON is UTF-8; a name that is not, as disks allow, is written as it is shown.
 char *jvalue_quote(const char *text)
 {
-    char *copy = is_utf8(text) ? NULL : mem_text(text);
+    char *copy = jvalue_may_hold(text) ? NULL : mem_text(text);
     json_t *string = json_string(copy ? relume_printable(copy) : text);
     char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
     json_decref(string);
     mem_free(copy);
     return mem_take(quoted);
+}
+
+char *jvalue_dump(const jvalue *value)
+{
+    return mem_take(json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17)));
+}
+
+struct jnumber jvalue_number_text(double number)
+{
+    struct jnumber out;
+    snprintf(out.text, sizeof out.text, "%.15g", number);
+    if (strtod(out.text, NULL) != number)
+        snprintf(out.text, sizeof out.text, "%.17g", number);
+    return out;
 }
 
 // ---------------------------------------------------------------- places in the text

@@ -46,5 +46,14 @@ bool jvalue_place(int line_column[2], const char *path, const struct relume_log 
 
 // `text` as a JSON string with its quotes, to be freed; NULL when it cannot be one.
 char *jvalue_quote(const char *text);
+// Whether it can: it is UTF-8.
+bool jvalue_may_hold(const char *text);
+// A value as JSON, to be freed; NULL: no memory.
+char *jvalue_dump(const jvalue *value);
+// A finite number, as short as gives the same one again.
+struct jnumber {
+    char text[32];
+};
+struct jnumber jvalue_number_text(double number);
 
 #endif

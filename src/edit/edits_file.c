@@ -38,16 +38,6 @@ static bool put_picture(FILE *f, const struct relume_image *image)
     return text != NULL;
 }
 
-// As short as gives the same number again.
-static void put_number(FILE *f, double number)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.15g", number);
-    if (strtod(text, NULL) != number)
-        snprintf(text, sizeof text, "%.17g", number);
-    fputs(text, f);
-}
-
 static bool put_value(FILE *f, const struct edit_parameter *p, const struct relume_edit *edit)
 {
     const void *value = parameter_of(p, edit);
@@ -56,7 +46,7 @@ static bool put_value(FILE *f, const struct edit_parameter *p, const struct relu
     case PARAMETER_NUMBERS:
         for (int i = 0; i < p->count; i++) {
             fputs(i ? ", " : list ? "[" : "", f);
-            put_number(f, ((const double *)value)[i]);
+            fputs(jvalue_number_text(((const double *)value)[i]).text, f);
         }
         break;
     case PARAMETER_LABELS:

@@ -1,0 +1,370 @@
+// cmd_notes.c - relume notes: what people write on a picture, kept beside its file
+#include "cli.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+struct notes_options {
+    struct args args;
+    struct texts add, remove, import;
+    const char *text, *state, *creator, *rewrite;
+    double scale, length;
+    const char *ruler, *profile, *output, *canvas;
+    int view;
+    enum { TO_NOTHING, TO_CSV, TO_SVG, TO_IIIF } to;
+    bool json;
+};
+#define OPTIONS struct notes_options
+
+static const struct option options[] = {
+    GROUP("new notes"),
+    TEXTS("--add", add, "NOTE",
+          "'point X,Y', 'line X,Y X,Y ...', 'polygon X,Y X,Y X,Y ...' in pixels from the upper "
+          "left corner, or 'view' for a saved view; repeatable"),
+    TEXT("--text", text, "TEXT", "what the new notes say"),
+    TEXT("--state", state, "LINE",
+         "the light, eye and pass that they keep, as the pages and viewers copy it"),
+    TEXT("--creator", creator, "NAME", "who made them"),
+    GROUP("the list"),
+    TEXTS("--remove", remove, "ID", "remove this note; repeatable"),
+    TEXT("--rewrite", rewrite, "ID", "give this note the new --text"),
+    TEXTS("--import", import, "FILE.json",
+          "add the notes of this file, as pages save them; repeatable"),
+    NUMBER("--scale", scale, "MM", "one pixel is so many millimetres wide", 1e-9, 1e9),
+    TEXT("--ruler", ruler, "ID", "this line is --length long: sets the scale"),
+    NUMBER("--length", length, "MM", "the length of --ruler in millimetres", 1e-9, 1e12),
+    GROUP("output"),
+    NAME("--to", to, "FORMAT", "csv: a table; svg: an overlay; iiif: an annotation page", TO_CSV,
+         "csv", "svg", "iiif"),
+    TEXT("--profile", profile, "ID",
+         "the height of the surface along this line, from depth or normals, as a table"),
+    INT("--view", view, "N", "the view for --profile; default: 0", 0, 1 << 20),
+    TEXT("--canvas", canvas, "URL", "the canvas of an IIIF annotation page"),
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "OUT", "the file for --to or --profile"),
+    FLAG("--json", json, "print one JSON object"),
+    {0},
+};
+
+// ---------------------------------------------------------------- changes
+
+static relume_status parse_places(double (*place)[2], int *places, const char *at,
+                                  const char *given)
+{
+    for (*places = 0; *(at += strspn(at, " ")); ++*places) {
+        char *comma, *end;
+        const double x = strtod(at, &comma);
+        const double y = *comma == ',' ? strtod(comma + 1, &end) : 0.0;
+        if (comma == at || *comma != ',' || end == comma + 1 || (*end && *end != ' '))
+            return usage_error("--add '%s': expected places as 'X,Y X,Y'", given);
+        if (*places == RELUME_NOTE_MOST_PLACES)
+            return usage_error("--add: expected at most %d places", RELUME_NOTE_MOST_PLACES);
+        place[*places][0] = x;
+        place[*places][1] = y;
+        at = end;
+    }
+    return RELUME_OK;
+}
+
+static relume_status add(relume_notes *notes, const char *given, const struct notes_options *o)
+{
+    char kind[16] = "", now[32] = "";
+    const size_t n = strcspn(given, " ");
+    struct relume_note note = {.text = o->text, .state = o->state, .creator = o->creator};
+    if (n < sizeof kind)
+        memcpy(kind, given, n);
+    if (relume_note_kind_parse(&note.kind, kind))
+        return unknown_word(o->args.log, "kind of note", kind,
+                            NAMES("point", "line", "polygon", "view"));
+    const time_t seconds = time(NULL);
+    struct tm parts;
+    if (gmtime_r(&seconds, &parts) && strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", &parts))
+        note.created = now;
+    double(*place)[2] = malloc(RELUME_NOTE_MOST_PLACES * sizeof *place);
+    if (!place)
+        return RELUME_ENOMEM;
+    note.place = (const double(*)[2])place;
+    relume_status status = parse_places(place, &note.places, given + n, given);
+    if (!status)
+        status = relume_notes_add(notes, &note, o->args.log);
+    free(place);
+    return status;
+}
+
+// The note of that name among `notes`.
+static relume_status find(int *out, const relume_notes *notes, const char *id, const char *option)
+{
+    *out = relume_notes_find(notes, id);
+    return *out >= 0 ? RELUME_OK : usage_error("%s: there is no note '%s'", option, id);
+}
+
+static relume_status set_scale(relume_notes *notes, const struct notes_options *o)
+{
+    int i;
+    if (o->scale > 0.0)
+        return relume_notes_set_scale(notes, o->scale);
+    if (!o->ruler)
+        return RELUME_OK;
+    const relume_status status = find(&i, notes, o->ruler, "--ruler");
+    if (status)
+        return status;
+    const double pixels = relume_note_measure(relume_notes_get(notes, i)).length;
+    if (!(pixels > 0.0))
+        return usage_error("--ruler: note '%s' has no length; expected a line", o->ruler);
+    return relume_notes_set_scale(notes, o->length / pixels);
+}
+
+static bool changes(const struct notes_options *o)
+{
+    return o->add.count || o->remove.count || o->import.count || o->rewrite || o->scale > 0.0 ||
+           o->ruler;
+}
+
+static relume_status change(relume_notes *notes, const struct notes_options *o)
+{
+    relume_status status = RELUME_OK;
+    int n;
+    for (int i = 0; !status && i < o->import.count; i++) {
+        status = relume_notes_import(notes, o->import.text[i], &n, o->args.log);
+        if (!status)
+            announce(&o->args, RELUME_NOTE, "%s: %d new note%s", o->import.text[i], n,
+                     relume_plural(n));
+    }
+    for (int i = 0; !status && i < o->remove.count; i++) {
+        status = find(&n, notes, o->remove.text[i], "--remove");
+        if (!status)
+            relume_notes_remove(notes, n);
+    }
+    if (!status && o->rewrite) {
+        status = find(&n, notes, o->rewrite, "--rewrite");
+        if (!status)
+            status = relume_notes_rewrite(notes, n, o->text, o->args.log);
+    }
+    for (int i = 0; !status && i < o->add.count; i++)
+        status = add(notes, o->add.text[i], o);
+    return status ? status : set_scale(notes, o);
+}
+
+// ---------------------------------------------------------------- profiles
+
+// Heights in pixels, where depth is along parallel rays.
+static void heights_of_depth(struct relume_image *depth, const struct relume_geometry *g)
+{
+    const double pixel = (g->window_max[0] - g->window_min[0]) / depth->width;
+    for (size_t i = 0; i < (size_t)depth->width * (size_t)depth->height; i++)
+        depth->data[i] = isfinite(depth->data[i]) ? (float)(-(double)depth->data[i] / pixel) : NAN;
+}
+
+static relume_status profile_of(struct relume_profile *out, const struct relume_note *note,
+                                relume_pack *pack, const struct notes_options *o)
+{
+    const struct relume_geometry *g = relume_pack_geometry(pack, o->view);
+    const bool flat = g->projection == RELUME_PLANAR && !g->perspective;
+    const struct relume_codes *codes;
+    struct relume_image depth = {0};
+    struct relume_normals normals = {0};
+    relume_status status = RELUME_OK;
+    if (!flat)
+        return data_error("%s: profiles need a planar file that is seen straight on",
+                          o->args.input[0]);
+    if (relume_pack_info(pack)->has_depth) {
+        status = relume_pack_depth(&depth, pack, o->view);
+        if (!status) {
+            heights_of_depth(&depth, g);
+            status = relume_profile_of_heights(out, &depth, note->place, note->places);
+        }
+    } else {
+        status = relume_pack_codes(&codes, pack, o->view);
+        if (!status)
+            status = relume_normals_fit(&normals, codes,
+                                        relume_normals_params(.log = o->args.log,
+                                                              .threads = o->args.threads,
+                                                              .eye = relume_geometry_eye(g)));
+        if (!status)
+            status = relume_profile_of_normals(out, &normals.normal, note->place, note->places);
+    }
+    relume_image_destroy(&depth);
+    relume_normals_destroy(&normals);
+    return status;
+}
+
+struct table {
+    const struct relume_profile *profile;
+    double mm;
+};
+
+static void print_cell(FILE *f, double value)
+{
+    if (isfinite(value))
+        fprintf(f, ",%.6g", value);
+    else
+        fputc(',', f);
+}
+
+static void print_profile(const void *context, FILE *f)
+{
+    const struct table *t = context;
+    fprintf(f, "along_px,x,y,height_px%s\r\n", t->mm > 0.0 ? ",along_mm,height_mm" : "");
+    for (int i = 0; i < t->profile->count; i++) {
+        const struct relume_profile *p = t->profile;
+        fprintf(f, "%.6g,%.6g,%.6g", p->along[i], p->place[i][0], p->place[i][1]);
+        print_cell(f, p->height[i]);
+        if (t->mm > 0.0) {
+            print_cell(f, p->along[i] * t->mm);
+            print_cell(f, p->height[i] * t->mm);
+        }
+        fputs("\r\n", f);
+    }
+}
+
+static relume_status write_profile(const relume_notes *notes, relume_pack *pack,
+                                   const struct notes_options *o)
+{
+    int i;
+    struct relume_profile profile = {0};
+    relume_status status = find(&i, notes, o->profile, "--profile");
+    if (status)
+        return status;
+    const struct relume_note *note = relume_notes_get(notes, i);
+    if (note->kind != RELUME_NOTE_LINE)
+        return usage_error("--profile: note '%s' is a %s; expected a line", o->profile,
+                           relume_note_kind_name(note->kind));
+    status = profile_of(&profile, note, pack, o);
+    if (!status)
+        status =
+            relume_file_print(o->output, print_profile,
+                              &(struct table){&profile, relume_notes_scale(notes)}, o->args.log);
+    relume_profile_destroy(&profile);
+    return status;
+}
+
+// ---------------------------------------------------------------- the list
+
+static void print_text(const relume_notes *notes)
+{
+    const double mm = relume_notes_scale(notes);
+    struct shown text;
+    for (int i = 0; i < relume_notes_count(notes); i++) {
+        const struct relume_note *n = relume_notes_get(notes, i);
+        const struct relume_note_measures m = relume_note_measure(n);
+        printf("%-5s", shown(&text, n->id));
+        printf(" %-8s", relume_note_kind_name(n->kind));
+        if (n->kind == RELUME_NOTE_POINT)
+            printf(" at %.6g,%.6g", n->place[0][0], n->place[0][1]);
+        if (isfinite(m.length))
+            printf(" %.6g %s", m.length * (mm > 0.0 ? mm : 1.0), mm > 0.0 ? "mm" : "pixels");
+        if (isfinite(m.area))
+            printf(" around %.6g %s", m.area * (mm > 0.0 ? mm * mm : 1.0),
+                   mm > 0.0 ? "square mm" : "square pixels");
+        if (isfinite(m.degrees))
+            printf(" %.4g degrees", m.degrees);
+        printf("%s%s\n", n->text ? "  " : "", n->text ? shown(&text, n->text) : "");
+    }
+}
+
+static void print_member(const char *name, const char *text)
+{
+    printf(", \"%s\": ", name);
+    if (text)
+        json_text(stdout, text);
+    else
+        fputs("null", stdout);
+}
+
+static void print_json(const relume_notes *notes)
+{
+    const double mm = relume_notes_scale(notes);
+    fputs("{\"mm_per_pixel\": ", stdout);
+    json_number(stdout, mm > 0.0 ? mm : (double)NAN);
+    fputs(", \"notes\": [", stdout);
+    for (int i = 0; i < relume_notes_count(notes); i++) {
+        const struct relume_note *n = relume_notes_get(notes, i);
+        const struct relume_note_measures m = relume_note_measure(n);
+        printf("%s{\"id\": ", i ? ", " : "");
+        json_text(stdout, n->id);
+        printf(", \"kind\": \"%s\", \"places\": [", relume_note_kind_name(n->kind));
+        for (int k = 0; k < n->places; k++)
+            printf("%s[%.17g, %.17g]", k ? ", " : "", n->place[k][0], n->place[k][1]);
+        fputs("], \"length\": ", stdout);
+        json_number(stdout, m.length);
+        fputs(", \"area\": ", stdout);
+        json_number(stdout, m.area);
+        fputs(", \"degrees\": ", stdout);
+        json_number(stdout, m.degrees);
+        print_member("text", n->text);
+        print_member("state", n->state);
+        print_member("creator", n->creator);
+        print_member("created", n->created);
+        putchar('}');
+    }
+    puts("]}");
+}
+
+// ---------------------------------------------------------------- all
+
+static relume_status check(const struct notes_options *o)
+{
+    if ((o->text || o->state || o->creator) && !o->add.count && !(o->rewrite && o->text))
+        return usage_error("--text, --state and --creator belong to --add (--text also to "
+                           "--rewrite)");
+    if (o->rewrite && !o->text)
+        return usage_error("--rewrite needs --text");
+    if (!o->ruler != !(o->length > 0.0))
+        return usage_error("--ruler and --length need each other");
+    if (o->ruler && o->scale > 0.0)
+        return usage_error("--scale and --ruler: choose one of them");
+    if (o->to && o->profile)
+        return usage_error("--to and --profile: choose one of them");
+    if ((o->to || o->profile) && !o->output)
+        return usage_error("%s needs -o OUT", o->to ? "--to" : "--profile");
+    if (o->output && !o->to && !o->profile)
+        return usage_error("-o needs --to or --profile");
+    return o->output ? relume_file_check(o->output, o->args.log) : RELUME_OK;
+}
+
+static relume_status work(relume_pack *pack, const struct notes_options *o)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const char *path = o->args.input[0];
+    const struct relume_notes_file file = {base_name(path), info->width, info->height, info->views};
+    relume_notes *notes = NULL;
+    if (o->view >= info->views)
+        return usage_error("--view %d: %s has %d view%s, counted from 0", o->view, path,
+                           info->views, relume_plural(info->views));
+    relume_status status = relume_notes_open(&notes, path, &file, o->args.log);
+    if (!status)
+        status = change(notes, o);
+    if (!status && o->to)
+        status = relume_notes_write(notes, o->output, (enum relume_notes_format)(o->to - TO_CSV),
+                                    o->canvas, o->args.log);
+    if (!status && o->profile)
+        status = write_profile(notes, pack, o);
+    if (!status && changes(o))
+        status = relume_notes_save(notes, path, o->args.log);
+    if (!status && o->json)
+        print_json(notes);
+    else if (!status && !o->output)
+        print_text(notes);
+    relume_notes_destroy(&notes);
+    return status;
+}
+
+static relume_status run(const struct args *args)
+{
+    const struct notes_options *o = (const void *)args;
+    relume_pack *pack = NULL;
+    relume_status status = check(o);
+    if (!status)
+        status = relume_open(&pack, args->input[0], relume_open_params(.log = args->log));
+    if (!status)
+        status = work(pack, o);
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+const struct command command_notes = {
+    COMMAND("notes", "FILE [--add NOTE] [--to FORMAT -o OUT] [OPTION ...]",
+            "write notes on a picture, measure in it, hand them to other programs",
+            "relume notes coin.exr --add 'line 120,80 300,95' --text 'a scratch'", 1, 1),
+};

@@ -1,0 +1,180 @@
+// export.c - notes for spreadsheets, drawing programs and IIIF viewers
+#include "notes/list.h"
+
+#include "base/json.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "notes/shape.h"
+#include "notes/write.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---------------------------------------------------------------- CSV (RFC 4180)
+
+// Quoted; spreadsheets take what begins with one of =+-@ for a formula.
+static void cell(FILE *f, const char *text)
+{
+    fputc('"', f);
+    if (text && strchr("=+-@\t\r", *text) && *text)
+        fputc('\'', f);
+    for (; text && *text; text++)
+        fputs(*text == '"' ? "\"\"" : (char[]){*text, 0}, f);
+    fputc('"', f);
+}
+
+static void cell_number(FILE *f, double value)
+{
+    if (isfinite(value))
+        fprintf(f, ",%s", jvalue_number_text(value).text);
+    else
+        fputc(',', f);
+}
+
+static bool print_csv(FILE *f, const relume_notes *n, const char *canvas)
+{
+    (void)canvas;
+    const double mm = n->mm_per_pixel;
+    fprintf(f, "id,kind,places,length_px,area_px2,degrees%s,text,state,creator,created\r\n",
+            mm > 0.0 ? ",length_mm,area_mm2" : "");
+    for (int i = 0; i < n->count; i++) {
+        const struct relume_note *note = &n->note[i].note;
+        const struct relume_note_measures m = relume_note_measure(note);
+        cell(f, note->id);
+        fprintf(f, ",%s,\"", relume_note_kind_name(note->kind));
+        for (int k = 0; k < note->places; k++)
+            fprintf(f, "%s%s %s", k ? ", " : "", jvalue_number_text(note->place[k][0]).text,
+                    jvalue_number_text(note->place[k][1]).text);
+        fputc('"', f);
+        cell_number(f, m.length);
+        cell_number(f, m.area);
+        cell_number(f, m.degrees);
+        if (mm > 0.0) {
+            cell_number(f, m.length * mm);
+            cell_number(f, m.area * mm * mm);
+        }
+        const char *const texts[] = {note->text, note->state, note->creator, note->created};
+        for (int k = 0; k < 4; k++) {
+            fputc(',', f);
+            cell(f, texts[k]);
+        }
+        fputs("\r\n", f);
+    }
+    return true;
+}
+
+// ---------------------------------------------------------------- SVG
+
+static void escape(FILE *f, const char *text)
+{
+    uint32_t code;
+    for (int step; (step = relume_text_step(&code, text)); text += step) {
+        if (code == '<' || code == '>' || code == '&' || code == '"' || code == '\'')
+            fprintf(f, "&#%u;", (unsigned)code);
+        else if (code >= ' ' || code == '\n' || code == '\t')
+            fwrite(text, 1, (size_t)step, f);
+    }
+}
+
+static void print_label(FILE *f, const struct relume_note *note, double mm, double size)
+{
+    const struct relume_note_measures m = relume_note_measure(note);
+    fprintf(f, "<text x=\"%g\" y=\"%g\">", note->place[0][0] + size * 0.6,
+            note->place[0][1] - size * 0.6);
+    if (note->text)
+        escape(f, note->text);
+    if (note->kind == RELUME_NOTE_LINE && isfinite(m.length))
+        fprintf(f, "%s%.4g %s", note->text ? " " : "", m.length * (mm > 0.0 ? mm : 1.0),
+                mm > 0.0 ? "mm" : "px");
+    fputs("</text>\n", f);
+}
+
+static bool print_svg(FILE *f, const relume_notes *n, const char *canvas)
+{
+    (void)canvas;
+    const double size = fmax(n->width, n->height) / 64.0;
+    fprintf(f,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
+            "viewBox=\"0 0 %d %d\" fill=\"none\" stroke=\"#ffd000\" stroke-width=\"%g\" "
+            "font-family=\"sans-serif\" font-size=\"%g\">\n",
+            n->width, n->height, n->width, n->height, size / 8.0, size);
+    for (int i = 0; i < n->count; i++) {
+        const struct relume_note *note = &n->note[i].note;
+        if (note->kind == RELUME_NOTE_VIEW)
+            continue;
+        fputs("<g id=\"", f);
+        escape(f, note->id);
+        fputs("\">", f);
+        if (note->kind == RELUME_NOTE_POINT)
+            fprintf(f, "<circle cx=\"%s\" cy=\"%s\" r=\"%g\"/>",
+                    jvalue_number_text(note->place[0][0]).text,
+                    jvalue_number_text(note->place[0][1]).text, size / 3.0);
+        else {
+            fputs("<path d=\"", f);
+            shape_print_path(f, note);
+            fputs("\"/>", f);
+        }
+        fputs("<g fill=\"#ffd000\" stroke=\"none\">", f);
+        print_label(f, note, n->mm_per_pixel, size);
+        fputs("</g></g>\n", f);
+    }
+    fputs("</svg>\n", f);
+    return true;
+}
+
+// ---------------------------------------------------------------- IIIF
+
+static bool print_iiif(FILE *f, const relume_notes *n, const char *canvas)
+{
+    fputs("{\"@context\": [\"http://www.w3.org/ns/anno.jsonld\",\n"
+          "  \"http://iiif.io/api/presentation/3/context.json\", {\"relume\": \"urn:relume:\"}],\n"
+          "\"id\": ",
+          f);
+    char *id = mem_format("%s/notes", canvas ? canvas : n->name);
+    bool good = id && note_quote(f, id);
+    mem_free(id);
+    fputs(", \"type\": \"AnnotationPage\",\n\"items\": [", f);
+    for (int i = 0; i < n->count; i++) {
+        fputs(i ? ",\n" : "\n", f);
+        good = note_print(f, &n->note[i].note, canvas ? canvas : n->name) && good;
+    }
+    fputs("]}\n", f);
+    return good;
+}
+
+// ---------------------------------------------------------------- all
+
+static const struct {
+    const char *name;
+    bool (*print)(FILE *f, const relume_notes *notes, const char *canvas);
+} formats[] = {
+    [RELUME_NOTES_CSV] = {"csv", print_csv},
+    [RELUME_NOTES_SVG] = {"svg", print_svg},
+    [RELUME_NOTES_IIIF] = {"iiif", print_iiif},
+};
+
+relume_status relume_notes_format_parse(enum relume_notes_format *out, const char *name)
+{
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (!strcmp(name, formats[i].name)) {
+            *out = (enum relume_notes_format)i;
+            return RELUME_OK;
+        }
+    return RELUME_EINVAL;
+}
+
+relume_status relume_notes_write(const relume_notes *notes, const char *path,
+                                 enum relume_notes_format format, const char *canvas,
+                                 const struct relume_log *log)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *f = open_memstream(&text, &size);
+    if (!f)
+        return RELUME_ENOMEM;
+    const bool good = formats[format].print(f, notes, canvas);
+    const relume_status status =
+        !fclose(f) && good ? outfile_save(path, text, size, log) : RELUME_ENOMEM;
+    mem_free_libc(text);
+    return status;
+}

@@ -1,0 +1,234 @@
+// list.c - a list of notes in memory
+#include "notes/list.h"
+
+#include "base/json.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+static const struct {
+    const char *name;
+    int least, most;  // places
+} kinds[] = {
+    [RELUME_NOTE_POINT] = {"point", 1, 1},
+    [RELUME_NOTE_LINE] = {"line", 2, RELUME_NOTE_MOST_PLACES},
+    [RELUME_NOTE_POLYGON] = {"polygon", 3, RELUME_NOTE_MOST_PLACES},
+    [RELUME_NOTE_VIEW] = {"view", 0, 0},
+};
+
+const char *relume_note_kind_name(enum relume_note_kind kind)
+{
+    return kinds[kind].name;
+}
+
+relume_status relume_note_kind_parse(enum relume_note_kind *out, const char *name)
+{
+    for (int k = 0; k <= RELUME_NOTE_VIEW; k++)
+        if (!strcmp(name, kinds[k].name)) {
+            *out = (enum relume_note_kind)k;
+            return RELUME_OK;
+        }
+    return RELUME_EINVAL;
+}
+
+char *notes_name(const char *path)
+{
+    const size_t n = strlen(path);
+    const bool exr = n > 4 && !strcasecmp(path + n - 4, ".exr");
+    return mem_format("%.*s.notes.json", (int)(exr ? n - 4 : n), path);
+}
+
+relume_status relume_notes_create(relume_notes **out, const struct relume_notes_file *file)
+{
+    *out = NULL;
+    if (file->width < 1 || file->height < 1 || file->views < 1)
+        return RELUME_EINVAL;
+    relume_notes *n = mem_zeroed(1, sizeof *n);
+    if (!n)
+        return RELUME_ENOMEM;
+    n->width = file->width;
+    n->height = file->height;
+    n->views = file->views;
+    n->name = mem_text(file->name ? file->name : "");
+    if (!n->name)
+        relume_notes_destroy(&n);
+    *out = n;
+    return n ? RELUME_OK : RELUME_ENOMEM;
+}
+
+void notes_forget(struct kept_note *kept)
+{
+    const struct relume_note *n = &kept->note;
+    mem_free((void *)n->place);
+    mem_free((char *)n->text);
+    mem_free((char *)n->state);
+    mem_free((char *)n->creator);
+    mem_free((char *)n->created);
+    mem_free((char *)n->id);
+    mem_free(kept->raw);
+    *kept = (struct kept_note){.raw = NULL};
+}
+
+void relume_notes_destroy(relume_notes **notes)
+{
+    relume_notes *n = *notes;
+    *notes = NULL;
+    if (!n)
+        return;
+    for (int i = 0; i < n->count; i++)
+        notes_forget(&n->note[i]);
+    mem_free(n->note);
+    mem_free(n->name);
+    mem_free(n);
+}
+
+// ---------------------------------------------------------------- adding
+
+static bool text_is_good(const char *text)
+{
+    return !text || (strlen(text) <= RELUME_NOTE_MOST_TEXT && jvalue_may_hold(text));
+}
+
+// One size of the picture beside it: notes on a part of a picture that was cut stay.
+static bool within(const double place[2], const relume_notes *n)
+{
+    const double size[2] = {n->width, n->height};
+    for (int k = 0; k < 2; k++)
+        if (!(place[k] >= -size[k] && place[k] <= 2.0 * size[k]))
+            return false;
+    return true;
+}
+
+static relume_status check(const relume_notes *n, const struct relume_note *note,
+                           const struct relume_log *log)
+{
+    if (n->count == RELUME_NOTES_MOST)
+        return log_fail(log, RELUME_EINVAL, "a list holds at most %d notes", RELUME_NOTES_MOST);
+    if (note->places < kinds[note->kind].least || note->places > kinds[note->kind].most)
+        return log_fail(log, RELUME_EINVAL, "a %s has %d to %d places; found %d",
+                        kinds[note->kind].name, kinds[note->kind].least, kinds[note->kind].most,
+                        note->places);
+    for (int i = 0; i < note->places; i++)
+        if (!within(note->place[i], n))
+            return log_fail(log, RELUME_EINVAL,
+                            "the place %g,%g lies far beside the picture of %d x %d pixels",
+                            note->place[i][0], note->place[i][1], n->width, n->height);
+    const char *const texts[] = {note->text, note->state, note->creator, note->created, note->id};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        if (!text_is_good(texts[i]))
+            return log_fail(log, RELUME_EINVAL, "expected text in UTF-8, at most %d bytes of it",
+                            RELUME_NOTE_MOST_TEXT);
+    return RELUME_OK;
+}
+
+// One more than the largest number of "n17".
+static char *next_id(const relume_notes *n)
+{
+    long most = 0;
+    for (int i = 0; i < n->count; i++) {
+        const char *id = n->note[i].note.id;
+        const long number =
+            *id == 'n' && strspn(id + 1, "0123456789") == strlen(id + 1) && strlen(id) < 10
+                ? strtol(id + 1, NULL, 10)
+                : 0;
+        if (number > most)
+            most = number;
+    }
+    return mem_format("n%ld", most + 1);
+}
+
+static bool copy_text(const char **out, const char *text)
+{
+    *out = text ? mem_text(text) : NULL;
+    return !text || *out;
+}
+
+relume_status notes_append(relume_notes *n, const struct relume_note *note, char *raw,
+                           const struct relume_log *log)
+{
+    const relume_status status = check(n, note, log);
+    if (status)
+        return status;
+    struct kept_note kept = {.note = {.kind = note->kind, .places = note->places}};
+    struct relume_note *own = &kept.note;
+    double(*place)[2] = mem_array((size_t)note->places, sizeof *place);
+    for (int i = 0; place && i < note->places; i++)
+        memcpy(place[i], note->place[i], sizeof place[i]);
+    own->place = (const double(*)[2])place;
+    own->id = note->id ? mem_text(note->id) : next_id(n);
+    if (!own->place || !own->id || !copy_text(&own->text, note->text) ||
+        !copy_text(&own->state, note->state) || !copy_text(&own->creator, note->creator) ||
+        !copy_text(&own->created, note->created) ||
+        !mem_grow(&n->note, (size_t)n->count, sizeof *n->note)) {
+        notes_forget(&kept);
+        return RELUME_ENOMEM;
+    }
+    kept.raw = raw;
+    n->note[n->count++] = kept;
+    return RELUME_OK;
+}
+
+relume_status relume_notes_add(relume_notes *notes, const struct relume_note *note,
+                               const struct relume_log *log)
+{
+    if (note->id && relume_notes_find(notes, note->id) >= 0)
+        return log_fail(log, RELUME_EINVAL, "there is a note '%s' already", note->id);
+    return notes_append(notes, note, NULL, log);
+}
+
+relume_status relume_notes_rewrite(relume_notes *notes, int i, const char *text,
+                                   const struct relume_log *log)
+{
+    struct kept_note *kept = &notes->note[i];
+    const char *copy;
+    if (!text_is_good(text))
+        return log_fail(log, RELUME_EINVAL, "expected text in UTF-8, at most %d bytes of it",
+                        RELUME_NOTE_MOST_TEXT);
+    if (!copy_text(&copy, text))
+        return RELUME_ENOMEM;
+    mem_free((char *)kept->note.text);
+    kept->note.text = copy;
+    mem_free(kept->raw);
+    kept->raw = NULL;
+    return RELUME_OK;
+}
+
+void relume_notes_remove(relume_notes *notes, int i)
+{
+    notes_forget(&notes->note[i]);
+    notes->count--;
+    memmove(&notes->note[i], &notes->note[i + 1], (size_t)(notes->count - i) * sizeof *notes->note);
+}
+
+int relume_notes_count(const relume_notes *notes)
+{
+    return notes->count;
+}
+
+const struct relume_note *relume_notes_get(const relume_notes *notes, int i)
+{
+    return &notes->note[i].note;
+}
+
+int relume_notes_find(const relume_notes *notes, const char *id)
+{
+    for (int i = 0; i < notes->count; i++)
+        if (!strcmp(notes->note[i].note.id, id))
+            return i;
+    return -1;
+}
+
+double relume_notes_scale(const relume_notes *notes)
+{
+    return notes->mm_per_pixel;
+}
+
+relume_status relume_notes_set_scale(relume_notes *notes, double mm_per_pixel)
+{
+    if (!(mm_per_pixel >= 0.0) || !isfinite(mm_per_pixel))
+        return RELUME_EINVAL;
+    notes->mm_per_pixel = mm_per_pixel;
+    return RELUME_OK;
+}

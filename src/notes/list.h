@@ -1,0 +1,31 @@
+// list.h - a list of notes, inside
+#ifndef NOTES_LIST_H
+#define NOTES_LIST_H
+
+#include "base/log.h"
+
+#include <relume/notes.h>
+
+struct kept_note {
+    struct relume_note note;  // its texts and places are its own
+    char *raw;                // the annotation that it was read from; NULL: made here, or changed
+};
+
+struct relume_notes {
+    char *name;  // of the file
+    int width, height, views;
+    double mm_per_pixel;
+    int count;
+    struct kept_note *note;  // [count]
+};
+
+void notes_forget(struct kept_note *kept);
+// A copy with `raw`, which is taken over where it goes well. Checked as relume_notes_add, but for
+// names that are taken.
+relume_status notes_append(relume_notes *notes, const struct relume_note *note, char *raw,
+                           const struct relume_log *log);
+
+// The name of the list of the file `path`, to be freed; NULL: no memory.
+char *notes_name(const char *path);
+
+#endif

@@ -1,0 +1,101 @@
+// page_write.c - notes as a page of annotations
+#include "notes/list.h"
+
+#include "base/json.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "notes/shape.h"
+#include "notes/write.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+bool note_quote(FILE *f, const char *text)
+{
+    char *quoted = jvalue_quote(text);
+    fputs(quoted ? quoted : "\"\"", f);
+    mem_free(quoted);
+    return quoted != NULL;
+}
+
+static bool member(FILE *f, const char *name, const char *text)
+{
+    if (!text)
+        return true;
+    fprintf(f, ", \"%s\": ", name);
+    return note_quote(f, text);
+}
+
+bool note_print(FILE *f, const struct relume_note *note, const char *source)
+{
+    bool good = true;
+    fputs("{\"id\": ", f);
+    good = note_quote(f, note->id) && good;
+    fprintf(f, ", \"type\": \"Annotation\", \"motivation\": \"%s\"",
+            note->kind == RELUME_NOTE_VIEW ? "bookmarking" : "commenting");
+    good = member(f, "creator", note->creator) && good;
+    good = member(f, "created", note->created) && good;
+    if (note->text) {
+        fputs(",\n  \"body\": {\"type\": \"TextualBody\", \"format\": \"text/plain\"", f);
+        good = member(f, "value", note->text) && good;
+        fputc('}', f);
+    }
+    fputs(",\n  \"target\": {\"type\": \"SpecificResource\"", f);
+    good = member(f, "source", source) && good;
+    if (note->kind != RELUME_NOTE_VIEW) {
+        fputs(",\n    \"selector\": ", f);
+        shape_print(f, note);
+    }
+    if (note->state) {
+        fputs(",\n    \"state\": {\"type\": \"relume:State\"", f);
+        good = member(f, "value", note->state) && good;
+        fputc('}', f);
+    }
+    fputs("}}", f);
+    return good;
+}
+
+static bool print_page(FILE *f, const relume_notes *notes)
+{
+    bool good = true;
+    fputs("{\"@context\": [\"http://www.w3.org/ns/anno.jsonld\", {\"relume\": \"urn:relume:\"}],\n"
+          "\"id\": \"#notes\", \"type\": \"AnnotationPage\",\n\"relume:file\": {\"name\": ",
+          f);
+    good = note_quote(f, notes->name) && good;
+    fprintf(f, ", \"width\": %d, \"height\": %d, \"views\": %d},\n", notes->width, notes->height,
+            notes->views);
+    if (notes->mm_per_pixel > 0.0)
+        fprintf(f, "\"relume:mmPerPixel\": %s,\n", jvalue_number_text(notes->mm_per_pixel).text);
+    fputs("\"items\": [", f);
+    for (int i = 0; i < notes->count; i++) {
+        fputs(i ? ",\n" : "\n", f);
+        if (notes->note[i].raw)
+            fputs(notes->note[i].raw, f);
+        else
+            good = note_print(f, &notes->note[i].note, notes->name) && good;
+    }
+    fputs("]}\n", f);
+    return good;
+}
+
+relume_status relume_notes_save(const relume_notes *notes, const char *path,
+                                const struct relume_log *log)
+{
+    char *name = notes_name(path), *text = NULL;
+    size_t size = 0;
+    relume_status status = RELUME_OK;
+    const bool empty = !notes->count && notes->mm_per_pixel == 0.0;
+    FILE *f = name && !empty ? open_memstream(&text, &size) : NULL;
+    if (name && empty && unlink(name) && errno != ENOENT)
+        status = log_fail(log, RELUME_EIO, "%s: cannot be removed; %s", name, strerror(errno));
+    if (!name || (!empty && !f))
+        status = RELUME_ENOMEM;
+    if (f) {
+        const bool good = print_page(f, notes);
+        status = !fclose(f) && good ? outfile_save(name, text, size, log) : RELUME_ENOMEM;
+    }
+    mem_free_libc(text);
+    mem_free(name);
+    return status;
+}

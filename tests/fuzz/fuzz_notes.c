@@ -1,0 +1,92 @@
+// fuzz_notes.c - lists of notes made of noise; what is read comes back the same
+#include "fuzz.h"
+
+#include <math.h>
+#include <relume/notes.h>
+
+static const char *const words[] = {"AnnotationPage",
+                                    "items",
+                                    "target",
+                                    "selector",
+                                    "type",
+                                    "value",
+                                    "PointSelector",
+                                    "SvgSelector",
+                                    "FragmentSelector",
+                                    "xywh=",
+                                    "pixel:",
+                                    "<path d='M1,2 L3,4 Z'/>",
+                                    "<polygon ",
+                                    "points='",
+                                    "<circle ",
+                                    "cx='",
+                                    "transform",
+                                    "relume:State",
+                                    "relume:file",
+                                    "relume:mmPerPixel",
+                                    "body",
+                                    "creator",
+                                    "id",
+                                    "1e300",
+                                    "-0",
+                                    "\\u0000",
+                                    "nan",
+                                    NULL};
+
+static void look(const relume_notes *notes)
+{
+    for (int i = 0; i < relume_notes_count(notes); i++) {
+        const struct relume_note *n = relume_notes_get(notes, i);
+        const struct relume_note_measures m = relume_note_measure(n);
+        for (int k = 0; k < n->places; k++)
+            if (!isfinite(n->place[k][0]) || !isfinite(n->place[k][1]))
+                abort();
+        if (m.length < 0.0 || m.area < 0.0 || m.degrees < 0.0 || m.degrees > 180.0)
+            abort();
+    }
+}
+
+static bool one(struct fuzz *f, struct bytes b)
+{
+    const struct relume_notes_file file = {"a.exr", 64, 64, 1};
+    relume_notes *notes, *again;
+    int added;
+    fuzz_store(f->path, b);
+    if (relume_notes_create(&notes, &file))
+        abort();
+    const relume_status status = relume_notes_import(notes, f->path, &added, NULL);
+    look(notes);
+    if (!status && added) {
+        if (relume_notes_create(&again, &file) ||
+            relume_notes_write(notes, f->path, RELUME_NOTES_IIIF, NULL, NULL) ||
+            relume_notes_import(again, f->path, &added, NULL) || added != relume_notes_count(notes))
+            abort();
+        relume_notes_destroy(&again);
+    }
+    relume_notes_destroy(&notes);
+    return !status;
+}
+
+static void add(struct fuzz *f, const char *text)
+{
+    struct bytes b = {(uint8_t *)strdup(text), strlen(text)};
+    if (!b.data)
+        abort();
+    fuzz_add(f, b);
+}
+
+int main(int argc, char **argv)
+{
+    struct fuzz f = {.words = words};
+    fuzz_begin(&f, "fuzz_notes", argc, argv);
+    add(&f, "{\"type\": \"AnnotationPage\", \"relume:file\": {\"width\": 64, \"height\": 64, "
+            "\"views\": 1}, \"relume:mmPerPixel\": 0.5, \"items\": [{\"id\": \"n1\", \"creator\": "
+            "{\"name\": \"Ann\"}, \"body\": [{\"value\": \"x\"}], \"target\": {\"selector\": "
+            "{\"type\": \"PointSelector\", \"x\": 1, \"y\": 2}, \"state\": {\"type\": "
+            "\"relume:State\", \"value\": \"light=dir,0,0,1\"}}}]}");
+    add(&f, "{\"type\": \"AnnotationPage\", \"items\": [{\"target\": {\"selector\": {\"type\": "
+            "\"SvgSelector\", \"value\": \"<svg><path d='M1,2 l3,4 H5 v6 z'/></svg>\"}}}, "
+            "{\"target\": \"c#xywh=1,2,3,4\"}, {\"target\": {\"selector\": {\"type\": "
+            "\"SvgSelector\", \"value\": \"<svg><polygon points='1,2 3,4 5,6'/></svg>\"}}}]}");
+    return fuzz_run(&f, argc, argv, one);
+}

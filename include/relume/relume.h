@@ -37,6 +37,7 @@
 #include <relume/photograph.h>
 #include <relume/photometric.h>
 #include <relume/psf.h>
+#include <relume/publish.h>
 #include <relume/reflection.h>
 #include <relume/relight.h>
 #include <relume/relighter.h>

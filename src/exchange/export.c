@@ -28,11 +28,6 @@ relume_status relume_web_type_parse(enum relume_web_type *out, const char *name)
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
-double export_step_of_quality(int quality)
-{
-    return EXPORT_FIRST_STEP * exp2((80 - quality) / 10.0);
-}
-
 double export_light_spacing(const struct source *s)
 {
     double sum = 0.0;
@@ -114,7 +109,7 @@ relume_status relume_export(relume_pack *pack, const char *path, enum relume_exc
     if (!status)
         status = read_codes(&codes, &level, pack, &p);
     if (!status)
-        status = source_open(&source, codes, p.log);
+        status = source_open(&source, codes, false, p.log);
     const struct export e = {&source, &p, p.log, format == RELUME_EXCHANGE_DEEPZOOM};
     if (!status)
         status = is_blocks(format)   ? export_blocks(&e, path, format, &found)

@@ -22,11 +22,6 @@ relume_status export_legacy(const struct export *e, const char *path, enum relum
 relume_status export_blocks(const struct export *e, const char *path, enum relume_exchange format,
                             struct relume_export_report *report);
 
-// Of the quantisers, in units of the picture's error: 80 is 0.045, about 11 codes; ten less doubles
-// it.
-#define EXPORT_FIRST_STEP 0.045
-double export_step_of_quality(int quality);
-
 // Mean distance of a light from its nearest neighbour.
 double export_light_spacing(const struct source *s);
 

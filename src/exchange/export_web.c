@@ -6,6 +6,7 @@
 #include "exchange/export.h"
 #include "exchange/tiles.h"
 #include "exchange/web.h"
+#include "exchange/web_step.h"
 #include "foreign/measure.h"
 
 #include "base/log.h"
@@ -16,23 +17,7 @@
 #include <limits.h>
 #include <math.h>
 
-enum {
-    TRIALS = 24,
-    CORRECTIONS = 5,
-    TRIAL_PIXELS = 1 << 19,
-    DEFAULT_PLANES = 27,
-    DEFAULT_YAB_PLANES = 45
-};
-
-// Without a wish: the error of 19 in 20 blocks of 8 x 8 pixels is at most so many levels of 255, as
-// far as texture does not hide it (web_visible_error). Found by looking at stills of RealRTI,
-// psmImages and made objects, enlarged three times: blocks are plain to see at 1.4 and gone at 1.0.
-// Smooth shading shows blocks down to 0.4, which nothing but LEAST_QUALITY sees to.
-#define SEEN_LEVELS 1.0
-enum { FIRST_QUALITY = 80, LEAST_QUALITY = 95, MOST_QUALITY = 100 };
-
-#define LEAST_STEP 1e-4
-#define MOST_STEP  8.0
+enum { CORRECTIONS = 5, DEFAULT_PLANES = 27, DEFAULT_YAB_PLANES = 45, FIRST_QUALITY = 80 };
 
 struct maker {
     const struct export *e;
@@ -50,57 +35,13 @@ static double pixels_of(const struct planes *p)
     return (double)p->width * p->height;
 }
 
-// What a step gives: the logarithm of the bytes per pixel, or with `psnr` the expected decibels.
-// Both fall with the step, nearly along lines.
-static relume_status try_step(const struct maker *m, double log_step, bool psnr, double *value)
+static struct web_trials trials_of(const struct maker *m)
 {
-    struct web_folder w = {.plan = &m->plan, .planes = m->sample.data ? &m->sample : &m->planes};
-    const relume_status status = web_encode(&w, exp(log_step), m->all, m->e->params->threads);
-    *value = psnr ? decibels(w.error / 3.0) : log((double)w.bytes / pixels_of(w.planes));
-    web_folder_free(&w);
-    return status;
-}
-
-struct bracket {
-    double low, high;              // logarithms of steps
-    double low_value, high_value;  // NaN while not tried
-};
-
-// The secant's step, or the middle where an end is not known or the secant hugs an end.
-static double next_step(const struct bracket *b, double target)
-{
-    const double share = (b->low_value - target) / (b->low_value - b->high_value);
-    return b->low + (b->high - b->low) * (share > 0.02 && share < 0.98 ? share : 0.5);
-}
-
-// The step at which the value comes down to `target`: the largest that is still above (psnr), the
-// smallest that is not (bytes).
-static relume_status search(struct maker *m, bool psnr, double target)
-{
-    struct bracket b = {log(LEAST_STEP), log(MOST_STEP), (double)NAN, (double)NAN};
-    double at = log(EXPORT_FIRST_STEP);
-    for (int i = 0; i < TRIALS && b.high - b.low > 0.004; i++) {
-        double value;
-        const relume_status status = try_step(m, at, psnr, &value);
-        if (status)
-            return status;
-        if (!log_progress(m->e->log, "trials", (double)i / TRIALS))
-            return RELUME_ECANCEL;
-        if (value > target) {
-            b.low = at;
-            b.low_value = value;
-        } else {
-            b.high = at;
-            b.high_value = value;
-        }
-        if (fabs(value - target) < (psnr ? 0.003 : 0.002) && (value > target) == psnr)
-            break;
-        at = isnan(b.low_value)    ? fmax(at - 1.4, (b.low + at) / 2.0)
-             : isnan(b.high_value) ? fmin(at + 1.4, (b.high + at) / 2.0)
-                                   : next_step(&b, target);
-    }
-    m->step = exp(psnr ? b.low : b.high);
-    return RELUME_OK;
+    return (struct web_trials){.plan = &m->plan,
+                               .planes = m->sample.data ? &m->sample : &m->planes,
+                               .all = m->all,
+                               .threads = m->e->params->threads,
+                               .log = m->e->log};
 }
 
 // The whole picture at the step that was found, made coarser until it is as small as was asked.
@@ -112,9 +53,9 @@ static relume_status encode_whole(struct maker *m, struct web_folder *w)
         const double found = (double)w->bytes / pixels_of(&m->planes);
         if (status || !(target > 0.0) || found <= target)
             return status;
-        if (m->step >= MOST_STEP)
+        if (m->step >= WEB_MOST_STEP)
             break;
-        m->step = fmin(m->step * pow(found / target, 1.3) * 1.002, MOST_STEP);
+        m->step = fmin(m->step * pow(found / target, 1.3) * 1.002, WEB_MOST_STEP);
     }
     return log_fail(m->e->log, RELUME_EUNFIT,
                     "%s: %g bytes a pixel is too small; the smallest possible is %.3f", m->path,
@@ -127,7 +68,7 @@ static relume_status measure_folder(const struct maker *m, const char *path,
     struct foreign f;
     relume_status status = web_read(&f, path, NULL, m->e->log);
     if (!status)
-        status = measure_psnr(&report->psnr_db, &f, m->e->source, m->e->params->threads);
+        status = measure_psnr(&report->psnr_db, &f, m->e->source, NULL, m->e->params->threads);
     foreign_free(&f);
     return status;
 }
@@ -136,7 +77,8 @@ static relume_status measure_folder(const struct maker *m, const char *path,
 static relume_status attempt(struct maker *m, struct web_folder *w, double wanted, const char *path,
                              struct relume_export_report *report)
 {
-    relume_status status = wanted > 0.0 ? search(m, true, wanted) : RELUME_OK;
+    const struct web_trials t = trials_of(m);
+    relume_status status = wanted > 0.0 ? web_step_of_psnr(&m->step, &t, wanted) : RELUME_OK;
     if (!status)
         status = encode_whole(m, w);
     if (!status)
@@ -156,7 +98,7 @@ static relume_status make_folder(struct maker *m, const char *path,
 {
     const double target = m->e->params->psnr_db;
     double wanted = target;
-    for (int i = 0; i <= CORRECTIONS && !(i > 0 && m->step < 1.01 * LEAST_STEP); i++) {
+    for (int i = 0; i <= CORRECTIONS && !(i > 0 && m->step < 1.01 * WEB_LEAST_STEP); i++) {
         struct web_folder w = {.plan = &m->plan, .planes = &m->planes};
         const relume_status status = attempt(m, &w, wanted, path, report);
         const bool reached = !(target > 0.0) || report->psnr_db >= target;
@@ -236,51 +178,17 @@ static relume_status make_plan(struct maker *m)
     return plan_fit(&m->plan, m->e->source, &f, form, p->threads);
 }
 
-static relume_status try_quality(const struct maker *m, int quality, double *levels)
-{
-    struct web_folder w = {
-        .plan = &m->plan, .planes = m->sample.data ? &m->sample : &m->planes, .blocks = true};
-    relume_status status =
-        web_encode(&w, export_step_of_quality(quality), m->all, m->e->params->threads);
-    if (!status)
-        status = web_visible_error(&w, levels);
-    web_folder_free(&w);
-    return status;
-}
-
-// The lowest quality whose error is not to be seen.
-static relume_status choose_quality(struct maker *m)
-{
-    int low = LEAST_QUALITY, high = MOST_QUALITY;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        double levels = 0.0;
-        const relume_status status = try_quality(m, middle, &levels);
-        if (status)
-            return status;
-        if (!log_progress(m->e->log, "trials",
-                          1.0 - (double)(high - low) / (MOST_QUALITY - LEAST_QUALITY + 1)))
-            return RELUME_ECANCEL;
-        if (levels <= SEEN_LEVELS)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    m->quality = low;
-    m->step = export_step_of_quality(low);
-    return RELUME_OK;
-}
-
 static relume_status choose_step(struct maker *m)
 {
     const struct relume_export_params *p = m->e->params;
+    const struct web_trials t = trials_of(m);
     if (p->bytes_per_pixel > 0.0)
-        return search(m, false, log(p->bytes_per_pixel));
+        return web_step_of_bytes(&m->step, &t, p->bytes_per_pixel);
     if (p->psnr_db > 0.0 && m->plan.chroma > 1)
-        return search(m, true, p->psnr_db);
+        return web_step_of_psnr(&m->step, &t, p->psnr_db);
     if (!(p->psnr_db > 0.0) && !p->quality)
-        return choose_quality(m);
-    m->step = export_step_of_quality(p->quality ? p->quality : FIRST_QUALITY);
+        return web_step_unseen(&m->step, &m->quality, &t);
+    m->step = web_step_of_quality(p->quality ? p->quality : FIRST_QUALITY);
     return RELUME_OK;
 }
 
@@ -297,7 +205,7 @@ static relume_status prepare(struct maker *m)
     relume_status status = make_plan(m);
     if (!status)
         status = planes_make(&m->planes, &m->plan, e->source, m->path, e->params->threads);
-    const int every = status ? 1 : (int)(pixels_of(&m->planes) / TRIAL_PIXELS) + 1;
+    const int every = status ? 1 : (int)(pixels_of(&m->planes) / WEB_TRIAL_PIXELS) + 1;
     if (!status && every > 1)
         status = planes_sample(&m->sample, &m->planes, every, m->path, e->log);
     return status ? status : choose_step(m);

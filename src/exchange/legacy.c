@@ -149,7 +149,8 @@ static relume_status fit(struct foreign *f, const struct export *e, const struct
 static relume_status write_raw(const struct foreign *f, const struct export *e, const char *path,
                                struct relume_export_report *report)
 {
-    const relume_status status = measure_psnr(&report->psnr_db, f, e->source, e->params->threads);
+    const relume_status status =
+        measure_psnr(&report->psnr_db, f, e->source, NULL, e->params->threads);
     report->bytes_per_pixel = f->planes;
     if (status)
         return status;

@@ -5,6 +5,7 @@
 #include "exchange/export.h"
 #include "exchange/legacy.h"
 #include "exchange/ptm.h"
+#include "exchange/web_step.h"
 #include "foreign/measure.h"
 
 #include "base/log.h"
@@ -26,7 +27,7 @@ static relume_status try_quality(struct trial *t, const struct foreign *f, const
                                  double quality)
 {
     const struct relume_export_params *p = e->params;
-    const double step = export_step_of_quality(BEST_SAID) * exp2((BEST_SAID - quality) / 10.0);
+    const double step = web_step_of_quality(BEST_SAID) * exp2((BEST_SAID - quality) / 10.0);
     *t = (struct trial){.psnr_db = 0.0};
     relume_status status =
         ptm_encode_jpeg(&t->file, f, step, (int)lround(fmin(quality, BEST_SAID)), p->threads);
@@ -35,7 +36,7 @@ static relume_status try_quality(struct trial *t, const struct foreign *f, const
     struct foreign decoded = *f;
     decoded.codes = t->file.codes;
     t->bytes_per_pixel = (double)t->file.size / (double)foreign_pixels(f);
-    status = measure_psnr(&t->psnr_db, &decoded, e->source, p->threads);
+    status = measure_psnr(&t->psnr_db, &decoded, e->source, NULL, p->threads);
     if (status)
         ptm_jpeg_free(&t->file);
     return status;

@@ -103,27 +103,10 @@ static relume_status write_level(struct level *l, int threads, const struct relu
     return status;
 }
 
-// Half the size, rounded up: the mean of the one to four values that a pixel covers.
-static float *halve(const float *from, int width, int height)
-{
-    const int w = (width + 1) / 2, h = (height + 1) / 2;
-    float *to = mem_array((size_t)w * (size_t)h, sizeof *to);
-    for (int y = 0; to && y < h; y++)
-        for (int x = 0; x < w; x++) {
-            const int right = smaller_of(2 * x + 1, width - 1),
-                      below = smaller_of(2 * y + 1, height - 1);
-            const float *a = from + (size_t)(2 * y) * (size_t)width;
-            const float *b = from + (size_t)below * (size_t)width;
-            to[(size_t)y * (size_t)w + (size_t)x] =
-                0.25f * (a[2 * x] + a[right] + b[2 * x] + b[right]);
-        }
-    return to;
-}
-
 static relume_status go_up(struct level *l)
 {
     for (int p = 0; p < l->sheet.planes; p++) {
-        float *half = halve(l->sheet.plane[p], l->sheet.width, l->sheet.height);
+        float *half = plane_halved(l->sheet.plane[p], l->sheet.width, l->sheet.height);
         if (!half)
             return RELUME_ENOMEM;
         mem_free(l->own[p]);

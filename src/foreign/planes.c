@@ -6,6 +6,7 @@
 #include "base/scratch.h"
 #include "base/thread.h"
 #include "math/lsq.h"
+#include "math/scalar.h"
 
 #include <errno.h>
 #include <float.h>
@@ -150,4 +151,20 @@ relume_status planes_sample(struct planes *out, const struct planes *p, int ever
     if (status)
         planes_free(out);
     return status;
+}
+
+float *plane_halved(const float *from, int width, int height)
+{
+    const int w = (width + 1) / 2, h = (height + 1) / 2;
+    float *to = mem_array((size_t)w * (size_t)h, sizeof *to);
+    for (int y = 0; to && y < h; y++)
+        for (int x = 0; x < w; x++) {
+            const int right = smaller_of(2 * x + 1, width - 1),
+                      below = smaller_of(2 * y + 1, height - 1);
+            const float *a = from + (size_t)(2 * y) * (size_t)width;
+            const float *b = from + (size_t)below * (size_t)width;
+            to[(size_t)y * (size_t)w + (size_t)x] =
+                0.25f * (a[2 * x] + a[right] + b[2 * x] + b[right]);
+        }
+    return to;
 }

@@ -18,6 +18,10 @@ relume_status planes_sample(struct planes *out, const struct planes *p, int ever
                             const struct relume_log *log);
 void planes_free(struct planes *p);
 
+// Half the size, rounded up: the mean of the one to four values that a pixel covers. The caller
+// frees it; NULL when memory is short.
+float *plane_halved(const float *from, int width, int height);
+
 static inline const float *planes_at(const struct planes *p, int plane)
 {
     return p->data + (size_t)plane * (size_t)p->width * (size_t)p->height;

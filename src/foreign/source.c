@@ -20,7 +20,17 @@ static bool is_srgb(const struct relume_codes *codes)
            (codes->display.curve == RELUME_CURVE_SRGB || codes->display.curve == RELUME_CURVE_AUTO);
 }
 
-static relume_status choose_lights(struct source *s)
+// The file's coding, where it is a curve that everybody knows; else sRGB.
+static struct relume_transfer coding_of(const struct relume_codes *codes)
+{
+    if (codes->domain == RELUME_DOMAIN_LINEAR)
+        return (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
+    return codes->display.curve == RELUME_CURVE_GAMMA
+               ? codes->display
+               : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
+}
+
+static relume_status choose_lights(struct source *s, bool whole)
 {
     const struct relume_coder_info *info = relume_coder_info(s->codes->coder);
     const bool stand_in = s->between == NULL && info->lights > STAND_INS;
@@ -29,26 +39,34 @@ static relume_status choose_lights(struct source *s)
     if (!s->light)
         return RELUME_ENOMEM;
     if (stand_in)
-        return relume_directions_make(s->light, s->lights, relume_pattern_find("hammersley"),
-                                      relume_directions_params(.hemisphere = true));
+        return relume_directions_make(
+            s->light, s->lights, relume_pattern_find("hammersley"),
+            relume_directions_params(.hemisphere = !whole || info->hemispherical,
+                                     .pole_y = whole && info->pole_y));
     memcpy(s->light, info->directions, (size_t)s->lights * sizeof *s->light);
     return RELUME_OK;
 }
 
-relume_status source_open(struct source *s, const struct relume_codes *codes,
+relume_status source_open(struct source *s, const struct relume_codes *codes, bool whole,
                           const struct relume_log *log)
 {
     *s =
         (struct source){.codes = codes, .width = codes->width, .height = codes->height, .log = log};
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     s->numbers = info->basis->joint ? info->coefficients : 3 * info->coefficients;
-    const relume_status status = choose_lights(s);
-    if (status || (is_srgb(codes) && s->numbers <= MOST_NUMBERS))
+    s->coding = whole ? coding_of(codes) : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
+    const bool as_it_is = is_srgb(codes) || s->coding.curve != RELUME_CURVE_SRGB;
+    const relume_status status = choose_lights(s, whole);
+    if (status || (as_it_is && s->numbers <= MOST_NUMBERS))
         return status;
+    s->coding = (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
     s->numbers = 3 * s->lights;
     // the file's own way between its lights, where it has one
     const bool own = info->interpolant && s->lights == info->lights;
-    struct relume_coder_params params = {.log = log, .hemispherical = true, .decode = true};
+    struct relume_coder_params params = {.log = log,
+                                         .hemispherical = !whole || info->hemispherical,
+                                         .pole_y = whole && info->pole_y,
+                                         .decode = true};
     params.interpolant = own ? info->interpolant : relume_interpolant_find("angular");
     if (own)
         memcpy(params.parameter, info->parameter, sizeof params.parameter);
@@ -92,7 +110,6 @@ static relume_status picture_rows(const struct source *s, int row, int rows, flo
     struct relume_image picture = {0};
     struct relume_codes_part band;
     relume_status status = relume_codes_pick(&band, s->codes, (size_t)row * (size_t)s->width, 1, n);
-    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     for (int i = 0; !status && i < s->lights; i++) {
         const struct relume_light light = {.direction = s->light[i], .rgb = {1.0f, 1.0f, 1.0f}};
         status =
@@ -101,7 +118,7 @@ static relume_status picture_rows(const struct source *s, int row, int rows, flo
             float *to = out + (3 * (size_t)i + c) * n;
             for (size_t x = 0; x < n; x++) {
                 const float v = picture.data[3 * x + c];
-                to[x] = relume_transfer_encode(srgb, v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v);
+                to[x] = relume_transfer_encode(s->coding, v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v);
             }
         }
     }

@@ -9,7 +9,8 @@
 #include <stddef.h>
 
 // OPTION_OUTPUT and those behind it are text that names what is written; OPTION_TEXT, OPTION_TEXTS
-// and inputs that name a file or folder are taken as read: no output replaces it.
+// and inputs that name a file or folder are taken as read: no output replaces it. OPTION_PROSE names
+// none.
 enum option_kind {
     OPTION_GROUP,    // no option: the heading of the rows that follow
     OPTION_FLAG,     // bool
@@ -25,6 +26,7 @@ enum option_kind {
     OPTION_TRANSFER,  // struct relume_transfer
     OPTION_TEXT,
     OPTION_TEXTS,  // struct texts: may be repeated
+    OPTION_PROSE,  // text for people
     OPTION_STATE,    // a line of other options (state_line.h), before which those beside it count
     OPTION_OUTPUT,
     OPTION_PICTURE,  // a picture of any format, by the ending of its name
@@ -115,6 +117,7 @@ struct entries {
 #define TEXTS(name, member, argument, help) \
     {ROW(name, OPTION_TEXTS, OPTION_AT(struct texts, member), argument, help)}
 #define TEXT(name, member, argument, help) TEXT_AS(OPTION_TEXT, name, member, argument, help)
+#define PROSE(name, member, argument, help) TEXT_AS(OPTION_PROSE, name, member, argument, help)
 #define TEXT_AS(kind, name, member, argument, help) \
     {ROW(name, kind, OPTION_AT(const char *, member), argument, help)}
 // -o of what does nothing without it

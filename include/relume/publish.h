@@ -1,0 +1,76 @@
+// publish.h - relightable files as a folder of web pages
+//
+// A site holds index.html, one page a file, and all that they load, by relative names: it works
+// from a disk and from any server of files. docs/publish.md says what lies in it.
+#ifndef RELUME_PUBLISH_H
+#define RELUME_PUBLISH_H
+
+#include <relume/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Browsers let a page that was opened from a disk load scripts and pictures only: what it reads has
+// a twin there, a script that holds the same bytes.
+enum relume_publish_for {
+    RELUME_PUBLISH_BOTH = 0,
+    RELUME_PUBLISH_WEB,   // without the twins
+    RELUME_PUBLISH_DISK,  // the twins alone
+};
+// "both", "web", "disk". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_publish_for_parse(enum relume_publish_for *out,
+                                                     const char *name);
+
+// Texts are UTF-8 and plain: what they hold of HTML is shown, not obeyed. Zero or NULL in a field
+// means its default. Of quality, psnr_db and bytes_per_pixel at most one is given.
+struct relume_publish_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    // Of the site; of its file too where there is but one. Defaults: the name of the file, nothing.
+    const char *title, *maker, *licence, *object, *description;
+    // A JSON file with members "title", "maker", "licence", "object", "description", each a text,
+    // and "files": an object whose members, by the files' names without folder and ending, have
+    // these members again. What is given above counts more.
+    const char *metadata;
+    int coefficients;        // planes, at most 45; default: up to 27, as many as are worth their
+                             // bytes
+    int quality;             // [1, 100]; default: so high, 95 or more, that no error is seen
+    double psnr_db;          // expected against the file's own pictures
+    double bytes_per_pixel;  // of all views at full size, about
+    enum relume_publish_for target;
+    double mm_per_pixel;  // planar files: how large a pixel is; default: not known
+    const char *url;      // where the site will be, for links from elsewhere: "https://..."
+    bool force;           // replace a folder that relume made
+    bool allow_outside;   // as relume_open_params
+    bool keep_going;      // likewise
+    int threads;          // default: all cores
+};
+#define relume_publish_params(...)                                                                 \
+    (&(const struct relume_publish_params){RELUME_SIZED(relume_publish_params), __VA_ARGS__})
+
+// What became of one file. Plain data.
+struct relume_publish_report {
+    char name[64];         // of its page, without ".html", and of its folder
+    int views, planes;     // that its folder holds
+    int quality;           // asked for or chosen; 0: by size or PSNR
+    uint64_t bytes;        // of its folder, twins not counted
+    uint64_t first_bytes;  // of these, what a page loads before it shows something
+    double psnr_db;        // of one view, mean over at most 16 lights, 8-bit sRGB, against the
+                           // file's own pictures
+};
+
+// Publish `files`, `count` of them, whatever relume_open opens, as the folder `site`: whole or not
+// at all. `reports` (may be NULL) has room for `count`. RELUME_EINVAL (no file, no name; a folder
+// that is not empty, without `force` or that relume did not make), an input status, RELUME_EUNFIT
+// (a size or PSNR that cannot be reached), RELUME_EUNSUPPORTED (slabs around an object),
+// RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. Output bytes do not depend on `threads`.
+RELUME_RESULT relume_status relume_publish(const char *const *files, int count, const char *site,
+                                           struct relume_publish_report *reports,
+                                           const struct relume_publish_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

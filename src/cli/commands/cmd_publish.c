@@ -1,0 +1,92 @@
+// cmd_publish.c - relume publish: relightable files as a web site
+#include "cli.h"
+
+#include <relume/publish.h>
+
+struct publish_options {
+    struct args args;
+    const char *output, *title, *maker, *licence, *object, *description, *metadata, *url;
+    enum relume_publish_for target;
+    int coefficients, quality;
+    double bytes_per_pixel, psnr, mm_per_pixel;
+    bool force, allow_outside, keep_going;
+};
+#define OPTIONS struct publish_options
+enum { MOST_FILES = 256 };
+
+static const struct option options[] = {
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "SITE", "the folder to write"),
+    FLAG("--force", force, "replace a folder that relume made"),
+    NAME("--for", target, "WHERE",
+         "both (default), web (smaller: works from a server only) or disk (works from a disk only)",
+         RELUME_PUBLISH_BOTH, "both", "web", "disk"),
+    GROUP("what visitors read"),
+    PROSE("--title", title, "TEXT", "default: the name of the file"),
+    PROSE("--maker", maker, "TEXT", "who made it"),
+    PROSE("--licence", licence, "TEXT", "what others may do with it"),
+    PROSE("--object", object, "TEXT", "number in the collection"),
+    PROSE("--description", description, "TEXT", "a few sentences"),
+    TEXT("--metadata", metadata, "FILE.json", "all of these for many files (docs/publish.md)"),
+    PROSE("--url", url, "URL", "where the site will be, for links from elsewhere"),
+    NUMBER("--mm-per-pixel", mm_per_pixel, "X", "scale of planar files", 1e-6, 1e6),
+    GROUP("quality"),
+    INT("--quality", quality, "Q",
+        "10 less doubles the quantiser step; default: 95 or more, so that no blocks are seen", 1,
+        100),
+    NUMBER("--psnr", psnr, "DB", "at least this PSNR against the original", 1, 100),
+    NUMBER("--bytes-per-pixel", bytes_per_pixel, "B", "size at full resolution, not exceeded",
+           0.001, 100),
+    INT("--coefficients", coefficients, "K", "planes; default: up to 27, as many as are worth it",
+        1, 45),
+    GROUP("input"),
+    ALLOW_OUTSIDE_OPTION,
+    KEEP_GOING_OPTION,
+    {0},
+};
+
+static relume_status run(const struct args *args)
+{
+    const struct publish_options *o = (const void *)args;
+    if ((o->quality > 0) + (o->psnr > 0.0) + (o->bytes_per_pixel > 0.0) > 1)
+        return usage_error("publish: expected one of --quality, --psnr and --bytes-per-pixel");
+    struct relume_publish_report report[MOST_FILES];
+    const struct relume_publish_params p = {
+        .struct_size = sizeof p,
+        .log = args->log,
+        .title = o->title,
+        .maker = o->maker,
+        .licence = o->licence,
+        .object = o->object,
+        .description = o->description,
+        .metadata = o->metadata,
+        .coefficients = o->coefficients,
+        .quality = o->quality,
+        .psnr_db = o->psnr,
+        .bytes_per_pixel = o->bytes_per_pixel,
+        .target = o->target,
+        .mm_per_pixel = o->mm_per_pixel,
+        .url = o->url,
+        .force = o->force,
+        .allow_outside = o->allow_outside,
+        .keep_going = o->keep_going,
+        .threads = args->threads,
+    };
+    const relume_status status = relume_publish(args->input, args->inputs, o->output, report, &p);
+    for (int i = 0; !status && i < args->inputs; i++)
+        announce(args, RELUME_NOTE,
+                 "%s/%s.html: %d view%s, %d planes, %.1f kB, of which %.1f kB show the first "
+                 "picture; %.2f dB from the original (%s)",
+                 o->output, report[i].name, report[i].views, relume_plural(report[i].views),
+                 report[i].planes, (double)report[i].bytes / 1e3,
+                 (double)report[i].first_bytes / 1e3, report[i].psnr_db,
+                 judgement(report[i].psnr_db));
+    return status;
+}
+
+const struct command command_publish = {
+    COMMAND("publish", "FILE ... -o SITE [OPTION ...]",
+            "make a web site of relightable files, for any server or a disk",
+            "relume publish coin.exr seal.exr -o site --title \"Coins\" --licence \"CC BY 4.0\"", 1,
+            MOST_FILES),
+};

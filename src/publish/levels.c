@@ -1,0 +1,213 @@
+// levels.c - the planes of a view as a pyramid of tiles
+#include "publish/levels.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "exchange/sheet.h"
+#include "image/jpeg.h"
+#include "math/scalar.h"
+
+#include <string.h>
+
+int levels_count(int width, int height)
+{
+    int n = 1;
+    for (int side = larger_of(width, height); side > LEVELS_LAST_SIDE; side = (side + 1) / 2)
+        n++;
+    return n;
+}
+
+// A level on its way: planes as they lie in memory, and its tiles.
+struct level {
+    const struct levels *how;
+    int width, height, columns, rows;
+    const float *plane[PUBLISH_MOST_PLANES];
+    uint8_t **bytes;  // [tiles]
+    size_t *size;
+    relume_status *status;
+    uint8_t *codes;
+};
+
+static void put_word(uint8_t *to, size_t v)
+{
+    for (int i = 0; i < 4; i++)
+        to[i] = (uint8_t)(v >> (8 * i));
+}
+
+// One sheet of a tile; its planes are copied into `room`.
+static struct sheet cut(const struct level *l, const struct relume_rect *at, int first, float *room)
+{
+    struct sheet s = {.width = at->width,
+                      .height = at->height,
+                      .planes = smaller_of(l->how->planes - first, SHEET_PLANES)};
+    const size_t width = (size_t)at->width, pixels = width * (size_t)at->height;
+    for (int p = 0; p < s.planes; p++) {
+        float *to = room + (size_t)p * pixels;
+        for (int y = 0; y < at->height; y++)
+            memcpy(to + (size_t)y * width,
+                   l->plane[first + p] + (size_t)(at->top + y) * (size_t)l->width +
+                       (size_t)at->left,
+                   width * sizeof *to);
+        s.plane[p] = to;
+        s.minimum[p] = l->how->minimum[first + p];
+        s.maximum[p] = l->how->maximum[first + p];
+        s.weight[p] = 1.0;
+    }
+    return s;
+}
+
+static relume_status keep_codes(const struct level *l, const struct relume_rect *at, int first,
+                                const struct sheet_result *sheet)
+{
+    struct jpeg_codes decoded = {0};
+    const size_t pixels = (size_t)l->width * (size_t)l->height, width = (size_t)at->width;
+    const relume_status status =
+        jpeg_decode(&decoded, sheet->bytes, sheet->size, "tile", NULL, NULL);
+    for (int p = 0; !status && p < smaller_of(l->how->planes - first, SHEET_PLANES); p++)
+        for (int y = 0; y < at->height; y++)
+            memcpy(l->codes + (size_t)(first + p) * pixels +
+                       (size_t)(at->top + y) * (size_t)l->width + (size_t)at->left,
+                   decoded.data + ((size_t)p * (size_t)at->height + (size_t)y) * width, width);
+    jpeg_codes_free(&decoded);
+    return status;
+}
+
+// The file of a tile, of the pictures in `sheet`.
+static relume_status join(const struct sheet_result *sheet, int sheets, uint8_t **out, size_t *size)
+{
+    size_t at = 4 + 4 * (size_t)sheets;
+    *size = at;
+    for (int i = 0; i < sheets; i++)
+        *size += sheet[i].size;
+    *out = mem_array(*size, 1);
+    if (!*out)
+        return RELUME_ENOMEM;
+    put_word(*out, (size_t)sheets);
+    for (int i = 0; i < sheets; i++) {
+        put_word(*out + 4 + 4 * i, sheet[i].size);
+        memcpy(*out + at, sheet[i].bytes, sheet[i].size);
+        at += sheet[i].size;
+    }
+    return RELUME_OK;
+}
+
+static void say_scales(const struct levels *how, int first, const struct sheet_result *sheet)
+{
+    for (int p = 0; p < smaller_of(how->planes - first, SHEET_PLANES); p++) {
+        how->scale[first + p] = (float)(sheet->scale[p] / 255.0);
+        how->offset[first + p] = (float)(-sheet->bias[p] * sheet->scale[p]);
+    }
+}
+
+static void encode_tile(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct level *l = context;
+    const int x = (int)item % l->columns * LEVELS_TILE, y = (int)item / l->columns * LEVELS_TILE;
+    const struct relume_rect at = {x, y, smaller_of(LEVELS_TILE, l->width - x),
+                                   smaller_of(LEVELS_TILE, l->height - y)};
+    const int sheets = (l->how->planes + SHEET_PLANES - 1) / SHEET_PLANES;
+    struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
+    float *room = mem_array(SHEET_PLANES * (size_t)at.width * (size_t)at.height, sizeof *room);
+    relume_status status = result && room ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < sheets; i++) {
+        const struct sheet s = cut(l, &at, SHEET_PLANES * i, room);
+        status = sheet_encode(&result[i], &s, l->how->step);
+        if (!status && l->codes)
+            status = keep_codes(l, &at, SHEET_PLANES * i, &result[i]);
+        if (!status && !item)
+            say_scales(l->how, SHEET_PLANES * i, &result[i]);
+    }
+    if (!status)
+        status = join(result, sheets, &l->bytes[item], &l->size[item]);
+    for (int i = 0; result && i < sheets; i++)
+        mem_free(result[i].bytes);
+    mem_free(result);
+    mem_free(room);
+    l->status[item] = status;
+}
+
+static relume_status save_tiles(const struct site *site, const char *folder, int number,
+                                const struct level *l, uint64_t *bytes)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < l->columns * l->rows; i++) {
+        *bytes += l->size[i];
+        if (!site)
+            continue;
+        char *name = mem_format("%s/%d_%d_%d.bin", folder, number, i % l->columns, i / l->columns);
+        status = name ? site_save_data(site, name, l->bytes[i], l->size[i]) : RELUME_ENOMEM;
+        mem_free(name);
+    }
+    return status;
+}
+
+static relume_status write_level(const struct site *site, const char *folder, int number,
+                                 struct level *l, uint64_t *bytes)
+{
+    l->columns = (l->width + LEVELS_TILE - 1) / LEVELS_TILE;
+    l->rows = (l->height + LEVELS_TILE - 1) / LEVELS_TILE;
+    const size_t n = (size_t)l->columns * (size_t)l->rows;
+    l->bytes = mem_zeroed(n, sizeof *l->bytes);
+    l->size = mem_zeroed(n, sizeof *l->size);
+    l->status = mem_zeroed(n, sizeof *l->status);
+    relume_status status = l->bytes && l->size && l->status ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        thread_for(l->how->threads, n, encode_tile, l);
+    for (size_t i = 0; !status && i < n; i++)
+        status = l->status[i];
+    if (!status)
+        status = save_tiles(site, folder, number, l, bytes);
+    for (size_t i = 0; l->bytes && i < n; i++)
+        mem_free(l->bytes[i]);
+    mem_free(l->bytes);
+    mem_free(l->size);
+    mem_free(l->status);
+    return status;
+}
+
+// The next level, in memory of its own, which takes the place of the last one's.
+static relume_status go_up(struct level *l, float **own)
+{
+    for (int p = 0; p < l->how->planes; p++) {
+        float *half = plane_halved(l->plane[p], l->width, l->height);
+        if (!half)
+            return RELUME_ENOMEM;
+        mem_free(own[p]);
+        l->plane[p] = own[p] = half;
+    }
+    l->width = (l->width + 1) / 2;
+    l->height = (l->height + 1) / 2;
+    return RELUME_OK;
+}
+
+relume_status levels_write(const struct site *site, const char *name, const struct planes *p,
+                           const struct levels *how, uint64_t *bytes, uint8_t *codes)
+{
+    struct level l = {.how = how, .width = p->width, .height = p->height, .codes = codes};
+    const int count = levels_count(p->width, p->height);
+    float **own = mem_zeroed((size_t)how->planes, sizeof *own);
+    for (int i = 0; i < how->planes; i++)
+        l.plane[i] = planes_at(p, i);
+    relume_status status = own ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < count; i++) {
+        status = write_level(site, name, i, &l, &bytes[i]);
+        l.codes = NULL;
+        if (!status && i + 1 < count)
+            status = go_up(&l, own);
+    }
+    for (int i = 0; own && i < how->planes; i++)
+        mem_free(own[i]);
+    mem_free(own);
+    return status;
+}
+
+relume_status levels_try(const struct planes *p, const struct levels *how, uint64_t *bytes,
+                         uint8_t *codes)
+{
+    struct level l = {.how = how, .width = p->width, .height = p->height, .codes = codes};
+    for (int i = 0; i < how->planes; i++)
+        l.plane[i] = planes_at(p, i);
+    return write_level(NULL, NULL, 0, &l, bytes);
+}

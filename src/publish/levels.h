@@ -1,0 +1,36 @@
+// levels.h - the planes of a view as a pyramid of tiles
+//
+// NAME/v0/L_X_Y.bin: level L (0 is the full size, each next one half of it, rounded up), column X,
+// row Y of tiles. Little-endian: how many pictures, as 32 bits, the bytes of each, likewise, then
+// the pictures, JPEG of three planes each as red, green and blue.
+#ifndef PUBLISH_LEVELS_H
+#define PUBLISH_LEVELS_H
+
+#include "foreign/planes.h"
+#include "publish/site.h"
+
+// The last level is the first that fits into LAST_SIDE.
+enum { LEVELS_TILE = 512, LEVELS_LAST_SIDE = 128, LEVELS_MOST = 24 };
+enum { PUBLISH_MOST_PLANES = 45 };
+
+// How all views of a file are coded.
+struct levels {
+    int planes;
+    double step;                      // in units of the picture's error
+    const double *minimum, *maximum;  // [planes], of all views
+    float *scale, *offset;            // [planes], found while writing: C = code * scale + offset
+    int threads;
+};
+
+int levels_count(int width, int height);
+
+// Write the pyramid of `p` into the folder `name` of the site.
+// bytes[level] grows by what was written. With `codes`, [planes][height][width], what a reader
+// decodes of level 0.
+relume_status levels_write(const struct site *site, const char *name, const struct planes *p,
+                           const struct levels *l, uint64_t *bytes, uint8_t *codes);
+// The same of level 0 alone, of which nothing is written.
+relume_status levels_try(const struct planes *p, const struct levels *l, uint64_t *bytes,
+                         uint8_t *codes);
+
+#endif

@@ -1,0 +1,139 @@
+// scene_json.c - scene.json: what the tiles mean
+#include "publish/scene.h"
+
+#include <relume/coder.h>
+
+// Little-endian on every machine that the library runs on.
+static void put_floats(FILE *f, const char *key, const float *v, size_t n)
+{
+    fprintf(f, "  \"%s\": \"", key);
+    text_base64(f, v, n * sizeof *v);
+    fputs("\",\n", f);
+}
+
+static void put_numbers(FILE *f, const char *key, const float *v, int n)
+{
+    fprintf(f, "  \"%s\": [", key);
+    for (int i = 0; i < n; i++)
+        fprintf(f, "%s%.9g", i ? ", " : "", (double)v[i]);
+    fputs("],\n", f);
+}
+
+static void put_text(FILE *f, const char *key, const char *value)
+{
+    if (!value)
+        return;
+    fprintf(f, "  \"%s\": ", key);
+    text_json(f, value);
+    fputs(",\n", f);
+}
+
+static void put_details(FILE *f, const struct scene *s)
+{
+    put_text(f, "name", s->name);
+    put_text(f, "title", s->details.title);
+    put_text(f, "maker", s->details.maker);
+    put_text(f, "licence", s->details.licence);
+    put_text(f, "object", s->details.object);
+    put_text(f, "description", s->details.description);
+    if (s->mm_per_pixel > 0.0)
+        fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->mm_per_pixel);
+    if (s->notes)
+        fputs("  \"notes\": true,\n", f);
+}
+
+static void put_basis(FILE *f, const struct common *c)
+{
+    const struct relume_coder_info *info = relume_coder_info(c->raw);
+    fprintf(f, "  \"basis\": {\"name\": \"%s\", ", info->basis->name);
+    if (info->interpolant)
+        fprintf(f, "\"interpolant\": \"%s\", \"parameter\": [%.9g, %.9g, %.9g, %.9g], ",
+                info->interpolant->name, info->parameter[0], info->parameter[1], info->parameter[2],
+                info->parameter[3]);
+    fprintf(f, "\"coefficients\": %d, \"hemispherical\": %s, \"pole\": \"%s\",\n    \"lights\": [",
+            info->coefficients, info->hemispherical ? "true" : "false", info->pole_y ? "y" : "z");
+    for (int i = 0; i < info->lights; i++)
+        fprintf(f, "%s%.9g, %.9g, %.9g", i ? ", " : "", info->directions[i].x,
+                info->directions[i].y, info->directions[i].z);
+    fputs("]},\n", f);
+}
+
+static void put_geometry(FILE *f, const struct relume_geometry *g)
+{
+    fprintf(f, "  \"projection\": \"%s\",\n", relume_projection_name(g->projection));
+    if (g->projection == RELUME_PLANAR)
+        fprintf(f,
+                "  \"window\": {\"min\": [%.9g, %.9g], \"max\": [%.9g, %.9g], \"camera\": \"%s\", "
+                "\"camera_z\": %.9g},\n",
+                g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
+                g->perspective ? "perspective" : "orthographic", g->camera_z);
+    else if (g->projection == RELUME_SLAB)
+        fprintf(f,
+                "  \"slab\": {\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, "
+                "%.9g], \"st_max\": [%.9g, %.9g]},\n",
+                g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
+    else
+        fprintf(f,
+                "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, \"discs\": %d, "
+                "\"center\": [%.9g, %.9g, %.9g]},\n",
+                g->v_min, g->v_max, g->disc, g->center.x, g->center.y, g->center.z);
+}
+
+static void put_levels(FILE *f, const struct scene *s)
+{
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    int width = info->width, height = info->height;
+    const int n = levels_count(width, height);
+    fprintf(f, "  \"tile\": %d, \"levels\": [", LEVELS_TILE);
+    for (int i = 0; i < n; i++) {
+        fprintf(f, "%s{\"width\": %d, \"height\": %d}", i ? ", " : "", width, height);
+        width = (width + 1) / 2;
+        height = (height + 1) / 2;
+    }
+    fprintf(f, "],\n  \"first_level\": %d,\n", s->first_level);
+}
+
+static void put_views(FILE *f, const struct scene *s)
+{
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    fputs("  \"views\": [", f);
+    for (int i = 0; i < info->views; i++) {
+        fprintf(f, "%s{\"name\": \"v%d\"", i ? ",\n    " : "\n    ", i);
+        if (info->geometry.projection == RELUME_SLAB)
+            fprintf(f, ", \"uv\": [%.9g, %.9g]", info->uv[i][0], info->uv[i][1]);
+        if (s->layers[i].depth)
+            fprintf(f, ", \"depth\": true, \"depth_min\": %.9g, \"depth_step\": %.9g",
+                    s->layers[i].depth_min, s->layers[i].depth_step);
+        fprintf(f, "%s}", s->layers[i].mask ? ", \"mask\": true" : "");
+    }
+    fputs("\n  ]\n", f);
+}
+
+relume_status scene_write_json(const struct scene *s)
+{
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    const struct common *c = &s->common;
+    const size_t functions = (size_t)c->functions;
+    char name[128], transfer[32];
+    struct text t;
+    const relume_status status = text_open(&t);
+    if (status)
+        return status;
+    fputs("{\n  \"format\": \"relume-web\", \"version\": 1,\n", t.file);
+    put_details(t.file, s);
+    fprintf(t.file, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
+    put_geometry(t.file, &info->geometry);
+    relume_transfer_text(c->source.coding, transfer, sizeof transfer);
+    fprintf(t.file, "  \"transfer\": \"%s\",\n", transfer);
+    put_basis(t.file, c);
+    fprintf(t.file, "  \"functions\": %d, \"planes\": %d,\n", c->functions, s->levels.planes);
+    put_floats(t.file, "transform", c->transform, 3 * (size_t)s->levels.planes * functions);
+    put_floats(t.file, "mean", c->mean, 3 * functions);
+    put_numbers(t.file, "scale", s->levels.scale, s->levels.planes);
+    put_numbers(t.file, "offset", s->levels.offset, s->levels.planes);
+    put_levels(t.file, s);
+    put_views(t.file, s);
+    fputs("}\n", t.file);
+    snprintf(name, sizeof name, "%s/scene.json", s->name);
+    return site_save_text(s->site, name, true, &t);
+}

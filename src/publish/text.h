@@ -1,0 +1,27 @@
+// text.h - texts of people inside HTML, JSON and addresses; bytes inside a script
+#ifndef PUBLISH_TEXT_H
+#define PUBLISH_TEXT_H
+
+#include <relume/base.h>
+#include <stdio.h>
+
+// `text` as HTML shows it, in content and in quoted attributes. NULL is nothing.
+void text_html(FILE *to, const char *text);
+// As a JSON string with its quotes, which may also stand inside a script of a page.
+void text_json(FILE *to, const char *text);
+// As a part of an address: what is not plain is percent-encoded.
+void text_address(FILE *to, const char *text);
+void text_base64(FILE *to, const void *bytes, size_t size);
+
+// What a memory stream collects.
+struct text {
+    FILE *file;
+    char *bytes;
+    size_t size;
+};
+relume_status text_open(struct text *t);
+// The bytes are there from here on. RELUME_ENOMEM.
+relume_status text_close(struct text *t);
+void text_free(struct text *t);
+
+#endif

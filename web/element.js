@@ -1,0 +1,327 @@
+// element.js - <relume-view src="…/scene.json">: a picture that can be relit, and its controls
+import { Failure } from './load.js';
+import { Viewer } from './viewer.js';
+import { Controls, make } from './controls.js';
+import { directionOf, placeOf, sayDirection } from './ball.js';
+import { listenPointers } from './pointer.js';
+import { readEnvironment } from './hdr.js';
+import { PASSES, TONES_BY_NAME } from './shaders.js';
+
+const STEP = 0.06;  // of the disc of lights, a key
+const MOST_LAMPS_OF_PAGE = 16;
+const KEYS = [
+    ['Arrow keys', 'move the light (Shift: the other way of dragging)'], ['L', 'dragging and arrows: light, or moving'],
+    ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['N  Delete', 'another light, remove it'],
+    ['Tab in the strip', 'colour, softness and more'], ['[ ]', 'darker, brighter'], ['P', 'what is shown'],
+    ['T', 'how highlights are shown'], ['F', 'full screen'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
+];
+
+const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
+
+export class RelumeView extends HTMLElement {
+    // Where relume.css and core.js lie.
+    static home = '';
+
+    connectedCallback() {
+        if (this.root)
+            return;
+        this.root = this.attachShadow({ mode: 'open' });
+        this.canvas = make('canvas', { 'aria-hidden': 'true' });
+        this.poster = make('img', { class: 'poster', alt: '', hidden: true });
+        this.hint = make('p', { class: 'hint' });
+        this.status = make('p', { class: 'status', role: 'status', 'aria-live': 'polite' });
+        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.poster, this.hint);
+        this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeView.home).href }),
+                         this.surface, this.status);
+        this.ready = new Promise((resolve) => { this.isReady = resolve; });
+        this.open().catch((error) => this.fail(error));
+    }
+
+    disconnectedCallback() {
+        if (this.observer)
+            this.observer.disconnect();
+        document.removeEventListener('keydown', this.bodyKey);
+        if (this.viewer)
+            this.viewer.close();
+        this.root.replaceChildren();
+        this.root = this.viewer = null;
+    }
+
+    get source() { return new URL(this.getAttribute('src') || '', document.baseURI); }
+
+    // A still picture and a sentence.
+    fail(error) {
+        const poster = this.getAttribute('poster');
+        this.poster.src = poster ? new URL(poster, document.baseURI).href : new URL('poster.jpg', this.source).href;
+        this.poster.alt = this.getAttribute('title') || 'A still picture';
+        this.poster.hidden = false;
+        this.hint.remove();
+        this.say(error instanceof Failure ? `Only a still picture can be shown: ${error.message}.`
+            : 'Only a still picture can be shown: something went wrong in this browser.');
+        if (!(error instanceof Failure))
+            console.error(error);
+        this.isReady();
+    }
+
+    say(text) {
+        this.status.textContent = text;
+        this.status.classList.toggle('shown', text !== '');
+        clearTimeout(this.silence);
+        if (!this.poster || this.poster.hidden)
+            this.silence = setTimeout(() => this.status.classList.remove('shown'), 6000);
+    }
+
+    async open() {
+        const viewer = new Viewer(this.canvas, RelumeView.home, {
+            changed: () => this.controls && this.controls.show(),
+            failed: (error) => this.say(`A part of the picture cannot be shown: ${error.message}.`),
+            problem: (sentence) => this.say(sentence),
+        });
+        await viewer.open(this.source.href);
+        this.viewer = viewer;
+        const title = viewer.scene.title || viewer.scene.name || 'Picture';
+        this.surface.setAttribute('aria-label', `${title}: a picture whose light can be moved. Arrow keys move the light; ` +
+                                                'press the question mark for all keys.');
+        this.lighting = viewer.projection === 'planar';
+        this.controls = new Controls(viewer, this);
+        this.root.append(this.controls.node);
+        this.showMode();
+        this.hint.textContent = this.lighting ? 'Drag across the picture to move the light'
+            : viewer.isSlab ? 'Drag to walk around, move the light by its ball' : 'Drag to look around, move the light by its ball';
+        this.listen();
+        this.observer = new ResizeObserver(() => this.viewer.resize());
+        this.observer.observe(this.canvas);
+        viewer.canvas.addEventListener('webglcontextlost', () => this.fail(new Failure('the graphics of this browser gave up')));
+        if (this.first !== undefined)
+            viewer.setState(this.first);
+        else if (this.getAttribute('state'))
+            viewer.setState(this.getAttribute('state'));
+        await viewer.ready;
+        this.isReady();
+    }
+
+    // ------------------------------------------------------------ state
+
+    // Before the file is open the line waits.
+    setState(line) {
+        this.first = line;
+        if (this.viewer)
+            this.viewer.setState(line);
+    }
+
+    getState() { return this.viewer ? this.viewer.getState() : this.first || ''; }
+
+    async idle() {
+        await this.ready;
+        return this.viewer ? this.viewer.idle() : undefined;
+    }
+
+    snapshot() { return this.viewer.snapshot(); }
+
+    // ------------------------------------------------------------ what can be done
+
+    set(name, value) {
+        if (name === 'look')
+            return this.viewer.setLook(value);
+        this.viewer[name] = value;
+        if (name === 'pass' || name === 'exposure')
+            this.viewer.range = null;
+        return this.viewer.changed();
+    }
+
+    choose(index) {
+        this.viewer.chosen = index;
+        this.controls.show();
+    }
+
+    // The chosen light as `change` makes it.
+    replaceLight(change) {
+        const { viewer } = this, lights = [...viewer.lights];
+        if (!lights.length)
+            return this.addLight();
+        lights[viewer.chosen] = change(lights[viewer.chosen]);
+        viewer.touch();
+        return viewer.setLights(lights);
+    }
+
+    setDirection(direction) {
+        this.dismissHint();
+        this.replaceLight((light) => (light.kind === 'env'
+            ? { ...light, rotate: Math.atan2(direction[0], direction[2]) * 180 / Math.PI } : { ...light, direction }));
+        this.sayLight();
+    }
+
+    sayLight() {
+        const light = this.viewer.lights[this.viewer.chosen];
+        clearTimeout(this.saying);
+        this.saying = setTimeout(() => light && light.direction && this.say(sayDirection(light.direction, this.viewer.isPanorama)), 600);
+    }
+
+    changeLight({ rgb, soft }) {
+        this.replaceLight((light) => (light.kind === 'env' ? { ...light, rgb }
+            : soft > 0 ? { ...light, kind: 'area', radius: soft * Math.PI / 180, rgb } : { kind: 'dir', direction: light.direction, rgb }));
+    }
+
+    addLight() {
+        const { viewer } = this, n = viewer.lights.length;
+        if (n >= MOST_LAMPS_OF_PAGE)
+            return this.say(`There are ${MOST_LAMPS_OF_PAGE} lights; more would be slow.`);
+        const around = viewer.isPanorama, angle = 2.4 * n + 2.2;
+        const direction = directionOf([0.6 * Math.cos(angle), 0.6 * Math.sin(angle)], around);
+        viewer.chosen = n;
+        return viewer.setLights([...viewer.lights, { kind: 'dir', direction, rgb: [1, 1, 1] }]);
+    }
+
+    removeLight() {
+        const { viewer } = this;
+        viewer.setLights(viewer.lights.filter((_, i) => i !== viewer.chosen));
+    }
+
+    toggleMode() {
+        this.lighting = !this.lighting;
+        this.showMode();
+        this.say(this.lighting ? 'Dragging and arrow keys move the light.' : `Dragging and arrow keys ${this.verb}.`);
+    }
+
+    get verb() { return this.viewer.isSlab ? 'walk' : this.viewer.isPanorama ? 'look' : 'move'; }
+    showMode() { this.controls.showMode(this.lighting, this.verb); }
+
+    fit() {
+        this.viewer.at = null;
+        this.viewer.zoom = this.viewer.look === 'planet' ? 0.5 : 1;
+        this.viewer.changed();
+    }
+
+    fullScreen() {
+        if (document.fullscreenElement)
+            document.exitFullscreen();
+        else if (this.requestFullscreen)
+            this.requestFullscreen().catch(() => this.say('This browser allows no full screen here.'));
+    }
+
+    async copyLink() {
+        const address = new URL(location.href);
+        address.hash = this.getState();
+        try {
+            await navigator.clipboard.writeText(address.href);
+            this.say('The link to this view is copied.');
+        } catch {
+            location.hash = address.hash;
+            this.say('The address of this page is now a link to this view.');
+        }
+    }
+
+    async save() {
+        const blob = await this.snapshot(), address = URL.createObjectURL(blob);
+        make('a', { href: address, download: `${this.viewer.scene.name || 'picture'}.png` }).click();
+        setTimeout(() => URL.revokeObjectURL(address), 10000);
+        this.say('The picture is saved.');
+    }
+
+    help() {
+        if (this.dialog)
+            return this.dialog.close();
+        const close = () => { this.dialog.remove(); this.dialog = null; this.surface.focus(); };
+        this.dialog = make('dialog', { 'aria-label': 'Keys', onclose: close, onclick: () => this.dialog.close() },
+            make('dl', {}, ...KEYS.flatMap(([key, what]) => [make('dt', {}, key), make('dd', {}, what)])));
+        this.root.append(this.dialog);
+        return this.dialog.showModal();
+    }
+
+    dismissHint() {
+        this.hint.classList.add('gone');
+    }
+
+    // ------------------------------------------------------------ pointers, keys, dropped files
+
+    // A place on the picture as a place on the disc of lights.
+    lightAt(at) {
+        const { width, height } = this.surface.getBoundingClientRect(), half = Math.min(width, height) / 2;
+        this.setDirection(directionOf([(at.x - width / 2) / half, (height / 2 - at.y) / half], this.viewer.isPanorama));
+    }
+
+    move(dx, dy) {
+        const { viewer } = this, { width, height } = this.surface.getBoundingClientRect(), ratio = this.canvas.width / width;
+        this.dismissHint();
+        viewer.touch();
+        if (viewer.isSlab)
+            viewer.walk(-dx / width, dy / height);
+        else if (viewer.isPanorama)
+            viewer.turn(-dx * 90 / (width * viewer.zoom), dy * 90 / (width * viewer.zoom));
+        else
+            viewer.shift(dx * ratio, dy * ratio);
+    }
+
+    listen() {
+        const ratio = () => this.canvas.width / this.surface.getBoundingClientRect().width;
+        const enlarge = (factor, x, y) => { this.viewer.touch(); this.viewer.enlarge(factor, x * ratio(), y * ratio()); };
+        listenPointers(this.surface, {
+            begin: () => {},
+            held: () => this.say(this.lighting ? `Dragging ${this.verb}s now.` : 'Dragging moves the light now.'),
+            drag: (at, dx, dy, other) => (this.lighting !== other ? this.lightAt(at) : this.move(dx, dy)),
+            pinch: (factor, x, y, dx, dy) => {
+                if (!this.viewer.isSlab)
+                    this.move(dx, dy);
+                enlarge(factor, x, y);
+            },
+            wheel: enlarge,
+        });
+        this.surface.addEventListener('keydown', (event) => this.key(event));
+        this.bodyKey = (event) => event.target === document.body && document.querySelector('relume-view') === this && this.key(event);
+        document.addEventListener('keydown', this.bodyKey);
+        this.controls.ball.node.addEventListener('keydown', (event) => this.ballKey(event));
+        this.surface.addEventListener('dragover', (event) => event.preventDefault());
+        this.surface.addEventListener('drop', (event) => {
+            event.preventDefault();
+            this.drop(event.dataTransfer.files[0]).catch((error) => this.say(`${error.message}.`));
+        });
+    }
+
+    async drop(file) {
+        if (!file)
+            return;
+        const map = await readEnvironment(file);
+        this.viewer.chosen = 0;
+        this.viewer.setLights([{ kind: 'env', name: file.name, map, rotate: 0, rgb: [1, 1, 1] }]);
+        this.say(`${file.name} lights the picture; drag on the ball to turn it.`);
+    }
+
+    moveLight(dx, dy) {
+        const { viewer } = this, light = viewer.lights[viewer.chosen], around = viewer.isPanorama;
+        if (!light || light.kind === 'env')
+            return;
+        const [x, y] = placeOf(light.direction, around);
+        this.setDirection(directionOf([x + dx, y + dy], around));
+    }
+
+    ballKey(event) {
+        const way = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] }[event.key];
+        if (!way)
+            return;
+        this.moveLight(...way);
+        event.preventDefault();
+    }
+
+    key(event) {
+        if (event.ctrlKey || event.metaKey || event.altKey)
+            return;
+        const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+        const { viewer } = this, acts = {
+            '+': () => viewer.enlarge(1.25), '=': () => viewer.enlarge(1.25), '-': () => viewer.enlarge(0.8),
+            0: () => this.fit(), l: () => this.toggleMode(), n: () => this.addLight(), Delete: () => this.removeLight(),
+            '[': () => this.set('exposure', Math.max(viewer.exposure - 0.25, -20)),
+            ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
+            p: () => this.set('pass', next(PASSES, viewer.pass)), t: () => this.set('tone', next(TONES_BY_NAME, viewer.tone)),
+            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), '?': () => this.help(),
+        };
+        if (way && this.lighting !== event.shiftKey)
+            this.moveLight(STEP * way[0], STEP * way[1]);
+        else if (way)
+            this.move(-40 * way[0], 40 * way[1]);
+        else if (acts[event.key] || acts[event.key.toLowerCase()])
+            (acts[event.key] || acts[event.key.toLowerCase()])();
+        else
+            return;
+        event.preventDefault();
+    }
+}

@@ -1,0 +1,148 @@
+// tiles.js - tiles of a view: loaded when wanted, decoded by the browser, relit when lights change,
+// forgotten when others need the room
+import { Failure, loadBytes } from './load.js';
+
+const MOST_BYTES = 512 << 20;  // of textures
+const MOST_LOADING = 8;
+
+// The pictures of a .bin file.
+function partsOf(bytes, count, address) {
+    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    const damaged = () => new Failure(`${address.split('/').slice(-2).join('/')} is damaged`);
+    if (bytes.length < 4 + 4 * count || view.getUint32(0, true) !== count)
+        throw damaged();
+    const parts = [];
+    let at = 4 + 4 * count;
+    for (let i = 0; i < count; i++) {
+        const size = view.getUint32(4 + 4 * i, true);
+        if (at + size > bytes.length)
+            throw damaged();
+        parts.push(bytes.subarray(at, at + size));
+        at += size;
+    }
+    return parts;
+}
+
+// A picture as it is coded: no colour management, no alpha.
+export function decodePicture(bytes, type) {
+    return createImageBitmap(new Blob([bytes], { type }), { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
+}
+
+// All tiles of one file. `changed` is called when one has come, `failed` with a sentence.
+export class Tiles {
+    constructor(device, scene, { changed, failed }) {
+        Object.assign(this, { device, scene, changed, failed });
+        this.tiles = new Map();
+        this.queue = [];
+        this.loading = 0;
+        this.bytes = 0;
+        this.clock = 0;
+        this.received = 0;
+    }
+
+    columns(level) { return Math.ceil(this.scene.levels[level].width / this.scene.tile); }
+    rows(level) { return Math.ceil(this.scene.levels[level].height / this.scene.tile); }
+
+    // A tile; it is loaded by and by unless it is there. What is asked for first comes first.
+    get(view, level, x, y) {
+        const key = `${view}/${level}_${x}_${y}`;
+        let tile = this.tiles.get(key);
+        if (!tile) {
+            const { width, height } = this.scene.levels[level], size = this.scene.tile;
+            tile = { key, level, x, y, width: Math.min(size, width - x * size), height: Math.min(size, height - y * size),
+                     state: 'new', codes: null, lit: null, version: -1, surface: null };
+            this.tiles.set(key, tile);
+        }
+        tile.used = this.clock;
+        if (tile.state === 'new') {
+            tile.state = 'queued';
+            this.queue.push(tile);
+        }
+        return tile;
+    }
+
+    // Before a frame: what has not begun to load must be asked for again.
+    begin() {
+        this.clock++;
+        for (const tile of this.queue)
+            tile.state = 'new';
+        this.queue = [];
+    }
+
+    // After it.
+    end() {
+        while (this.loading < MOST_LOADING && this.queue.length)
+            this.load(this.queue.shift());
+        this.forget();
+    }
+
+    get busy() { return this.loading + this.queue.length; }
+
+    async load(tile) {
+        const address = `${this.scene.base}${tile.key}.bin`;
+        tile.state = 'loading';
+        this.loading++;
+        try {
+            const bytes = await loadBytes(address);
+            this.received += bytes.length;
+            const pictures = await Promise.all(partsOf(bytes, this.scene.layers, address)
+                .map((part) => decodePicture(part, 'image/jpeg').catch(() => {
+                    throw new Failure(`${tile.key}.bin is damaged`);
+                })));
+            if (pictures.some((p) => p.width !== tile.width || p.height !== tile.height))
+                throw new Failure(`${tile.key}.bin has another size than scene.json says`);
+            this.upload(tile, pictures);
+            tile.state = 'ready';
+        } catch (error) {
+            tile.state = 'failed';
+            this.failed(error);
+        }
+        this.loading--;
+        this.changed();
+    }
+
+    upload(tile, pictures) {
+        const { gl } = this.device;
+        tile.codes = this.device.texture(gl.NEAREST, gl.TEXTURE_2D_ARRAY);
+        gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+        gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+        gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA8, tile.width, tile.height, pictures.length);
+        pictures.forEach((picture, layer) => {
+            gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, layer, tile.width, tile.height, 1, gl.RGBA, gl.UNSIGNED_BYTE,
+                             picture);
+            picture.close();
+        });
+        this.bytes += 4 * tile.width * tile.height * pictures.length;
+    }
+
+    // The least recently used leave, but for the coarsest.
+    forget() {
+        if (this.bytes <= MOST_BYTES)
+            return;
+        const last = this.scene.levels.length - 1;
+        const old = [...this.tiles.values()].filter((t) => t.state === 'ready' && t.used < this.clock && t.level < last)
+            .sort((a, b) => a.used - b.used);
+        for (const tile of old) {
+            if (this.bytes <= 0.8 * MOST_BYTES)
+                break;
+            this.drop(tile);
+        }
+    }
+
+    drop(tile) {
+        if (tile.codes)
+            this.bytes -= 4 * tile.width * tile.height * this.scene.layers;
+        this.device.gl.deleteTexture(tile.codes);
+        this.device.drop(tile.lit);
+        if (tile.surface) {
+            this.device.gl.deleteTexture(tile.surface.albedo);
+            this.device.drop(tile.surface);
+        }
+        this.tiles.delete(tile.key);
+    }
+
+    close() {
+        for (const tile of [...this.tiles.values()])
+            this.drop(tile);
+    }
+}

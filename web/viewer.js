@@ -1,0 +1,348 @@
+// viewer.js - an open file: its camera, lights and picture, drawn when something has changed
+import { Device } from './gl.js';
+import { Basis } from './wasm.js';
+import { loadScene } from './scene.js';
+import { Tiles } from './tiles.js';
+import { Relighter } from './relight.js';
+import { Painter } from './paint.js';
+import { Planar } from './planar.js';
+import { Slab } from './slab.js';
+import { Panorama } from './panorama.js';
+import { firstLight } from './lights.js';
+import { readState, writeState } from './state.js';
+import { measureRange, meterExposure } from './measure.js';
+import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
+
+const MOST_LAMPS = 8;  // that passes enhance
+const MEASURED = 128;  // pixels a side
+const GROUND = [22, 22, 23].map((v) => v / 255);  // --ground of relume.css
+const SLOW = 90, QUICK = 30;  // milliseconds from frame to frame
+const LEAST_PIXELS = 1 << 18, MOST_PIXELS = 1 << 25;  // relit in a frame
+
+const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+
+export class Viewer {
+    // `told`: changed(), failed(error), problem(sentence).
+    constructor(canvas, home, told) {
+        Object.assign(this, { canvas, home, told });
+        this.device = new Device(canvas);
+        this.pixels = 1 << 22;
+        this.coarser = 0;
+        this.moving = 0;
+        this.waiting = [];
+        this.ready = new Promise((resolve) => { this.isReady = resolve; });
+    }
+
+    async open(address) {
+        const scene = await loadScene(address);
+        this.basis = await Basis.open(scene, this.home);
+        this.scene = scene;
+        const changed = () => this.invalidate();
+        this.tiles = new Tiles(this.device, scene, { changed, failed: (error) => this.told.failed(error) });
+        this.relighter = new Relighter(this.device, scene, this.basis);
+        this.painter = new Painter(this.device, scene, this.tiles, this.relighter, changed);
+        this.projection = scene.projection;
+        this.stage = scene.projection === 'planar' ? new Planar(scene, this.painter)
+            : scene.projection === 'slab' ? new Slab(scene, this.painter, this.device)
+            : new Panorama(scene, this.painter, this.device);
+        this.reset();
+        this.metering = true;
+        this.resize();
+    }
+
+    get isPanorama() { return this.stage instanceof Panorama; }
+    get isSlab() { return this.stage instanceof Slab; }
+
+    // As the page opens.
+    reset() {
+        this.lights = [firstLight(this.scene)];
+        this.chosen = 0;
+        this.exposure = 0;
+        this.tone = 'linear';
+        this.pass = 'colour';
+        this.aperture = 0;
+        this.focus = this.isSlab ? this.scene.slab.st_plane_z : 0;
+        this.eye = this.isSlab ? this.stage.middle() : [0, 0, 0];
+        Object.assign(this, { pan: 0, tilt: 0, zoom: 1, look: 'perspective', others: [] });
+        this.at = null;  // null: the whole picture
+        this.setLights(this.lights);
+    }
+
+    // ------------------------------------------------------------ changes
+
+    setLights(lights) {
+        this.lights = lights;
+        this.chosen = clamp(this.chosen, 0, Math.max(0, lights.length - 1));
+        this.relighter.setLights(lights);
+        this.range = this.ranged = null;
+        this.changed();
+    }
+
+    changed() {
+        this.told.changed();
+        this.invalidate();
+    }
+
+    // Hints that changes come fast, so that coarse pictures will do where full ones take too long.
+    touch() {
+        this.moving = performance.now();
+    }
+
+    framing() {
+        const { width, height } = this.canvas;
+        return this.at || this.stage.fit(width, height);
+    }
+
+    // Moves the picture by pixels of the canvas.
+    shift(dx, dy) {
+        const at = this.framing();
+        this.setFraming({ ...at, x: at.x - dx / at.scale, y: at.y - dy / at.scale });
+    }
+
+    // Enlarges it around a place of the canvas.
+    enlarge(factor, x = this.canvas.width / 2, y = this.canvas.height / 2) {
+        if (this.isPanorama) {
+            this.zoom = clamp(this.zoom * factor, this.look === 'perspective' ? 0.4 : 0.2, 40);
+            this.changed();
+            return;
+        }
+        const at = this.framing(), fit = this.stage.fit(this.canvas.width, this.canvas.height).scale;
+        const scale = clamp(at.scale * factor, Math.min(fit, 1) / 2, Math.max(32, 2 * fit)), k = 1 / at.scale - 1 / scale;
+        this.setFraming({ x: at.x + k * (x - this.canvas.width / 2), y: at.y + k * (y - this.canvas.height / 2), scale });
+    }
+
+    setFraming(at) {
+        this.at = { x: clamp(at.x, 0, this.scene.width), y: clamp(at.y, 0, this.scene.height), scale: at.scale };
+        this.changed();
+    }
+
+    // Walks, by shares of the grid of cameras; looks around, by degrees.
+    walk(dx, dy) {
+        const { grid } = this.stage;
+        this.eye = [clamp(this.eye[0] + dx * (grid[2] - grid[0]), grid[0], grid[2]),
+                    clamp(this.eye[1] + dy * (grid[3] - grid[1]), grid[1], grid[3]), this.eye[2]];
+        this.changed();
+    }
+
+    turn(pan, tilt) {
+        this.pan = ((this.pan + pan + 540) % 360) - 180;
+        this.tilt = clamp(this.tilt + tilt, -90, 90);
+        this.changed();
+    }
+
+    // A little planet is seen from above, unless `values` say otherwise.
+    setLook(look, values = {}) {
+        const planet = look === 'planet';
+        this.look = look;
+        this.tilt = values.tilt ?? (planet ? -90 : 0);
+        this.zoom = values.zoom ?? (planet ? 0.5 : 1);
+        this.changed();
+    }
+
+    resize() {
+        const ratio = window.devicePixelRatio || 1, box = this.canvas.getBoundingClientRect();
+        const width = Math.max(1, Math.round(box.width * ratio)), height = Math.max(1, Math.round(box.height * ratio));
+        if (this.canvas.width !== width || this.canvas.height !== height) {
+            this.canvas.width = width;
+            this.canvas.height = height;
+        }
+        this.invalidate();
+    }
+
+    // ------------------------------------------------------------ the state line
+
+    getState() {
+        const other = (value, usual) => (value === usual ? undefined : value);
+        const values = {
+            eye: this.isSlab ? this.eye : undefined,
+            at: this.at ? [this.at.x, this.at.y, this.at.scale] : undefined,
+            exposure: other(this.exposure, 0), tone: other(this.tone, 'linear'), pass: other(this.pass, 'colour'),
+        };
+        if (this.isPanorama)
+            Object.assign(values, { pan: this.pan, tilt: this.tilt, zoom: this.zoom, projection: other(this.look, 'perspective') });
+        if (this.isSlab && this.aperture > 0)
+            Object.assign(values, { aperture: this.aperture, focus: this.focus });
+        return writeState({ values, lights: this.lights, others: this.others });
+    }
+
+    // Shows what a line says; what it does not name is as the page opens.
+    setState(line) {
+        const { values, lights, others, problem } = readState(line);
+        this.metering = false;
+        this.reset();
+        Object.assign(this, { others });
+        for (const name of ['exposure', 'tone', 'pass', 'pan', 'tilt', 'zoom', 'aperture', 'focus', 'eye'])
+            if (values[name] !== undefined)
+                this[name] = values[name];
+        if (values.projection)
+            this.setLook(values.projection, values);
+        if (values.at && !this.isPanorama)
+            this.at = { x: values.at[0], y: values.at[1], scale: values.at[2] };
+        if (lights)
+            this.setLights(lights);
+        if (problem)
+            this.told.problem(problem);
+        this.changed();
+    }
+
+    // ------------------------------------------------------------ drawing
+
+    invalidate() {
+        if (!this.asked && this.stage && !this.closed) {
+            this.asked = true;
+            requestAnimationFrame((now) => { this.asked = false; this.frame(now); });
+        }
+    }
+
+    // A promise of the present view at full detail.
+    idle() {
+        return new Promise((resolve) => { this.waiting.push(resolve); this.invalidate(); });
+    }
+
+    // Slow machines relight less in a frame, and coarser while things move.
+    keepPace(now) {
+        const gap = now - (this.last || now - QUICK), steady = gap < 500;
+        this.last = now;
+        if (steady && gap > SLOW)
+            this.pixels = Math.max(this.pixels / 2, LEAST_PIXELS);
+        else if (gap < QUICK)
+            this.pixels = Math.min(this.pixels * 1.5, MOST_PIXELS);
+        const moving = now - this.moving < 250;
+        if (!moving)
+            this.coarser = 0;
+        else if (steady && gap > SLOW)
+            this.coarser = Math.min(this.coarser + 1, 3);
+        return moving;
+    }
+
+    target(name) {
+        const { width, height } = this.canvas, own = this.targets = this.targets || {};
+        if (!own[name] || own[name].width !== width || own[name].height !== height) {
+            this.device.drop(own[name]);
+            own[name] = this.device.target(width, height);
+        }
+        return own[name];
+    }
+
+    camera() {
+        return { at: this.isPanorama ? null : this.framing(), eye: this.eye, pan: this.pan,
+                 tilt: this.tilt, zoom: this.zoom, planet: this.look !== 'perspective',
+                 aperture: this.aperture, focus: this.focus, coarser: this.coarser };
+    }
+
+    get needsNormals() { return ['normals', 'specular', 'diffuse-gain', 'unsharp'].includes(this.pass); }
+
+    frame(now) {
+        if (this.closed || this.device.gl.isContextLost())
+            return;
+        const moving = this.keepPace(now);
+        this.painter.allowed = this.pixels;
+        this.painter.complete = true;
+        this.tiles.begin();
+        const camera = this.camera(), kinds = this.needsNormals ? ['light', 'normals', 'albedo'] : ['light'];
+        for (const kind of kinds)
+            this.stage.draw(this.target(kind), kind, camera);
+        this.findRange();
+        this.meter();
+        this.tiles.end();
+        this.present();
+        this.settle(moving);
+    }
+
+    settle(moving) {
+        const drawn = [...this.tiles.tiles.values()].some((tile) => tile.lit);
+        if (drawn)
+            this.isReady();
+        const busy = this.tiles.busy > 0;
+        if (!this.painter.complete && !busy)
+            this.invalidate();
+        if (this.coarser && moving)
+            setTimeout(() => this.invalidate(), 260);
+        if (this.painter.complete && !busy && !this.coarser)
+            this.waiting.splice(0).forEach((resolve) => resolve());
+    }
+
+    lamps() {
+        return this.lights.filter((light) => light.kind === 'dir').slice(0, MOST_LAMPS);
+    }
+
+    lampSum() {
+        return [0, 1, 2].map((c) => this.lamps().reduce((sum, lamp) => sum + lamp.rgb[c], 0));
+    }
+
+    // The whole picture, small, as floats of each kind; null where it is not there yet.
+    small(kinds) {
+        const { scene, painter } = this, last = scene.levels.length - 1, { width, height } = scene.levels[last];
+        const scale = Math.min(1, MEASURED / Math.max(width, height)), before = painter.complete;
+        const target = this.device.target(Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale)));
+        painter.complete = true;
+        painter.allowed = Math.max(painter.allowed, 1);
+        const out = kinds.map((kind) => {
+            painter.paint(target, scene.views[0], kind, last, { scale: scale * 2 ** -last, left: 0, top: 0 },
+                          [0, 0, scene.width, scene.height]);
+            return this.device.read(target);
+        });
+        const there = painter.complete;
+        painter.complete = there && before;
+        this.device.drop(target);
+        return there ? out : null;
+    }
+
+    // Raking light is dim: the first picture is as bright as it should be.
+    meter() {
+        const read = this.metering && this.small(['light']);
+        if (!read)
+            return;
+        this.metering = false;
+        this.exposure = Math.round(10 * Math.min(Math.max(meterExposure(read[0]), 0), 2)) / 10;
+        this.told.changed();
+    }
+
+    findRange() {
+        if (this.range && this.ranged === this.pass)
+            return;
+        this.range = [0, 1, 1, 1];
+        const gain = this.pass === 'diffuse-gain';
+        const read = ['specular', 'diffuse-gain', 'false-colour'].includes(this.pass) && this.small(gain ? ['light', 'albedo'] : ['light']);
+        if (!read)
+            return;
+        this.range = measureRange(this.pass, read[0], read[1], this.lampSum());
+        this.ranged = this.pass;
+    }
+
+    present() {
+        const lamps = this.lamps(), program = this.device.program('present', presentShader);
+        const { gl } = this.device, of = (kind) => ({ texture: this.target(this.needsNormals ? kind : 'light').texture });
+        const at = this.isPanorama ? null : this.framing();
+        this.device.begin(null);
+        program.set({
+            light: of('light'), normals: of('normals'), albedos: of('albedo'), pass: { int: PASSES.indexOf(this.pass) },
+            tone: { int: TONES_BY_NAME.indexOf(this.tone) }, exposure: 2 ** this.exposure, ground: GROUND,
+            scale: this.range, count: { int: lamps.length }, lampSum: this.lampSum(),
+            radius: Math.max(4 * (at ? at.scale : 1), 1),
+        });
+        if (lamps.length) {
+            gl.uniform3fv(program.at('lamp'), lamps.flatMap((lamp) => lamp.direction));
+            gl.uniform3fv(program.at('lampColour'), lamps.flatMap((lamp) => lamp.rgb));
+        }
+        program.draw();
+    }
+
+    // The picture as it is seen, as a PNG.
+    snapshot() {
+        return new Promise((resolve) => {
+            this.frame(performance.now());
+            this.canvas.toBlob(resolve, 'image/png');
+        });
+    }
+
+    close() {
+        this.closed = true;
+        if (this.stage) {
+            this.stage.close();
+            this.tiles.close();
+            this.basis.close();
+        }
+        Object.values(this.targets || {}).forEach((target) => this.device.drop(target));
+    }
+}

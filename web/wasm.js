@@ -1,0 +1,105 @@
+// wasm.js - the library's own arithmetic, compiled to WebAssembly (core/core.c)
+import { Failure, addScript } from './load.js';
+
+let coreBytes = null, corePromise = null;
+
+// Called by relume/core.js while it runs.
+export function putCore(base64) {
+    const text = atob(base64);
+    coreBytes = Uint8Array.from(text, (c) => c.charCodeAt(0));
+}
+
+// What the compiled code wants of its surroundings: nothing is printed, and it never ends.
+const surroundings = {
+    env: { emscripten_notify_memory_growth() {} },
+    wasi_snapshot_preview1: {
+        proc_exit() { throw new Failure('out of memory'); },
+        fd_close: () => 0,
+        fd_write: () => 0,
+        fd_seek: () => 0,
+    },
+};
+
+async function compile(home) {
+    if (!coreBytes)
+        await addScript(new URL('core.js', home).href).catch(() => {
+            throw new Failure('relume/core.js is missing');
+        });
+    const made = await WebAssembly.instantiate(coreBytes, surroundings);
+    if (made.instance.exports._initialize)
+        made.instance.exports._initialize();
+    return made.instance.exports;
+}
+
+function openWasm(home) {
+    corePromise = corePromise || compile(home);
+    return corePromise;
+}
+
+// A typed array's content in the core's memory.
+function place(core, array) {
+    const at = core.core_room(Math.max(array.byteLength, 8));
+    if (!at)
+        throw new Failure('out of memory');
+    new Uint8Array(core.memory.buffer, at, array.byteLength)
+        .set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+    return at;
+}
+
+function placeText(core, text) {
+    return place(core, new TextEncoder().encode(`${text}\0`));
+}
+
+// The basis of a scene: which weights its planes have for light from a direction.
+export class Basis {
+    static async open(scene, home) {
+        const basis = new Basis();
+        basis.core = await openWasm(home);
+        basis.begin(scene);
+        return basis;
+    }
+
+    begin(scene) {
+        const core = this.core, b = scene.basis;
+        const given = [placeText(core, b.name), placeText(core, b.interpolant || ''),
+                       place(core, new Float64Array(4).map((_, i) => b.parameter[i] || 0)),
+                       place(core, new Float64Array(b.lights)),
+                       place(core, scene.transform), place(core, scene.mean)];
+        this.handle = core.core_open(given[0], given[1], given[2], b.coefficients,
+                                     b.hemispherical ? 1 : 0, b.pole === 'y' ? 1 : 0, given[3],
+                                     b.lights.length / 3);
+        const right = this.handle && core.core_functions(this.handle) === scene.functions &&
+                      core.core_turn(this.handle, given[4], given[5], scene.planes);
+        given.forEach((at) => core.core_free(at));
+        if (!right)
+            throw new Failure(`scene.json: basis ${b.name} is not what this page knows`);
+        this.size = 3 * (scene.planes + 1);
+        this.captured = b.lights.length / 3;
+        this.out = core.core_room(4 * this.size);
+    }
+
+    // { share, weights }: [3][planes + 1], the last of each three being a constant.
+    weights(direction) {
+        const share = this.core.core_weights(this.handle, ...direction, this.out);
+        return { share, weights: new Float32Array(this.core.memory.buffer, this.out, this.size).slice() };
+    }
+
+    // Lights that stand for a lat-long map: [{ direction, rgb }].
+    environment(map, rotateDeg) {
+        const core = this.core, given = place(core, map.rgb), out = core.core_room(48 * this.captured);
+        const n = core.core_environment(this.handle, given, map.width, map.height, rotateDeg, out);
+        const found = new Float64Array(core.memory.buffer, out, Math.max(6 * n, 0)).slice();
+        core.core_free(given);
+        core.core_free(out);
+        if (n < 0)
+            throw new Failure('out of memory');
+        return Array.from({ length: n }, (_, i) => (
+            { direction: [...found.subarray(6 * i, 6 * i + 3)], rgb: [...found.subarray(6 * i + 3, 6 * i + 6)] }));
+    }
+
+    close() {
+        if (this.handle)
+            this.core.core_close(this.handle);
+        this.handle = 0;
+    }
+}

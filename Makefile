@@ -93,6 +93,10 @@ MPI_C    := $(if $(shell command -v mpicc),$(wildcard src/mpi/*.c))
 CLI_C    := $(wildcard src/program/*.c src/cli/*.c src/cli/*/*.c)
 VIEWER_C := $(wildcard src/program/*.c viewer/*/*.c)
 VIEWER_CXX := $(wildcard viewer/*/*.cpp)
+# What `relume publish` puts into every site; the core is compiled by make web
+WEB_JS   := $(wildcard web/*.js)
+WEB_CORE := $(wildcard web/core/relume-core.wasm)
+WEB_CSS  := $(wildcard web/*.css)
 SHADERS  := $(wildcard viewer/shaders/*.glsl viewer/shaders/*/*.glsl)
 HEADERS  := $(wildcard include/relume/*.h)
 UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/threads/*.c)
@@ -106,7 +110,7 @@ SAMPLES_C := samples/sphere.c samples/figures.c samples/mirrorball.c
 # Instruction sets beyond the baseline; what is written for another processor compiles to nothing.
 AVX2     := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),-mavx2 -mfma -mf16c)
 AVX512   := $(if $(AVX2),$(AVX2) -mavx512f -mavx512bw -mavx512dq -mavx512vl)
-LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(addprefix $B/obj/src/kernel/lsq_eigen,.o $(if $(AVX2),_avx2.o _avx512.o))
+LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/web/assets.o $(addprefix $B/obj/src/kernel/lsq_eigen,.o $(if $(AVX2),_avx2.o _avx512.o))
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
 MESHES   := $B/librelume-assimp.so.$(MAJOR)
 STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
@@ -209,6 +213,23 @@ $B/obj/src/kernel/lsq_eigen_%.o: src/kernel/lsq_eigen.cpp | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CXX)
 	$(Q)$(CXX) $(CXX17) -Iinclude -Isrc $(own_flags) $(CXXFLAGS) -c -o $@ $<
+
+# The web viewer is modules in the tree, one classic script in a site, and bytes in the library.
+$B/web/relume.js: scripts/join-web.sh $(WEB_JS)
+	@mkdir -p $(@D)
+	$(call say,GEN)
+	$(Q)scripts/join-web.sh $(WEB_JS) > $@
+$B/web/core.js: $(WEB_CORE)
+	@mkdir -p $(@D)
+	$(call say,GEN)
+	$(Q){ printf 'relume.putCore("'; base64 -w0 $<; printf '");\n'; } > $@
+$B/obj/web/assets.c: scripts/embed-web.sh $B/web/relume.js $B/web/core.js $(WEB_CORE) $(WEB_CSS)
+	@mkdir -p $(@D)
+	$(call say,GEN)
+	$(Q)scripts/embed-web.sh $(foreach f,$(filter-out scripts/%,$^),$(notdir $f)=$f) > $@
+$B/obj/web/assets.o: $B/obj/web/assets.c | $(DEPS)
+	$(call say,CC)
+	$(Q)$(CC) $(C11) -Isrc -c -o $@ $<
 
 # Shaders are files in the tree and strings in the program.
 $B/obj/viewer/shaders.c: scripts/embed.sh $(SHADERS)

@@ -227,7 +227,7 @@ static relume_status find(struct common *c, struct statistics *all, int planes)
 }
 
 relume_status common_find(struct common *c, relume_pack *pack, int planes, int threads,
-                              const struct relume_log *log)
+                          const struct relume_log *log)
 {
     const struct relume_codes *codes;
     struct statistics all = {0};
@@ -258,7 +258,7 @@ void common_keep(struct common *c, int planes)
 }
 
 void common_weights(const struct common *c, struct relume_vec3 light, double *weights,
-                        double constant[3])
+                    double constant[3])
 {
     float values[3 * RELUME_MOST_COEFFICIENTS], none[3];
     const size_t f = (size_t)c->functions, k = (size_t)c->plan.planes;

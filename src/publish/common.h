@@ -23,12 +23,12 @@ struct common {
 
 // At most `planes`. Errors of reading; RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status common_find(struct common *c, relume_pack *pack, int planes, int threads,
-                              const struct relume_log *log);
+                          const struct relume_log *log);
 // Keep the first `planes`, which is what transform then has.
 void common_keep(struct common *c, int planes);
 // Row c of weights[3][planes] and constant[c] at a unit direction.
 void common_weights(const struct common *c, struct relume_vec3 light, double *weights,
-                        double constant[3]);
+                    double constant[3]);
 void common_free(struct common *c);
 
 #endif

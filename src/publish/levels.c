@@ -19,12 +19,10 @@ int levels_count(int width, int height)
 }
 
 // A level on its way: planes as they lie in memory, and its tiles.
-enum { MOST_PLANES = 45 };
-
 struct level {
     const struct levels *how;
     int width, height, columns, rows;
-    const float *plane[MOST_PLANES];
+    const float *plane[PUBLISH_MOST_PLANES];
     uint8_t **bytes;  // [tiles]
     size_t *size;
     relume_status *status;
@@ -48,7 +46,8 @@ static struct sheet cut(const struct level *l, const struct relume_rect *at, int
         float *to = room + (size_t)p * pixels;
         for (int y = 0; y < at->height; y++)
             memcpy(to + (size_t)y * width,
-                   l->plane[first + p] + (size_t)(at->top + y) * (size_t)l->width + (size_t)at->left,
+                   l->plane[first + p] + (size_t)(at->top + y) * (size_t)l->width +
+                       (size_t)at->left,
                    width * sizeof *to);
         s.plane[p] = to;
         s.minimum[p] = l->how->minimum[first + p];

@@ -17,6 +17,9 @@
 
 enum { USUAL_PLANES = 27, CORRECTIONS = 5 };
 
+// Where so many planes would not reach this, as of hard shadows, there are more.
+#define USUAL_DB 38.0
+
 // What the page loads before it shows something, beside scene.json: of 150 kB what the viewer
 // itself leaves.
 enum { FIRST_BYTES = 60000, FIRST_VIEWS = 4 };
@@ -146,8 +149,7 @@ static relume_status measure(struct scene *s, const struct planes *middle, uint8
                               .scale = s->levels.scale,
                               .offset = s->levels.offset};
     const struct measure_weights how = {weights_at, &s->common};
-    return measure_psnr(&s->report->psnr_db, &f, &s->common.source, &how,
-                        s->site->params->threads);
+    return measure_psnr(&s->report->psnr_db, &f, &s->common.source, &how, s->site->params->threads);
 }
 
 // Finer until the PSNR is reached that was asked for, coarser until the size is.
@@ -225,24 +227,39 @@ static relume_status allocate(struct scene *s, double **minimum, double **maximu
 {
     const size_t n = (size_t)s->common.plan.planes;
     s->levels = (struct levels){.planes = (int)n, .threads = s->site->params->threads};
+    s->layers = mem_zeroed((size_t)relume_pack_info(s->pack)->views, sizeof *s->layers);
     *minimum = mem_array(n, sizeof **minimum);
     *maximum = mem_array(n, sizeof **maximum);
     s->levels.minimum = *minimum;
     s->levels.maximum = *maximum;
     s->levels.scale = mem_zeroed(n, sizeof *s->levels.scale);
     s->levels.offset = mem_zeroed(n, sizeof *s->levels.offset);
-    return *minimum && *maximum && s->levels.scale && s->levels.offset ? RELUME_OK : RELUME_ENOMEM;
+    return s->layers && *minimum && *maximum && s->levels.scale && s->levels.offset ? RELUME_OK
+                                                                                    : RELUME_ENOMEM;
+}
+
+static relume_status find_components(struct scene *s)
+{
+    const struct relume_publish_params *p = s->site->params;
+    struct plan *plan = &s->common.plan;
+    const relume_status status =
+        common_find(&s->common, s->pack, p->coefficients ? p->coefficients : PUBLISH_MOST_PLANES,
+                    p->threads, s->site->log);
+    double lost = plan->lost;
+    for (int i = USUAL_PLANES; !status && i < plan->planes; i++)
+        lost += plan->energy[i];
+    if (!status && !p->coefficients && plan->planes > USUAL_PLANES &&
+        decibels(lost / 3.0) >= USUAL_DB)
+        common_keep(&s->common, USUAL_PLANES);
+    return status;
 }
 
 relume_status scene_write(struct scene *s)
 {
-    const struct relume_publish_params *p = s->site->params;
     uint64_t bytes[LEVELS_MOST] = {0};
     double *minimum = NULL, *maximum = NULL;
     struct planes middle = {0};
-    relume_status status =
-        common_find(&s->common, s->pack, p->coefficients ? p->coefficients : USUAL_PLANES,
-                        p->threads, s->site->log);
+    relume_status status = find_components(s);
     if (!status)
         status = allocate(s, &minimum, &maximum);
     if (!status)
@@ -268,6 +285,7 @@ relume_status scene_write(struct scene *s)
 
 void scene_free(struct scene *s)
 {
+    mem_free(s->layers);
     mem_free(s->levels.scale);
     mem_free(s->levels.offset);
     common_free(&s->common);

@@ -3,13 +3,10 @@
 #define PUBLISH_SCENE_H
 
 #include "publish/common.h"
+#include "publish/details.h"
+#include "publish/layers.h"
 #include "publish/levels.h"
 #include "publish/site.h"
-
-// What people want to know of a file or site; texts are borrowed, NULL: nothing is said.
-struct details {
-    const char *title, *maker, *licence, *object, *description;
-};
 
 // A file that is being published.
 struct scene {
@@ -19,6 +16,7 @@ struct scene {
     struct details details;
     struct common common;
     struct levels levels;
+    struct layers *layers;  // [views]
     int first_level;
     struct relume_publish_report *report;
 };

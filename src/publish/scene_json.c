@@ -91,14 +91,18 @@ static void put_levels(FILE *f, const struct scene *s)
     fprintf(f, "],\n  \"first_level\": %d,\n", s->first_level);
 }
 
-static void put_views(FILE *f, const struct relume_pack_info *info)
+static void put_views(FILE *f, const struct scene *s)
 {
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
     fputs("  \"views\": [", f);
     for (int i = 0; i < info->views; i++) {
         fprintf(f, "%s{\"name\": \"v%d\"", i ? ",\n    " : "\n    ", i);
         if (info->geometry.projection == RELUME_SLAB)
             fprintf(f, ", \"uv\": [%.9g, %.9g]", info->uv[i][0], info->uv[i][1]);
-        putc('}', f);
+        if (s->layers[i].depth)
+            fprintf(f, ", \"depth\": true, \"depth_min\": %.9g, \"depth_step\": %.9g",
+                    s->layers[i].depth_min, s->layers[i].depth_step);
+        fprintf(f, "%s}", s->layers[i].mask ? ", \"mask\": true" : "");
     }
     fputs("\n  ]\n", f);
 }
@@ -125,7 +129,7 @@ relume_status scene_write_json(const struct scene *s)
     put_numbers(t.file, "scale", s->levels.scale, s->levels.planes);
     put_numbers(t.file, "offset", s->levels.offset, s->levels.planes);
     put_levels(t.file, s);
-    put_views(t.file, info);
+    put_views(t.file, s);
     fputs("}\n", t.file);
     snprintf(name, sizeof name, "%s/scene.json", s->name);
     return site_save_text(s->site, name, true, &t);

@@ -1,0 +1,15 @@
+// assets.h - what every site holds: the viewer, its core, the style of the pages; made by the
+// Makefile of web/
+#ifndef PUBLISH_ASSETS_H
+#define PUBLISH_ASSETS_H
+
+#include <stddef.h>
+
+struct asset {
+    const char *name;  // in the folder relume/ of the site
+    const unsigned char *bytes;
+    size_t size;
+};
+extern const struct asset site_assets[];  // NULL ends the list
+
+#endif

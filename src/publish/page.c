@@ -1,0 +1,189 @@
+// page.c - the pages of a site
+//
+// Texts of people go through text_html alone; names of files are those of names.h. Pages load
+// nothing from elsewhere.
+#include "publish/page.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+static void put_meta(FILE *f, const char *kind, const char *key, const char *value)
+{
+    if (!value || !*value)
+        return;
+    fprintf(f, "<meta %s=\"%s\" content=\"", kind, key);
+    text_html(f, value);
+    fputs("\">\n", f);
+}
+
+// Where a file of the site will be, for others; relative where nobody knows.
+static void put_address(FILE *f, const struct site *site, const char *file)
+{
+    const char *url = site->params->url;
+    size_t n = url ? strlen(url) : 0;
+    while (n && url[n - 1] == '/')
+        n--;
+    for (size_t i = 0; i < n; i++)
+        text_address(f, (const char[]){url[i], '\0'});
+    fprintf(f, "%s%s", n ? "/" : "", file);
+}
+
+static void put_open_graph(FILE *f, const struct site *site, const char *page, const char *poster,
+                           const struct details *d)
+{
+    put_meta(f, "name", "description", d->description);
+    put_meta(f, "name", "author", d->maker);
+    put_meta(f, "property", "og:type", "website");
+    put_meta(f, "property", "og:title", d->title);
+    put_meta(f, "property", "og:description", d->description);
+    if (poster) {
+        fputs("<meta property=\"og:image\" content=\"", f);
+        put_address(f, site, poster);
+        fputs("\">\n<meta name=\"twitter:card\" content=\"summary_large_image\">\n", f);
+    }
+    if (site->params->url) {
+        fputs("<meta property=\"og:url\" content=\"", f);
+        put_address(f, site, page);
+        fputs("\">\n<link rel=\"canonical\" href=\"", f);
+        put_address(f, site, page);
+        fputs("\">\n", f);
+    }
+}
+
+static void put_head(FILE *f, const struct site *site, const char *page, const char *poster,
+                     const struct details *d, bool viewer)
+{
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+          f);
+    text_html(f, d->title);
+    fputs("</title>\n", f);
+    put_open_graph(f, site, page, poster, d);
+    fprintf(f, "<meta name=\"generator\" content=\"relume %s\">\n", RELUME_VERSION);
+    if (viewer)
+        fputs("<link rel=\"stylesheet\" href=\"relume/relume.css\">\n", f);
+    fputs("<link rel=\"stylesheet\" href=\"relume/site.css\">\n", f);
+    if (viewer)
+        fputs("<script src=\"relume/relume.js\" defer></script>\n", f);
+    fputs("</head>\n<body>\n", f);
+}
+
+static void put_row(FILE *f, const char *term, const char *value)
+{
+    if (!value || !*value)
+        return;
+    fprintf(f, "<dt>%s</dt><dd>", term);
+    text_html(f, value);
+    fputs("</dd>\n", f);
+}
+
+static bool is_link(const char *text)
+{
+    return text && (!strncmp(text, "https://", 8) || !strncmp(text, "http://", 7));
+}
+
+static void put_licence(FILE *f, const char *licence)
+{
+    if (!is_link(licence)) {
+        put_row(f, "Licence", licence);
+        return;
+    }
+    fputs("<dt>Licence</dt><dd><a rel=\"license\" href=\"", f);
+    text_html(f, licence);
+    fputs("\">", f);
+    text_html(f, licence);
+    fputs("</a></dd>\n", f);
+}
+
+static void put_details(FILE *f, const struct details *d)
+{
+    if (d->description && *d->description) {
+        fputs("<p>", f);
+        text_html(f, d->description);
+        fputs("</p>\n", f);
+    }
+    fputs("<dl>\n", f);
+    put_row(f, "Maker", d->maker);
+    put_row(f, "Object", d->object);
+    put_licence(f, d->licence);
+    fputs("</dl>\n", f);
+}
+
+static void put_poster(FILE *f, const struct page *p, const char *more)
+{
+    fprintf(f, "<img %ssrc=\"%s/poster.jpg\" width=\"%d\" height=\"%d\" alt=\"", more, p->name,
+            p->poster_width, p->poster_height);
+    text_html(f, p->details.title);
+    fputs(", lit from the front\">", f);
+}
+
+// What another page needs to show the same: two lines of HTML.
+static void put_embedding(FILE *f, const struct site *site, const struct page *p)
+{
+    fputs("<details>\n<summary>Show this in your own page</summary>\n"
+          "<pre><code>&lt;script src=&quot;",
+          f);
+    put_address(f, site, "relume/relume.js");
+    fputs("&quot; defer&gt;&lt;/script&gt;\n&lt;relume-view src=&quot;", f);
+    put_address(f, site, p->name);
+    fputs("/scene.json&quot;&gt;&lt;/relume-view&gt;</code></pre>\n</details>\n", f);
+}
+
+relume_status page_write(const struct site *site, const struct page *p, const char *site_title)
+{
+    struct text t;
+    char name[128], poster[128];
+    snprintf(name, sizeof name, "%s.html", p->name);
+    snprintf(poster, sizeof poster, "%s/poster.jpg", p->name);
+    const relume_status status = text_open(&t);
+    if (status)
+        return status;
+    FILE *f = t.file;
+    put_head(f, site, name, poster, &p->details, true);
+    fputs("<nav><a href=\"index.html\">", f);
+    text_html(f, site_title ? site_title : "All objects");
+    fputs("</a></nav>\n<main>\n<h1>", f);
+    text_html(f, p->details.title);
+    fprintf(f, "</h1>\n<relume-view src=\"%s/scene.json\" poster=\"%s\" title=\"", p->name, poster);
+    text_html(f, p->details.title);
+    fputs("\"><noscript>", f);
+    put_poster(f, p, "class=\"still\" ");
+    fputs("<p>This page needs JavaScript to move the light.</p></noscript></relume-view>\n", f);
+    put_details(f, &p->details);
+    put_embedding(f, site, p);
+    fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
+    fputs("</main>\n</body>\n</html>\n", f);
+    return site_save_text(site, name, false, &t);
+}
+
+relume_status page_write_index(const struct site *site, const struct page *pages, int count,
+                               const struct details *details)
+{
+    struct details d = *details;
+    struct text t;
+    char poster[128];
+    snprintf(poster, sizeof poster, "%s/poster.jpg", pages[0].name);
+    d.title = d.title ? d.title : count == 1 ? pages[0].details.title : "Relightable objects";
+    const relume_status status = text_open(&t);
+    if (status)
+        return status;
+    FILE *f = t.file;
+    put_head(f, site, "index.html", poster, &d, false);
+    fputs("<main>\n<h1>", f);
+    text_html(f, d.title);
+    fputs("</h1>\n<ul class=\"gallery\">\n", f);
+    for (int i = 0; i < count; i++) {
+        fprintf(f, "<li><a href=\"%s.html\">", pages[i].name);
+        put_poster(f, &pages[i], i < 12 ? "" : "loading=\"lazy\" ");
+        fputs("<span>", f);
+        text_html(f, pages[i].details.title);
+        fputs("</span><span class=\"quiet\">", f);
+        text_html(f, pages[i].details.maker);
+        fputs("</span></a></li>\n", f);
+    }
+    fputs("</ul>\n", f);
+    put_details(f, &d);
+    fputs("</main>\n</body>\n</html>\n", f);
+    return site_save_text(site, "index.html", false, &t);
+}

@@ -23,16 +23,15 @@ export class RelumeView extends HTMLElement {
     static home = '';
 
     connectedCallback() {
-        if (this.root)
-            return;
-        this.root = this.attachShadow({ mode: 'open' });
+        this.root = this.shadowRoot || this.attachShadow({ mode: 'open' });
         this.canvas = make('canvas', { 'aria-hidden': 'true' });
         this.poster = make('img', { class: 'poster', alt: '', hidden: true });
         this.hint = make('p', { class: 'hint' });
         this.status = make('p', { class: 'status', role: 'status', 'aria-live': 'polite' });
         this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.poster, this.hint);
+        this.frame = make('div', { class: 'frame' }, this.surface, this.status);
         this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeView.home).href }),
-                         this.surface, this.status);
+                         this.frame);
         this.ready = new Promise((resolve) => { this.isReady = resolve; });
         this.open().catch((error) => this.fail(error));
     }
@@ -41,10 +40,12 @@ export class RelumeView extends HTMLElement {
         if (this.observer)
             this.observer.disconnect();
         document.removeEventListener('keydown', this.bodyKey);
-        if (this.viewer)
+        if (this.viewer) {
+            this.first = this.getState();  // for when it is put elsewhere in the page
             this.viewer.close();
+        }
         this.root.replaceChildren();
-        this.root = this.viewer = null;
+        this.viewer = this.controls = null;
     }
 
     get source() { return new URL(this.getAttribute('src') || '', document.baseURI); }
@@ -74,17 +75,19 @@ export class RelumeView extends HTMLElement {
     async open() {
         const viewer = new Viewer(this.canvas, RelumeView.home, {
             changed: () => this.controls && this.controls.show(),
-            failed: (error) => this.say(`A part of the picture cannot be shown: ${error.message}.`),
+            failed: (error) => (viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error)),
             problem: (sentence) => this.say(sentence),
         });
         await viewer.open(this.source.href);
+        if (!this.isConnected || !this.root.contains(viewer.canvas))
+            return viewer.close();
         this.viewer = viewer;
         const title = viewer.scene.title || viewer.scene.name || 'Picture';
         this.surface.setAttribute('aria-label', `${title}: a picture whose light can be moved. Arrow keys move the light; ` +
                                                 'press the question mark for all keys.');
         this.lighting = viewer.projection === 'planar';
         this.controls = new Controls(viewer, this);
-        this.root.append(this.controls.node);
+        this.frame.append(this.controls.node);
         this.showMode();
         this.hint.textContent = this.lighting ? 'Drag across the picture to move the light'
             : viewer.isSlab ? 'Drag to walk around, move the light by its ball' : 'Drag to look around, move the light by its ball';
@@ -97,7 +100,7 @@ export class RelumeView extends HTMLElement {
         else if (this.getAttribute('state'))
             viewer.setState(this.getAttribute('state'));
         await viewer.ready;
-        this.isReady();
+        return this.isReady();
     }
 
     // ------------------------------------------------------------ state

@@ -250,8 +250,8 @@ export class Viewer {
     }
 
     settle(moving) {
-        const drawn = [...this.tiles.tiles.values()].some((tile) => tile.lit);
-        if (drawn)
+        this.drawn = this.drawn || [...this.tiles.tiles.values()].some((tile) => tile.lit);
+        if (this.drawn)
             this.isReady();
         const busy = this.tiles.busy > 0;
         if (!this.painter.complete && !busy)

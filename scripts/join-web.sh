@@ -3,7 +3,7 @@
 # join-web.sh FILE.js... > relume.js
 # Modules import by name alone (`import { a, b } from './x.js';`, on one line or several) and mark
 # what they give with `export` before function, const, let, class or async; nothing else. Each comes
-# behind those that it imports.
+# behind those that it imports. Lines that are comments stay behind.
 set -eu
 
 imports() {
@@ -25,7 +25,8 @@ for name in $order; do
     awk '
         /^import *\{/ { inside = 1 }
         inside { if (/from *\047/) inside = 0; next }
-        { sub(/^export (default )?/, ""); print }
+        /^ *\/\// { next }
+        { sub(/^export /, ""); print }
     ' "$folder/$name"
 done
 echo "})();"

@@ -51,6 +51,7 @@ static double next_step(const struct bracket *b, double target)
 static relume_status search(double *step, const struct web_trials *t, bool psnr, double target)
 {
     struct bracket b = {log(WEB_LEAST_STEP), log(WEB_MOST_STEP), (double)NAN, (double)NAN};
+    const double near = (psnr ? 0.003 : 0.002) * (t->rough ? 30.0 : 1.0);
     double at = log(FIRST_STEP);
     for (int i = 0; i < TRIALS && b.high - b.low > 0.004; i++) {
         double value;
@@ -66,7 +67,7 @@ static relume_status search(double *step, const struct web_trials *t, bool psnr,
             b.high = at;
             b.high_value = value;
         }
-        if (fabs(value - target) < (psnr ? 0.003 : 0.002) && (value > target) == psnr)
+        if (fabs(value - target) < near && (value > target) == psnr)
             break;
         at = isnan(b.low_value)    ? fmax(at - 1.4, (b.low + at) / 2.0)
              : isnan(b.high_value) ? fmin(at + 1.4, (b.high + at) / 2.0)

@@ -15,7 +15,8 @@ double web_step_of_quality(int quality);
 struct web_trials {
     const struct plan *plan;
     const struct planes *planes;
-    bool all;  // sheets that are not worth their bytes are kept
+    bool all;    // sheets that are not worth their bytes are kept
+    bool rough;  // a tenth of a decibel, or a few hundredths of the bytes, is near enough
     int threads;
     const struct relume_log *log;
 };

@@ -10,7 +10,7 @@
 #include "publish/site.h"
 
 // The last level is the first that fits into LAST_SIDE.
-enum { LEVELS_TILE = 512, LEVELS_LAST_SIDE = 256, LEVELS_MOST = 24 };
+enum { LEVELS_TILE = 512, LEVELS_LAST_SIDE = 128, LEVELS_MOST = 24 };
 enum { PUBLISH_MOST_PLANES = 45 };
 
 // How all views of a file are coded.

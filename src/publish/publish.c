@@ -110,8 +110,10 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
     relume_status status = open_file(&s.pack, w->files[i], w->params);
     if (!status)
         status = scene_write(&s);
-    if (!status)
+    if (!status) {
+        report.views = relume_pack_info(s.pack)->views;
         status = write_poster(&s, page);
+    }
     if (!status)
         status = page_write(site, page, details_of_site(w->metadata, w->params).title);
     scene_free(&s);

@@ -17,6 +17,7 @@ struct scene {
     struct common common;
     struct levels levels;
     struct layers *layers;  // [views]
+    bool usual;  // the step is that of nobody's wish
     int first_level;
     struct relume_publish_report *report;
 };

@@ -29,6 +29,7 @@ const ICONS = {
     screen: 'M3 5h18v14H3zM8 9h8v6H8z',
     link: 'M10 14a4 4 0 0 0 6 0l3-3a4 4 0 0 0-6-6l-1 1M14 10a4 4 0 0 0-6 0l-3 3a4 4 0 0 0 6 6l1-1',
     save: 'M12 4v11M7 11l5 5 5-5M5 20h14',
+    note: 'M5 4h14v12H10l-4 4v-4H5zM8 8h8M8 12h5',
     help: 'M9 9a3 3 0 1 1 4 3c-1 .5-1 1-1 2M12 18v.5',
     lamp: 'M12 3a6 6 0 0 1 3 11v3H9v-3a6 6 0 0 1 3-11M10 20h4',
     move: 'M12 3v18M3 12h18M12 3l-2 3M12 3l2 3M12 21l-2-3M12 21l2-3M3 12l3-2M3 12l3 2M21 12l-3-2M21 12l-3 2',
@@ -93,6 +94,7 @@ export class Controls {
                      button('screen', 'Full screen (F)', () => actions.fullScreen()),
                      button('link', 'Copy a link to this view (C)', () => actions.copyLink()),
                      button('save', 'Save this picture (S)', () => actions.save()),
+                     button('note', 'Notes and measures (M)', () => actions.toggleNotes()),
                      button('help', 'Keys (?)', () => actions.help()))));
         this.show();
     }

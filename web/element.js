@@ -1,10 +1,13 @@
 // element.js - <relume-view src="…/scene.json">: a picture that can be relit, and its controls
-import { Failure } from './load.js';
 import { Viewer } from './viewer.js';
 import { Controls, make } from './controls.js';
 import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
 import { readEnvironment } from './hdr.js';
+import { Failure, loadJson } from './load.js';
+import { Notes } from './notes.js';
+import { NotePanel } from './notepanel.js';
+import { Overlay } from './overlay.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const STEP = 0.06;  // of the disc of lights, a key
@@ -13,7 +16,7 @@ const KEYS = [
     ['Arrow keys', 'move the light (Shift: the other way of dragging)'], ['L', 'dragging and arrows: light, or moving'],
     ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['N  Delete', 'another light, remove it'],
     ['Tab in the strip', 'colour, softness and more'], ['[ ]', 'darker, brighter'], ['P', 'what is shown'],
-    ['T', 'how highlights are shown'], ['F', 'full screen'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
+    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
 
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
@@ -25,10 +28,11 @@ export class RelumeView extends HTMLElement {
     connectedCallback() {
         this.root = this.shadowRoot || this.attachShadow({ mode: 'open' });
         this.canvas = make('canvas', { 'aria-hidden': 'true' });
+        this.over = make('canvas', { 'aria-hidden': 'true' });
         this.poster = make('img', { class: 'poster', alt: '', hidden: true });
         this.hint = make('p', { class: 'hint' });
         this.status = make('p', { class: 'status', role: 'status', 'aria-live': 'polite' });
-        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.poster, this.hint);
+        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.over, this.poster, this.hint);
         this.frame = make('div', { class: 'frame' }, this.surface, this.status);
         this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeView.home).href }),
                          this.frame);
@@ -77,6 +81,7 @@ export class RelumeView extends HTMLElement {
             changed: () => this.controls && this.controls.show(),
             failed: (error) => (viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error)),
             problem: (sentence) => this.say(sentence),
+            drawn: () => this.overlay && this.overlay.draw(),
         });
         await viewer.open(this.source.href);
         if (!this.isConnected || !this.root.contains(viewer.canvas))
@@ -88,6 +93,7 @@ export class RelumeView extends HTMLElement {
         this.lighting = viewer.projection === 'planar';
         this.controls = new Controls(viewer, this);
         this.frame.append(this.controls.node);
+        this.openNotes();
         this.showMode();
         this.hint.textContent = this.lighting ? 'Drag across the picture to move the light'
             : viewer.isSlab ? 'Drag to walk around, move the light by its ball' : 'Drag to look around, move the light by its ball';
@@ -101,6 +107,51 @@ export class RelumeView extends HTMLElement {
             viewer.setState(this.getAttribute('state'));
         await viewer.ready;
         return this.isReady();
+    }
+
+    // Notes that were published with the picture, and those that are made here.
+    async openNotes() {
+        const { viewer } = this, notes = new Notes(viewer.scene);
+        this.overlay = new Overlay(this.over, viewer);
+        this.panel = new NotePanel(viewer, notes, this.overlay, {
+            draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state),
+            focus: () => this.surface.focus(),
+        });
+        this.panel.node.hidden = true;
+        this.frame.append(this.panel.node);
+        if (!viewer.scene.notes)
+            return;
+        try {
+            notes.read(await loadJson(`${viewer.scene.base}notes.json`));
+            this.panel.show();
+            viewer.invalidate();
+        } catch (error) {
+            this.say(`The notes cannot be shown: ${error.message}.`);
+        }
+    }
+
+    toggleNotes() {
+        const { node } = this.panel;
+        node.hidden = !node.hidden;
+        if (!node.hidden)
+            node.querySelector('button').focus();
+        else
+            this.surface.focus();
+    }
+
+    // What a click on the picture means for notes; false: nothing.
+    clickNotes(at) {
+        if (this.panel.isDrawing) {
+            const ratio = this.canvas.width / this.surface.getBoundingClientRect().width;
+            this.panel.click(this.viewer.toPicture([at.x * ratio, at.y * ratio]));
+            return true;
+        }
+        const note = this.overlay.find(at.x, at.y);
+        if (note && this.panel.node.hidden)
+            this.toggleNotes();
+        if (note || this.overlay.chosen)
+            this.panel.choose(note);
+        return !!note;
     }
 
     // ------------------------------------------------------------ state
@@ -259,7 +310,7 @@ export class RelumeView extends HTMLElement {
         const ratio = () => this.canvas.width / this.surface.getBoundingClientRect().width;
         const enlarge = (factor, x, y) => { this.viewer.touch(); this.viewer.enlarge(factor, x * ratio(), y * ratio()); };
         listenPointers(this.surface, {
-            begin: () => {},
+            click: (at) => this.clickNotes(at) || (this.lighting && this.lightAt(at)),
             held: () => this.say(this.lighting ? `Dragging ${this.verb}s now.` : 'Dragging moves the light now.'),
             drag: (at, dx, dy, other) => (this.lighting !== other ? this.lightAt(at) : this.move(dx, dy)),
             pinch: (factor, x, y, dx, dy) => {
@@ -308,6 +359,12 @@ export class RelumeView extends HTMLElement {
     key(event) {
         if (event.ctrlKey || event.metaKey || event.altKey)
             return;
+        if (this.panel.isDrawing && ['Enter', 'Escape'].includes(event.key)) {
+            if (event.key === 'Enter') this.panel.end();
+            else this.panel.cancel();
+            event.preventDefault();
+            return;
+        }
         const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
         const { viewer } = this, acts = {
             '+': () => viewer.enlarge(1.25), '=': () => viewer.enlarge(1.25), '-': () => viewer.enlarge(0.8),
@@ -315,7 +372,7 @@ export class RelumeView extends HTMLElement {
             '[': () => this.set('exposure', Math.max(viewer.exposure - 0.25, -20)),
             ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
             p: () => this.set('pass', next(PASSES, viewer.pass)), t: () => this.set('tone', next(TONES_BY_NAME, viewer.tone)),
-            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), '?': () => this.help(),
+            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), m: () => this.toggleNotes(), '?': () => this.help(),
         };
         if (way && this.lighting !== event.shiftKey)
             this.moveLight(STEP * way[0], STEP * way[1]);

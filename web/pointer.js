@@ -6,11 +6,11 @@
 const LONG_PRESS = 450;  // milliseconds
 const STILL = 6;         // CSS pixels
 
-// `to`: drag(event, dx, dy, other), pinch(factor, x, y, dx, dy), wheel(factor, x, y), begin(), held();
+// `to`: click(at), drag(at, dx, dy, other), pinch(factor, x, y, dx, dy), wheel(factor, x, y), held();
 // all in CSS pixels of `node`.
 export function listenPointers(node, to) {
     const fingers = new Map();
-    let other = false, timer = 0;
+    let other = false, still = false, timer = 0;
     const place = (event) => {
         const box = node.getBoundingClientRect();
         return { x: event.clientX - box.left, y: event.clientY - box.top };
@@ -25,9 +25,10 @@ export function listenPointers(node, to) {
         node.focus({ preventScroll: true });
         fingers.set(event.pointerId, { ...at, from: at });
         clearTimeout(timer);
+        still = false;
         if (fingers.size === 1) {
             other = event.ctrlKey || event.metaKey || event.button === 2;
-            to.begin();
+            still = true;
             timer = setTimeout(() => { other = true; to.held(); }, LONG_PRESS);
         }
         event.preventDefault();
@@ -38,9 +39,11 @@ export function listenPointers(node, to) {
             return;
         const before = fingers.size > 1 ? middle() : null, dx = at.x - finger.x, dy = at.y - finger.y;
         Object.assign(finger, at);
-        if (Math.hypot(at.x - finger.from.x, at.y - finger.from.y) > STILL)
+        if (Math.hypot(at.x - finger.from.x, at.y - finger.from.y) > STILL) {
             clearTimeout(timer);
-        if (fingers.size === 1) {
+            still = false;
+        }
+        if (fingers.size === 1 && !still) {
             to.drag(at, dx, dy, other);
         } else if (fingers.size === 2) {
             const after = middle();
@@ -49,8 +52,11 @@ export function listenPointers(node, to) {
     });
     for (const name of ['pointerup', 'pointercancel'])
         node.addEventListener(name, (event) => {
+            const finger = fingers.get(event.pointerId);
             clearTimeout(timer);
             fingers.delete(event.pointerId);
+            if (finger && still && !other && fingers.size === 0 && name === 'pointerup')
+                to.click(finger);
         });
     node.addEventListener('contextmenu', (event) => event.preventDefault());
     node.addEventListener('wheel', (event) => {

@@ -22,7 +22,7 @@ const LEAST_PIXELS = 1 << 18, MOST_PIXELS = 1 << 25;  // relit in a frame
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
 export class Viewer {
-    // `told`: changed(), failed(error), problem(sentence).
+    // `told`: changed(), drawn(), failed(error), problem(sentence).
     constructor(canvas, home, told) {
         Object.assign(this, { canvas, home, told });
         this.device = new Device(canvas);
@@ -149,6 +149,28 @@ export class Viewer {
         this.invalidate();
     }
 
+    // ------------------------------------------------------------ places
+
+    // Pixels of the canvas a pixel of the picture; 0 where that differs from place to place.
+    scale() { return this.isPanorama ? 0 : this.framing().scale; }
+
+    // A place of the picture (pixels at full size) on the canvas, or null; and back.
+    toCanvas([x, y]) {
+        const { width, height } = this.canvas;
+        if (this.isPanorama)
+            return this.stage.toCanvas([x, y], this.camera(), width, height);
+        const at = this.framing();
+        return [width / 2 + (x - at.x) * at.scale, height / 2 + (y - at.y) * at.scale];
+    }
+
+    toPicture([x, y]) {
+        const { width, height } = this.canvas;
+        if (this.isPanorama)
+            return this.stage.toPicture([x, y], this.camera(), width, height);
+        const at = this.framing();
+        return [at.x + (x - width / 2) / at.scale, at.y + (y - height / 2) / at.scale];
+    }
+
     // ------------------------------------------------------------ the state line
 
     getState() {
@@ -246,6 +268,7 @@ export class Viewer {
         this.meter();
         this.tiles.end();
         this.present();
+        this.told.drawn();
         this.settle(moving);
     }
 

@@ -284,15 +284,40 @@ bool is_option(const char *text)
     return text[0] == '-' && text[1] && !(text[1] >= '0' && text[1] <= '9') && text[1] != '.';
 }
 
+static const struct option *find_in(const struct command_line *l, const char *name)
+{
+    const struct option *o = NULL;
+    for (const struct option *const *t = l->tables; !o && *t; t++)
+        o = option_find(*t, name);
+    return o;
+}
+
+// The options that a state line stands for, but for those that this command has not, or of which
+// the line itself has one.
+static relume_status expand_state(struct command_line *l, const char *text)
+{
+    enum { MOST = 256 };
+    struct state_entry entry[MOST];
+    int n;
+    const relume_status status = state_line_read(entry, &n, MOST, l->state, text, l->log);
+    for (int i = 0; !status && i < n; i++) {
+        const struct option *o = find_in(l, entry[i].option);
+        bool beside = !o;
+        for (int k = 0; !beside && k < l->given_count; k++)
+            beside = l->given[k].option == o && !l->given[k].of_state;
+        if (!beside && l->given_count < MOST_ARGUMENTS)
+            l->given[l->given_count++] = (struct given){o, entry[i].value, true};
+    }
+    return status;
+}
+
 // The option at argv[*i], and its value, which may be the argument behind it.
 static relume_status split_option(struct command_line *l, int *i, int argc, char **argv)
 {
     char name[64];
     const char *equals = strchr(argv[*i], '=');
-    const struct option *o = NULL;
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - argv[*i]) : 63, argv[*i]);
-    for (const struct option *const *t = l->tables; !o && *t; t++)
-        o = option_find(*t, name);
+    const struct option *const o = find_in(l, name);
     if (!o)
         return unknown_option(l, name);
     if (o->kind == OPTION_FLAG && equals)
@@ -300,9 +325,11 @@ static relume_status split_option(struct command_line *l, int *i, int argc, char
     if (o->kind != OPTION_FLAG && !equals && *i + 1 >= argc)
         return say(l->log, RELUME_EINVAL, "%s: expected a value (%s) after it; found none", o->name,
                    o->argument);
-    l->given[l->given_count++] = (struct given){o, o->kind == OPTION_FLAG ? NULL
-                                                   : equals               ? equals + 1
-                                                                          : argv[++*i]};
+    l->given[l->given_count++] = (struct given){o,
+                                                o->kind == OPTION_FLAG ? NULL
+                                                : equals               ? equals + 1
+                                                                       : argv[++*i],
+                                                false};
     return RELUME_OK;
 }
 
@@ -324,6 +351,12 @@ relume_status command_line_parse(struct command_line *l, int argc, char **argv)
         else
             status = split_option(l, &i, argc, argv);
     }
+    const char *state = NULL;
+    for (int i = 0; i < l->given_count; i++)
+        if (l->given[i].option->kind == OPTION_STATE)
+            state = l->given[i].text;
+    if (!status && state)
+        status = expand_state(l, state);
     for (int i = 0; !status && i < l->given_count; i++)
         status = take_given(l, &l->given[i]);
     return status;

@@ -3,6 +3,8 @@
 #ifndef PROGRAM_OPTIONS_H
 #define PROGRAM_OPTIONS_H
 
+#include "program/state_line.h"
+
 #include <relume/image.h>
 #include <stddef.h>
 
@@ -25,6 +27,7 @@ enum option_kind {
     OPTION_TEXT,
     OPTION_TEXTS,  // struct texts: may be repeated
     OPTION_PROSE,  // text for people
+    OPTION_STATE,    // a line of other options (state_line.h), before which those beside it count
     OPTION_OUTPUT,
     OPTION_PICTURE,  // a picture of any format, by the ending of its name
     OPTION_FLOATS,   // a picture of values that are no light
@@ -127,6 +130,7 @@ enum { MOST_ARGUMENTS = 4096 };
 struct given {
     const struct option *option;
     const char *text;  // NULL of a flag
+    bool of_state;     // from the line of an OPTION_STATE
 };
 
 // A command line and what it was split into. The texts are those of `argv`.
@@ -140,6 +144,7 @@ struct command_line {
     const char *input[MOST_ARGUMENTS];
     const char *list[MOST_ARGUMENTS];  // of options that may be repeated
     struct relume_vec3 point[MOST_ARGUMENTS];
+    char state[STATE_LINE_MOST];  // values of the last OPTION_STATE
 };
 
 // Fills `values` and `input` of a line whose first four members are set. RELUME_EINVAL with a

@@ -2,6 +2,7 @@
 #include "relight/spec.h"
 
 #include "base/log.h"
+#include "base/json.h"
 #include "base/memory.h"
 #include "relight/light.h"
 
@@ -237,9 +238,16 @@ static void append(struct words *w, char *more)
     w->text = both;
 }
 
+static void append_number(struct words *w, double number)
+{
+    append(w, mem_format(" %s", jvalue_number_text(number).text));
+}
+
 static void append_vector(struct words *w, struct relume_vec3 v)
 {
-    append(w, mem_format(" %.17g %.17g %.17g", v.x, v.y, v.z));
+    append_number(w, v.x);
+    append_number(w, v.y);
+    append_number(w, v.z);
 }
 
 static void append_name(struct words *w, const char *name)
@@ -264,11 +272,11 @@ char *spec_text(const struct relume_light *light, const char *file)
     for (int i = 0; i < g->vector_count; i++)
         append_vector(&w, *vector_at(&copy, g->vectors[i]));
     if (g->angle)
-        append(&w, mem_format(" %.17g", light->half_angle_deg));
+        append_number(&w, light->half_angle_deg);
     if (g->file)
         append_name(&w, file);
     if (g->rotate && light->rotate_deg != 0.0)
-        append(&w, mem_format(" %.17g", light->rotate_deg));
+        append_number(&w, light->rotate_deg);
     if (light->disc && g->kind == RELUME_LIGHT_AREA)
         append(&w, mem_text(" disc"));
     if (light->nofall && g->falls)

@@ -157,6 +157,31 @@ check 'a rig' "$RELUME" compare rigged.png seen.png
 if [ "$("$RELUME" compare rigged.png seen.png | awk '$1 == "max_abs" { print ($2 < 0.01) }')" = 1 ]; then
     ok 'the lights of a rig'; else not_ok 'the lights of a rig' "$("$RELUME" compare rigged.png seen.png)"; fi
 
+# how it is seen, as a line that relight and the viewer read
+cat >look.txt <<'END'
+light dir 0.6 0.3 0.7 rgb 1 0.5 0.5
+add point 0.5 0.5 2
+set eye 0.1 0.05 3
+set exposure -0.5
+key ctrl+c
+frame seen.png
+END
+state=$("$VIEWER" teapot.exr --script look.txt)
+check 'a state' [ "$state" = 'eye=0.1,0.05,3&light=dir,0.6,0.3,0.7,rgb,1,0.5,0.5&light=point,0.5,0.5,2&exposure=-0.5' ]
+"$VIEWER" teapot.exr --state "$state" --offscreen again.png
+check 'shown again' cmp seen.png again.png
+"$RELUME" relight teapot.exr -o relit.png --state "https://example.org/teapot.html#$state&at=1,2,3" 2>err.txt
+check 'pages add what is theirs' test ! -s err.txt
+above 'relight shows the same' "$(psnr relit.png seen.png)" 45
+"$RELUME" relight teapot.exr -o relit.png --state "$state" --eye 0,0,3 -q && "$RELUME" relight teapot.exr -o plain.png --eye 0,0,3 \
+    --light 'dir 0.6 0.3 0.7 rgb 1 0.5 0.5' --light 'point 0.5 0.5 2' --exposure -0.5 -q
+check 'options beside it count before it' cmp relit.png plain.png
+expect_ok 'nothing is written that a state names' "'o' is not known here; it is left out" "$RELUME" relight teapot.exr -o relit.png --state 'o=other.png&save-rig=x'
+check 'indeed' test ! -e other.png -a ! -e x
+for bad in 'light=dir,nan,0,1' 'exposure=1e300' 'pass=nothing' 'light=%00' 'pan'; do
+    expect_fail "state $bad" 2 "" none.png "$RELUME" relight teapot.exr -o none.png --state "$bad"
+done
+
 "$VIEWER" teapot.exr --record turntable -o turn --frames 3
 check 'a recording is a folder of pictures' test -s turn/0002.png -a ! -e turn/0003.png -a -z "$(leftovers)"
 mkdir fake

@@ -389,6 +389,12 @@ static bool press_save_rig(struct app *app, int key)
     return wish(app, APP_WISH_SAVE_RIG);
 }
 
+static bool press_copy(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_COPY);
+}
+
 static bool press_sweep(struct app *app, int key)
 {
     (void)key;
@@ -476,6 +482,7 @@ const struct key_binding key_bindings[] = {
     {APP_CONTROL | 's', NULL, NULL, press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
     {'w', "W", "save the lights as a rig file", press_save_rig, false},
+    {APP_CONTROL | 'c', "Ctrl+C", "copy light and eye, for --state and pages", press_copy, false},
     {'k', "K", "record a light sweep", press_sweep, false},
     {'j', "J", "record a turntable", press_turntable, false},
     {APP_KEY_F11, "F11", "full screen, and back", press_full_screen, false},

@@ -141,6 +141,7 @@ enum app_wish {
     APP_WISH_SAVE_RIG,
     APP_WISH_SWEEP,        // a recording
     APP_WISH_TURNTABLE,    // a recording
+    APP_WISH_COPY,         // how the file is seen, as a line
     APP_WISH_ADD_LIGHT,    // of the SPEC app.spec
     APP_WISH_MAP,          // the environment map of the file app.spec
     APP_WISH_FULL_SCREEN,  // or back from it

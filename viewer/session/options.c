@@ -86,6 +86,8 @@ static const char *const backends[] = {"auto", "osmesa", "egl", NULL};
 
 #define OPTIONS struct options
 static const struct option options[] = {
+    TEXT_AS(OPTION_STATE, "--state", state, "LINE",
+            "begin as a page or the viewer was when this line or link was copied there"),
     OWN("--rig", rig, "FILE", "lights of a rig (JSON)", take_rig),
     OWN("--light", rig, "SPEC",
         "a light, \"dir x y z [rgb r g b]\"; repeat for more; default: dir 0 0 1", take_light),

@@ -17,6 +17,7 @@ struct options {
     const char *offscreen;  // picture to write without a window, or NULL
     const char *script;     // events to play, or NULL
     const char *capture;    // to compare with, or NULL
+    const char *state;      // read as other options; NULL: not given
     bool record;            // a recording of `kind` into `output`, `frames` long
     enum record_kind kind;
     const char *output;

@@ -248,6 +248,11 @@ void session_list_edits(struct session *s);
 // The lights of a rig file in place of all; the present ones as a rig file.
 relume_status session_load_rig(struct session *s, const char *path);
 relume_status session_save_rig(struct session *s, const char *path);
+// They as a rig, which the caller destroys. RELUME_ENOMEM.
+relume_status session_rig(relume_rig **out, const struct session *s);
+// How the file is seen now, as `--state` and the pages read it (program/state_line.h);
+// RELUME_ELIMIT when it does not fit, RELUME_ENOMEM.
+relume_status session_state_line(char *text, size_t size, struct session *s);
 
 // Begin with the lights of `rig`, which becomes the session's; NULL: none. RELUME_EINVAL when there
 // are more than APP_LIGHTS, RELUME_ENOMEM.

@@ -170,12 +170,20 @@ static relume_status store_light(const struct session *s, relume_rig *rig, int l
     return relume_rig_set(rig, light, &e, s->log);
 }
 
+relume_status session_rig(relume_rig **out, const struct session *s)
+{
+    relume_status status = relume_rig_create(out);
+    for (int i = 0; !status && i < s->app.now.lights; i++)
+        status = store_light(s, *out, i);
+    if (status)
+        relume_rig_destroy(out);
+    return status;
+}
+
 relume_status session_save_rig(struct session *s, const char *path)
 {
     relume_rig *rig;
-    relume_status status = relume_rig_create(&rig);
-    for (int i = 0; !status && i < s->app.now.lights; i++)
-        status = store_light(s, rig, i);
+    relume_status status = session_rig(&rig, s);
     if (!status)
         status = relume_rig_save(rig, path, s->log);
     relume_rig_destroy(&rig);

@@ -3,6 +3,7 @@
 
 #include "app/keys.h"
 #include "common/vec.h"
+#include "program/state_line.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -76,6 +77,22 @@ static relume_status wish_save_rig(struct session *s)
     free_name(path, sizeof path, s, ".json");
     const relume_status status = session_save_rig(s, path);
     say_saved(s, path, status);
+    return RELUME_OK;
+}
+
+// To whom it is shown may be the clipboard, or the terminal where there is none.
+static relume_status wish_copy(struct session *s)
+{
+    char line[STATE_LINE_MOST];
+    const relume_status status = session_state_line(line, sizeof line, s);
+    if (status == RELUME_ENOMEM)
+        return status;
+    if (!status && s->backend->copy)
+        s->backend->copy(s->context, line);
+    else if (!status)
+        puts(line);
+    session_say(s, status ? "this view is too long for a line; save its lights as a rig (W)"
+                          : "copied: relume relight --state and published pages show this view");
     return RELUME_OK;
 }
 
@@ -191,6 +208,7 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_SAVE_RIG] = wish_save_rig,
         [APP_WISH_SWEEP] = wish_sweep,
         [APP_WISH_TURNTABLE] = wish_turntable,
+        [APP_WISH_COPY] = wish_copy,
         [APP_WISH_ADD_LIGHT] = wish_add_light,
         [APP_WISH_MAP] = wish_map,
         [APP_WISH_FULL_SCREEN] = wish_full_screen,

@@ -37,6 +37,8 @@ struct context_backend {
     bool (*next)(void *context, struct context_event *event, double wait_s);
     // Fill the screen, or be a window again as before. NULL: there is no window.
     void (*full_screen)(void *context, bool fill);
+    // Put a text into the clipboard. NULL: there is none.
+    void (*copy)(void *context, const char *text);
 };
 extern const struct context_backend context_glfw;  // a window
 // No display needed, draw into targets:

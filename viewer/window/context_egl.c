@@ -133,10 +133,10 @@ static gl_proc get_proc(const char *name)
 
 const struct context_backend context_egl = {
     "egl",           open_any,       close_offscreen, get_proc, offscreen_size,
-    offscreen_scale, offscreen_show, offscreen_next,  NULL,
+    offscreen_scale, offscreen_show, offscreen_next,  NULL,     NULL,
 };
 
 const struct context_backend context_egl_card = {
     "egl, graphics card", open_card,      close_offscreen, get_proc, offscreen_size,
-    offscreen_scale,      offscreen_show, offscreen_next,  NULL,
+    offscreen_scale,      offscreen_show, offscreen_next,  NULL,     NULL,
 };

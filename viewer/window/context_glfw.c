@@ -283,6 +283,11 @@ static void full_screen(void *context, bool fill)
     }
 }
 
+static void copy(void *context, const char *text)
+{
+    glfwSetClipboardString(((struct window *)context)->handle, text);
+}
+
 const struct context_backend context_glfw = {
-    "glfw", open_window, close_window, get_proc, size, scale, show, next, full_screen,
+    "glfw", open_window, close_window, get_proc, size, scale, show, next, full_screen, copy,
 };

@@ -55,5 +55,5 @@ static gl_proc get_proc(const char *name)
 
 const struct context_backend context_osmesa = {
     "osmesa",        open_offscreen, close_offscreen, get_proc, offscreen_size,
-    offscreen_scale, offscreen_show, offscreen_next,  NULL,
+    offscreen_scale, offscreen_show, offscreen_next,  NULL,     NULL,
 };

@@ -12,7 +12,7 @@ enum { GLARE_PASS = RELUME_PASSES };  // of the frame, not of its views
 
 struct relight_options {
     struct args args;
-    const char *output, *objects, *reflections, *capture;
+    const char *output, *objects, *reflections, *capture, *state;
     double crop[4], reflection_at[2];
     int size[2], view, samples, radius, cpu_mask;
     struct relume_vec3 eye, look_at, up;
@@ -48,6 +48,9 @@ static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_PICTURE, output, "OUT",
            "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ..."),
+    TEXT_AS(OPTION_STATE, "--state", state, "LINE",
+            "show it as a page or the viewer did when this line or link was copied there; options "
+            "beside it count before it"),
     GROUP("lights"),
     LIGHT_OPTIONS,
     GROUP("camera"),

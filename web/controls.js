@@ -1,8 +1,10 @@
 // controls.js - the strip below a picture: lights, exposure, what is shown, and what can be done
 import { Ball } from './ball.js';
+import { COMPARISONS } from './compare.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const PASS_NAMES = ['Colour', 'Normals', 'Shiny', 'Relief', 'Fine relief', 'Grey', 'False colour'];
+const WAY_NAMES = ['Nothing', 'Lens', 'Side by side', 'Blink', 'Difference'];
 const TONE_NAMES = ['Plain', 'Soft highlights', 'Film', 'Gamma 2.2'];
 
 // An element with attributes, listeners (on...) and content; text is never read as HTML.
@@ -76,6 +78,8 @@ export class Controls {
         this.exposure = slider('Exposure', -5, 5, 0.1, (value) => actions.set('exposure', value));
         this.pass = select('What is shown', PASSES, PASS_NAMES, (value) => actions.set('pass', value));
         this.tone = select('Highlights', TONES_BY_NAME, TONE_NAMES, (value) => actions.set('tone', value));
+        this.way = select('Compare', COMPARISONS, WAY_NAMES, (value) => actions.compare(value));
+        this.divide = slider('Where the two pictures meet', 0, 1, 0.01, (value) => actions.divide(value));
         this.remove = button('remove', 'Remove this light (Delete)', () => actions.removeLight());
         this.counter = make('output', { 'aria-label': 'Light' });
         const lens = viewer.isSlab ? this.lens() : [];
@@ -89,12 +93,16 @@ export class Controls {
             make('div', { class: 'group' },
                 make('div', { class: 'row' }, labelled('Show', this.pass), labelled('Highlights', this.tone)),
                 make('div', { class: 'row' }, labelled('Exposure', this.exposure), ...lens, ...planet)),
+            make('div', { class: 'group' },
+                make('div', { class: 'row' }, labelled('Compare', this.way)),
+                make('div', { class: 'row' }, make('button', { type: 'button', class: 'word', title: 'Keep this look to compare with (K)',
+                                                              onclick: () => actions.keep() }, 'Keep this look'), this.divide)),
             make('div', { class: 'group tools' },
                 make('div', { class: 'row' }, button('fit', 'Whole picture (0)', () => actions.fit()),
                      button('screen', 'Full screen (F)', () => actions.fullScreen()),
-                     button('link', 'Copy a link to this view (C)', () => actions.copyLink()),
+                     button('note', 'Notes and measures (M)', () => actions.toggleNotes())),
+                make('div', { class: 'row' }, button('link', 'Copy a link to this view (C)', () => actions.copyLink()),
                      button('save', 'Save this picture (S)', () => actions.save()),
-                     button('note', 'Notes and measures (M)', () => actions.toggleNotes()),
                      button('help', 'Keys (?)', () => actions.help()))));
         this.show();
     }
@@ -136,6 +144,9 @@ export class Controls {
         this.exposure.value = viewer.exposure;
         this.pass.value = viewer.pass;
         this.tone.value = viewer.tone;
+        this.way.value = viewer.comparison.way;
+        this.divide.value = viewer.comparison.divide;
+        this.divide.hidden = viewer.comparison.way !== 'slider';
         if (this.look)
             this.look.value = viewer.look;
         if (this.aperture) {

@@ -3,6 +3,7 @@ import { Viewer } from './viewer.js';
 import { Controls, make } from './controls.js';
 import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
+import { COMPARISONS } from './compare.js';
 import { readEnvironment } from './hdr.js';
 import { Failure, loadJson } from './load.js';
 import { Notes } from './notes.js';
@@ -16,7 +17,7 @@ const KEYS = [
     ['Arrow keys', 'move the light (Shift: the other way of dragging)'], ['L', 'dragging and arrows: light, or moving'],
     ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['N  Delete', 'another light, remove it'],
     ['Tab in the strip', 'colour, softness and more'], ['[ ]', 'darker, brighter'], ['P', 'what is shown'],
-    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
+    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
 
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
@@ -80,6 +81,7 @@ export class RelumeView extends HTMLElement {
         const viewer = new Viewer(this.canvas, RelumeView.home, {
             changed: () => this.controls && this.controls.show(),
             failed: (error) => (viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error)),
+            broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
             drawn: () => this.overlay && this.overlay.draw(),
         });
@@ -178,8 +180,6 @@ export class RelumeView extends HTMLElement {
         if (name === 'look')
             return this.viewer.setLook(value);
         this.viewer[name] = value;
-        if (name === 'pass' || name === 'exposure')
-            this.viewer.range = null;
         return this.viewer.changed();
     }
 
@@ -229,6 +229,32 @@ export class RelumeView extends HTMLElement {
     removeLight() {
         const { viewer } = this;
         viewer.setLights(viewer.lights.filter((_, i) => i !== viewer.chosen));
+    }
+
+    // Compares with the kept look, or with the file that `compare` names.
+    async compare(way) {
+        const { comparison } = this.viewer, address = this.getAttribute('compare');
+        if (way !== 'off' && !comparison.kept && address) {
+            try {
+                await comparison.open(new URL(address, document.baseURI).href);
+            } catch (error) {
+                this.say(`${error.message}.`);
+            }
+        }
+        comparison.setWay(way);
+        this.controls.show();
+        if (way !== 'off')
+            this.say(way === 'lens' ? 'The lens shows the kept look.' : 'The kept look is compared with this one.');
+    }
+
+    keep() {
+        this.viewer.comparison.keep();
+        this.say('This look is kept; change the light or what is shown, and compare.');
+    }
+
+    divide(value) {
+        this.viewer.comparison.divide = value;
+        this.viewer.invalidate();
     }
 
     toggleMode() {
@@ -324,6 +350,12 @@ export class RelumeView extends HTMLElement {
         this.bodyKey = (event) => event.target === document.body && document.querySelector('relume-view') === this && this.key(event);
         document.addEventListener('keydown', this.bodyKey);
         this.controls.ball.node.addEventListener('keydown', (event) => this.ballKey(event));
+        this.surface.addEventListener('pointermove', (event) => {
+            const { comparison } = this.viewer, box = this.surface.getBoundingClientRect();
+            comparison.lens = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+            if (comparison.way === 'lens')
+                this.viewer.invalidate();
+        });
         this.surface.addEventListener('dragover', (event) => event.preventDefault());
         this.surface.addEventListener('drop', (event) => {
             event.preventDefault();
@@ -372,7 +404,8 @@ export class RelumeView extends HTMLElement {
             '[': () => this.set('exposure', Math.max(viewer.exposure - 0.25, -20)),
             ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
             p: () => this.set('pass', next(PASSES, viewer.pass)), t: () => this.set('tone', next(TONES_BY_NAME, viewer.tone)),
-            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), m: () => this.toggleNotes(), '?': () => this.help(),
+            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), m: () => this.toggleNotes(),
+            k: () => this.keep(), v: () => this.compare(next(COMPARISONS, viewer.comparison.way)), b: () => viewer.comparison.swap(), '?': () => this.help(),
         };
         if (way && this.lighting !== event.shiftKey)
             this.moveLight(STEP * way[0], STEP * way[1]);

@@ -196,6 +196,7 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
     const double wanted = s->usual ? USUAL_DB - USUAL_SLACK : p->psnr_db;
     uint8_t *codes = mem_array((size_t)s->levels.planes, pixels);
     relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
+    const double first = s->levels.step;
     double before = 0.0, lacked = 0.0;
     for (int i = 0; !status; i++) {
         uint64_t bytes = 0;
@@ -216,6 +217,8 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
         lacked = lacks;
         s->levels.step *= large ? pow(found / p->bytes_per_pixel, 1.3) * 1.002
                                 : pow(10.0, -(lacks + 0.05) / 12.0);
+        if (s->usual)
+            s->levels.step = fmax(s->levels.step, first / USUAL_FINER);
     }
     mem_free(codes);
     return status;
@@ -300,8 +303,6 @@ relume_status scene_write(struct scene *s)
         status = find_step(s, &middle);
     if (!status)
         status = correct_step(s, &middle);
-    if (!status)
-        status = site_folder(s->site, s->name);
     if (!status)
         status = write_views(s, &middle, bytes);
     if (!status) {

@@ -36,8 +36,10 @@ static void put_details(FILE *f, const struct scene *s)
     put_text(f, "licence", s->details.licence);
     put_text(f, "object", s->details.object);
     put_text(f, "description", s->details.description);
-    if (s->site->params->mm_per_pixel > 0.0)
-        fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->site->params->mm_per_pixel);
+    if (s->mm_per_pixel > 0.0)
+        fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->mm_per_pixel);
+    if (s->notes)
+        fputs("  \"notes\": true,\n", f);
 }
 
 static void put_basis(FILE *f, const struct common *c)

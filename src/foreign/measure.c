@@ -15,6 +15,7 @@ struct judge {
     const struct foreign *f;
     const struct source *s;
     const struct measure_weights *weights;
+    struct relume_transfer shown;  // coding of what is not linear
     int lights, every;
     float *file, *file_constant;        // [lights][3][P], [lights][3]
     float *foreign, *foreign_constant;  // [lights][3][planes], [lights][3]
@@ -22,10 +23,13 @@ struct judge {
     relume_status *status;
 };
 
-static float code_of(float v, bool linear)
+static const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+
+static float code_of(float v, struct relume_transfer coding)
 {
-    if (linear)
-        v = relume_transfer_encode((struct relume_transfer){.curve = RELUME_CURVE_SRGB}, v);
+    if (coding.curve != RELUME_CURVE_SRGB)
+        v = relume_transfer_encode(srgb, relume_transfer_decode(coding, fmaxf(v, 0.0f)));
     return rintf(255.0f * fminf(fmaxf(v, 0.0f), 1.0f));
 }
 
@@ -43,7 +47,8 @@ static double compare_row(const struct judge *j, size_t row, const float *a, con
     double sum = 0.0;
     for (size_t i = 0; i < n; i++) {
         const float shown = (b[i] + j->foreign_constant[row]) * (colour ? colour[i] : 1.0f);
-        const float d = code_of(a[i] + j->file_constant[row], false) - code_of(shown, j->f->linear);
+        const float d = code_of(a[i] + j->file_constant[row], j->s->coding) -
+                        code_of(shown, j->f->linear ? linear : j->shown);
         sum += (double)(d * d);
     }
     return sum;
@@ -122,7 +127,7 @@ static relume_status prepare(struct judge *j, size_t bands)
 
 static double mean_psnr(const struct judge *j, size_t bands)
 {
-    double pixels = 0.0, sum = 0.0;
+    double pixels = 0.0, sum = 0.0, all = 0.0;
     for (size_t b = 0; b < bands; b++) {
         const int row = (int)b * BAND_ROWS * j->every;
         pixels +=
@@ -133,16 +138,20 @@ static double mean_psnr(const struct judge *j, size_t bands)
         for (size_t b = 0; b < bands; b++)
             square += j->square[b * (size_t)j->lights + (size_t)l];
         sum += decibels(square / (3.0 * pixels) / (255.0 * 255.0));
+        all += square / (3.0 * pixels) / (255.0 * 255.0);
     }
-    return sum / j->lights;
+    return j->weights ? decibels(all / j->lights) : sum / j->lights;
 }
 
 relume_status measure_psnr(double *psnr_db, const struct foreign *f, const struct source *s,
                            const struct measure_weights *weights, int threads)
 {
     const size_t pixels = (size_t)s->width * (size_t)s->height;
-    struct judge j = {
-        .f = f, .s = s, .weights = weights, .lights = s->lights < LIGHTS ? s->lights : LIGHTS};
+    struct judge j = {.f = f,
+                      .s = s,
+                      .weights = weights,
+                      .shown = weights ? s->coding : srgb,
+                      .lights = s->lights < LIGHTS ? s->lights : LIGHTS};
     j.every = (int)(pixels / SAMPLE_PIXELS) + 1;
     const int step = BAND_ROWS * j.every;
     const size_t bands = (size_t)((s->height + step - 1) / step);

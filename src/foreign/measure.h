@@ -13,7 +13,8 @@ struct measure_weights {
 };
 
 // Mean over at most 16 of the source's lights of the PSNR between both pictures, as 8-bit sRGB
-// codes; large pictures are sampled. `weights` NULL: the picture's own functions.
+// codes; large pictures are sampled. With `weights`, which NULL leaves to the picture's own
+// functions, that of the mean square over all of them: black pictures say nothing then.
 relume_status measure_psnr(double *psnr_db, const struct foreign *f, const struct source *s,
                            const struct measure_weights *weights, int threads);
 

@@ -20,6 +20,16 @@ static bool is_srgb(const struct relume_codes *codes)
            (codes->display.curve == RELUME_CURVE_SRGB || codes->display.curve == RELUME_CURVE_AUTO);
 }
 
+// The file's coding, where it is a curve that everybody knows; else sRGB.
+static struct relume_transfer coding_of(const struct relume_codes *codes)
+{
+    if (codes->domain == RELUME_DOMAIN_LINEAR)
+        return (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
+    return codes->display.curve == RELUME_CURVE_GAMMA
+               ? codes->display
+               : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
+}
+
 static relume_status choose_lights(struct source *s, bool whole)
 {
     const struct relume_coder_info *info = relume_coder_info(s->codes->coder);
@@ -44,9 +54,12 @@ relume_status source_open(struct source *s, const struct relume_codes *codes, bo
         (struct source){.codes = codes, .width = codes->width, .height = codes->height, .log = log};
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     s->numbers = info->basis->joint ? info->coefficients : 3 * info->coefficients;
+    s->coding = whole ? coding_of(codes) : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
+    const bool as_it_is = is_srgb(codes) || s->coding.curve != RELUME_CURVE_SRGB;
     const relume_status status = choose_lights(s, whole);
-    if (status || (is_srgb(codes) && s->numbers <= MOST_NUMBERS))
+    if (status || (as_it_is && s->numbers <= MOST_NUMBERS))
         return status;
+    s->coding = (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
     s->numbers = 3 * s->lights;
     // the file's own way between its lights, where it has one
     const bool own = info->interpolant && s->lights == info->lights;
@@ -97,7 +110,6 @@ static relume_status picture_rows(const struct source *s, int row, int rows, flo
     struct relume_image picture = {0};
     struct relume_codes_part band;
     relume_status status = relume_codes_pick(&band, s->codes, (size_t)row * (size_t)s->width, 1, n);
-    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     for (int i = 0; !status && i < s->lights; i++) {
         const struct relume_light light = {.direction = s->light[i], .rgb = {1.0f, 1.0f, 1.0f}};
         status =
@@ -106,7 +118,7 @@ static relume_status picture_rows(const struct source *s, int row, int rows, flo
             float *to = out + (3 * (size_t)i + c) * n;
             for (size_t x = 0; x < n; x++) {
                 const float v = picture.data[3 * x + c];
-                to[x] = relume_transfer_encode(srgb, v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v);
+                to[x] = relume_transfer_encode(s->coding, v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v);
             }
         }
     }

@@ -2,7 +2,8 @@
 //
 //     picture_c(l) = constant_c(l) + sum_p weights_{c,p}(l) x_p
 // with x_p the coefficients where they live in sRGB codes; where they do not, x are the coded
-// pictures themselves under a set of directions, with an interpolation between them.
+// pictures themselves under a set of directions, with an interpolation between them. A source that
+// is whole takes other codings, linear light too, as they are.
 #ifndef FOREIGN_SOURCE_H
 #define FOREIGN_SOURCE_H
 
@@ -14,12 +15,13 @@ struct source {
     int numbers;  // P
     int lights;   // directions that the file was made from, or that stand in for them
     struct relume_vec3 *light;
-    relume_coder *between;  // interpolation between pictures; NULL: x are coefficients
+    struct relume_transfer coding;  // of the picture: sRGB, or what a whole source comes in
+    relume_coder *between;          // interpolation between pictures; NULL: x are coefficients
     const struct relume_log *log;
 };
 
-// `whole`: what the file knows of light from below the horizon and from every side counts too;
-// else it is taken for a hemisphere around z, which is all that other formats know.
+// `whole`: the file's own coding, and what it knows of light from below the horizon and from every
+// side; else sRGB and the hemisphere around z, which is all that other formats know.
 relume_status source_open(struct source *s, const struct relume_codes *codes, bool whole,
                           const struct relume_log *log);
 void source_close(struct source *s);

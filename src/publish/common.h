@@ -2,7 +2,7 @@
 // of it
 //
 // With f(l) the raw functions of the file's own basis (or of an interpolation between pictures,
-// source.h) a page shows, in sRGB codes,
+// source.h) a page shows, in the codes of the source,
 //     value_c(l) = mean_c . f(l) + sum_k C_k transform_{c,k} . f(l)
 // and nothing is approximated but the picture's numbers, by as many components as there are.
 #ifndef PUBLISH_COMMON_H

@@ -190,7 +190,7 @@ relume_status levels_write(const struct site *site, const char *name, const stru
     float **own = mem_zeroed((size_t)how->planes, sizeof *own);
     for (int i = 0; i < how->planes; i++)
         l.plane[i] = planes_at(p, i);
-    relume_status status = own ? site_folder(site, name) : RELUME_ENOMEM;
+    relume_status status = own ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < count; i++) {
         status = write_level(site, name, i, &l, &bytes[i]);
         l.codes = NULL;

@@ -17,18 +17,6 @@ static void put_meta(FILE *f, const char *kind, const char *key, const char *val
     fputs("\">\n", f);
 }
 
-// Where a file of the site will be, for others; relative where nobody knows.
-static void put_address(FILE *f, const struct site *site, const char *file)
-{
-    const char *url = site->params->url;
-    size_t n = url ? strlen(url) : 0;
-    while (n && url[n - 1] == '/')
-        n--;
-    for (size_t i = 0; i < n; i++)
-        text_address(f, (const char[]){url[i], '\0'});
-    fprintf(f, "%s%s", n ? "/" : "", file);
-}
-
 static void put_open_graph(FILE *f, const struct site *site, const char *page, const char *poster,
                            const struct details *d)
 {
@@ -39,14 +27,14 @@ static void put_open_graph(FILE *f, const struct site *site, const char *page, c
     put_meta(f, "property", "og:description", d->description);
     if (poster) {
         fputs("<meta property=\"og:image\" content=\"", f);
-        put_address(f, site, poster);
+        site_put_address(f, site, poster);
         fputs("\">\n<meta name=\"twitter:card\" content=\"summary_large_image\">\n", f);
     }
     if (site->params->url) {
         fputs("<meta property=\"og:url\" content=\"", f);
-        put_address(f, site, page);
+        site_put_address(f, site, page);
         fputs("\">\n<link rel=\"canonical\" href=\"", f);
-        put_address(f, site, page);
+        site_put_address(f, site, page);
         fputs("\">\n", f);
     }
 }
@@ -124,9 +112,9 @@ static void put_embedding(FILE *f, const struct site *site, const struct page *p
     fputs("<details>\n<summary>Show this in your own page</summary>\n"
           "<pre><code>&lt;script src=&quot;",
           f);
-    put_address(f, site, "relume/relume.js");
+    site_put_address(f, site, "relume/relume.js");
     fputs("&quot; defer&gt;&lt;/script&gt;\n&lt;relume-view src=&quot;", f);
-    put_address(f, site, p->name);
+    site_put_address(f, site, p->name);
     fputs("/scene.json&quot;&gt;&lt;/relume-view&gt;</code></pre>\n</details>\n", f);
 }
 

@@ -6,7 +6,9 @@
 #include "base/names.h"
 #include "base/outdir.h"
 #include "base/params.h"
+#include "publish/annotations.h"
 #include "publish/assets.h"
+#include "publish/iiif.h"
 #include "publish/names.h"
 #include "publish/page.h"
 #include "publish/picture.h"
@@ -94,6 +96,38 @@ static relume_status open_file(relume_pack **pack, const char *path,
     return status;
 }
 
+// What the page does not show as relume does.
+static void say_left_out(const struct site *site, const struct relume_pack_info *info)
+{
+    if (info->has_shadow || info->has_gloss)
+        log_line(site->log, RELUME_NOTE,
+                 "%s stay between the captured lights on the page; in relume they move",
+                 info->has_shadow ? "shadows" : "highlights");
+}
+
+static relume_status write_all(struct scene *s, struct page *page, const char *path,
+                               const char *site_title)
+{
+    relume_notes *notes = NULL;
+    relume_status status = annotations_open(&notes, s->site, path, s->pack);
+    s->notes = !status && relume_notes_count(notes) > 0;
+    s->mm_per_pixel = s->site->params->mm_per_pixel > 0.0 ? s->site->params->mm_per_pixel
+                      : status                            ? 0.0
+                                                          : relume_notes_scale(notes);
+    if (!status)
+        status = scene_write(s);
+    if (!status)
+        status = write_poster(s, page);
+    if (!status)
+        status = iiif_write(s->site, page, s->pack, s->notes);
+    if (!status && s->notes)
+        status = annotations_write(s->site, notes, path, s->name);
+    if (!status)
+        status = page_write(s->site, page, site_title);
+    relume_notes_destroy(&notes);
+    return status;
+}
+
 static relume_status publish_file(struct work *w, int i, const struct site *site)
 {
     struct log_place place;
@@ -108,14 +142,11 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
         .site = &here, .name = w->names[i], .details = page->details, .report = &report};
     memcpy(report.name, w->names[i], sizeof report.name);
     relume_status status = open_file(&s.pack, w->files[i], w->params);
-    if (!status)
-        status = scene_write(&s);
     if (!status) {
         report.views = relume_pack_info(s.pack)->views;
-        status = write_poster(&s, page);
+        say_left_out(&here, relume_pack_info(s.pack));
+        status = write_all(&s, page, w->files[i], details_of_site(w->metadata, w->params).title);
     }
-    if (!status)
-        status = page_write(site, page, details_of_site(w->metadata, w->params).title);
     scene_free(&s);
     if (w->reports)
         w->reports[i] = report;
@@ -126,7 +157,7 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
 
 static relume_status write_assets(const struct site *site)
 {
-    relume_status status = site_folder(site, "relume");
+    relume_status status = RELUME_OK;
     for (const struct asset *a = site_assets; !status && a->name; a++) {
         char name[128];
         snprintf(name, sizeof name, "relume/%s", a->name);

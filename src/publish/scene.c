@@ -15,14 +15,16 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { USUAL_PLANES = 27, CORRECTIONS = 5, TRIAL_PIXELS = 1 << 17 };
+enum { USUAL_PLANES = 27, CORRECTIONS = 8, TRIAL_PIXELS = 1 << 17 };
 
 // Without a wish: a page differs from the file by less than 1/255 on average, which normal errors
 // do at this PSNR. Where so many planes do not reach that there are more; and where those do not,
 // as of hard shadows, the step is that of an error which is not seen beside what is missing.
 #define USUAL_DB     47.5
 #define USUAL_MARGIN 1.0
-#define USUAL_SLACK  0.8  // measured values are rounded to 8 bits
+// A finer step that makes up for no more than this part of what lacks is of no use: planes lack.
+#define LEAST_GAIN  0.2
+#define USUAL_SLACK 0.8  // measured values are rounded to 8 bits
 
 // What the page loads before it shows something, beside scene.json: of 150 kB what the viewer
 // itself leaves.
@@ -194,6 +196,8 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
     const double wanted = s->usual ? USUAL_DB - USUAL_SLACK : p->psnr_db;
     uint8_t *codes = mem_array((size_t)s->levels.planes, pixels);
     relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
+    const double first = s->levels.step;
+    double before = 0.0, lacked = 0.0;
     for (int i = 0; !status; i++) {
         uint64_t bytes = 0;
         status = levels_try(middle, &s->levels, &bytes, codes);
@@ -204,12 +208,17 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
         const bool large = p->bytes_per_pixel > 0.0 && found > p->bytes_per_pixel;
         if (status || (!large && !(wanted > 0.0 && lacks > 0.0)))
             break;
-        if (i == CORRECTIONS) {
+        if (i == CORRECTIONS ||
+            (!large && i && s->report->psnr_db - before < LEAST_GAIN * lacked)) {
             status = give_up(s, found);
             break;
         }
+        before = s->report->psnr_db;
+        lacked = lacks;
         s->levels.step *= large ? pow(found / p->bytes_per_pixel, 1.3) * 1.002
                                 : pow(10.0, -(lacks + 0.05) / 12.0);
+        if (s->usual)
+            s->levels.step = fmax(s->levels.step, first / USUAL_FINER);
     }
     mem_free(codes);
     return status;
@@ -294,8 +303,6 @@ relume_status scene_write(struct scene *s)
         status = find_step(s, &middle);
     if (!status)
         status = correct_step(s, &middle);
-    if (!status)
-        status = site_folder(s->site, s->name);
     if (!status)
         status = write_views(s, &middle, bytes);
     if (!status) {

@@ -14,10 +14,12 @@ struct scene {
     relume_pack *pack;
     const char *name;  // of its page and folder
     struct details details;
+    double mm_per_pixel;  // 0: not known
+    bool notes;           // there are some
     struct common common;
     struct levels levels;
     struct layers *layers;  // [views]
-    bool usual;  // the step is that of nobody's wish
+    bool usual;             // the step is that of nobody's wish
     int first_level;
     struct relume_publish_report *report;
 };

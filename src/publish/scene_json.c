@@ -36,8 +36,10 @@ static void put_details(FILE *f, const struct scene *s)
     put_text(f, "licence", s->details.licence);
     put_text(f, "object", s->details.object);
     put_text(f, "description", s->details.description);
-    if (s->site->params->mm_per_pixel > 0.0)
-        fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->site->params->mm_per_pixel);
+    if (s->mm_per_pixel > 0.0)
+        fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->mm_per_pixel);
+    if (s->notes)
+        fputs("  \"notes\": true,\n", f);
 }
 
 static void put_basis(FILE *f, const struct common *c)
@@ -112,7 +114,7 @@ relume_status scene_write_json(const struct scene *s)
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const struct common *c = &s->common;
     const size_t functions = (size_t)c->functions;
-    char name[128];
+    char name[128], transfer[32];
     struct text t;
     const relume_status status = text_open(&t);
     if (status)
@@ -121,7 +123,8 @@ relume_status scene_write_json(const struct scene *s)
     put_details(t.file, s);
     fprintf(t.file, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
     put_geometry(t.file, &info->geometry);
-    fputs("  \"transfer\": \"srgb\",\n", t.file);
+    relume_transfer_text(c->source.coding, transfer, sizeof transfer);
+    fprintf(t.file, "  \"transfer\": \"%s\",\n", transfer);
     put_basis(t.file, c);
     fprintf(t.file, "  \"functions\": %d, \"planes\": %d,\n", c->functions, s->levels.planes);
     put_floats(t.file, "transform", c->transform, 3 * (size_t)s->levels.planes * functions);

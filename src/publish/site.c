@@ -9,23 +9,26 @@
 #include <string.h>
 #include <sys/stat.h>
 
-relume_status site_folder(const struct site *site, const char *name)
+// The folders of a path below the site; they may be there.
+static relume_status make_folders(const struct site *site, char *path)
 {
-    char *path = mem_format("%s/%s", site->path, name);
-    if (!path)
-        return RELUME_ENOMEM;
-    relume_status status = RELUME_OK;
-    if (mkdir(path, 0777) && errno != EEXIST)
-        status =
-            log_fail(site->log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
-    mem_free(path);
-    return status;
+    for (char *slash = path + strlen(site->path) + 1; (slash = strchr(slash, '/')); slash++) {
+        *slash = '\0';
+        const bool failed = mkdir(path, 0777) && errno != EEXIST;
+        if (failed)
+            return log_fail(site->log, RELUME_EIO, "%s: cannot be created; %s", path,
+                            strerror(errno));
+        *slash = '/';
+    }
+    return RELUME_OK;
 }
 
 relume_status site_save(const struct site *site, const char *name, const void *bytes, size_t size)
 {
     char *path = mem_format("%s/%s", site->path, name);
-    const relume_status status = path ? outfile_save(path, bytes, size, site->log) : RELUME_ENOMEM;
+    relume_status status = path ? make_folders(site, path) : RELUME_ENOMEM;
+    if (!status)
+        status = outfile_save(path, bytes, size, site->log);
     mem_free(path);
     return status;
 }
@@ -67,4 +70,15 @@ relume_status site_save_text(const struct site *site, const char *name, bool dat
                       : site_save(site, name, t->bytes, t->size);
     text_free(t);
     return status;
+}
+
+void site_put_address(FILE *f, const struct site *site, const char *name)
+{
+    const char *url = site->params->url;
+    size_t n = url ? strlen(url) : 0;
+    while (n && url[n - 1] == '/')
+        n--;
+    for (size_t i = 0; i < n; i++)
+        text_address(f, (const char[]){url[i], '\0'});
+    fprintf(f, "%s%s", n ? "/" : "", name);
 }

@@ -207,6 +207,9 @@ int main(int argc, char **argv)
     float *f = malloc((size_t)s.functions * sizeof *f);
     const double share = functions_at(&s, light, f);
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    struct relume_transfer coding;
+    if (relume_transfer_parse(&coding, jvalue_text(jvalue_member(s.root, "transfer"))))
+        fail("transfer");
     const size_t pixels = (size_t)s.width * (size_t)s.height;
     double sum = 0.0, most = 0.0;
     for (int c = 0; c < 3; c++) {
@@ -218,7 +221,7 @@ int main(int argc, char **argv)
             double v = mean;
             for (int k = 0; k < s.planes; k++)
                 v += w[k] * (s.codes[(size_t)k * pixels + i] * s.scale[k] + s.offset[k]);
-            v = share * (double)relume_transfer_decode(srgb, (float)fmax(v, 0.0));
+            v = share * (double)relume_transfer_decode(coding, (float)fmax(v, 0.0));
             const double shown =
                 (double)relume_transfer_encode(srgb, (float)fmin(fmax(v, 0.0), 1.0));
             const double wanted = (double)relume_transfer_encode(

@@ -1,0 +1,268 @@
+// iiif.c - the same file for viewers of the International Image Interoperability Framework
+#include "publish/iiif.h"
+
+#include "base/memory.h"
+#include "math/scalar.h"
+#include "publish/picture.h"
+
+#include <string.h>
+
+// Whole pictures are there up to MOST_WHOLE pixels a side, and at full size.
+enum { TILE = 512, MOST_WHOLE = 1024, MOST_FACTOR = 1 << 16 };
+
+// ---------------------------------------------------------------- the image service
+
+static relume_status save_whole(const struct site *site, const char *name, const char *size,
+                                const struct relume_image *picture)
+{
+    const struct relume_rect all = {0, 0, picture->width, picture->height};
+    char *path = mem_format("%s/iiif/full/%s/0/default.jpg", name, size);
+    const relume_status status =
+        path ? picture_save_jpeg(site, path, picture, &all) : RELUME_ENOMEM;
+    mem_free(path);
+    return status;
+}
+
+// Tiles of a picture that is the full one, `width` x `height`, reduced by `factor`.
+static relume_status save_tiles(const struct site *site, const char *name,
+                                const struct relume_image *picture, int factor, int width,
+                                int height)
+{
+    relume_status status = RELUME_OK;
+    for (int top = 0; !status && top < picture->height; top += TILE)
+        for (int left = 0; !status && left < picture->width; left += TILE) {
+            const struct relume_rect at = {left, top, smaller_of(TILE, picture->width - left),
+                                           smaller_of(TILE, picture->height - top)};
+            const long x = (long)left * factor, y = (long)top * factor;
+            const long w = (long)TILE * factor, h = w;
+            char *path = mem_format("%s/iiif/%ld,%ld,%ld,%ld/%d,%d/0/default.jpg", name, x, y,
+                                    w < width - x ? w : width - x, h < height - y ? h : height - y,
+                                    at.width, at.height);
+            status = path ? picture_save_jpeg(site, path, picture, &at) : RELUME_ENOMEM;
+            mem_free(path);
+        }
+    return status;
+}
+
+static relume_status halve(struct relume_image *picture)
+{
+    struct relume_image half = {0};
+    const relume_status status = relume_image_scale(&half, picture, (picture->width + 1) / 2,
+                                                    (picture->height + 1) / 2, NULL);
+    relume_image_destroy(picture);
+    *picture = half;
+    return status;
+}
+
+// All of the pyramid; `picture` is reduced on the way. sizes and factors for info.json.
+static relume_status save_pyramid(const struct site *site, const char *name,
+                                  struct relume_image *picture, FILE *sizes, FILE *factors)
+{
+    const int width = picture->width, height = picture->height;
+    const char *between = "";
+    relume_status status = save_whole(site, name, "max", picture);
+    for (int factor = 1; !status && factor <= MOST_FACTOR; factor *= 2) {
+        const bool whole = larger_of(picture->width, picture->height) <= MOST_WHOLE;
+        char size[32];
+        snprintf(size, sizeof size, "%d,%d", picture->width, picture->height);
+        status = save_tiles(site, name, picture, factor, width, height);
+        fprintf(factors, "%s%d", factor > 1 ? ", " : "", factor);
+        if (!status && whole) {
+            status = save_whole(site, name, size, picture);
+            fprintf(sizes, "%s{\"width\": %d, \"height\": %d}", between, picture->width,
+                    picture->height);
+            between = ", ";
+        }
+        if (larger_of(picture->width, picture->height) <= TILE / 2)
+            break;
+        if (!status)
+            status = halve(picture);
+    }
+    return status;
+}
+
+static relume_status write_service(const struct site *site, const char *name,
+                                   struct relume_image *picture)
+{
+    const int width = picture->width, height = picture->height;
+    struct text info = {0}, sizes = {0}, factors = {0};
+    char path[128];
+    relume_status status = text_open(&info);
+    if (!status)
+        status = text_open(&sizes);
+    if (!status)
+        status = text_open(&factors);
+    if (!status)
+        status = save_pyramid(site, name, picture, sizes.file, factors.file);
+    if (!status)
+        status = text_close(&sizes);
+    if (!status)
+        status = text_close(&factors);
+    if (!status) {
+        snprintf(path, sizeof path, "%s/iiif", name);
+        fputs("{\n  \"@context\": \"http://iiif.io/api/image/3/context.json\",\n  \"id\": \"",
+              info.file);
+        site_put_address(info.file, site, path);
+        fprintf(info.file,
+                "\",\n  \"type\": \"ImageService3\",\n"
+                "  \"protocol\": \"http://iiif.io/api/image\",\n  \"profile\": \"level0\",\n"
+                "  \"width\": %d,\n  \"height\": %d,\n  \"sizes\": [%s],\n"
+                "  \"tiles\": [{\"width\": %d, \"height\": %d, \"scaleFactors\": [%s]}]\n}\n",
+                width, height, sizes.bytes, TILE, TILE, factors.bytes);
+        snprintf(path, sizeof path, "%s/iiif/info.json", name);
+        status = site_save_text(site, path, false, &info);
+    }
+    text_free(&info);
+    text_free(&sizes);
+    text_free(&factors);
+    return status;
+}
+
+// ---------------------------------------------------------------- the manifest
+
+// "id": "...", of something of the file.
+static void put_id(FILE *f, const struct site *site, const char *name, const char *what)
+{
+    char path[192];
+    snprintf(path, sizeof path, "%s%s", name, what);
+    fputs("\"id\": \"", f);
+    site_put_address(f, site, path);
+    fputs("\", ", f);
+}
+
+static void put_words(FILE *f, const char *key, const char *value)
+{
+    fprintf(f, "\"%s\": {\"none\": [", key);
+    text_json(f, value);
+    fputs("]}", f);
+}
+
+static void put_pair(FILE *f, const char *label, const char *value, const char *between)
+{
+    fprintf(f, "%s{\"label\": {\"en\": [\"%s\"]}, ", between, label);
+    put_words(f, "value", value);
+    putc('}', f);
+}
+
+static void put_metadata(FILE *f, const struct details *d)
+{
+    const struct {
+        const char *label, *value;
+    } rows[] = {{"Maker", d->maker}, {"Object", d->object}, {"Licence", d->licence}};
+    const char *between = "";
+    fputs("  \"metadata\": [", f);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (!rows[i].value)
+            continue;
+        put_pair(f, rows[i].label, rows[i].value, between);
+        between = ", ";
+    }
+    fputs("],\n", f);
+    if (d->description) {
+        fputs("  ", f);
+        put_words(f, "summary", d->description);
+        fputs(",\n", f);
+    }
+    if (!d->licence)
+        return;
+    fputs("  \"requiredStatement\": ", f);
+    put_pair(f, "Licence", d->licence, "");
+    fputs(",\n", f);
+}
+
+static void put_links(FILE *f, const struct site *site, const struct page *p)
+{
+    fputs("  \"thumbnail\": [{", f);
+    put_id(f, site, p->name, "/poster.jpg");
+    fprintf(f,
+            "\"type\": \"Image\", \"format\": \"image/jpeg\", \"width\": %d, \"height\": %d}],\n",
+            p->poster_width, p->poster_height);
+    fputs("  \"homepage\": [{", f);
+    put_id(f, site, p->name, ".html");
+    fputs("\"type\": \"Text\", \"format\": \"text/html\", \"label\": {\"en\": [\"The page with the "
+          "moving light\"]}}],\n  \"seeAlso\": [{",
+          f);
+    put_id(f, site, p->name, "/scene.json");
+    fputs("\"type\": \"Dataset\", \"format\": \"application/json\", \"label\": {\"en\": "
+          "[\"Coefficient layers of the relightable image (relume-web 1)\"]}}],\n",
+          f);
+}
+
+static void put_canvas(FILE *f, const struct site *site, const struct page *p, int width,
+                       int height, bool notes)
+{
+    fputs("  \"items\": [{", f);
+    put_id(f, site, p->name, "/canvas/1");
+    fprintf(f, "\"type\": \"Canvas\", \"width\": %d, \"height\": %d,\n    ", width, height);
+    put_words(f, "label", p->details.title);
+    fputs(",\n    \"items\": [{", f);
+    put_id(f, site, p->name, "/canvas/1/page");
+    fputs("\"type\": \"AnnotationPage\", \"items\": [{", f);
+    put_id(f, site, p->name, "/canvas/1/picture");
+    fputs("\"type\": \"Annotation\", \"motivation\": \"painting\",\n      \"target\": \"", f);
+    char canvas[128];
+    snprintf(canvas, sizeof canvas, "%s/canvas/1", p->name);
+    site_put_address(f, site, canvas);
+    fputs("\",\n      \"body\": {", f);
+    put_id(f, site, p->name, "/iiif/full/max/0/default.jpg");
+    fprintf(f,
+            "\"type\": \"Image\", \"format\": \"image/jpeg\", \"width\": %d, \"height\": %d,\n"
+            "        \"service\": [{",
+            width, height);
+    put_id(f, site, p->name, "/iiif");
+    fputs("\"type\": \"ImageService3\", \"profile\": \"level0\"}]}}]}]", f);
+    if (notes) {
+        fputs(",\n    \"annotations\": [{", f);
+        put_id(f, site, p->name, "/iiif/notes.json");
+        fputs("\"type\": \"AnnotationPage\"}]", f);
+    }
+    fputs("\n  }]\n", f);
+}
+
+static relume_status write_manifest(const struct site *site, const struct page *p, int width,
+                                    int height, bool notes)
+{
+    struct text t;
+    char path[128];
+    const relume_status status = text_open(&t);
+    if (status)
+        return status;
+    fputs("{\n  \"@context\": \"http://iiif.io/api/presentation/3/context.json\",\n  ", t.file);
+    put_id(t.file, site, p->name, "/manifest.json");
+    fputs("\"type\": \"Manifest\",\n  ", t.file);
+    put_words(t.file, "label", p->details.title);
+    fputs(",\n", t.file);
+    put_metadata(t.file, &p->details);
+    put_links(t.file, site, p);
+    put_canvas(t.file, site, p, width, height, notes);
+    fputs("}\n", t.file);
+    snprintf(path, sizeof path, "%s/manifest.json", p->name);
+    return site_save_text(site, path, false, &t);
+}
+
+char *iiif_canvas(const struct site *site, const char *name)
+{
+    struct text t;
+    char path[128], *canvas = NULL;
+    snprintf(path, sizeof path, "%s/canvas/1", name);
+    if (!text_open(&t)) {
+        site_put_address(t.file, site, path);
+        canvas = text_close(&t) ? NULL : mem_text(t.bytes);
+    }
+    text_free(&t);
+    return canvas;
+}
+
+relume_status iiif_write(const struct site *site, const struct page *page, relume_pack *pack,
+                         bool notes)
+{
+    struct relume_image still = {0};
+    relume_status status = picture_still(&still, pack, 0, site);
+    const int width = still.width, height = still.height;
+    if (!status)
+        status = write_service(site, page->name, &still);
+    if (!status)
+        status = write_manifest(site, page, width, height, notes);
+    relume_image_destroy(&still);
+    return status;
+}

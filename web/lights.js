@@ -14,13 +14,14 @@ export const unit = (v) => {
 
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// Directions over the square of a soft light, evenly.
+// Directions over the square of a soft light, evenly, and their shares: it shines askew at its ends, which
+// are farther away.
 function squareOf(light) {
     const d = light.direction, half = Math.tan(light.radius), places = [];
     const beside = unit(cross(d, Math.abs(d[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0])), above = cross(d, beside);
     for (let i = 0; i < SIDE * SIDE; i++) {
         const x = half * ((2 * (i % SIDE) + 1) / SIDE - 1), y = half * ((2 * Math.floor(i / SIDE) + 1) / SIDE - 1);
-        places.push(unit(d.map((v, c) => v + x * beside[c] + y * above[c])));
+        places.push({ direction: unit(d.map((v, c) => v + x * beside[c] + y * above[c])), share: (1 + x * x + y * y) ** -2 / SIDE ** 2 });
     }
     return places;
 }
@@ -33,8 +34,7 @@ export function spread(lights, basis) {
             out.push(...basis.environment(light.map, light.rotate || 0)
                 .map((l) => ({ direction: l.direction, rgb: l.rgb.map((v, c) => v * light.rgb[c]) })));
         } else if (light.kind === 'area') {
-            const places = squareOf(light);
-            out.push(...places.map((direction) => ({ direction, rgb: light.rgb.map((v) => v / places.length) })));
+            out.push(...squareOf(light).map(({ direction, share }) => ({ direction, rgb: light.rgb.map((v) => v * share) })));
         } else {
             out.push(light);
         }

@@ -81,7 +81,7 @@ export class Relighter {
         const { layers } = this.scene, program = this.device.program(`relight ${layers}`, () => relightShader(layers));
         const lit = tile.lit[this.key] = tile.lit[this.key] || this.device.target(tile.width, tile.height);
         this.batches.forEach((batch, i) => {
-            this.device.begin(lit, { clear: i === 0, add: i > 0 });
+            this.device.begin(lit, { clear: i === 0, add: i > 0 && 'rgb' });
             this.draw(program, tile, batch);
         });
         if (!this.batches.length)

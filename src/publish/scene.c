@@ -23,7 +23,9 @@ enum { USUAL_PLANES = 27, CORRECTIONS = 8, TRIAL_PIXELS = 1 << 17 };
 #define USUAL_DB     47.5
 #define USUAL_MARGIN 1.0
 // A finer step that makes up for no more than this part of what lacks is of no use: planes lack.
-#define LEAST_GAIN  0.2
+#define LEAST_GAIN 0.2
+// Nor does it become finer than this without anybody\'s wish.
+#define USUAL_FINER 2.0
 #define USUAL_SLACK 0.8  // measured values are rounded to 8 bits
 
 // What the page loads before it shows something, beside scene.json: of 150 kB what the viewer

@@ -14,7 +14,7 @@ static relume_status check_texts(const jvalue *object, const char *path, const c
         return log_fail(log, RELUME_EFORMAT, "%s: %s; expected an object of texts", path, where);
     struct log_place place;
     const relume_status status =
-        jvalue_check_known(object, known, log_at(&place, log, "%s: %s", path, where));
+        jvalue_check_known(object, known, log_at(&place, log, "%s: %s: ", path, where));
     for (int i = 0; !status && i < TEXTS; i++) {
         const jvalue *value = jvalue_member(object, names[i]);
         if (value && !jvalue_text(value))

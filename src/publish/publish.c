@@ -134,7 +134,7 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
     struct site here = *site;
     struct relume_publish_report report = {.psnr_db = 0.0};
     struct page *page = &w->pages[i];
-    here.log = log_at(&place, site->log, "%s", w->files[i]);
+    here.log = log_at(&place, site->log, "%s: ", w->files[i]);
     *page = (struct page){.name = w->names[i],
                           .details =
                               details_of_file(w->metadata, w->params, w->stems[i], w->count == 1)};

@@ -242,6 +242,8 @@ static relume_status write_views(struct scene *s, struct planes *middle, uint64_
         if (!status)
             status =
                 levels_write(s->site, name, is_middle ? middle : &view, &s->levels, bytes, NULL);
+        if (!status)
+            status = layers_write(&s->layers[i], s->site, name, s->pack, i);
         planes_free(is_middle ? middle : &view);
         if (!status && !log_progress(s->site->log, "tiles", (i + 1.0) / views))
             status = RELUME_ECANCEL;

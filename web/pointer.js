@@ -1,7 +1,7 @@
 // pointer.js - mouse, pen and fingers on the picture
 //
-// One pointer drags; with Ctrl, the second button or after a long press it does the other thing. Two
-// fingers move and enlarge.
+// One pointer drags; with Ctrl, the second button or after a finger's long press it does the other
+// thing. Two fingers move and enlarge.
 
 const LONG_PRESS = 450;  // milliseconds
 const STILL = 6;         // CSS pixels
@@ -29,7 +29,8 @@ export function listenPointers(node, to) {
         if (fingers.size === 1) {
             other = event.ctrlKey || event.metaKey || event.button === 2;
             still = true;
-            timer = setTimeout(() => { other = true; to.held(); }, LONG_PRESS);
+            if (event.pointerType !== 'mouse')
+                timer = setTimeout(() => { other = true; to.held(); }, LONG_PRESS);
         }
         event.preventDefault();
     });

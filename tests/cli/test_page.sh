@@ -37,7 +37,9 @@ fi
 "$RELUME" encode pot -o pot.exr --basis pca --coefficients 9 --domain display -q || exit 1
 "$RELUME" synth attic -o room --projection spherical --size 48 --lights 24 --samples 1 -q || exit 1
 "$RELUME" encode room -o room.exr --basis pca --coefficients 12 --domain display -q || exit 1
-"$RELUME" publish dome.exr pot.exr room.exr -o site --title '<script>window.broken = 1</script>' -q 2>note.txt ||
+"$RELUME" notes dome.exr --add 'line 10,20 50,20' --text 'a <img src=x onerror="window.broken=1">' --state 'light=dir,0.6,0,0.8' --ruler n1 --length 4 -q >note.txt 2>&1 ||
+    "$RELUME" notes dome.exr --ruler n1 --length 4 -q >>note.txt 2>&1 || exit 1
+"$RELUME" publish dome.exr pot.exr room.exr -o site -q 2>note.txt ||
     { not_ok 'a site is published' "$(cat note.txt)"; finish; exit; }
 cp -r site bad
 sed -i 's/"version": 1/"version": 9/' bad/pot/scene.json
@@ -71,13 +73,26 @@ lone dome '-0.5 0.7 0.3' '&pass=luminance' '--pass luminance'
 ask "window.relume.setState('light=dir,0,3,4&light=dir,1,0,0,rgb,0.5,0.25,0&exposure=-1&tone=gamma&later=1,2') || window.relume.getState()"
 ask "window.relume.setState('light=dir,NaN,0,1&exposure=1e300&pass=nonsense&light=' + 'x'.repeat(300)) || [window.relume.getState(), document.querySelector('relume-view').status.textContent]"
 ask "window.relume.setState('light=dir,0,0,1&'.repeat(100000)) || document.querySelector('relume-view').status.textContent"
-ask 'window.broken === undefined'
 # keys alone: the light, another one, the pass, exposure
 echo 'state light=dir,0,0,1' >>orders.txt
 echo 'key ArrowRight ArrowRight n p ]' >>orders.txt
 ask 'window.relume.getState()'
 { echo 'drag 48 48 60 20'; } >>orders.txt
 ask 'window.relume.getState()'
+# notes: what was published, what is drawn by clicks and keys, and back to the tool
+ask "(v => [v.panel.notes.all.length, v.panel.notes.all[0].text, v.panel.list.textContent])(document.querySelector('relume-view'))"
+{
+    echo "eval (v => { v.fit(); v.panel.begin('polygon'); })(document.querySelector('relume-view'))"
+    echo 'drag 10 10 10 10'
+    echo 'drag 30 10 30 10'
+    echo 'drag 30 30 30 30'
+    echo 'key Enter'
+    echo "eval (v => { v.panel.text.value = 'a loss'; v.panel.write(); v.surface.focus(); })(document.querySelector('relume-view'))"
+    echo "write page.notes.json document.querySelector('relume-view').panel.notes.toText()"
+} >>orders.txt
+ask 'window.broken === undefined'
+# a look that is kept beside another one
+ask "(v => { v.keep(); v.set('pass', 'colour'); v.compare('difference'); return window.relume.idle().then(() => v.viewer.comparison.way); })(document.querySelector('relume-view'))"
 {
     echo 'size 96 96'
     show site/pot.html
@@ -98,6 +113,9 @@ for page in dome pot room; do
     echo "open file://$work/bad/$page.html" >>orders.txt
     ask "[document.querySelector('relume-view').status.textContent, !document.querySelector('relume-view').poster.hidden]"
 done
+echo 'before HTMLCanvasElement.prototype.getContext = () => null' >>orders.txt
+echo "open file://$work/site/dome.html" >>orders.txt
+ask "[document.querySelector('relume-view').status.textContent, !document.querySelector('relume-view').poster.hidden, document.querySelector('relume-view').poster.alt]"
 mkdir home
 HOME=$work/home timeout 100 node "$TOP/tests/tools/page.mjs" "$browser" "$work/home/profile" <orders.txt >said.txt 2>&1 ||
     not_ok 'the browser does as it is told' "$(grep -E '^failed' said.txt)"
@@ -112,9 +130,19 @@ done
 says 'the state comes back' '^"exposure=-1&tone=gamma&light=dir,0,0.6,0.8&light=dir,1,0,0,rgb,0.5,0.25,0&later=1,2"'
 says 'an absurd state is left out and said' '^\["light=dir,[-0-9.,]*","This link asks for what cannot be shown \(light, exposure, pass\); the rest of it is\."\]'
 says 'too long a state is not read' '^"This link is too long'
-says 'a script in the title is text' '^true$'
+says 'a script in a note is text' '^true$'
 says 'keys move and add lights, change pass and exposure' '^"exposure=0.25&pass=normals&light=dir,0.12,0,[0-9.]*&light=dir,'
 says 'a drag moves the chosen light' '^"exposure=0.25&pass=normals&light=dir,0.12,0,[0-9.]*&light=dir,0.25,0.58333'
+says 'published notes are shown, as text' '^\[1,"a <img .*","a <img .*4 mm"\]'
+"$RELUME" notes dome.exr --import page.notes.json >notes.txt 2>&1 || not_ok 'the tool takes the notes of the page' "$(cat notes.txt)"
+"$RELUME" notes dome.exr >notes.txt 2>&1
+if [ "$(wc -l <notes.txt)" -eq 2 ] && grep -q 'n2 *polygon .* a loss' notes.txt; then
+    ok 'an area drawn on the page comes back, what was there comes once'
+else
+    not_ok 'an area drawn on the page comes back, what was there comes once' "$(cat notes.txt)"
+fi
+says 'two looks are compared' '^"difference"'
+says 'without WebGL2 there is a still picture and a sentence' '^\["Only a still picture can be shown: this browser has no WebGL2\.",true,"'
 says 'a view that is put elsewhere opens again' '^"put elsewhere"'
 says 'a newer file says so' '^\["Only a still picture can be shown: this file was published by a newer relume .format 9.*",true\]'
 says 'a missing tile is said' '^\["Only a still picture can be shown: room/v0/0_0_0.bin is missing\."'

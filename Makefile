@@ -168,7 +168,7 @@ web:
 $B/tests/core.so: $(CORE_C) | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(filter-out -MMD -MP,$(C11)) -Iinclude -Isrc -shared -Wl,-z,defs -o $@ $(CORE_C) -lm
+	$(Q)$(CC) $(filter-out -MMD -MP,$(C11)) -Iinclude -Isrc -shared -Wl,-z,defs -Wl,-Bsymbolic -o $@ $(CORE_C) -lm
 
 # ---------------------------------------------------------------- compiling
 
@@ -338,7 +338,7 @@ $B/relume $(MPI) $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MOD
 test: all
 	@tests/run.sh $(MAKE)
 # Sanitizers run few scripts (tests/check.sh), none of which needs these.
-check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS) $(if $(filter asan tsan,$(config)),,$(FUZZ) $(GROWN))
+check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS) $B/tests/core.so $(if $(filter asan tsan,$(config)),,$(FUZZ) $(GROWN))
 	@tests/check.sh $B
 # Does every test still compile? A minute where check takes five.
 compile-tests: $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(FUZZ_C) $(BENCH_C))

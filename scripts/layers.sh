@@ -91,7 +91,7 @@ fi
 # external header: the files it may appear in
 external="openexr:src/image/exr.c tests/tools/decode.c tests/unit/test_piz.c
 OpenImageIO:src/image/oiio.cpp
-dlfcn:src/base/module.c tests/tools/preload/faults.c tests/bench/bench_simplify.c
+dlfcn:src/base/module.c tests/tools/preload/faults.c tests/bench/bench_simplify.c tests/tools/core_weights.c
 opencv:src/multiview/stitch.cpp
 embree:src/mesh/trace.c tests/tools/preload/msan.c
 assimp:src/mesh/mesh_assimp.c

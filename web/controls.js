@@ -1,8 +1,10 @@
 // controls.js - the strip below a picture: lights, exposure, what is shown, and what can be done
 import { Ball } from './ball.js';
+import { COMPARISONS } from './compare.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const PASS_NAMES = ['Colour', 'Normals', 'Shiny', 'Relief', 'Fine relief', 'Grey', 'False colour'];
+const WAY_NAMES = ['Nothing', 'Lens', 'Side by side', 'Blink', 'Difference'];
 const TONE_NAMES = ['Plain', 'Soft highlights', 'Film', 'Gamma 2.2'];
 
 // An element with attributes, listeners (on...) and content; text is never read as HTML.
@@ -29,6 +31,7 @@ const ICONS = {
     screen: 'M3 5h18v14H3zM8 9h8v6H8z',
     link: 'M10 14a4 4 0 0 0 6 0l3-3a4 4 0 0 0-6-6l-1 1M14 10a4 4 0 0 0-6 0l-3 3a4 4 0 0 0 6 6l1-1',
     save: 'M12 4v11M7 11l5 5 5-5M5 20h14',
+    note: 'M5 4h14v12H10l-4 4v-4H5zM8 8h8M8 12h5',
     help: 'M9 9a3 3 0 1 1 4 3c-1 .5-1 1-1 2M12 18v.5',
     lamp: 'M12 3a6 6 0 0 1 3 11v3H9v-3a6 6 0 0 1 3-11M10 20h4',
     move: 'M12 3v18M3 12h18M12 3l-2 3M12 3l2 3M12 21l-2-3M12 21l2-3M3 12l3-2M3 12l3 2M21 12l-3-2M21 12l-3 2',
@@ -75,6 +78,8 @@ export class Controls {
         this.exposure = slider('Exposure', -5, 5, 0.1, (value) => actions.set('exposure', value));
         this.pass = select('What is shown', PASSES, PASS_NAMES, (value) => actions.set('pass', value));
         this.tone = select('Highlights', TONES_BY_NAME, TONE_NAMES, (value) => actions.set('tone', value));
+        this.way = select('Compare', COMPARISONS, WAY_NAMES, (value) => actions.compare(value));
+        this.divide = slider('Where the two pictures meet', 0, 1, 0.01, (value) => actions.divide(value));
         this.remove = button('remove', 'Remove this light (Delete)', () => actions.removeLight());
         this.counter = make('output', { 'aria-label': 'Light' });
         const lens = viewer.isSlab ? this.lens() : [];
@@ -88,10 +93,15 @@ export class Controls {
             make('div', { class: 'group' },
                 make('div', { class: 'row' }, labelled('Show', this.pass), labelled('Highlights', this.tone)),
                 make('div', { class: 'row' }, labelled('Exposure', this.exposure), ...lens, ...planet)),
+            make('div', { class: 'group' },
+                make('div', { class: 'row' }, labelled('Compare', this.way)),
+                make('div', { class: 'row' }, make('button', { type: 'button', class: 'word', title: 'Keep this look to compare with (K)',
+                                                              onclick: () => actions.keep() }, 'Keep this look'), this.divide)),
             make('div', { class: 'group tools' },
                 make('div', { class: 'row' }, button('fit', 'Whole picture (0)', () => actions.fit()),
                      button('screen', 'Full screen (F)', () => actions.fullScreen()),
-                     button('link', 'Copy a link to this view (C)', () => actions.copyLink()),
+                     button('note', 'Notes and measures (M)', () => actions.toggleNotes())),
+                make('div', { class: 'row' }, button('link', 'Copy a link to this view (C)', () => actions.copyLink()),
                      button('save', 'Save this picture (S)', () => actions.save()),
                      button('help', 'Keys (?)', () => actions.help()))));
         this.show();
@@ -134,6 +144,9 @@ export class Controls {
         this.exposure.value = viewer.exposure;
         this.pass.value = viewer.pass;
         this.tone.value = viewer.tone;
+        this.way.value = viewer.comparison.way;
+        this.divide.value = viewer.comparison.divide;
+        this.divide.hidden = viewer.comparison.way !== 'slider';
         if (this.look)
             this.look.value = viewer.look;
         if (this.aperture) {

@@ -1,10 +1,14 @@
 // element.js - <relume-view src="…/scene.json">: a picture that can be relit, and its controls
-import { Failure } from './load.js';
 import { Viewer } from './viewer.js';
 import { Controls, make } from './controls.js';
 import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
+import { COMPARISONS } from './compare.js';
 import { readEnvironment } from './hdr.js';
+import { Failure, loadJson } from './load.js';
+import { Notes } from './notes.js';
+import { NotePanel } from './notepanel.js';
+import { Overlay } from './overlay.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const STEP = 0.06;  // of the disc of lights, a key
@@ -13,7 +17,7 @@ const KEYS = [
     ['Arrow keys', 'move the light (Shift: the other way of dragging)'], ['L', 'dragging and arrows: light, or moving'],
     ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['N  Delete', 'another light, remove it'],
     ['Tab in the strip', 'colour, softness and more'], ['[ ]', 'darker, brighter'], ['P', 'what is shown'],
-    ['T', 'how highlights are shown'], ['F', 'full screen'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
+    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
 
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
@@ -23,16 +27,16 @@ export class RelumeView extends HTMLElement {
     static home = '';
 
     connectedCallback() {
-        if (this.root)
-            return;
-        this.root = this.attachShadow({ mode: 'open' });
+        this.root = this.shadowRoot || this.attachShadow({ mode: 'open' });
         this.canvas = make('canvas', { 'aria-hidden': 'true' });
+        this.over = make('canvas', { 'aria-hidden': 'true' });
         this.poster = make('img', { class: 'poster', alt: '', hidden: true });
         this.hint = make('p', { class: 'hint' });
         this.status = make('p', { class: 'status', role: 'status', 'aria-live': 'polite' });
-        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.poster, this.hint);
+        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.over, this.poster, this.hint);
+        this.frame = make('div', { class: 'frame' }, this.surface, this.status);
         this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeView.home).href }),
-                         this.surface, this.status);
+                         this.frame);
         this.ready = new Promise((resolve) => { this.isReady = resolve; });
         this.open().catch((error) => this.fail(error));
     }
@@ -41,10 +45,12 @@ export class RelumeView extends HTMLElement {
         if (this.observer)
             this.observer.disconnect();
         document.removeEventListener('keydown', this.bodyKey);
-        if (this.viewer)
+        if (this.viewer) {
+            this.first = this.getState();  // for when it is put elsewhere in the page
             this.viewer.close();
+        }
         this.root.replaceChildren();
-        this.root = this.viewer = null;
+        this.viewer = this.controls = null;
     }
 
     get source() { return new URL(this.getAttribute('src') || '', document.baseURI); }
@@ -74,17 +80,22 @@ export class RelumeView extends HTMLElement {
     async open() {
         const viewer = new Viewer(this.canvas, RelumeView.home, {
             changed: () => this.controls && this.controls.show(),
-            failed: (error) => this.say(`A part of the picture cannot be shown: ${error.message}.`),
+            failed: (error) => (viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error)),
+            broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
+            drawn: () => this.overlay && this.overlay.draw(),
         });
         await viewer.open(this.source.href);
+        if (!this.isConnected || !this.root.contains(viewer.canvas))
+            return viewer.close();
         this.viewer = viewer;
         const title = viewer.scene.title || viewer.scene.name || 'Picture';
         this.surface.setAttribute('aria-label', `${title}: a picture whose light can be moved. Arrow keys move the light; ` +
                                                 'press the question mark for all keys.');
         this.lighting = viewer.projection === 'planar';
         this.controls = new Controls(viewer, this);
-        this.root.append(this.controls.node);
+        this.frame.append(this.controls.node);
+        this.openNotes();
         this.showMode();
         this.hint.textContent = this.lighting ? 'Drag across the picture to move the light'
             : viewer.isSlab ? 'Drag to walk around, move the light by its ball' : 'Drag to look around, move the light by its ball';
@@ -97,7 +108,52 @@ export class RelumeView extends HTMLElement {
         else if (this.getAttribute('state'))
             viewer.setState(this.getAttribute('state'));
         await viewer.ready;
-        this.isReady();
+        return this.isReady();
+    }
+
+    // Notes that were published with the picture, and those that are made here.
+    async openNotes() {
+        const { viewer } = this, notes = new Notes(viewer.scene);
+        this.overlay = new Overlay(this.over, viewer);
+        this.panel = new NotePanel(viewer, notes, this.overlay, {
+            draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state),
+            focus: () => this.surface.focus(),
+        });
+        this.panel.node.hidden = true;
+        this.frame.append(this.panel.node);
+        if (!viewer.scene.notes)
+            return;
+        try {
+            notes.read(await loadJson(`${viewer.scene.base}notes.json`));
+            this.panel.show();
+            viewer.invalidate();
+        } catch (error) {
+            this.say(`The notes cannot be shown: ${error.message}.`);
+        }
+    }
+
+    toggleNotes() {
+        const { node } = this.panel;
+        node.hidden = !node.hidden;
+        if (!node.hidden)
+            node.querySelector('button').focus();
+        else
+            this.surface.focus();
+    }
+
+    // What a click on the picture means for notes; false: nothing.
+    clickNotes(at) {
+        if (this.panel.isDrawing) {
+            const ratio = this.canvas.width / this.surface.getBoundingClientRect().width;
+            this.panel.click(this.viewer.toPicture([at.x * ratio, at.y * ratio]));
+            return true;
+        }
+        const note = this.overlay.find(at.x, at.y);
+        if (note && this.panel.node.hidden)
+            this.toggleNotes();
+        if (note || this.overlay.chosen)
+            this.panel.choose(note);
+        return !!note;
     }
 
     // ------------------------------------------------------------ state
@@ -124,8 +180,6 @@ export class RelumeView extends HTMLElement {
         if (name === 'look')
             return this.viewer.setLook(value);
         this.viewer[name] = value;
-        if (name === 'pass' || name === 'exposure')
-            this.viewer.range = null;
         return this.viewer.changed();
     }
 
@@ -175,6 +229,32 @@ export class RelumeView extends HTMLElement {
     removeLight() {
         const { viewer } = this;
         viewer.setLights(viewer.lights.filter((_, i) => i !== viewer.chosen));
+    }
+
+    // Compares with the kept look, or with the file that `compare` names.
+    async compare(way) {
+        const { comparison } = this.viewer, address = this.getAttribute('compare');
+        if (way !== 'off' && !comparison.kept && address) {
+            try {
+                await comparison.open(new URL(address, document.baseURI).href);
+            } catch (error) {
+                this.say(`${error.message}.`);
+            }
+        }
+        comparison.setWay(way);
+        this.controls.show();
+        if (way !== 'off')
+            this.say(way === 'lens' ? 'The lens shows the kept look.' : 'The kept look is compared with this one.');
+    }
+
+    keep() {
+        this.viewer.comparison.keep();
+        this.say('This look is kept; change the light or what is shown, and compare.');
+    }
+
+    divide(value) {
+        this.viewer.comparison.divide = value;
+        this.viewer.invalidate();
     }
 
     toggleMode() {
@@ -256,7 +336,7 @@ export class RelumeView extends HTMLElement {
         const ratio = () => this.canvas.width / this.surface.getBoundingClientRect().width;
         const enlarge = (factor, x, y) => { this.viewer.touch(); this.viewer.enlarge(factor, x * ratio(), y * ratio()); };
         listenPointers(this.surface, {
-            begin: () => {},
+            click: (at) => this.clickNotes(at) || (this.lighting && this.lightAt(at)),
             held: () => this.say(this.lighting ? `Dragging ${this.verb}s now.` : 'Dragging moves the light now.'),
             drag: (at, dx, dy, other) => (this.lighting !== other ? this.lightAt(at) : this.move(dx, dy)),
             pinch: (factor, x, y, dx, dy) => {
@@ -270,6 +350,12 @@ export class RelumeView extends HTMLElement {
         this.bodyKey = (event) => event.target === document.body && document.querySelector('relume-view') === this && this.key(event);
         document.addEventListener('keydown', this.bodyKey);
         this.controls.ball.node.addEventListener('keydown', (event) => this.ballKey(event));
+        this.surface.addEventListener('pointermove', (event) => {
+            const { comparison } = this.viewer, box = this.surface.getBoundingClientRect();
+            comparison.lens = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+            if (comparison.way === 'lens')
+                this.viewer.invalidate();
+        });
         this.surface.addEventListener('dragover', (event) => event.preventDefault());
         this.surface.addEventListener('drop', (event) => {
             event.preventDefault();
@@ -305,6 +391,12 @@ export class RelumeView extends HTMLElement {
     key(event) {
         if (event.ctrlKey || event.metaKey || event.altKey)
             return;
+        if (this.panel.isDrawing && ['Enter', 'Escape'].includes(event.key)) {
+            if (event.key === 'Enter') this.panel.end();
+            else this.panel.cancel();
+            event.preventDefault();
+            return;
+        }
         const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
         const { viewer } = this, acts = {
             '+': () => viewer.enlarge(1.25), '=': () => viewer.enlarge(1.25), '-': () => viewer.enlarge(0.8),
@@ -312,7 +404,8 @@ export class RelumeView extends HTMLElement {
             '[': () => this.set('exposure', Math.max(viewer.exposure - 0.25, -20)),
             ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
             p: () => this.set('pass', next(PASSES, viewer.pass)), t: () => this.set('tone', next(TONES_BY_NAME, viewer.tone)),
-            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), '?': () => this.help(),
+            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), m: () => this.toggleNotes(),
+            k: () => this.keep(), v: () => this.compare(next(COMPARISONS, viewer.comparison.way)), b: () => viewer.comparison.swap(), '?': () => this.help(),
         };
         if (way && this.lighting !== event.shiftKey)
             this.moveLight(STEP * way[0], STEP * way[1]);

@@ -112,7 +112,8 @@ export class Device {
             this.gl.deleteFramebuffer(target.frame);
     }
 
-    // Draws into `target`, the canvas when it is null, of which nothing is left by default.
+    // Draws into `target`, the canvas when it is null, of which nothing is left by default. `add`: to what
+    // is there, alpha too or 'rgb' alone.
     begin(target, { clear = true, add = false } = {}) {
         const gl = this.gl;
         gl.bindFramebuffer(gl.FRAMEBUFFER, target ? target.frame : null);
@@ -122,7 +123,7 @@ export class Device {
             gl.clear(gl.COLOR_BUFFER_BIT);
         if (add) {
             gl.enable(gl.BLEND);
-            gl.blendFunc(gl.ONE, gl.ONE);
+            gl.blendFuncSeparate(gl.ONE, gl.ONE, gl.ONE, add === 'rgb' ? gl.ZERO : gl.ONE);
         } else {
             gl.disable(gl.BLEND);
         }

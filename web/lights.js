@@ -1,11 +1,11 @@
 // lights.js - what a light of the page is, and the plain directional lights that stand for it
 //
 // A light is { kind, direction, rgb, ... } with kind `dir`, `area` (soft: of an angular radius
-// `radius`, radians) or `env` ({ name, map, rotate }). Directions are world vectors of length 1.
+// `radius`, radians, of a square) or `env` ({ name, map, rotate }). Directions are world vectors of length 1.
 
 export const MOST_LIGHTS_OF_A_STATE = 64;
 export const RADIANS = Math.PI / 180;
-const RINGS = [[1, 0], [6, 0.57], [12, 0.9]];  // places on a disc: how many, how far out
+const SIDE = 4;  // places of a soft light, across and down
 
 export const unit = (v) => {
     const length = Math.hypot(...v);
@@ -14,16 +14,15 @@ export const unit = (v) => {
 
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// Directions over the disc of a soft light, evenly.
-function discOf(light) {
-    const d = light.direction;
+// Directions over the square of a soft light, evenly, and their shares: it shines askew at its ends, which
+// are farther away.
+function squareOf(light) {
+    const d = light.direction, half = Math.tan(light.radius), places = [];
     const beside = unit(cross(d, Math.abs(d[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0])), above = cross(d, beside);
-    const places = [];
-    for (const [n, r] of RINGS)
-        for (let i = 0; i < n; i++) {
-            const at = Math.tan(light.radius) * r, phi = 2 * Math.PI * (i + 0.5 * (n > 6)) / n;
-            places.push(unit(d.map((x, c) => x + at * (Math.cos(phi) * beside[c] + Math.sin(phi) * above[c]))));
-        }
+    for (let i = 0; i < SIDE * SIDE; i++) {
+        const x = half * ((2 * (i % SIDE) + 1) / SIDE - 1), y = half * ((2 * Math.floor(i / SIDE) + 1) / SIDE - 1);
+        places.push({ direction: unit(d.map((v, c) => v + x * beside[c] + y * above[c])), share: (1 + x * x + y * y) ** -2 / SIDE ** 2 });
+    }
     return places;
 }
 
@@ -35,8 +34,7 @@ export function spread(lights, basis) {
             out.push(...basis.environment(light.map, light.rotate || 0)
                 .map((l) => ({ direction: l.direction, rgb: l.rgb.map((v, c) => v * light.rgb[c]) })));
         } else if (light.kind === 'area') {
-            const places = discOf(light);
-            out.push(...places.map((direction) => ({ direction, rgb: light.rgb.map((v) => v / places.length) })));
+            out.push(...squareOf(light).map(({ direction, share }) => ({ direction, rgb: light.rgb.map((v) => v * share) })));
         } else {
             out.push(light);
         }

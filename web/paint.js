@@ -53,10 +53,11 @@ export class Painter {
 
     // What a tile shows; null when that would take too long in this frame. Old light is better than none.
     textureOf(tile, kind) {
-        const done = kind === 'light' ? tile.version === this.relighter.version : tile.surface;
+        const done = kind === 'light' ? this.relighter.isLit(tile) : tile.surface;
         if (!done && this.allowed <= 0) {
+            const older = kind === 'light' && this.relighter.older(tile);
             this.complete = false;
-            return kind === 'light' && tile.lit ? tile.lit.texture : null;
+            return older ? older.texture : null;
         }
         if (!done)
             this.allowed -= tile.width * tile.height;
@@ -81,7 +82,7 @@ export class Painter {
     // Whether a texture that keeps what was painted needs it again; `cache` remembers what it holds.
     isNews(cache, view, kind, tiles) {
         const masked = view.mask && kind === 'light' && this.mask(view) ? 'masked' : '';
-        const holds = `${view.name} ${masked} ${tiles.map(([t]) => `${t.key} ${kind === 'light' ? t.version : 0}`).join()}`;
+        const holds = `${view.name} ${masked} ${tiles.map(([t]) => `${t.key} ${kind === 'light' ? this.relighter.older(t).version : 0}`).join()}`;
         const news = cache.holds !== holds;
         cache.holds = holds;
         return news;

@@ -1,8 +1,42 @@
 // panorama.js - looking around in a panorama; after src/view/panorama.c
-import { RADIANS } from './lights.js';
+import { RADIANS, unit } from './lights.js';
 import { levelFor } from './paint.js';
 import { panoramaShader } from './shaders.js';
 
+
+const FACES = [  // of a cube: ahead, right, up
+    [[1, 0, 0], [0, 0, 1], [0, 1, 0]], [[-1, 0, 0], [0, 0, -1], [0, 1, 0]], [[0, 1, 0], [1, 0, 0], [0, 0, 1]],
+    [[0, -1, 0], [1, 0, 0], [0, 0, -1]], [[0, 0, 1], [-1, 0, 0], [0, 1, 0]], [[0, 0, -1], [1, 0, 0], [0, 1, 0]],
+];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+// The direction that a place of the unfolded picture looks along; any length.
+function rayOf(scene, x, y) {
+    const { width, height, projection, panorama } = scene, phi = (2 * x / width - 1) * Math.PI;
+    if (projection === 'cube') {
+        const face = Math.min(Math.max(Math.floor(x / height), 0), 5), [ahead, right, up] = FACES[face];
+        const a = 2 * (x - face * height) / height - 1, b = 1 - 2 * y / height;
+        return ahead.map((v, i) => v + a * right[i] + b * up[i]);
+    }
+    if (projection === 'cylindrical')
+        return [Math.sin(phi), panorama.v_max - y / height * (panorama.v_max - panorama.v_min), -Math.cos(phi)];
+    const elevation = (0.5 - y / height) * Math.PI;
+    return [Math.cos(elevation) * Math.sin(phi), Math.sin(elevation), -Math.cos(elevation) * Math.cos(phi)];
+}
+
+// Its inverse.
+function pixelOf(scene, d) {
+    const { width, height, projection, panorama } = scene, across = Math.hypot(d[0], d[2]);
+    const column = (Math.atan2(d[0], -d[2]) / Math.PI + 1) / 2 * width;
+    if (projection === 'cube') {
+        const face = FACES.reduce((best, [ahead], i) => (dot(d, ahead) > dot(d, FACES[best][0]) ? i : best), 0);
+        const [ahead, right, up] = FACES[face], k = 1 / dot(d, ahead);
+        return [(face + 0.5 + 0.5 * k * dot(d, right)) * height, (0.5 - 0.5 * k * dot(d, up)) * height];
+    }
+    if (projection === 'cylindrical')
+        return [column, (panorama.v_max - d[1] / across) / (panorama.v_max - panorama.v_min) * height];
+    return [column, (0.5 - Math.atan2(d[1], across) / Math.PI) * height];
+}
 
 export class Panorama {
     constructor(scene, painter, device) {
@@ -23,6 +57,23 @@ export class Panorama {
             return;
         this.close();
         this.level = level;
+    }
+
+    // A look's way through a place of the frame, and the place of a direction; twins of the shader's.
+    toPicture([x, y], camera, width, height) {
+        const a = (2 * x / width - 1) / camera.zoom, b = (height - 2 * y) / width / camera.zoom;
+        const [pan, tilt] = [camera.pan * RADIANS, camera.tilt * RADIANS];
+        const depth = camera.planet ? 0.5 * (1 - a * a - b * b) : 1;
+        const up = b * Math.cos(tilt) + depth * Math.sin(tilt), ahead = depth * Math.cos(tilt) - b * Math.sin(tilt);
+        return pixelOf(this.scene, [a * Math.cos(pan) + ahead * Math.sin(pan), up, a * Math.sin(pan) - ahead * Math.cos(pan)]);
+    }
+
+    toCanvas([x, y], camera, width, height) {
+        const d = unit(rayOf(this.scene, x, y)), [pan, tilt] = [camera.pan * RADIANS, camera.tilt * RADIANS];
+        const right = d[0] * Math.cos(pan) + d[2] * Math.sin(pan), level = d[0] * Math.sin(pan) - d[2] * Math.cos(pan);
+        const ahead = level * Math.cos(tilt) + d[1] * Math.sin(tilt), up = d[1] * Math.cos(tilt) - level * Math.sin(tilt);
+        const depth = camera.planet ? 1 + ahead : ahead, k = camera.zoom * width / 2 / depth;
+        return depth > 1e-3 ? [width / 2 + right * k, height / 2 - up * k] : null;
     }
 
     draw(target, kind, camera) {

@@ -1,16 +1,16 @@
 // pointer.js - mouse, pen and fingers on the picture
 //
-// One pointer drags; with Ctrl, the second button or after a long press it does the other thing. Two
-// fingers move and enlarge.
+// One pointer drags; with Ctrl, the second button or after a finger's long press it does the other
+// thing. Two fingers move and enlarge.
 
 const LONG_PRESS = 450;  // milliseconds
 const STILL = 6;         // CSS pixels
 
-// `to`: drag(event, dx, dy, other), pinch(factor, x, y, dx, dy), wheel(factor, x, y), begin(), held();
+// `to`: click(at), drag(at, dx, dy, other), pinch(factor, x, y, dx, dy), wheel(factor, x, y), held();
 // all in CSS pixels of `node`.
 export function listenPointers(node, to) {
     const fingers = new Map();
-    let other = false, timer = 0;
+    let other = false, still = false, timer = 0;
     const place = (event) => {
         const box = node.getBoundingClientRect();
         return { x: event.clientX - box.left, y: event.clientY - box.top };
@@ -25,10 +25,12 @@ export function listenPointers(node, to) {
         node.focus({ preventScroll: true });
         fingers.set(event.pointerId, { ...at, from: at });
         clearTimeout(timer);
+        still = false;
         if (fingers.size === 1) {
             other = event.ctrlKey || event.metaKey || event.button === 2;
-            to.begin();
-            timer = setTimeout(() => { other = true; to.held(); }, LONG_PRESS);
+            still = true;
+            if (event.pointerType !== 'mouse')
+                timer = setTimeout(() => { other = true; to.held(); }, LONG_PRESS);
         }
         event.preventDefault();
     });
@@ -38,9 +40,11 @@ export function listenPointers(node, to) {
             return;
         const before = fingers.size > 1 ? middle() : null, dx = at.x - finger.x, dy = at.y - finger.y;
         Object.assign(finger, at);
-        if (Math.hypot(at.x - finger.from.x, at.y - finger.from.y) > STILL)
+        if (Math.hypot(at.x - finger.from.x, at.y - finger.from.y) > STILL) {
             clearTimeout(timer);
-        if (fingers.size === 1) {
+            still = false;
+        }
+        if (fingers.size === 1 && !still) {
             to.drag(at, dx, dy, other);
         } else if (fingers.size === 2) {
             const after = middle();
@@ -49,8 +53,11 @@ export function listenPointers(node, to) {
     });
     for (const name of ['pointerup', 'pointercancel'])
         node.addEventListener(name, (event) => {
+            const finger = fingers.get(event.pointerId);
             clearTimeout(timer);
             fingers.delete(event.pointerId);
+            if (finger && still && !other && fingers.size === 0 && name === 'pointerup')
+                to.click(finger);
         });
     node.addEventListener('contextmenu', (event) => event.preventDefault());
     node.addEventListener('wheel', (event) => {

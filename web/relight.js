@@ -2,9 +2,12 @@
 import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader } from './shaders.js';
 import { spread } from './lights.js';
 
+let relighters = 0;
+
 export class Relighter {
     constructor(device, scene, basis) {
         Object.assign(this, { device, scene, basis });
+        this.key = relighters++;  // of its pictures of tiles
         this.version = 0;
         this.batches = [];
         this.buffer = device.gl.createBuffer();
@@ -73,19 +76,24 @@ export class Relighter {
 
     // The tile's light, up to date.
     lit(tile) {
-        if (tile.version === this.version)
-            return tile.lit;
-        const program = this.device.program('relight', () => relightShader(this.scene.layers));
-        tile.lit = tile.lit || this.device.target(tile.width, tile.height);
+        if (this.isLit(tile))
+            return tile.lit[this.key];
+        const { layers } = this.scene, program = this.device.program(`relight ${layers}`, () => relightShader(layers));
+        const lit = tile.lit[this.key] = tile.lit[this.key] || this.device.target(tile.width, tile.height);
         this.batches.forEach((batch, i) => {
-            this.device.begin(tile.lit, { clear: i === 0, add: i > 0 });
+            this.device.begin(lit, { clear: i === 0, add: i > 0 && 'rgb' });
             this.draw(program, tile, batch);
         });
         if (!this.batches.length)
-            this.device.begin(tile.lit);
-        tile.version = this.version;
-        return tile.lit;
+            this.device.begin(lit);
+        lit.version = this.version;
+        return lit;
     }
+
+    isLit(tile) { return !!tile.lit[this.key] && tile.lit[this.key].version === this.version; }
+
+    // The light that a tile has, which may be that of before.
+    older(tile) { return tile.lit[this.key]; }
 
     // The captured lights that normals are found by, spread evenly over their list.
     samplesBlock() {
@@ -111,7 +119,7 @@ export class Relighter {
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, surface.albedo, 0);
         gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
         this.device.begin(surface);
-        this.draw(this.device.program('normals', () => normalShader(this.scene.layers)), tile, this.samplesBlock());
+        this.draw(this.device.program(`normals ${this.scene.layers}`, () => normalShader(this.scene.layers)), tile, this.samplesBlock());
         tile.surface = surface;
         return surface;
     }

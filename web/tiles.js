@@ -50,7 +50,7 @@ export class Tiles {
         if (!tile) {
             const { width, height } = this.scene.levels[level], size = this.scene.tile;
             tile = { key, level, x, y, width: Math.min(size, width - x * size), height: Math.min(size, height - y * size),
-                     state: 'new', codes: null, lit: null, version: -1, surface: null };
+                     state: 'new', codes: null, lit: [], surface: null };
             this.tiles.set(key, tile);
         }
         tile.used = this.clock;
@@ -133,7 +133,7 @@ export class Tiles {
         if (tile.codes)
             this.bytes -= 4 * tile.width * tile.height * this.scene.layers;
         this.device.gl.deleteTexture(tile.codes);
-        this.device.drop(tile.lit);
+        tile.lit.forEach((lit) => this.device.drop(lit));
         if (tile.surface) {
             this.device.gl.deleteTexture(tile.surface.albedo);
             this.device.drop(tile.surface);

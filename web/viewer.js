@@ -8,6 +8,7 @@ import { Painter } from './paint.js';
 import { Planar } from './planar.js';
 import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
+import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
 import { readState, writeState } from './state.js';
 import { measureRange, meterExposure } from './measure.js';
@@ -19,10 +20,13 @@ const GROUND = [22, 22, 23].map((v) => v / 255);  // --ground of relume.css
 const SLOW = 90, QUICK = 30;  // milliseconds from frame to frame
 const LEAST_PIXELS = 1 << 18, MOST_PIXELS = 1 << 25;  // relit in a frame
 
+const needsNormals = (pass) => ['normals', 'specular', 'diffuse-gain', 'unsharp'].includes(pass);
+const lampsOf = (lights) => lights.filter((light) => light.kind === 'dir').slice(0, MOST_LAMPS);
+const sumOf = (lamps) => [0, 1, 2].map((c) => lamps.reduce((sum, lamp) => sum + lamp.rgb[c], 0));
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
 export class Viewer {
-    // `told`: changed(), failed(error), problem(sentence).
+    // `told`: changed(), drawn(), failed(error), broken(error), problem(sentence).
     constructor(canvas, home, told) {
         Object.assign(this, { canvas, home, told });
         this.device = new Device(canvas);
@@ -30,24 +34,34 @@ export class Viewer {
         this.coarser = 0;
         this.moving = 0;
         this.waiting = [];
+        this.memo = {};  // what the pass takes from the picture
+        this.comparison = new Comparison(this);
         this.ready = new Promise((resolve) => { this.isReady = resolve; });
     }
 
     async open(address) {
-        const scene = await loadScene(address);
-        this.basis = await Basis.open(scene, this.home);
-        this.scene = scene;
-        const changed = () => this.invalidate();
-        this.tiles = new Tiles(this.device, scene, { changed, failed: (error) => this.told.failed(error) });
-        this.relighter = new Relighter(this.device, scene, this.basis);
-        this.painter = new Painter(this.device, scene, this.tiles, this.relighter, changed);
-        this.projection = scene.projection;
-        this.stage = scene.projection === 'planar' ? new Planar(scene, this.painter)
-            : scene.projection === 'slab' ? new Slab(scene, this.painter, this.device)
-            : new Panorama(scene, this.painter, this.device);
+        const layer = await this.openLayer(address);
+        Object.assign(this, layer);
+        this.projection = layer.scene.projection;
         this.reset();
         this.metering = true;
         this.resize();
+    }
+
+    // All that an open file has.
+    async openLayer(address) {
+        const scene = await loadScene(address), basis = await Basis.open(scene, this.home);
+        const tiles = new Tiles(this.device, scene, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
+        return this.layerOf(scene, basis, tiles);
+    }
+
+    // A file under lights of its own.
+    layerOf(scene, basis, tiles) {
+        const relighter = new Relighter(this.device, scene, basis);
+        const painter = new Painter(this.device, scene, tiles, relighter, () => this.invalidate());
+        const stage = scene.projection === 'planar' ? new Planar(scene, painter)
+            : scene.projection === 'slab' ? new Slab(scene, painter, this.device) : new Panorama(scene, painter, this.device);
+        return { scene, basis, tiles, relighter, painter, stage };
     }
 
     get isPanorama() { return this.stage instanceof Panorama; }
@@ -74,7 +88,6 @@ export class Viewer {
         this.lights = lights;
         this.chosen = clamp(this.chosen, 0, Math.max(0, lights.length - 1));
         this.relighter.setLights(lights);
-        this.range = this.ranged = null;
         this.changed();
     }
 
@@ -149,6 +162,28 @@ export class Viewer {
         this.invalidate();
     }
 
+    // ------------------------------------------------------------ places
+
+    // Pixels of the canvas a pixel of the picture; 0 where that differs from place to place.
+    scale() { return this.isPanorama ? 0 : this.framing().scale; }
+
+    // A place of the picture (pixels at full size) on the canvas, or null; and back.
+    toCanvas([x, y]) {
+        const { width, height } = this.canvas;
+        if (this.isPanorama)
+            return this.stage.toCanvas([x, y], this.camera(), width, height);
+        const at = this.framing();
+        return [width / 2 + (x - at.x) * at.scale, height / 2 + (y - at.y) * at.scale];
+    }
+
+    toPicture([x, y]) {
+        const { width, height } = this.canvas;
+        if (this.isPanorama)
+            return this.stage.toPicture([x, y], this.camera(), width, height);
+        const at = this.framing();
+        return [at.x + (x - width / 2) / at.scale, at.y + (y - height / 2) / at.scale];
+    }
+
     // ------------------------------------------------------------ the state line
 
     getState() {
@@ -190,7 +225,15 @@ export class Viewer {
     invalidate() {
         if (!this.asked && this.stage && !this.closed) {
             this.asked = true;
-            requestAnimationFrame((now) => { this.asked = false; this.frame(now); });
+            requestAnimationFrame((now) => {
+                this.asked = false;
+                try {
+                    this.frame(now);
+                } catch (error) {  // of the graphics card, mostly: nothing more is drawn
+                    this.closed = true;
+                    this.told.broken(error);
+                }
+            });
         }
     }
 
@@ -224,55 +267,68 @@ export class Viewer {
         return own[name];
     }
 
-    camera() {
-        return { at: this.isPanorama ? null : this.framing(), eye: this.eye, pan: this.pan,
+    // Of a file that lies where this one does, of another size perhaps.
+    camera(layer = this) {
+        const at = this.isPanorama ? null : this.framing(), k = layer.scene.width / this.scene.width;
+        return { at: at && { x: at.x * k, y: at.y * k, scale: at.scale / k }, eye: this.eye, pan: this.pan,
                  tilt: this.tilt, zoom: this.zoom, planet: this.look !== 'perspective',
                  aperture: this.aperture, focus: this.focus, coarser: this.coarser };
     }
 
-    get needsNormals() { return ['normals', 'specular', 'diffuse-gain', 'unsharp'].includes(this.pass); }
+    // How the file is seen now.
+    seen() {
+        return { layer: this, lights: this.lights, pass: this.pass, tone: this.tone, exposure: this.exposure, memo: this.memo };
+    }
 
     frame(now) {
         if (this.closed || this.device.gl.isContextLost())
             return;
-        const moving = this.keepPace(now);
-        this.painter.allowed = this.pixels;
+        const moving = this.keepPace(now), own = this.seen();
+        this.comparison.follow();
+        const { other } = this.comparison;
+        const looks = other ? [own, other] : [own];
         this.painter.complete = true;
         this.tiles.begin();
-        const camera = this.camera(), kinds = this.needsNormals ? ['light', 'normals', 'albedo'] : ['light'];
-        for (const kind of kinds)
-            this.stage.draw(this.target(kind), kind, camera);
-        this.findRange();
-        this.meter();
+        looks.forEach((look, i) => this.drawLook(look, i, looks.length > 1 ? this.target(`shown${i}`) : null));
+        this.meter(own);
         this.tiles.end();
-        this.present();
-        this.settle(moving);
+        if (other)
+            this.comparison.draw(this.target('shown0'), this.target('shown1'));
+        this.told.drawn();
+        this.settle(moving, looks);
     }
 
-    settle(moving) {
-        const drawn = [...this.tiles.tiles.values()].some((tile) => tile.lit);
-        if (drawn)
+    drawLook(look, index, target) {
+        const { layer } = look, kinds = needsNormals(look.pass) ? ['light', 'normals', 'albedo'] : ['light'];
+        layer.painter.allowed = this.pixels;
+        if (layer.tiles !== this.tiles)
+            layer.tiles.begin();
+        if (layer !== this)
+            layer.painter.complete = true;
+        for (const kind of kinds)
+            layer.stage.draw(this.target(`${kind}${index}`), kind, this.camera(layer));
+        this.findRange(look);
+        this.present(look, index, target);
+        if (layer.tiles !== this.tiles)
+            layer.tiles.end();
+    }
+
+    settle(moving, looks) {
+        const busy = looks.some(({ layer }) => layer.tiles.busy > 0), complete = looks.every(({ layer }) => layer.painter.complete);
+        this.drawn = this.drawn || [...this.tiles.tiles.values()].some((tile) => tile.lit.length);
+        if (this.drawn)
             this.isReady();
-        const busy = this.tiles.busy > 0;
-        if (!this.painter.complete && !busy)
+        if (!complete && !busy)
             this.invalidate();
         if (this.coarser && moving)
             setTimeout(() => this.invalidate(), 260);
-        if (this.painter.complete && !busy && !this.coarser)
+        if (complete && !busy && !this.coarser)
             this.waiting.splice(0).forEach((resolve) => resolve());
     }
 
-    lamps() {
-        return this.lights.filter((light) => light.kind === 'dir').slice(0, MOST_LAMPS);
-    }
-
-    lampSum() {
-        return [0, 1, 2].map((c) => this.lamps().reduce((sum, lamp) => sum + lamp.rgb[c], 0));
-    }
-
     // The whole picture, small, as floats of each kind; null where it is not there yet.
-    small(kinds) {
-        const { scene, painter } = this, last = scene.levels.length - 1, { width, height } = scene.levels[last];
+    small({ scene, painter }, kinds) {
+        const last = scene.levels.length - 1, { width, height } = scene.levels[last];
         const scale = Math.min(1, MEASURED / Math.max(width, height)), before = painter.complete;
         const target = this.device.target(Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale)));
         painter.complete = true;
@@ -289,37 +345,37 @@ export class Viewer {
     }
 
     // Raking light is dim: the first picture is as bright as it should be.
-    meter() {
-        const read = this.metering && this.small(['light']);
+    meter(look) {
+        const read = this.metering && this.small(look.layer, ['light']);
         if (!read)
             return;
         this.metering = false;
         this.exposure = Math.round(10 * Math.min(Math.max(meterExposure(read[0]), 0), 2)) / 10;
-        this.told.changed();
+        this.changed();
     }
 
-    findRange() {
-        if (this.range && this.ranged === this.pass)
+    findRange(look) {
+        const { pass, memo, layer, lights } = look, gain = pass === 'diffuse-gain';
+        if (memo.of === pass && memo.lights === lights)
             return;
-        this.range = [0, 1, 1, 1];
-        const gain = this.pass === 'diffuse-gain';
-        const read = ['specular', 'diffuse-gain', 'false-colour'].includes(this.pass) && this.small(gain ? ['light', 'albedo'] : ['light']);
+        memo.range = [0, 1, 1, 1];
+        const read = ['specular', 'diffuse-gain', 'false-colour'].includes(pass) && this.small(layer, gain ? ['light', 'albedo'] : ['light']);
         if (!read)
             return;
-        this.range = measureRange(this.pass, read[0], read[1], this.lampSum());
-        this.ranged = this.pass;
+        memo.range = measureRange(pass, read[0], read[1], sumOf(lampsOf(lights)));
+        memo.of = pass;
+        memo.lights = lights;
     }
 
-    present() {
-        const lamps = this.lamps(), program = this.device.program('present', presentShader);
-        const { gl } = this.device, of = (kind) => ({ texture: this.target(this.needsNormals ? kind : 'light').texture });
-        const at = this.isPanorama ? null : this.framing();
-        this.device.begin(null);
+    // Into a target, or onto the canvas.
+    present(look, index, target) {
+        const lamps = lampsOf(look.lights), program = this.device.program('present', presentShader), { gl } = this.device;
+        const of = (kind) => ({ texture: this.target(`${needsNormals(look.pass) ? kind : 'light'}${index}`).texture });
+        this.device.begin(target);
         program.set({
-            light: of('light'), normals: of('normals'), albedos: of('albedo'), pass: { int: PASSES.indexOf(this.pass) },
-            tone: { int: TONES_BY_NAME.indexOf(this.tone) }, exposure: 2 ** this.exposure, ground: GROUND,
-            scale: this.range, count: { int: lamps.length }, lampSum: this.lampSum(),
-            radius: Math.max(4 * (at ? at.scale : 1), 1),
+            light: of('light'), normals: of('normals'), albedos: of('albedo'), pass: { int: PASSES.indexOf(look.pass) },
+            tone: { int: TONES_BY_NAME.indexOf(look.tone) }, exposure: 2 ** look.exposure, ground: GROUND,
+            scale: look.memo.range, count: { int: lamps.length }, lampSum: sumOf(lamps), radius: Math.max(4 * (this.scale() || 1), 1),
         });
         if (lamps.length) {
             gl.uniform3fv(program.at('lamp'), lamps.flatMap((lamp) => lamp.direction));
@@ -338,6 +394,7 @@ export class Viewer {
 
     close() {
         this.closed = true;
+        this.comparison.close();
         if (this.stage) {
             this.stage.close();
             this.tiles.close();

@@ -313,7 +313,8 @@ relume_status environment_on_lights(struct relume_light *out, int *count, const 
     struct relume_coder_params p = {
         .hemispherical = info->hemispherical,
         .pole_y = info->pole_y,
-        .interpolant = info->interpolant ? info->interpolant : relume_interpolant_find("chord")};
+        .interpolant = info->interpolant ? info->interpolant : relume_interpolant_find("chord"),
+        .decode = true};
     const size_t n = (size_t)info->lights;
     relume_coder *table = NULL;
     relume_weight_grid *grid = NULL;

@@ -11,6 +11,7 @@
 //   mkimage read IMAGE X Y                 the linear value of a pixel
 //   mkimage size IMAGE                     its width and height
 //   mkimage maxdiff A B                    the largest difference, linear
+//   mkimage codediff A B                   the mean difference of 8-bit sRGB codes, without alpha
 //   mkimage sum OUT A B                    A + B, as float EXR
 #include "png_crc.h"
 
@@ -374,6 +375,27 @@ static int max_difference(const char *a, const char *b)
     return 0;
 }
 
+static double code_of(float linear)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    return rint(255.0 * (double)relume_transfer_encode(srgb, fminf(fmaxf(linear, 0.0f), 1.0f)));
+}
+
+static void code_difference(const char *a, const char *b)
+{
+    struct relume_image x = load(a), y = load(b);
+    const size_t pixels = (size_t)x.width * (size_t)x.height;
+    const bool alike =
+        x.width == y.width && x.height == y.height && x.channels >= 3 && y.channels >= 3;
+    double all = 0.0;
+    for (size_t i = 0; alike && i < 3 * pixels; i++)
+        all += fabs(code_of(x.data[i / 3 * (size_t)x.channels + i % 3]) -
+                    code_of(y.data[i / 3 * (size_t)y.channels + i % 3]));
+    printf("%.4f\n", alike ? all / (double)(3 * pixels) : 255.0);
+    relume_image_destroy(&x);
+    relume_image_destroy(&y);
+}
+
 static void sum(const char *to, const char *a, const char *b)
 {
     struct relume_image x = load(a), y = load(b);
@@ -432,6 +454,8 @@ int main(int argc, char **argv)
         print_size(argv[2]);
     else if (!strcmp(what, "maxdiff") && argc == 4)
         return max_difference(argv[2], argv[3]);
+    else if (!strcmp(what, "codediff") && argc == 4)
+        code_difference(argv[2], argv[3]);
     else if (!strcmp(what, "sum") && argc == 5)
         sum(argv[2], argv[3], argv[4]);
     else

@@ -5,7 +5,7 @@
 //   snap FILE.png     the picture as saved     shot FILE.png      the window
 //   eval SCRIPT       prints what it gives     key NAME...        press keys
 //   drag X Y X Y      the mouse                drop FILE          onto the picture
-//   set FLAG          before open: no-webgl
+//   write FILE SCRIPT the text that it givesbefore SCRIPT      runs first in pages from now on
 //
 // It speaks the DevTools protocol over a pipe; no package is needed. What a page throws is printed
 // behind "thrown".
@@ -83,6 +83,11 @@ const orders = {
     async eval(script) {
         console.log(JSON.stringify(await evaluate(script)) ?? 'undefined');
     },
+    async write(line) {
+        const cut = line.indexOf(' ');
+        writeFileSync(line.slice(0, cut), await evaluate(line.slice(cut + 1)));
+    },
+    before: (source) => send('Page.addScriptToEvaluateOnNewDocument', { source }),
     async key(...names) {
         for (const name of names)
             for (const type of ['keyDown', 'keyUp'])
@@ -120,7 +125,7 @@ async function run() {
     });
     for (const line of readFileSync(0, 'utf8').split('\n').filter((l) => l.trim() && !l.startsWith('#'))) {
         const cut = line.indexOf(' '), name = cut < 0 ? line : line.slice(0, cut), given = cut < 0 ? '' : line.slice(cut + 1);
-        const whole = ['eval', 'state', 'open', 'visit'].includes(name);
+        const whole = ['eval', 'state', 'open', 'visit', 'write', 'before'].includes(name);
         await orders[name](...(whole ? [given] : given.split(' ')));
     }
 }

@@ -1,0 +1,152 @@
+// notepanel.js - the list of notes beside the picture, and how they are made
+import { make } from './controls.js';
+import { measureNote, sayMeasures } from './notes.js';
+
+const SHOWN = 200;  // of the list at once
+const FEWEST = { point: 1, line: 2, polygon: 3 };
+const KINDS = { point: 'Point', line: 'Line', polygon: 'Area', view: 'View' };
+const HOW = {
+    point: 'Click on a place of the picture.',
+    line: 'Click from place to place; Enter ends the line. Of three places the middle one shows its angle.',
+    polygon: 'Click around an area; Enter closes it.',
+};
+
+export class NotePanel {
+    // `to`: draw(), say(text), go(state), focus() on the picture.
+    constructor(viewer, notes, overlay, to) {
+        Object.assign(this, { viewer, notes, overlay, to });
+        overlay.notes = notes;
+        this.list = make('ol', {});
+        this.filter = make('input', { type: 'search', placeholder: 'Search notes', 'aria-label': 'Search notes', oninput: () => this.show() });
+        this.text = make('textarea', { rows: 3, 'aria-label': 'Text of the note', oninput: () => this.write() });
+        this.measures = make('p', { class: 'measures' });
+        this.length = make('input', { type: 'number', min: 0, step: 'any', 'aria-label': 'Its true length in millimetres' });
+        this.ruler = make('div', { class: 'row' }, this.length, make('button', { type: 'button', class: 'word', onclick: () => this.setScale() }, 'mm: set the scale'));
+        this.chosen = make('div', { class: 'chosen-note', hidden: true }, this.text, this.measures, this.ruler,
+            make('div', { class: 'row' },
+                make('button', { type: 'button', class: 'word', onclick: () => this.visit() }, 'Show its light'),
+                make('button', { type: 'button', class: 'word', onclick: () => this.remove() }, 'Remove')));
+        this.shown = make('input', { type: 'checkbox', checked: true, onchange: () => { overlay.shown = this.shown.checked; to.draw(); } });
+        this.file = make('input', { type: 'file', accept: '.json', hidden: true, onchange: () => this.load(this.file.files[0]) });
+        const tool = (kind) => make('button', { type: 'button', class: 'word', onclick: () => this.begin(kind) }, KINDS[kind]);
+        this.node = make('aside', { class: 'notes', 'aria-label': 'Notes' },
+            make('div', { class: 'row' }, tool('point'), tool('line'), tool('polygon'),
+                 make('button', { type: 'button', class: 'word', onclick: () => this.finish('view', []) }, 'View')),
+            make('label', {}, this.shown, make('span', {}, 'on the picture')),
+            this.filter, this.chosen, this.list,
+            make('div', { class: 'row' },
+                make('button', { type: 'button', class: 'word', onclick: () => this.save() }, 'Save as a file'),
+                make('button', { type: 'button', class: 'word', onclick: () => this.file.click() }, 'Open'), this.file));
+        this.show();
+    }
+
+    show() {
+        const wanted = this.filter.value.toLowerCase(), { mm } = this.notes;
+        const found = this.notes.all.filter((note) => note.text.toLowerCase().includes(wanted));
+        const line = (note) => make('li', {}, make('button', { type: 'button', class: note === this.overlay.chosen ? 'note chosen' : 'note',
+                                                              onclick: () => { this.choose(note); this.visit(); } },
+            make('span', {}, note.text.slice(0, 200) || KINDS[note.kind]), make('small', {}, sayMeasures(note, mm))));
+        this.list.replaceChildren(...found.slice(0, SHOWN).map(line));
+        if (found.length > SHOWN)
+            this.list.append(make('li', { class: 'more' }, `and ${found.length - SHOWN} more`));
+        if (this.notes.unknown)
+            this.list.append(make('li', { class: 'more' }, `${this.notes.unknown} of a kind that this page cannot show`));
+    }
+
+    choose(note) {
+        this.overlay.chosen = note;
+        this.chosen.hidden = !note;
+        if (note) {
+            this.text.value = note.text;
+            this.measures.textContent = sayMeasures(note, this.notes.mm);
+            this.ruler.hidden = note.kind !== 'line';
+        }
+        this.show();
+        this.to.draw();
+    }
+
+    // The light, eye and framing that a note was made in.
+    visit() {
+        const note = this.overlay.chosen;
+        if (note && note.state)
+            this.to.go(note.state);
+    }
+
+    write() {
+        this.notes.rewrite(this.overlay.chosen, this.text.value);
+        this.show();
+        this.to.draw();
+    }
+
+    remove() {
+        const note = this.overlay.chosen;
+        this.notes.remove(note);
+        this.choose(null);
+        this.to.say('The note is removed.');
+    }
+
+    setScale() {
+        const { length } = measureNote(this.overlay.chosen), mm = +this.length.value / length;
+        if (!(mm > 0 && Number.isFinite(mm)))
+            return this.to.say('Give the true length of this line in millimetres.');
+        this.notes.setScale(mm);
+        this.choose(this.overlay.chosen);
+        return this.to.say(`A pixel is ${+mm.toPrecision(4)} mm wide.`);
+    }
+
+    // ------------------------------------------------------------ drawing
+
+    begin(kind) {
+        const places = [];
+        this.overlay.drawing = { kind, places, length: () => measureNote({ kind, places }).length };
+        this.to.focus();
+        this.to.say(HOW[kind]);
+    }
+
+    get isDrawing() { return !!this.overlay.drawing; }
+
+    click(place) {
+        const { drawing } = this.overlay;
+        drawing.places.push(place);
+        if (drawing.kind === 'point')
+            this.end();
+        this.to.draw();
+    }
+
+    end() {
+        const { drawing } = this.overlay;
+        if (drawing.places.length < FEWEST[drawing.kind])
+            return this.to.say(`${drawing.places.length} of ${FEWEST[drawing.kind]} places; click on the picture.`);
+        return this.finish(drawing.kind, drawing.places);
+    }
+
+    cancel() {
+        this.overlay.drawing = null;
+        this.to.draw();
+    }
+
+    finish(kind, places) {
+        this.overlay.drawing = null;
+        this.choose(this.notes.add(kind, places, '', this.viewer.getState()));
+        this.text.focus();
+    }
+
+    // ------------------------------------------------------------ files
+
+    save() {
+        const address = URL.createObjectURL(new Blob([this.notes.toText()], { type: 'application/json' }));
+        make('a', { href: address, download: this.notes.file.name.replace(/(\.exr)?$/, '.notes.json') }).click();
+        setTimeout(() => URL.revokeObjectURL(address), 10000);
+        this.notes.changed = false;
+        this.to.say('The notes are saved as a file; lay it beside the picture\'s file.');
+    }
+
+    async load(file) {
+        try {
+            this.notes.read(JSON.parse(await file.text()));
+            this.choose(null);
+        } catch (error) {
+            this.to.say(error instanceof SyntaxError ? `${file.name} is damaged.` : `${error.message}.`);
+        }
+    }
+}

@@ -23,12 +23,12 @@ acquire:base math image capture multiview stereo:base image directions capture b
 appearance:base math image capture:base image capture photometric light relight pack maps
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder team:base coder codebook team
-team:base:base io team
+team:base math:base io team
 selection:base math image coder compare:base image capture coder codebook heldout team tone
 lossy:base math:base image coder
 shadow:base math image:base image capture coder light maps shadow
 encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team shadow
-pack:base geometry image coder lossy:base image capture codebook coder pack shadow
+pack:base math geometry image coder lossy:base image capture codebook coder pack shadow
 foreign:base math image:base image directions coder relight
 block:base:base
 exchange:base math image foreign block:base io image photograph directions codebook coder capture pack relight exchange

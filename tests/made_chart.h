@@ -33,7 +33,7 @@ static inline double made_chart_random(unsigned *state)
 static inline void made_chart_ground(double rgb[3], const struct made_chart *t, double x, double y)
 {
     const int column = (int)floor(x / 61.0), row = (int)floor(y / 47.0);
-    unsigned s = t->seed + 7919u * (unsigned)column + 104729u * (unsigned)row;
+    unsigned s = 7919u * (unsigned)column + 104729u * (unsigned)row;
     const double grain = 0.04 * sin(x * 0.9) * sin(y * 1.1);
     for (int c = 0; c < 3; c++)
         rgb[c] = 0.35 + 0.1 * sin(0.003 * x + c) + grain;

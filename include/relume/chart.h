@@ -21,6 +21,7 @@ struct relume_chart_patch {
     const char *name;        // constant
     double place[2];         // its middle, pixels from the upper left
     float found[3];          // mean as photographed, linear light
+    float is[3];             // what it should be, linear sRGB
     double noise;            // standard deviation of its luminance, relative to the mean
     bool used;               // false: overexposed or black, so nothing is learned from it
     double delta_e_before;   // CIEDE2000 by exposure alone,

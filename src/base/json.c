@@ -160,6 +160,12 @@ static bool is_utf8(const char *text)
 }
 
 // JSON is UTF-8; a name that is not, as disks allow, is written as it is shown.
+char *jvalue_print(const jvalue *value)
+{
+    char *made = json_dumps(value, JSON_COMPACT | JSON_ENSURE_ASCII);
+    return mem_take(made);
+}
+
 char *jvalue_quote(const char *text)
 {
     char *copy = is_utf8(text) ? NULL : mem_text(text);

@@ -263,6 +263,8 @@ bool chart_fit(struct relume_chart *t, const double (*reference)[3], bool carefu
         f.light[i] = 1.0;
         t->used += t->patch[i].used;
         chart_lab(f.lab[i], reference[i]);
+        for (int c = 0; c < 3; c++)
+            t->patch[i].is[c] = (float)reference[i][c];
     }
     bool good = t->used >= LEAST_USED && fit_matrix(&f);
     for (int k = 0; good && k < TURNS; k++) {

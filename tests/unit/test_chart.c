@@ -84,7 +84,7 @@ static void test_exact(void **state)
 
 static void test_anywhere(void **state)
 {
-    static const double turns[] = {0, 13, 90, 147, 180, 270, 301};
+    static const double turns[] = {0, 13, 147, 270};
     (void)state;
     for (size_t i = 0; i < sizeof turns / sizeof *turns; i++) {
         struct relume_chart t;

@@ -15,11 +15,12 @@ geometry:base math:base capture
 image:base math kernel:base io image photograph response
 compare:base math image:base image jnd
 study:base math:base image study
+chart:base math image compare:base image photograph chart
 capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 stereo:base math:base
-acquire:base math image capture multiview stereo:base image directions capture ball photometric acquire photograph align
+acquire:base math image capture multiview stereo:base image directions capture ball photometric acquire photograph align chart
 appearance:base math image capture:base image capture photometric light relight pack maps
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder team:base coder codebook team

@@ -54,6 +54,7 @@
 #include <relume/surface.h>
 #include <relume/synthesis.h>
 #include <relume/tableau.h>
+#include <relume/chart.h>
 #include <relume/team.h>
 #include <relume/tone.h>
 #include <relume/transport.h>

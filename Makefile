@@ -214,7 +214,7 @@ $B/librelume.a: $(LIB_O)
 	$(Q)$(AR) rcs $@ $^
 # Where a program or library looks for the module: first where the build left it. Sanitizers open
 # libraries in its name, which only the older kind of run path allows.
-run_path = $(if $(filter no,$(RUN_PATH)),,'-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer msan,$(config)),$(comma)--disable-new-dtags)
+run_path = $(if $(filter no,$(RUN_PATH)),,'-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer msan,$(config)),$(comma)--disable-new-dtags))
 comma := ,
 # Addresses of library functions are looked up at start and cannot be written over afterwards.
 HARD_LD := -Wl,-z,relro,-z,now

@@ -21,15 +21,18 @@ extern const struct command command_synth, command_lights, command_hdr, command_
     command_panorama, command_encode, command_info, command_relight, command_query, command_eval,
     command_compare, command_study, command_sweep, command_import, command_export, command_maps,
     command_capture, command_btf, command_glare, command_tonemap, command_check, command_join,
-    command_bench, command_mesh, command_bake;
+    command_bench, command_mesh, command_bake, command_change;
 
 const struct command *const commands[] = {
-    &command_synth,   &command_capture, &command_hdr,    &command_lightfield, &command_panorama,
-    &command_lights,  &command_encode,  &command_join,   &command_info,       &command_check,
-    &command_relight, &command_query,   &command_eval,   &command_compare,    &command_study,
-    &command_sweep,   &command_import,  &command_export, &command_maps,       &command_btf,
-    &command_bake,    &command_mesh,    &command_glare,  &command_tonemap,    &command_bench,
-    NULL,
+    &command_synth,      &command_capture,  &command_hdr,
+    &command_lightfield, &command_panorama, &command_lights,
+    &command_encode,     &command_join,     &command_info,
+    &command_check,      &command_relight,  &command_query,
+    &command_eval,       &command_compare,  &command_change,
+    &command_study,      &command_sweep,    &command_import,
+    &command_export,     &command_maps,     &command_btf,
+    &command_bake,       &command_mesh,     &command_glare,
+    &command_tonemap,    &command_bench,    NULL,
 };
 
 #define OPTIONS struct args

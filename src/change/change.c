@@ -14,6 +14,7 @@
 #include <string.h>
 
 static const double bright_part = 0.98, bright = 0.8;  // of the pixels are darker than this
+static const double other_lamps = 15.0;                // degrees
 enum { LEAST_SIDE = 32, LEAST_KNOWN = 400 };
 
 void relume_change_destroy(struct relume_change *c)
@@ -28,7 +29,7 @@ void relume_change_destroy(struct relume_change *c)
 }
 
 // Colours so that bright parts are at 0.8 of white, however the capture was exposed.
-static relume_status expose(struct surface *s)
+static relume_status expose(struct surface *s, double *exposure)
 {
     const size_t n = (size_t)s->width * (size_t)s->height;
     double *some = mem_array(n, sizeof *some);
@@ -45,11 +46,27 @@ static relume_status expose(struct surface *s)
         s->colour.data[i] *= gain;
         s->colour_noise.data[i] *= gain;
     }
+    *exposure = (double)gain * (double)gain * (double)gain;
     mem_free(some);
     return RELUME_OK;
 }
 
-static relume_status fit_capture(struct surface *out, const relume_capture *capture, int view,
+// A capture as it is compared.
+struct side {
+    struct surface surface;
+    double exposure;   // that its colours were multiplied by
+    double elevation;  // mean of the lights, degrees
+};
+
+static double elevation_of(const struct relume_manifest *m)
+{
+    double sum = 0.0;
+    for (int i = 0; i < m->lights; i++)
+        sum += asin(fmin(fmax(m->directions[i].z, -1.0), 1.0)) * 57.29577951308232;
+    return sum / m->lights;
+}
+
+static relume_status fit_capture(struct side *out, const relume_capture *capture, int view,
                                  const char *name, int threads, const struct relume_log *log)
 {
     const enum relume_projection projection = relume_capture_manifest(capture)->geometry.projection;
@@ -63,13 +80,14 @@ static relume_status fit_capture(struct surface *out, const relume_capture *capt
                         "the %s capture has %d x %d pixels; expected %d x %d or more", name, width,
                         height, LEAST_SIDE, LEAST_SIDE);
     struct log_place place;
-    relume_status status =
-        surface_fit(out, capture, view, threads, log_at(&place, log, "the %s capture: ", name));
-    return status ? status : expose(out);
+    relume_status status = surface_fit(&out->surface, capture, view, threads,
+                                       log_at(&place, log, "the %s capture: ", name));
+    out->elevation = elevation_of(relume_capture_manifest(capture));
+    return status ? status : expose(&out->surface, &out->exposure);
 }
 
-static relume_status open_surface(struct surface *out, const struct relume_change_input *in,
-                                  const char *name, const struct relume_change_params *p)
+static relume_status open_side(struct side *out, const struct relume_change_input *in,
+                               const char *name, const struct relume_change_params *p)
 {
     struct relit relit;
     if (!in->capture == !in->pack)
@@ -169,7 +187,8 @@ relume_status relume_change_find(struct relume_change *out,
                                  const struct relume_change_params *params)
 {
     struct relume_change_params p = PARAMS_WORK(relume_change_params, params);
-    struct surface a = {0}, b = {0}, laid = {0};
+    struct side a = {0}, b = {0};
+    struct surface laid = {0};
     p.threads = thread_count(p.threads);
     p.least_deg = p.least_deg != 0.0 ? p.least_deg : 2.0;
     p.least_de = p.least_de != 0.0 ? p.least_de : 2.0;
@@ -179,22 +198,30 @@ relume_status relume_change_find(struct relume_change *out,
     *out = (struct relume_change){0};
     relume_status status = check(&p);
     if (!status)
-        status = open_surface(&a, before, "first", &p);
+        status = open_side(&a, before, "first", &p);
     if (!status)
-        status = open_surface(&b, after, "second", &p);
+        status = open_side(&b, after, "second", &p);
     if (!status)
-        status = lay(&laid, out, &a, &b, &p);
-    surface_free(&b);
+        status = lay(&laid, out, &a.surface, &b.surface, &p);
+    surface_free(&b.surface);
     if (!status)
-        status = create(out, &a);
+        status = create(out, &a.surface);
     if (!status) {
-        fill(out, &a, &laid);
-        status = judge(out, &a, &laid, &p);
+        for (int c = 0; c < 3; c++)
+            out->gain[c] *= b.exposure / a.exposure;
+        fill(out, &a.surface, &laid);
+        status = judge(out, &a.surface, &laid, &p);
     }
     if (!status)
         status = places_find(out, p.least_area);
-    surface_free(&a);
+    surface_free(&a.surface);
     surface_free(&laid);
+    if (!status && fabs(a.elevation - b.elevation) > other_lamps)
+        log_line(
+            p.log, RELUME_WARNING,
+            "the lamps of the two captures stand at different heights (%.0f and %.0f degrees on "
+            "average): in deep grooves shadows can look like change",
+            a.elevation, b.elevation);
     if (status)
         relume_change_destroy(out);
     return status;

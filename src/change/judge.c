@@ -17,13 +17,17 @@
 #include <math.h>
 #include <string.h>
 
-static const double sharp = 1.0;          // pixels: differences are means of this deviation
-static const double around = 3.0;         // ... and the noise of them
-static const double floor_normal = 4e-3;  // a quarter of a degree
-static const double floor_colour = 2e-3;  // cube root
-static const double least_scale = 0.25;   // of the statistic, of what is expected
-static const double steep_part = 0.9;  // of the pixels are less steep than those that tell shifts
-static const double most_shift = 1.0, least_shift = 0.02;           // pixels
+static const double sharp = 1.0;       // pixels: differences are means of this deviation
+static const double around = 3.0;      // ... and the noise of them
+static const double wide = 16.0;       // ... that of neighbourhoods, at most,
+static const double wide_part = 20.0;  // or this part of the picture's side
+static const double smooth_part = 0.75, smooth_chi = 1.323;  // quantile of smooth differences
+static const double freedom = 20.0;                          // degrees of freedom of a variance
+static const double floor_normal = 4e-3;                     // a quarter of a degree
+static const double floor_colour = 2e-3;                     // cube root
+static const double least_scale = 0.25;  // of the statistic, of what is expected
+static const double steep_part = 0.9;    // of the pixels are less steep than those that tell shifts
+static const double most_shift = 1.0, least_shift = 0.05;           // pixels
 static const double median_chi[4] = {0.0, 0.4549, 1.3863, 2.3660};  // of 1, 2, 3 components
 
 struct judged {
@@ -66,18 +70,58 @@ static relume_status copy_known(struct relume_image *out, const struct judged *j
     return status ? status : smooth_known(out, &j->known, sharp, j->threads);
 }
 
-// Adds the mean square of smoothed noise.
+static double wide_of(const struct judged *j)
+{
+    return fmin(wide, fmax(j->a->width, j->a->height) / wide_part);
+}
+
+// Adds the mean square of smoothed noise, of what is close or of all around.
 static relume_status add_noise(struct judged *j, const struct relume_image *noise)
 {
-    struct relume_image own;
+    struct relume_image own = {0}, far = {0};
     relume_status status = copy_known(&own, j, noise);
     for (size_t i = 0; !status && i < 3 * j->n; i++)
         own.data[i] *= own.data[i];
     if (!status)
         status = smooth_known(&own, &j->known, around, j->threads);
+    if (!status)
+        status = relume_image_create(&far, own.width, own.height, 3);
+    if (!status) {
+        memcpy(far.data, own.data, 3 * j->n * sizeof *own.data);
+        status = smooth_known(&far, &j->known, wide_of(j), j->threads);
+    }
     for (size_t i = 0; !status && i < 3 * j->n; i++)
-        j->variance.data[i] += own.data[i];
+        j->variance.data[i] += fmaxf(own.data[i], far.data[i]);
     relume_image_destroy(&own);
+    relume_image_destroy(&far);
+    return status;
+}
+
+// Adds, everywhere, the usual square of differences that are smooth.
+static relume_status add_smooth(struct judged *j)
+{
+    struct relume_image far;
+    double *some = mem_array(j->n, sizeof *some);
+    relume_status status = relume_image_create(&far, j->a->width, j->a->height, 3);
+    if (!status && !some)
+        status = RELUME_ENOMEM;
+    if (!status) {
+        memcpy(far.data, j->difference.data, 3 * j->n * sizeof *far.data);
+        status = smooth_known(&far, &j->known, wide_of(j), j->threads);
+    }
+    for (size_t c = 0; !status && c < 3; c++) {
+        size_t count = 0;
+        for (size_t i = 0; i < j->n; i++)
+            if (j->known.data[i] > 0.5f)
+                some[count++] = (double)far.data[3 * i + c] * (double)far.data[3 * i + c];
+        sort_doubles(some, count);
+        const double usual =
+            count ? some[(size_t)(smooth_part * (double)(count - 1))] / smooth_chi : 0.0;
+        for (size_t i = 0; i < j->n; i++)
+            j->variance.data[3 * i + c] += (float)usual;
+    }
+    relume_image_destroy(&far);
+    mem_free(some);
     return status;
 }
 
@@ -86,31 +130,48 @@ static relume_status variance_of(struct judged *j, const struct relume_image *a,
 {
     relume_status status = relume_image_create(&j->variance, a->width, a->height, 3);
     if (!status)
+        status = add_smooth(j);
+    if (!status)
         status = add_noise(j, a);
     if (!status)
         status = add_noise(j, b);
     return status;
 }
 
-// Squares of the changes from pixel to pixel, of the first capture.
-static relume_status slope_of(struct judged *j, const struct relume_image *a)
+// Squares of the changes from pixel to pixel.
+static relume_status slope_in(struct relume_image *out, const struct judged *j,
+                              const struct relume_image *of)
 {
     struct relume_image soft;
-    relume_status status = smooth_copy(&soft, a, sharp, j->threads);
+    relume_status status = copy_known(&soft, j, of);
     if (!status)
-        status = relume_image_create(&j->slope, a->width, a->height, 3);
-    const size_t width = (size_t)a->width;
+        status = relume_image_create(out, of->width, of->height, 3);
+    const size_t width = (size_t)of->width;
     for (size_t i = 0; !status && i < 3 * j->n; i++) {
         const size_t at = i / 3, c = i % 3, x = at % width, y = at / width;
         const size_t left = at - (x > 0), right = at + (x + 1 < width),
                      above = at - (y > 0 ? width : 0),
-                     below = at + (y + 1 < (size_t)a->height ? width : 0);
+                     below = at + (y + 1 < (size_t)of->height ? width : 0);
         const float across = 0.5f * (soft.data[3 * right + c] - soft.data[3 * left + c]),
                     down = 0.5f * (soft.data[3 * below + c] - soft.data[3 * above + c]);
-        j->slope.data[i] = across * across + down * down;
+        out->data[i] = across * across + down * down;
     }
     relume_image_destroy(&soft);
-    return status ? status : smooth_known(&j->slope, &j->known, 1.5 * sharp, j->threads);
+    return status ? status : smooth_known(out, &j->known, 1.5 * sharp, j->threads);
+}
+
+// The lesser of both captures: a new scratch does not excuse itself by being steep.
+static relume_status slope_of(struct judged *j, const struct relume_image *a,
+                              const struct relume_image *b)
+{
+    struct relume_image other = {0};
+    relume_status status = slope_in(&j->slope, j, a);
+    if (!status)
+        status = slope_in(&other, j, b);
+    for (size_t i = 0; !status && i < 3 * j->n; i++)
+        j->slope.data[i] = fminf(j->slope.data[i], other.data[i]);
+    relume_image_destroy(&other);
+    return status;
 }
 
 static double sum3(const float *v)
@@ -157,20 +218,14 @@ static relume_status shift_of(double *shift, const struct judged *j)
 
 // ---------------------------------------------------------------- probabilities
 
-// -log10 of the probability that chi squared of 2 or 3 components is at least x.
-static double improbable(double x, int components)
+// -log10 of the probability that F is at least the mean of the components' squares: that of two of
+// them, whose tail is a power; of three it is less.
+static double improbable(double sum, int components)
 {
-    const double tail2 = -0.5 * x;  // its logarithm
-    double log_p = tail2;
-    if (components == 3) {
-        const double root = sqrt(0.5 * x);
-        log_p = x < 200.0 ? log(erfc(root) + sqrt(2.0 * x / 3.141592653589793) * exp(tail2))
-                          : tail2 + 0.5 * log(2.0 * x / 3.141592653589793);
-    }
-    return fmin(fmax(-log_p / 2.302585092994046, 0.0), 300.0);
+    return fmin(0.5 * freedom * log10(1.0 + 2.0 * sum / components / freedom), 300.0);
 }
 
-// Chi squared of every known pixel, its scale set by the median.
+// The statistic of every known pixel, its scale set by the median.
 static relume_status statistics(struct judged *j, const double floor, double shift, int components)
 {
     double *some = mem_array(j->n, sizeof *some);
@@ -267,7 +322,7 @@ static relume_status judge_shape(struct relume_change *out, struct judged *j,
     if (!status)
         status = variance_of(j, &j->a->normal_noise, &j->b->normal_noise);
     if (!status)
-        status = slope_of(j, &j->a->normal);
+        status = slope_of(j, &j->a->normal, &j->b->normal);
     if (!status)
         status = shift_of(&out->misplaced, j);
     for (size_t i = 0; !status && i < j->n; i++)  // a chord between unit vectors
@@ -292,8 +347,8 @@ static void find_delta_e(struct relume_change *out, const struct relume_image *a
     const struct ciede_tables *tables = ciede_tables();
     for (size_t first = 0; first < n; first += CIEDE_BLOCK) {
         const size_t count = n - first < CIEDE_BLOCK ? n - first : CIEDE_BLOCK;
-        float rgb[2][3 * CIEDE_BLOCK];
-        struct lab_block lab[2];
+        float rgb[2][3 * CIEDE_BLOCK], delta[CIEDE_BLOCK];
+        struct lab_block lab[2] = {0};
         const struct relume_image *of[] = {a, b};
         for (int k = 0; k < 2; k++) {
             for (size_t i = 0; i < count; i++) {
@@ -303,7 +358,8 @@ static void find_delta_e(struct relume_change *out, const struct relume_image *a
             }
             lab_from_linear(tables, &lab[k], rgb[k], (int)count);
         }
-        ciede2000_block(tables, &lab[0], &lab[1], out->delta_e.data + first);
+        ciede2000_block(tables, &lab[0], &lab[1], delta);
+        memcpy(out->delta_e.data + first, delta, count * sizeof *delta);
     }
 }
 
@@ -331,7 +387,7 @@ static relume_status judge_colour(struct relume_change *out, struct judged *j,
     if (!status)
         status = variance_of(j, &j->a->colour_noise, &j->b->colour_noise);
     if (!status)
-        status = slope_of(j, &j->a->colour);
+        status = slope_of(j, &j->a->colour, &j->b->colour);
     if (!status)
         status = shift_of(&shift, j);
     if (!status) {

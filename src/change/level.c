@@ -3,11 +3,12 @@
 // Lights that are not where they are thought to be turn and stretch all normals by one linear map
 // (the ambiguity of photometric stereo: Belhumeur, Kriegman, Yuille 1999), and lamps that stand
 // near bend them smoothly; exposures and lamps give colours a gain that changes smoothly. Both are
-// fitted by least squares with Cauchy weights.
+// fitted by least squares with Cauchy weights, in which quiet pixels count more than noisy ones.
 #include "change/level.h"
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/lsq.h"
 #include "math/sort.h"
 #include "math/vec.h"
@@ -20,12 +21,15 @@ static const double tuning = 2.385;      // as math/lambert.c
 static const double darkest = 0.15;      // cube root: darker colours tell no gain
 static const double proximal = 0.01;     // of a sample: how little the map leaves its last estimate
 static const double least_scale = 1e-4;  // residuals are never thought to be smaller
+static const double quiet = 0.3;         // of the median noise: pixels are never thought quieter
+enum { NEAR = 2 };                       // pixels, around which noise is taken together
 
 struct draw {
     const struct surface *a, *b;
     size_t count, *at;
     double *miss;  // [count], and a copy that is sorted
     double *sorted;
+    double *worth[2];  // [count], of normals and of colours: 1 / variance, 1 at the median
 };
 
 static void terms_of(double t[LEVEL_TERMS], const struct surface *s, size_t at)
@@ -44,6 +48,34 @@ static double sum_of(const double *a, const double *b, int n)
     return sum;
 }
 
+static double square3(const float *v)
+{
+    return (double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2];
+}
+
+static double noise_around(const struct relume_image *noise, size_t at)
+{
+    const int x = (int)(at % (size_t)noise->width), y = (int)(at / (size_t)noise->width);
+    double sum = 0.0;
+    for (int j = y - NEAR; j <= y + NEAR; j++)
+        for (int i = x - NEAR; i <= x + NEAR; i++)
+            sum += square3(noise->data +
+                           3 * ((size_t)index_clamped(j, noise->height) * (size_t)noise->width +
+                                (size_t)index_clamped(i, noise->width)));
+    return sum;
+}
+
+static void find_worth(double *worth, const struct draw *d, const struct relume_image *a,
+                       const struct relume_image *b)
+{
+    for (size_t i = 0; i < d->count; i++)
+        d->sorted[i] = worth[i] = noise_around(a, d->at[i]) + noise_around(b, d->at[i]);
+    sort_doubles(d->sorted, d->count);
+    const double median = d->count ? fmax(d->sorted[d->count / 2], 1e-12) : 1.0;
+    for (size_t i = 0; i < d->count; i++)
+        worth[i] = 1.0 / (quiet * quiet + worth[i] / median);
+}
+
 static relume_status take(struct draw *d, const struct surface *a, const struct surface *b)
 {
     const size_t n = (size_t)a->width * (size_t)a->height;
@@ -55,11 +87,15 @@ static relume_status take(struct draw *d, const struct surface *a, const struct 
     d->at = mem_array(known / step + 1, sizeof *d->at);
     d->miss = mem_array(known / step + 1, sizeof *d->miss);
     d->sorted = mem_array(known / step + 1, sizeof *d->sorted);
-    if (!d->at || !d->miss || !d->sorted)
+    for (int k = 0; k < 2; k++)
+        d->worth[k] = mem_array(known / step + 1, sizeof *d->worth[k]);
+    if (!d->at || !d->miss || !d->sorted || !d->worth[0] || !d->worth[1])
         return RELUME_ENOMEM;
     for (size_t i = 0, k = 0; i < n; i++)
         if (surface_knows(a, i) && surface_knows(b, i) && k++ % step == 0)
             d->at[d->count++] = i;
+    find_worth(d->worth[0], d, &a->normal_noise, &b->normal_noise);
+    find_worth(d->worth[1], d, &a->colour_noise, &b->colour_noise);
     return RELUME_OK;
 }
 
@@ -68,13 +104,15 @@ static void give_back(struct draw *d)
     mem_free(d->at);
     mem_free(d->miss);
     mem_free(d->sorted);
+    mem_free(d->worth[0]);
+    mem_free(d->worth[1]);
 }
 
-// The median of |miss|, as a deviation.
-static double scale_of(struct draw *d)
+// The median of |miss|, as a deviation of a pixel of worth 1.
+static double scale_of(struct draw *d, int which)
 {
     for (size_t i = 0; i < d->count; i++)
-        d->sorted[i] = fabs(d->miss[i]);
+        d->sorted[i] = fabs(d->miss[i]) * sqrt(d->worth[which][i]);
     sort_doubles(d->sorted, d->count);
     return fmax(1.4826 * d->sorted[d->count / 2], least_scale);
 }
@@ -116,7 +154,7 @@ static bool solve_row(struct level *l, const struct draw *d, int row, int terms,
     double *const now[] = {l->turn[row], row < 2 ? l->bend[row] : NULL};
     for (size_t i = 0; i < d->count; i++) {
         const float *a = d->a->normal.data + 3 * d->at[i], *b = d->b->normal.data + 3 * d->at[i];
-        const double w = weight_of(d->miss[i], scale);
+        const double w = d->worth[0][i] * weight_of(d->miss[i], scale / sqrt(d->worth[0][i]));
         double v[UNKNOWNS] = {(double)b[0], (double)b[1], (double)b[2]};
         terms_of(v + 3, d->a, d->at[i]);
         for (int j = 0; j < n; j++) {
@@ -143,7 +181,7 @@ static void level_normals(struct level *l, struct draw *d, bool keep_bend)
     const int terms = keep_bend ? 1 : LEVEL_TERMS;
     for (int round = 0; round < ROUNDS; round++) {
         miss_normals(d, l);
-        const double scale = scale_of(d);
+        const double scale = scale_of(d, 0);
         const struct level before = *l;
         for (int row = 0; row < 3; row++)
             if (!solve_row(l, d, row, terms, scale)) {
@@ -209,12 +247,12 @@ static void level_colour(struct level *l, struct draw *d, int c)
     for (int round = 0; round < ROUNDS; round++) {
         double gram[LEVEL_TERMS * LEVEL_TERMS] = {0}, x[LEVEL_TERMS] = {0};
         miss_colour(d, l, c);
-        const double scale = round ? scale_of(d) : 1.0;
+        const double scale = round ? scale_of(d, 1) : 1.0;
         for (size_t i = 0; i < d->count; i++) {
             double t[LEVEL_TERMS], ratio;
             if (!log_ratio(&ratio, d, d->at[i], c))
                 continue;
-            const double w = weight_of(d->miss[i], scale);
+            const double w = d->worth[1][i] * weight_of(d->miss[i], scale / sqrt(d->worth[1][i]));
             terms_of(t, d->a, d->at[i]);
             for (int j = 0; j < LEVEL_TERMS; j++) {
                 x[j] += w * t[j] * ratio;

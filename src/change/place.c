@@ -221,6 +221,8 @@ relume_status place_register(struct place *out, double *correlation, const struc
     struct surface laid = {0};
     struct relume_homography h = {0};
     const struct place on = canvas(a, b);
+    // what fails is said below
+    const struct relume_log quiet = {.context = log ? log->context : NULL};
     *out = (struct place){0};
     relume_status status = place_sample(&laid, b, &on, a->width, a->height, threads);
     if (!status)
@@ -231,7 +233,7 @@ relume_status place_register(struct place *out, double *correlation, const struc
     if (!status)
         status = relume_align_homography(
             &h, &picture[0], &picture[1],
-            relume_align_params(.log = log, .threads = threads, .max_roll_deg = max_roll_deg));
+            relume_align_params(.log = &quiet, .threads = threads, .max_roll_deg = max_roll_deg));
     relume_image_destroy(&picture[0]);
     relume_image_destroy(&picture[1]);
     *correlation = h.correlation;

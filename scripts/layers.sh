@@ -21,6 +21,7 @@ hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 stereo:base math:base
 acquire:base math image capture multiview stereo:base image directions capture ball photometric acquire photograph align chart
+change:base math image capture compare appearance:base image capture align pack change
 appearance:base math image capture:base image capture photometric light relight pack maps
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder team:base coder codebook team

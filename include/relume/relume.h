@@ -10,6 +10,7 @@
 #include <relume/billboards.h>
 #include <relume/btf.h>
 #include <relume/capture.h>
+#include <relume/change.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
 #include <relume/context.h>

@@ -172,6 +172,12 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
     return status;
 }
 
+void exchange_stand_before(struct exchange *e, const struct scenery *const *all, int count)
+{
+    e->before = all;
+    e->befores = count;
+}
+
 // ---------------------------------------------------------------- the world
 
 static void site_of(struct site *out, const void *context, const struct trace_hit *hit,

@@ -22,6 +22,11 @@ relume_status export_legacy(const struct export *e, const char *path, enum relum
 relume_status export_blocks(const struct export *e, const char *path, enum relume_exchange format,
                             struct relume_export_report *report);
 
+// A layer of half floats for every light that the codes were made from.
+relume_status export_olat(const struct relume_codes *codes, const char *path,
+                          struct relume_export_report *report,
+                          const struct relume_export_params *params);
+
 // Of the quantisers, in units of the picture's error: 80 is 0.045, about 11 codes; ten less doubles
 // it.
 #define EXPORT_FIRST_STEP 0.045

@@ -149,8 +149,7 @@ static char *list_in(const char *folder, const struct relume_log *log)
     char *out = NULL;
     const int some = ENDINGS - 1;  // an .lp file names its pictures: lp.c
     for (int i = 0; i < LISTS * some; i++)
-        if (exists(&out, mem_format("%s/%s%s", folder, lists[i / some], endings[i % some]),
-                   log))
+        if (exists(&out, mem_format("%s/%s%s", folder, lists[i / some], endings[i % some]), log))
             return out;
     return NULL;
 }
@@ -248,6 +247,18 @@ static relume_status read_layers(float *data, const struct layers *l, const stru
     return status;
 }
 
+// What messages and lists call them.
+static relume_status name_pictures(relume_capture *c, const struct layers *l, const char *path)
+{
+    for (int i = 0; i < l->count; i++) {
+        const char *name = arena_format(&c->draft.arena, "%s: %s", path, l->layer[i].name);
+        if (!name)
+            return RELUME_ENOMEM;
+        c->draft.view[0].images[i] = name;
+    }
+    return RELUME_OK;
+}
+
 // Layers become pictures in a temporary file, and these a capture.
 static relume_status capture_layers(relume_capture **out, const struct layers *l, const char *path,
                                     const struct relume_captured_lights *lights,
@@ -272,7 +283,7 @@ static relume_status capture_layers(relume_capture **out, const struct layers *l
     }
     (*out)->owned = data;
     (*out)->owned_bytes = bytes;
-    return RELUME_OK;
+    return name_pictures(*out, l, path);
 }
 
 relume_status olat_open(relume_capture **out, const char *path,
@@ -291,6 +302,8 @@ relume_status olat_open(relume_capture **out, const char *path,
         status = directions_of(&lights, &l, path, p->log);
     if (!status) {
         status = capture_layers(out, &l, path, &lights, p);
+        if (status)
+            relume_capture_destroy(out);
         relume_captured_lights_destroy(&lights);
     }
     close_layers(&l);

@@ -28,7 +28,7 @@ static const struct option options[] = {
          "FILE's lights: the weight of each by which pictures under them add up to the light of "
          "this HDR picture; degrees may follow it, as in --light \"env MAP 90\""),
     GROUP("output"),
-    TEXT("--csv", csv, "OUT", "--environment: write the weights to this file"),
+    TEXT_AS(OPTION_OUTPUT, "--csv", csv, "OUT", "--environment: write the weights to this file"),
     NAME("--recipe", recipe, "PROGRAM",
          "--environment: print what nuke, natron or blender needs to add up the layers of export "
          "--to olat",

@@ -256,7 +256,7 @@ static void choose_first(struct scene *s, const uint64_t *bytes)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const uint64_t shown = (uint64_t)smaller_of(info->views, FIRST_VIEWS);
-    int level = levels_count(info->width, info->height) - 1;
+    int level = s->levels.count - 1;
     while (level > 0 && bytes[level - 1] * shown / (uint64_t)info->views <= FIRST_BYTES)
         level--;
     s->first_level = level;
@@ -267,9 +267,12 @@ static void choose_first(struct scene *s, const uint64_t *bytes)
 
 static relume_status allocate(struct scene *s, double **minimum, double **maximum)
 {
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
     const size_t n = (size_t)s->common.plan.planes;
-    s->levels = (struct levels){.planes = (int)n, .threads = s->site->params->threads};
-    s->layers = mem_zeroed((size_t)relume_pack_info(s->pack)->views, sizeof *s->layers);
+    s->levels = (struct levels){.planes = (int)n,
+                                .count = levels_count(info->width, info->height, info->views),
+                                .threads = s->site->params->threads};
+    s->layers = mem_zeroed((size_t)info->views, sizeof *s->layers);
     *minimum = mem_array(n, sizeof **minimum);
     *maximum = mem_array(n, sizeof **maximum);
     s->levels.minimum = *minimum;

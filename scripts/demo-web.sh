@@ -24,7 +24,7 @@ fi
 cat >"$out/made/site.json" <<END
 {
   "title": "Things in another light",
-  "description": "Drag with two fingers or the right button to move the light.",
+  "description": "A painting, a pot and a room. Open one and drag to move the light.",
   "files": {
     "$first": {"title": "$title", "maker": "$maker"},
     "teapot": {"title": "A teapot that you can walk around", "maker": "relume synth"},

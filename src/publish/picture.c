@@ -13,7 +13,7 @@
 // Of the quantiser, in codes of luminance: no block is seen.
 #define STEP 6.0
 
-relume_status picture_still(struct relume_image *out, relume_pack *pack, int side,
+relume_status picture_still(struct relume_image *out, relume_pack *pack, int side, bool look,
                             const struct site *site)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
@@ -23,7 +23,7 @@ relume_status picture_still(struct relume_image *out, relume_pack *pack, int sid
                                        .rgb = {1, 1, 1}};
     const int longer = larger_of(info->width, info->height);
     struct relume_camera camera = {.framing = RELUME_FRAME_DEFAULT};
-    if (side && info->geometry.projection >= RELUME_CYLINDRICAL) {
+    if (look && info->geometry.projection >= RELUME_CYLINDRICAL) {
         camera.framing = RELUME_FRAME_LOOK;
         camera.look.zoom = 1.0;
         camera.width = side;

@@ -2,10 +2,13 @@
 #
 #   config=release (default, into build/) | debug | asan | tsan | fuzzer | msan   (into build/CONFIG/)
 #   FFT=fftw (default) | kiss   (a library without parts under the GPL; after make clean)
+#   LIBDIR=lib (default)        where `make install` puts libraries, below PREFIX
+#   RUN_PATH=no                 for packages: programs look for libraries where the system does, no more
 
 config ?= release
 FFT ?= fftw
 PREFIX ?= /usr/local
+LIBDIR ?= lib
 FUZZ_S ?= 20
 # make V=1 shows whole commands
 Q := $(if $(V),,@)
@@ -248,7 +251,7 @@ $B/librelume.a: $(LIB_O)
 	$(Q)$(AR) rcs $@ $^
 # Where a program or library looks for the module: first where the build left it. Sanitizers open
 # libraries in its name, which only the older kind of run path allows.
-run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer msan,$(config)),$(comma)--disable-new-dtags)
+run_path = $(if $(filter no,$(RUN_PATH)),,'-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer msan,$(config)),$(comma)--disable-new-dtags))
 comma := ,
 # Addresses of library functions are looked up at start and cannot be written over afterwards.
 HARD_LD := -Wl,-z,relro,-z,now
@@ -417,7 +420,16 @@ docs:
 # ---------------------------------------------------------------- installing
 
 install: all
-	scripts/install.sh $B $(DESTDIR)$(PREFIX) $(PREFIX)
+	scripts/install.sh $B $(DESTDIR)$(PREFIX) $(PREFIX) $(LIBDIR)
+
+# build/dist: the sources of the last commit as a tarball, the same bytes wherever it is made, with a
+# list of what is in it (SPDX) and check sums
+.PHONY: dist deb
+dist:
+	@scripts/dist.sh build/dist
+# build/deb: Debian packages of that tarball; needs debhelper, dh-python and devscripts (docs/packaging.md)
+deb: dist
+	@scripts/deb.sh build/dist build/deb
 
 clean:
 	rm -rf build docs/api

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Install a build: install.sh BUILD DESTPREFIX PREFIX. Files go below DESTPREFIX; PREFIX is where
-# they will be found later (different when a package is made).
+# Install a build: install.sh BUILD DESTPREFIX PREFIX [LIBDIR]. Files go below DESTPREFIX; PREFIX is
+# where they will be found later (different when a package is made); libraries lie in its LIBDIR.
 set -eu
-build=$1 dest=$2 prefix=$3
+build=$1 dest=$2 prefix=$3 lib=${4:-lib}
 here=$(cd "$(dirname "$0")/.." && pwd)
 version=$(sed -n 's/^#define RELUME_VERSION "\(.*\)"/\1/p' "$here/include/relume/base.h")
 major=${version%%.*}
@@ -16,25 +16,33 @@ link() { ln -sfn "$1" "$2"; }
 put 755 "$build/relume" "$dest/bin"
 put 755 "$build/relume-view" "$dest/bin"
 [ ! -e "$build/relume-mpi" ] || put 755 "$build/relume-mpi" "$dest/bin"
-put 644 "$build/librelume.a" "$dest/lib"
-install -m 755 "$build/librelume.so" "$dest/lib/librelume.so.$version"
-link "librelume.so.$version" "$dest/lib/librelume.so.$major"
-link "librelume.so.$major" "$dest/lib/librelume.so"
-put 755 "$build/librelume-oiio.so.$major" "$dest/lib"
-put 755 "$build/librelume-assimp.so.$major" "$dest/lib"
-put 755 "$build/relume-helper" "$dest/lib"
-[ ! -e "$build/librelume-stitch.so.$major" ] || put 755 "$build/librelume-stitch.so.$major" "$dest/lib"
+put 644 "$build/librelume.a" "$dest/$lib"
+install -m 755 "$build/librelume.so" "$dest/$lib/librelume.so.$version"
+link "librelume.so.$version" "$dest/$lib/librelume.so.$major"
+link "librelume.so.$major" "$dest/$lib/librelume.so"
+put 755 "$build/librelume-oiio.so.$major" "$dest/$lib"
+put 755 "$build/librelume-assimp.so.$major" "$dest/$lib"
+put 755 "$build/relume-helper" "$dest/$lib"
+[ ! -e "$build/librelume-stitch.so.$major" ] || put 755 "$build/librelume-stitch.so.$major" "$dest/$lib"
 for header in "$here"/include/relume/*.h; do
     put 644 "$header" "$dest/include/relume"
 done
 put 644 "$here/LICENSE" "$dest/share/doc/relume"
 
+# For desktops: what opens which files, and how it is shown
+put 644 "$here/packaging/relume-view.desktop" "$dest/share/applications"
+put 644 "$here/packaging/relume.xml" "$dest/share/mime/packages"
+put 644 "$here/packaging/org.relume.View.metainfo.xml" "$dest/share/metainfo"
+put 644 "$here/packaging/relume.svg" "$dest/share/icons/hicolor/scalable/apps"
+install -d "$dest/share/icons/hicolor/128x128/apps"
+install -m 644 "$here/packaging/relume-128.png" "$dest/share/icons/hicolor/128x128/apps/relume.png"
+
 # Private: what librelume.so has inside itself, and who links librelume.a must name.
-install -d "$dest/lib/pkgconfig"
-cat >"$dest/lib/pkgconfig/relume.pc" <<PC
+install -d "$dest/$lib/pkgconfig"
+cat >"$dest/$lib/pkgconfig/relume.pc" <<PC
 prefix=$prefix
 includedir=\${prefix}/include
-libdir=\${prefix}/lib
+libdir=\${prefix}/$lib
 
 Name: relume
 Description: image-based relighting

@@ -15,20 +15,22 @@ geometry:base math:base capture
 image:base math kernel:base io image photograph response
 compare:base math image:base image jnd
 study:base math:base image study
+chart:base math image compare:base image photograph chart
 capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 stereo:base math:base
-acquire:base math image capture multiview stereo:base image directions capture ball photometric acquire photograph align
+acquire:base math image capture multiview stereo:base image directions capture ball photometric acquire photograph align chart
+change:base math image capture compare appearance:base image capture align pack change
 appearance:base math image capture:base image capture photometric light relight pack maps
 coder:base math kernel image:base image capture coder
 codebook:base math kernel image coder team:base coder codebook team
-team:base:base io team
+team:base math:base io team
 selection:base math image coder compare:base image capture coder codebook heldout team tone
 lossy:base math:base image coder
 shadow:base math image:base image capture coder light maps shadow
 encode:base math image coder codebook lossy team:base image capture codebook coder light relight pack team shadow
-pack:base geometry image coder lossy:base image capture codebook coder pack shadow
+pack:base math geometry image coder lossy:base image capture codebook coder pack shadow
 foreign:base math image:base image directions coder relight
 block:base:base
 exchange:base math image foreign block:base io image photograph directions codebook coder capture pack relight exchange

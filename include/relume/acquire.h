@@ -7,6 +7,7 @@
 
 #include <relume/ball.h>
 #include <relume/base.h>
+#include <relume/chart.h>
 #include <relume/image.h>
 #include <relume/photometric.h>
 
@@ -54,6 +55,10 @@ struct relume_acquire_params {
     bool radial;   // `flats` as a polynomial
     int white[4];  // x, y, width, height of a region that is grey, which gives the lamps' colour;
                    // width 0: none
+    // Colours of the photographs, and of the balls' own, are made right by this matrix; NULL: they
+    // are left as they are. Not with `white`.
+    const struct relume_chart *chart;
+    const char *chart_path;     // of the photograph that shows it; for the report
     const char *likely_lights;  // a file that may be meant as `lights`: where no ball is found the
                                 // sentence names it; or NULL
 };
@@ -65,6 +70,8 @@ struct relume_acquired_photo {
     char *path;                      // as it was given
     float saturated, black;          // shares of the pixels
     float similarity;                // median to others, relume_edge_correlation; NaN: not measured
+    float sharpness;                 // fine detail of what it shows, relative to the median of the
+                                     // photographs; NaN: not measured
     struct relume_ball_light light;  // by the first ball
     double sigma_deg;                // estimated error of the direction, degrees; 0: not known
     bool outlier;                    // contradicts its light and the others

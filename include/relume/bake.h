@@ -65,12 +65,13 @@ struct relume_bake_params {
 
 // Bake all objects as they stand and are covered now. Translucent ones are matte. RELUME_EUNFIT
 // with a sentence (mirrors; an atlas that is too small), RELUME_EINVAL with a sentence (params),
-// RELUME_ELIMIT (memory), RELUME_ENOMEM, RELUME_ECANCEL.
+// RELUME_ELIMIT with a sentence (memory; what no file can hold), RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_bake(relume_baked **out, const relume_objects *objects,
                                         const struct relume_bake_params *params);
 RELUME_API void relume_baked_destroy(relume_baked **baked);
 
-// Write an OpenEXR file (docs/baking.md). RELUME_EIO, RELUME_ENOMEM.
+// Write an OpenEXR file (docs/baking.md). RELUME_ELIMIT (it cannot hold as much), RELUME_EIO,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_baked_save(const relume_baked *baked, const char *path,
                                               const struct relume_log *log);
 // Read one. An input status with a sentence, RELUME_ENOMEM.

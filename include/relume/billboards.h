@@ -81,7 +81,7 @@ struct relume_billboards_params {
 // Of the mesh only positions and triangles count. RELUME_EINVAL (values, positions that are not
 // finite, triangles of vertices that are not there), RELUME_EUNFIT with a sentence (no triangle
 // has an extent), RELUME_ELIMIT with a sentence (more than 4 million triangles or 64 million
-// texels), RELUME_ENOMEM.
+// texels), RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_billboards_create(struct relume_billboards *out,
                                                      const struct relume_mesh *mesh,
                                                      const struct relume_billboards_params *params);

@@ -265,6 +265,25 @@ struct relume_gbrdf_plant_params {  // zero in a field means its default
 RELUME_RESULT relume_status relume_gbrdf_plant(relume_btf_fitted **out,
                                                const struct relume_gbrdf_plant_params *params);
 
+// A material of pictures in place of measurements, in the terms of glTF 2.0 (Khronos 2021, appendix
+// B). Pictures are borrowed during the call and repeat like samples; beyond 2048 texels on a side
+// they are reduced, of two the smaller one grows. Values are taken for [0, 1], NaN for 0.
+struct relume_btf_paint_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    const struct relume_image *colour;   // linear, three channels; NULL: white
+    const struct relume_image *surface;  // green of roughness, blue of metal, likewise; NULL: all
+    float factor[3];                     // times the colour, [0, 1]
+    float roughness, metallic;           // times what the picture says, [0, 1]
+    int threads;                         // default: all cores
+};
+#define relume_btf_paint_params(...)                                                               \
+    (&(const struct relume_btf_paint_params){RELUME_SIZED(relume_btf_paint_params), __VA_ARGS__})
+// The model `lit` where nothing shines, else `laf` with one lobe, with all levels of detail. The
+// caller destroys `*out`. RELUME_EINVAL for another number of channels, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_paint(relume_btf_fitted **out,
+                                             const struct relume_btf_paint_params *params);
+
 // A level of detail, 0 being the model itself, beyond the last one the last; belongs to the model.
 RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *fitted,
                                                             int level);

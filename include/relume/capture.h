@@ -106,6 +106,8 @@ struct relume_manifest {
     const float (*intensities)[3];  // [lights], or NULL: all 1
     int views;
     const struct relume_manifest_view *view;  // [views]
+    const char *provenance;  // where the photographs come from, a JSON object (docs/format.md), or
+                             // NULL
 };
 
 // Write `path` (capture.json) whole or not at all. RELUME_EINVAL for the transfer of a response,

@@ -43,7 +43,7 @@ struct relume_mesh_params {
 
 // OBJ, PLY or, in the helper, what Assimp reads; chosen by the extension. Polygons become
 // triangles, missing normals are made smooth, vertices that are alike in everything are one.
-// Colours of vertices are read from OBJ and PLY. Positions are finite and below 1e18. An input
+// Colours of vertices are read, too. Positions are finite and below 1e18. An input
 // status with a sentence, RELUME_ENOMEM, RELUME_ESYSTEM.
 RELUME_RESULT relume_status relume_mesh_read(struct relume_mesh *out, const char *path,
                                              const struct relume_mesh_params *params);

@@ -52,13 +52,15 @@ struct relume_objects_params {
 
 // Read a description (docs/objects.md). Meshes are OBJ, PLY or what Assimp reads, such as glTF;
 // materials are folders of BTFs, of fitted models or of surfaces, .btf files of Bonn's data base,
-// or g-BRDFs as .exr. What a mesh lacks is made, with a warning: normals, texture coordinates (from
-// the three axes). An input status with a sentence, RELUME_ENOMEM, RELUME_ESYSTEM when Embree or
-// the reader of a format is missing. A baked object (.exr) is opened as the only one.
+// or g-BRDFs as .exr; parts without one show what their mesh's file says. What a mesh lacks is
+// made, with a warning: normals, texture coordinates (from the three axes). An input status with a
+// sentence, RELUME_ENOMEM, RELUME_ESYSTEM when Embree or the reader of a format is missing. A baked
+// object (.exr) is opened as the only one.
 RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
                                                 const struct relume_objects_params *params);
-// One mesh, all of it of the first of `count` materials, its texture repeated `repeat` times (0: 1)
-// in each direction; `mesh` NULL: a cushion, which shows all of a sample from many sides. Likewise.
+// One mesh, all of it of the first of `count` materials (0: as its file says), its texture repeated
+// `repeat` times (0: 1) in each direction; `mesh` NULL: a cushion, which shows all of a sample from
+// many sides. Likewise.
 RELUME_RESULT relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
                                                    const char *const *materials, int count,
                                                    double repeat,
@@ -108,6 +110,9 @@ struct relume_object_part {
 struct relume_objects_info {
     const struct relume_object_vertex *vertices;
     size_t vertex_count;
+    // Linear, what the material's values are multiplied by: colours of vertices, where a mesh shows
+    // its own look; 1 elsewhere. [vertex_count], or NULL: 1 everywhere.
+    const float (*tint)[3];
     const uint32_t (*triangles)[3];  // counter-clockwise as seen from where the normals point
     size_t triangle_count;
     const struct relume_object_part *part;  // [parts]

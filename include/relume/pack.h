@@ -108,6 +108,7 @@ struct relume_pack_contents {
     relume_status (*preview)(void *user, int row, int rows, float *rgb);
     void *preview_user;                     // of `preview`
     const struct relume_pack_share *share;  // NULL: all of it
+    const char *provenance;                 // as struct relume_manifest, or NULL
 };
 
 // The middle view relit from the front, panoramas from above: hand it in as `preview`, the contents
@@ -276,6 +277,7 @@ struct relume_pack_info {
     bool has_shadow;  // shadows can be traced: relume_pack_shadow
     bool has_gloss;   // highlights wander: relume_pack_gloss
     bool has_sums;    // check sums, by which relume_pack_check notices any byte that has changed
+    const char *provenance;  // of the photographs, a JSON object (docs/format.md), or NULL
 };
 // It belongs to the pack.
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);

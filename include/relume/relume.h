@@ -10,6 +10,7 @@
 #include <relume/billboards.h>
 #include <relume/btf.h>
 #include <relume/capture.h>
+#include <relume/change.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
 #include <relume/context.h>
@@ -54,6 +55,7 @@
 #include <relume/surface.h>
 #include <relume/synthesis.h>
 #include <relume/tableau.h>
+#include <relume/chart.h>
 #include <relume/team.h>
 #include <relume/tone.h>
 #include <relume/transport.h>

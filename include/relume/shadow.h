@@ -157,6 +157,12 @@ RELUME_RESULT relume_status relume_shadows_around(int *light, float *weight, int
                                                   const relume_coder *coder,
                                                   struct relume_vec3 direction, bool summed);
 
+// What these weights are of traced shadows: a `table` of the lights of `coder`, interpolated over
+// triangles. It belongs to the shadows. RELUME_EINVAL for highlights, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_between(const relume_coder **out,
+                                                   relume_shadows *shadows,
+                                                   const relume_coder *coder);
+
 // How the rays of a view lie in its coordinates, whose origin is the eye, or of parallel rays the
 // middle of the plane; the axis is -z, the pole of panoramas y. A pixel is scale x + shift, of x
 // and y for parallel rays, x / z and y / z, or of azimuth (from -z to x) and tangent of the

@@ -29,7 +29,8 @@ struct relume_volume_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
-    int size[3];          // of raw samples along x, y, z; x runs fastest
+    int size[3];          // of raw samples along x, y, z; x runs fastest; default: as the file's
+                          // name says, "..._256x256x178_uint8.raw", with a note
     const char *type;     // of raw samples, as relume_volume_types says; default "u8"
     uint64_t skip;        // bytes of a raw file before its samples; of what is unpacked
     double spacing[3];    // from sample to sample; default: 1, positions are counted in samples
@@ -46,7 +47,7 @@ RELUME_API extern const char *const relume_volume_types[];
 // samples; what gzip has packed is unpacked. Slices are pictures in the order of their names, as
 // code values: of 8 bits 0 to 255, of 16 bits 0 to 65535, else as they are. At least 2 samples
 // along each axis. An input status with a sentence (sizes that do not fit, samples that are not
-// finite, all alike), RELUME_EINVAL (no size of raw samples), RELUME_ENOMEM, RELUME_EIO (no scratch
+// finite, all alike), RELUME_EINVAL (no size of raw samples, nor one in their name), RELUME_ENOMEM, RELUME_EIO (no scratch
 // space).
 RELUME_RESULT relume_status relume_volume_open(relume_volume **out, const char *path,
                                                const struct relume_volume_params *params);

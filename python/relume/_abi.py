@@ -48,7 +48,7 @@ struct relume_geometry { int projection; double window_min[2], window_max[2]; bo
 struct relume_manifest_view { double uv[2]; int slab; void *images; void *depth; void *mask; };
 struct relume_manifest { struct relume_transfer transfer; struct relume_geometry geometry;
     int slabs; void *slab; int lights; void *directions; void *positions; bool no_falloff;
-    void *intensities; int views; void *view; };
+    void *intensities; int views; void *view; char *provenance; };
 struct relume_pictures { int sample; int width, height; int channels; void *data; void *depth;
     void *mask; };
 struct relume_capture_params { size_t struct_size; void *log; void *limits; struct relume_transfer transfer;
@@ -79,7 +79,8 @@ struct relume_pack_info { int version; void *coder; int domain; struct relume_tr
     int storage; char *compression; struct relume_geometry geometry; int slabs; void *slab;
     int width, height; int levels; int tile; int views; void *uv; void *slab_of; bool has_depth, has_mask;
     int coefficients, planes; int books; int codes; bool shared;
-    struct relume_encode_report report; uint64_t file_bytes; bool has_shadow; bool has_gloss; bool has_sums; };
+    struct relume_encode_report report; uint64_t file_bytes; bool has_shadow; bool has_gloss; bool has_sums;
+    char *provenance; };
 struct relume_codes { void *coder; int domain; struct relume_transfer display;
     int width, height, planes; int storage; void *plane; void *scale, *offset; int books;
     void *index; void *vectors; void *book_codes; };

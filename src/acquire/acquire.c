@@ -89,6 +89,7 @@ static relume_status fill_result(struct acquisition *s)
             .saturated = from->saturated,
             .black = from->black,
             .similarity = from->similarity,
+            .sharpness = from->sharpness,
             .light = from->light,
             .sigma_deg = from->sigma_deg,
         };
@@ -123,6 +124,7 @@ static relume_status write_manifest(const struct acquisition *s, const char *pat
         return RELUME_ENOMEM;
     for (int i = 0; i < s->shots; i++)
         images[i] = s->shot[i].name;
+    char *provenance = acquire_provenance(s);
     const struct relume_manifest_view view = {.images = images,
                                               .mask = s->p.mask ? "mask.exr" : NULL};
     const struct relume_manifest m = {
@@ -134,8 +136,11 @@ static relume_status write_manifest(const struct acquisition *s, const char *pat
         .intensities = (const float(*)[3])s->out->intensity,
         .views = 1,
         .view = &view,
+        .provenance = provenance,
     };
-    const relume_status status = relume_manifest_write(&m, path, s->p.log);
+    const relume_status status =
+        provenance ? relume_manifest_write(&m, path, s->p.log) : RELUME_ENOMEM;
+    mem_free(provenance);
     mem_free(images);
     return status;
 }
@@ -294,6 +299,8 @@ static relume_status run(struct acquisition *s)
     if (!status)
         status = acquire_check_pictures(s);
     if (!status)
+        status = acquire_sum_files(s);
+    if (!status)
         acquire_say_alike(s);
     if (!status)
         status = acquire_find_lights(s);
@@ -388,6 +395,9 @@ static relume_status check_params(const struct relume_acquire_params *p)
         return log_fail(
             p->log, RELUME_EINVAL,
             "--white: the matte ball shows the lamps' colour already; leave out --white");
+    if (p->white[2] && p->chart)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--white: the colour target gives the white balance; leave out --white");
     if (p->integrable && !p->refine)
         return log_fail(p->log, RELUME_EINVAL,
                         "lights are made to fit a surface only where they are refined");

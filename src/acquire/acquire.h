@@ -2,6 +2,7 @@
 #ifndef ACQUIRE_ACQUIRE_H
 #define ACQUIRE_ACQUIRE_H
 
+#include "acquire/sha256.h"
 #include "base/outdir.h"
 #include "math/vec.h"
 
@@ -16,6 +17,10 @@ struct shot {
     struct relume_exif notes;
     struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
     float saturated, black, similarity;
+    double fine, coarse;       // detail.c: curvature from pixel to pixel, differences farther off
+    char sha256[SHA256_TEXT];  // of the file
+    uint64_t bytes;
+    float sharpness;  // of the ratio of both, relative to the median; NaN: not measured
     double sigma_deg;
     struct relume_ball_light light;  // of the first ball
     vec3 direction, position;
@@ -29,6 +34,7 @@ enum acquire_alike {
     ALIKE_SATURATED,
     ALIKE_BLACK,
     ALIKE_SCENE,
+    ALIKE_BLURRED,
     ALIKE_UNALIGNED,
     ALIKE_RIM,
     ALIKE_TWO,
@@ -81,6 +87,14 @@ relume_status acquire_check_size(const struct acquisition *s, const struct relum
 // Multiply a photograph by what its flat field says. RELUME_EUNFIT.
 relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
                               struct relume_image *image);
+// Make the colours right by the matrix of a colour target, where there is one.
+void acquire_correct(const struct acquisition *s, struct relume_image *image, bool floats);
+// How sharp a photograph is by itself.
+void acquire_measure_detail(struct shot *shot, const struct relume_image *image);
+// Check sums of the photographs' files. An input status, RELUME_ENOMEM.
+relume_status acquire_sum_files(struct acquisition *s);
+// Where the photographs come from, for capture.json: JSON, to be freed; NULL: no memory.
+char *acquire_provenance(const struct acquisition *s);
 // Remember the grey region of a photograph; make its mean the colour of all lights.
 relume_status acquire_add_grey(struct acquisition *s, const struct relume_image *image);
 relume_status acquire_whiten(struct acquisition *s);

@@ -12,6 +12,8 @@
 
 enum { PAIRS = 5, GRID = 1500 };
 static const double SIMILAR = 0.35, UNLIKE = 0.5;  // similarity: of one scene; share of the others'
+static const float BLURRED = 0.35f;                // of the others' fine detail
+static const double LEAST_DETAIL = 2e-3;           // mean square of the logarithm's differences
 static const float SATURATED = 0.02f, DARK = 0.999f;
 static const double FLAT = 0.004;   // least eigenvalue of the directions' mean square
 static const double LOWEST = 0.26;  // sine of the elevation from which light is wanted: 15 degrees
@@ -74,9 +76,40 @@ static relume_status check_scene(struct acquisition *s)
     return status;
 }
 
+static relume_status check_focus(struct acquisition *s)
+{
+    double *all = mem_array((size_t)s->shots, sizeof *all);
+    if (!all)
+        return RELUME_ENOMEM;
+    int known = 0;
+    for (int i = 0; i < s->shots; i++) {
+        const struct shot *shot = &s->shot[i];
+        if (shot->coarse > LEAST_DETAIL && shot->fine > 0.0)
+            all[known++] = shot->fine / shot->coarse;
+    }
+    const double usual = median(all, known);
+    mem_free(all);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < s->shots; i++) {
+        struct shot *shot = &s->shot[i];
+        shot->sharpness = shot->coarse > LEAST_DETAIL && known > 2
+                              ? (float)(shot->fine / shot->coarse / usual)
+                              : (float)NAN;
+        if (shot->sharpness < BLURRED)
+            status = acquire_warn_alike(
+                s, ALIKE_BLURRED, -(double)shot->sharpness,
+                "%s: less sharp than the others: %.0f %% of their fine detail; focus moved, or the "
+                "camera shook?",
+                shot->path, 100.0 * (double)shot->sharpness);
+    }
+    return status;
+}
+
 relume_status acquire_check_pictures(struct acquisition *s)
 {
     relume_status status = check_scene(s);
+    if (!status)
+        status = check_focus(s);
     int full = 0;
     for (int i = 0; !status && i < s->shots; i++) {
         const struct shot *shot = &s->shot[i];

@@ -58,6 +58,12 @@ relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
     return RELUME_OK;
 }
 
+void acquire_correct(const struct acquisition *s, struct relume_image *image, bool floats)
+{
+    if (s->p.chart)
+        relume_chart_apply(image, s->p.chart->matrix, !floats);
+}
+
 relume_status acquire_add_grey(struct acquisition *s, const struct relume_image *image)
 {
     const int *r = s->p.white;

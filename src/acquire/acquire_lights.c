@@ -58,10 +58,14 @@ static const char *ball_photo(const struct shot *shot)
 relume_status acquire_load_balls(struct relume_image *out, const struct acquisition *s, int i)
 {
     const bool own = s->shot[i].ball_path && s->p.ball_transfer.curve != RELUME_CURVE_AUTO;
-    return relume_photograph_load(
-        out, NULL, ball_photo(&s->shot[i]),
+    struct relume_exif notes;
+    const relume_status status = relume_photograph_load(
+        out, &notes, ball_photo(&s->shot[i]),
         relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
                                  .transfer = own ? s->p.ball_transfer : s->p.transfer));
+    if (!status)
+        acquire_correct(s, out, notes.floats);
+    return status;
 }
 
 // What is wrong with how ball `b` shows the light; NULL when nothing is.

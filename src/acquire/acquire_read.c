@@ -147,7 +147,10 @@ static relume_status take(struct acquisition *s, int i, struct relume_image *ima
     s->width = image->width;
     s->height = image->height;
     count_ends(shot, image, shot->notes.floats);
+    acquire_measure_detail(shot, image);
     status = acquire_flatten(s, shot, image);
+    if (!status)
+        acquire_correct(s, image, shot->notes.floats);
     if (!status)
         status = acquire_add_grey(s, image);
     if (!status)

@@ -31,6 +31,7 @@ static const char style[] =
     "td:first-child,th:first-child{text-align:left}"
     ".warn{background:#fff3d6;border-left:4px solid #e0a000;padding:4px 10px;margin:4px 0;"
     "overflow-wrap:anywhere}.good{color:#060}.off td,.off figcaption{color:#b00}"
+    ".patches td{padding:2px;width:92px;text-align:center!important;line-height:1.1}"
     ".sun{position:absolute;right:3px;top:3px;width:34px!important;left:auto!important}"
     "@media print{body{margin:0}}";
 
@@ -67,6 +68,55 @@ static void put_warnings(struct report *r)
         put_text(r->f, out->warning[i]);
         fputs("</div>\n", r->f);
     }
+}
+
+// The patches as photographed and as they are.
+static void put_patch(FILE *f, const float photographed[3], const struct relume_chart_patch *p)
+{
+    const float *const rgb[] = {photographed, p->is};
+    fputs("<td>", f);
+    for (int k = 0; k < 2; k++) {
+        int code[3];
+        for (int c = 0; c < 3; c++)
+            code[c] = (int)(255.0f * relume_transfer_encode(
+                                         (struct relume_transfer){.curve = RELUME_CURVE_SRGB},
+                                         fminf(fmaxf(rgb[k][c], 0.0f), 1.0f)) +
+                            0.5f);
+        fprintf(f,
+                "<span style=\"display:inline-block;width:34px;height:%dpx;background:"
+                "rgb(%d,%d,%d)\"></span>",
+                34, code[0], code[1], code[2]);
+    }
+    fprintf(f, p->used ? "<br><small>%s %.1f</small></td>" : "<br><small>%s not used</small></td>",
+            p->name, p->delta_e);
+}
+
+static void put_chart(struct report *r)
+{
+    const struct relume_chart *c = r->s->p.chart;
+    FILE *f = r->f;
+    if (!c)
+        return;
+    fputs("<h2>Colour</h2>\n<p>Corrected by a colour target", f);
+    if (r->s->p.chart_path) {
+        fputs(" in ", f);
+        put_text(f, path_name(r->s->p.chart_path));
+    }
+    fprintf(f,
+            ", %d of 24 patches used. Colour difference (CIEDE2000, mean and largest): %.1f and "
+            "%.1f as photographed, %.1f and %.1f with white balance, <b>%.1f and %.1f</b> as "
+            "written.</p>\n<table class=\"patches\"><caption>left: as photographed, "
+            "right: what the patch is</caption>",
+            c->used, c->before[0], c->before[1], c->balanced[0], c->balanced[1], c->after[0],
+            c->after[1]);
+    for (int i = 0; i < RELUME_CHART_PATCHES; i++) {
+        float shown[3];
+        for (int k = 0; k < 3; k++)
+            shown[k] = (float)c->exposure * c->patch[i].found[k];
+        fputs(i % RELUME_CHART_COLUMNS ? "" : i ? "</tr>\n<tr>" : "<tr>", f);
+        put_patch(f, shown, &c->patch[i]);
+    }
+    fputs("</tr></table>\n", f);
 }
 
 static double mean_sigma(const struct relume_acquisition *out)
@@ -224,6 +274,44 @@ static void put_thumbnails(struct report *r)
     fputs("</div>\n", r->f);
 }
 
+static void put_exposure(FILE *f, const struct relume_exif *e)
+{
+    if (e->time_s > 0.0 && e->time_s < 0.4)
+        fprintf(f, "1/%.0f s ", 1.0 / e->time_s);
+    else if (e->time_s > 0.0)
+        fprintf(f, "%.3g s ", e->time_s);
+    if (e->f_number > 0.0)
+        fprintf(f, "f/%.3g ", e->f_number);
+    if (e->iso > 0.0)
+        fprintf(f, "ISO %.0f", e->iso);
+}
+
+// What an archive asks of a photograph.
+static void put_provenance(struct report *r)
+{
+    const struct acquisition *s = r->s;
+    FILE *f = r->f;
+    fputs("<h2>Files</h2>\n<div class=\"wide\"><table><tr><th>photograph</th><th>camera</th>"
+          "<th>exposure</th><th>sharpness</th><th>bytes</th><th>SHA-256</th></tr>\n",
+          f);
+    for (int i = 0; i < s->shots; i++) {
+        const struct shot *shot = &s->shot[i];
+        fprintf(f, "<tr><td>%d ", i);
+        put_text(f, path_name(shot->path));
+        fputs("</td><td>", f);
+        put_text(f, shot->notes.camera);
+        fputs("</td><td>", f);
+        put_exposure(f, &shot->notes);
+        if (isfinite(shot->sharpness))
+            fprintf(f, "</td><td>%.0f %%", 100.0 * (double)shot->sharpness);
+        else
+            fputs("</td><td>", f);
+        fprintf(f, "</td><td>%llu</td><td><code>%s</code></td></tr>\n",
+                (unsigned long long)shot->bytes, shot->sha256);
+    }
+    fputs("</table></div>\n<p>Made by relume " RELUME_VERSION ".</p>\n", f);
+}
+
 static relume_status write_sphere(const struct acquisition *s, const char *dir)
 {
     char *svg = acquire_light_sphere(s->out), *path = mem_format("%s/lights.svg", dir);
@@ -248,8 +336,9 @@ relume_status acquire_report(const struct acquisition *s, const char *dir)
             "name=\"viewport\" content=\"width=device-width\"><title>capture"
             "</title><style>%s</style></head><body>\n<h1>Capture of %d photographs</h1>\n",
             style, s->shots);
-    put_summary(&r);
     put_warnings(&r);
+    put_summary(&r);
+    put_chart(&r);
     fputs("<h2>Where the lights stood</h2>\n<div class=\"row\">", r.f);
     put_sphere(&r);
     put_balls(&r);
@@ -257,6 +346,7 @@ relume_status acquire_report(const struct acquisition *s, const char *dir)
     put_surface(&r);
     put_table(&r);
     put_thumbnails(&r);
+    put_provenance(&r);
     fputs("</body></html>\n", r.f);
     if (fclose(r.f) && !r.status)
         r.status = RELUME_ENOMEM;

@@ -4,25 +4,13 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/picture.h"
+#include "math/base64.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-static void put_base64(FILE *f, const uint8_t *p, size_t n)
-{
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < n; i += 3) {
-        const unsigned v = (unsigned)p[i] << 16 | (i + 1 < n ? (unsigned)p[i + 1] << 8 : 0u) |
-                           (i + 2 < n ? p[i + 2] : 0u);
-        fputc(digit[v >> 18], f);
-        fputc(digit[v >> 12 & 63], f);
-        fputc(i + 1 < n ? digit[v >> 6 & 63] : '=', f);
-        fputc(i + 2 < n ? digit[v & 63] : '=', f);
-    }
-}
 
 static relume_status put_file(FILE *f, const char *path, const struct relume_log *log)
 {
@@ -32,7 +20,7 @@ static relume_status put_file(FILE *f, const char *path, const struct relume_log
     if (!from)
         return log_fail(log, RELUME_EIO, "%s: cannot be read back; %s", path, strerror(errno));
     while ((n = fread(block, 1, sizeof block, from)) > 0)
-        put_base64(f, block, n);
+        base64_print(f, block, n);
     fclose(from);
     return RELUME_OK;
 }

@@ -56,7 +56,8 @@ static relume_status check_memory(const struct work *w)
 {
     enum { BYTES = 170 };  // a pixel
     const uint64_t pixels = (uint64_t)w->out->width * (uint64_t)w->out->height;
-    return limits_memory(pixels * BYTES, "what is known of a picture of this size", w->params.log);
+    return limits_memory(NULL, pixels * BYTES, "what is known of a picture of this size",
+                         w->params.log);
 }
 
 static relume_status check(const struct work *w)

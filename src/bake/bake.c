@@ -24,27 +24,71 @@ static bool within(int value, int low, int high)
     return value >= low && value <= high;
 }
 
-static relume_status check(const struct relume_bake_params *p)
+static relume_status check_ranges(const struct relume_bake_params *p)
+{
+    const struct {
+        const char *what;
+        int value, low, high;
+    } ranges[] = {
+        {"texels across the atlas", p->width, 4, 8192},
+        {"rows of the atlas", p->height, 4, 8192},
+        {"a side of the map of views", p->side, 0, RELUME_BAKED_MOST_SIDE},
+        {"wavelets of a face that are kept", p->kept, 1,
+         RELUME_BAKED_MOST_CUBE * RELUME_BAKED_MOST_CUBE},
+        {"clusters", p->clusters, 1, RELUME_BAKED_MOST_CLUSTERS},
+        {"components", p->components, 1, RELUME_BAKED_MOST_COMPONENTS},
+        {"bounces", p->bounces, 0, 64},
+        {"rays from each texel", p->rays, 1, 65536},
+        {"fixed lights", p->fixed ? p->fixed_count : 1, 1, 65536},
+    };
+    for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+        if (!within(ranges[i].value, ranges[i].low, ranges[i].high))
+            return log_fail(p->log, RELUME_EINVAL, "baking: %s: %d; expected %d to %d",
+                            ranges[i].what, ranges[i].value, ranges[i].low, ranges[i].high);
+    return RELUME_OK;
+}
+
+// What light of all kinds becomes: a cube, or a basis.
+static relume_status check_light(const struct relume_bake_params *p)
 {
     const struct relume_log *log = p->log;
-    if (!within(p->width, 4, 8192) || !within(p->height, 4, 8192))
-        return log_fail(log, RELUME_EINVAL,
-                        "the atlas: expected 4 to 8192 texels a side; found %d x %d", p->width,
-                        p->height);
-    if (p->cube && !(power_of_two(p->cube) && within(p->cube, 2, RELUME_BAKED_MOST_CUBE)))
-        return log_fail(log, RELUME_EINVAL,
-                        "the cube of lights: expected 2, 4, 8, 16 or 32 texels a side; found %d",
-                        p->cube);
-    if (!within(p->side, 0, RELUME_BAKED_MOST_SIDE) || p->kept < 1 ||
-        !within(p->clusters, 1, RELUME_BAKED_MOST_CLUSTERS) ||
-        !within(p->components, 1, RELUME_BAKED_MOST_COMPONENTS) || p->bounces > 64 ||
-        !within(p->rays, 1, 65536) || (p->fixed && p->fixed_count < 1))
-        return log_fail(log, RELUME_EINVAL, "baking: a number is out of range");
-    if (!p->fixed && !p->cube && (p->basis->learned || p->basis->upper_only || p->basis->joint))
+    const int most_lights = limits_or_default(limits_of(NULL, log)).max_lights;
+    if (p->cube)
+        return power_of_two(p->cube) && within(p->cube, 2, RELUME_BAKED_MOST_CUBE)
+                   ? RELUME_OK
+                   : log_fail(log, RELUME_EINVAL,
+                              "the cube of lights: expected 2, 4, 8, 16 or 32 texels a side; found "
+                              "%d",
+                              p->cube);
+    if (p->basis->learned || p->basis->upper_only || p->basis->joint)
         return log_fail(log, RELUME_EINVAL,
                         "basis %s cannot hold light from all sides; expected sh or table",
                         p->basis->name);
-    return RELUME_OK;
+    if (!within(p->coefficients, 1, RELUME_MOST_COEFFICIENTS) ||
+        !p->basis->has_count(p->coefficients))
+        return log_fail(log, RELUME_EINVAL,
+                        "baking: basis %s cannot have %d coefficients; expected %s, at most %d",
+                        p->basis->name, p->coefficients,
+                        p->basis == &relume_basis_sh ? "1, 4, 9, 16, 25, ..." : "another number",
+                        RELUME_MOST_COEFFICIENTS);
+    return within(p->lights, p->coefficients, most_lights)
+               ? RELUME_OK
+               : log_fail(log, RELUME_EINVAL,
+                          "baking: light from %d directions; expected as many as there are "
+                          "coefficients, %d, to %d",
+                          p->lights, p->coefficients, most_lights);
+}
+
+static relume_status check(const struct relume_bake_params *p)
+{
+    const relume_status status = check_ranges(p);
+    return status || p->fixed ? status : check_light(p);
+}
+
+static int usual_lights(int coefficients)
+{
+    const int enough = coefficients < 1024 / 12 ? 12 * coefficients : 1024;
+    return enough > coefficients ? enough : coefficients;
 }
 
 static struct relume_bake_params complete(const struct relume_bake_params *params)
@@ -54,7 +98,7 @@ static struct relume_bake_params complete(const struct relume_bake_params *param
     p.basis = p.basis ? p.basis : &relume_basis_sh;
     p.lights = or_default(p.lights, table ? or_default(p.coefficients, 256) : 0);
     p.coefficients = table ? p.lights : or_default(p.coefficients, 36);
-    p.lights = or_default(p.lights, 12 * p.coefficients < 1024 ? 12 * p.coefficients : 1024);
+    p.lights = or_default(p.lights, usual_lights(p.coefficients));
     p.kept = or_default(p.kept, 20);
     p.width = or_default(p.width, 256);
     p.height = or_default(p.height, p.width);
@@ -270,8 +314,11 @@ relume_status relume_bake(relume_baked **out, const relume_objects *objects,
     status = baked ? begin(&b, baked, objects, &p) : RELUME_ENOMEM;
     if (!status) {
         describe(baked, &b, &p);
-        status = bake_bounces(&b);
+        b.taught = bake_count_taught(baked, &b);
+        status = baked_check_file(baked, p.log);
     }
+    if (!status)
+        status = bake_bounces(&b);
     if (!status)
         status = bake_compress(baked, &b);
     baking_free(&b);

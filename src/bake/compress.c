@@ -96,7 +96,7 @@ relume_status bake_bounces(struct baking *b)
     if (!b->bounces)
         return RELUME_OK;
     relume_status status =
-        limits_memory(3 * (uint64_t)n * sizeof(float), "light between surfaces", b->log);
+        limits_memory(NULL, 3 * (uint64_t)n * sizeof(float), "light between surfaces", b->log);
     if (status)
         return status;
     float *next = mem_array(n, sizeof *next);
@@ -301,8 +301,7 @@ static relume_status write_all(struct writing *w, const struct baking *b)
     return status;
 }
 
-// How many texels are learned from, and how many clusters these allow.
-static size_t count_taught(relume_baked *out, const struct baking *b)
+size_t bake_count_taught(relume_baked *out, const struct baking *b)
 {
     size_t n = TAUGHT_BYTES / (baking_length(b) * sizeof(float));
     n = n < 1 ? 1 : n > TAUGHT ? TAUGHT : n;
@@ -315,8 +314,8 @@ static size_t count_taught(relume_baked *out, const struct baking *b)
 
 relume_status bake_compress(relume_baked *out, const struct baking *b)
 {
-    struct taught t = {.count = count_taught(out, b)};
-    relume_status status = baked_make(out, b->log);
+    struct taught t = {.count = b->taught};
+    relume_status status = baked_make(out, NULL, b->log);
     const size_t blocks = (size_t)out->blocks;
     struct local_components *c = mem_zeroed(blocks, sizeof *c);
     if (!status && !c)

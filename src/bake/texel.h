@@ -24,6 +24,7 @@ struct baking {
     int count;                     // numbers of light in each view: 1, or those of the basis
     struct convolved **convolved;  // [materials]; NULL: asked light by light
     int rays, bounces, threads;
+    size_t taught;  // texels that components are learned from
     const struct relume_log *log;
     // [used][count][3]: the light that is sent, the mean over views, and what of the bounce before
     float *sent, *bounced;

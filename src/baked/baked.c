@@ -18,7 +18,8 @@ static uint64_t bytes_of(const relume_baked *b, bool stored)
            (uint64_t)b->info.triangles * sizeof *b->triangle;
 }
 
-relume_status baked_make(relume_baked *b, const struct relume_log *log)
+relume_status baked_make(relume_baked *b, const struct relume_limits *limits,
+                         const struct relume_log *log)
 {
     const size_t texels = (size_t)b->info.width * (size_t)b->info.height;
     const size_t n = texels * (size_t)b->blocks;
@@ -26,7 +27,7 @@ relume_status baked_make(relume_baked *b, const struct relume_log *log)
     b->vectors = (size_t)b->blocks * (size_t)b->info.clusters * (size_t)(1 + b->info.components) *
                  (size_t)(views / b->blocks);
     b->info.bytes = bytes_of(b, true);
-    const relume_status status = limits_memory(bytes_of(b, false), "the baked object", log);
+    const relume_status status = limits_memory(limits, bytes_of(b, false), "the baked object", log);
     if (status)
         return status;
     b->cluster = mem_array(n, sizeof *b->cluster);

@@ -202,6 +202,22 @@ static relume_status fill_rows(void *context, int row, int rows, void *samples)
     return RELUME_OK;
 }
 
+relume_status baked_check_file(const relume_baked *b, const struct relume_log *log)
+{
+    for (int k = 0; k < PARTS; k++) {
+        int64_t size[2];
+        size_of(size, b, k);
+        if (has_part(b, k) && (size[0] > SIDE_MOST || size[1] > SIDE_MOST))
+            return log_fail(
+                log, RELUME_ELIMIT,
+                "the baked object: part '%s' of its file would have %lld x %lld values; "
+                "expected at most %d a side: a smaller atlas or mesh, or fewer "
+                "components, clusters or views",
+                parts[k].name, (long long)size[0], (long long)size[1], SIDE_MOST);
+    }
+    return RELUME_OK;
+}
+
 relume_status relume_baked_save(const relume_baked *b, const char *path,
                                 const struct relume_log *log)
 {
@@ -228,16 +244,14 @@ relume_status relume_baked_save(const relume_baked *b, const char *path,
     struct source source[PARTS];
     struct exr_part part[PARTS];
     int n = 0;
+    const relume_status status = baked_check_file(b, log);
+    if (status)
+        return status;
     for (int k = 0; k < PARTS; k++) {
         int64_t size[2];
         if (!has_part(b, k))
             continue;
         size_of(size, b, k);
-        if (size[0] > SIDE_MOST || size[1] > SIDE_MOST)
-            return log_fail(log, RELUME_EIO,
-                            "%s: part '%s' would have %lld x %lld values; expected at most %d a "
-                            "side: a smaller atlas, or fewer components, clusters or views",
-                            path, parts[k].name, (long long)size[0], (long long)size[1], SIDE_MOST);
         source[n] = (struct source){b, k, (int)size[0]};
         part[n] = (struct exr_part){
             .name = parts[k].name,
@@ -282,9 +296,14 @@ static relume_status wrong(const struct reader *r, const char *what, const char 
 static relume_status read_number(int *out, const struct reader *r, const char *name, int low,
                                  int high)
 {
-    if (exr_get_int(r->file, 0, name, out) && *out >= low && *out <= high)
-        return RELUME_OK;
-    return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %d to %d", r->path, name, low, high);
+    if (!exr_get_int(r->file, 0, name, out))
+        return log_fail(r->log, RELUME_EFORMAT,
+                        "%s: lacks the attribute '%s'; expected a file that relume bake has made",
+                        r->path, name);
+    return *out >= low && *out <= high
+               ? RELUME_OK
+               : log_fail(r->log, RELUME_EFORMAT, "%s: its attribute '%s' is %d; expected %d to %d",
+                          r->path, name, *out, low, high);
 }
 
 static relume_status read_basis(relume_baked *b, const struct reader *r)
@@ -311,12 +330,14 @@ static relume_status read_basis(relume_baked *b, const struct reader *r)
                           !(i->cube & (i->cube - 1)) && i->kept >= 1 &&
                           i->kept <= i->cube * i->cube;
         status = good ? basis_make(&b->basis, NULL, 0, i->cube, 0, r->log)
-                      : wrong(r, "coefficients of haar", "a power of 2, and some kept");
+                      : wrong(r, "its attributes 'coefficients' and 'kept' fit no cube of lights",
+                              "2, 4, 8, 16 or 32, and from 1 to its square");
     } else if (i->basis && !i->basis->learned && !i->basis->upper_only && !i->basis->joint &&
                i->basis->has_count(i->coefficients) && directions >= i->coefficients) {
         status = basis_make(&b->basis, i->basis, i->coefficients, 0, directions, r->log);
     } else {
-        status = wrong(r, "basis", "fixed, haar or one for light from all sides");
+        status = wrong(r, "its basis of light is unknown, or has another number of coefficients",
+                       "fixed, haar, or one for light from all sides");
     }
     i->coefficients = b->basis.count;
     b->kept = i->cube ? 6 * i->kept : i->coefficients;
@@ -328,7 +349,8 @@ static relume_status read_about(relume_baked *b, const struct reader *r)
     struct relume_baked_info *i = &b->info;
     int version = 0, per_view = 0, triangles = 0, n = 0;
     if (!exr_get_int(r->file, 0, "bakedVersion", &version) || version != VERSION)
-        return wrong(r, "bakedVersion", "1: made by a newer relume, or nothing that was baked");
+        return wrong(r, "its attribute 'bakedVersion' is not 1",
+                     "an object that relume bake has made, by no newer version");
     relume_status status = read_basis(b, r);
     if (!status)
         status = read_number(&i->side, r, "viewSide", 1, RELUME_BAKED_MOST_SIDE);
@@ -362,7 +384,9 @@ static relume_status check_sizes(relume_baked *b, const struct reader *r)
             continue;
         const int at = find_part(r, k);
         if (at < 0)
-            return log_fail(r->log, RELUME_EFORMAT, "%s: no part '%s'", r->path, parts[k].name);
+            return log_fail(r->log, RELUME_EFORMAT,
+                            "%s: lacks the part '%s'; expected an object that relume bake has made",
+                            r->path, parts[k].name);
         const struct exr_part_info info = exr_part_info(r->file, at);
         if (k == ATLAS) {
             b->info.width = info.width / b->blocks;
@@ -372,11 +396,16 @@ static relume_status check_sizes(relume_baked *b, const struct reader *r)
         if (size[0] < 1 || info.width != size[0] || info.height != size[1] || info.subsampled ||
             info.tile || info.channels != parts[k].channels)
             return log_fail(r->log, RELUME_EFORMAT,
-                            "%s: part '%s'; expected %lld x %lld values in scanlines", r->path,
-                            parts[k].name, (long long)size[0], (long long)size[1]);
+                            "%s: its part '%s' has %d x %d values in %d channels; expected %lld x "
+                            "%lld in %d, in scanlines",
+                            r->path, parts[k].name, info.width, info.height, info.channels,
+                            (long long)size[0], (long long)size[1], parts[k].channels);
         for (int c = 0; c < info.channels; c++)
             if (strcmp(exr_channel_name(r->file, at, c), parts[k].channel[c]))
-                return wrong(r, "channels of another name", parts[k].channel[c]);
+                return log_fail(r->log, RELUME_EFORMAT,
+                                "%s: its part '%s' has a channel '%.40s'; expected '%s'", r->path,
+                                parts[k].name, exr_channel_name(r->file, at, c),
+                                parts[k].channel[c]);
     }
     return RELUME_OK;
 }
@@ -402,7 +431,10 @@ static relume_status read_part(relume_baked *b, int part, const struct reader *r
     if (status == RELUME_EDAMAGED)
         return log_fail(r->log, status, "%s: truncated or damaged in part '%s'", r->path,
                         parts[part].name);
-    return status || good ? status : wrong(r, parts[part].name, "values within their range");
+    return status || good ? status
+                          : log_fail(r->log, RELUME_EDAMAGED,
+                                     "%s: a value of its part '%s' is out of range or no number",
+                                     r->path, parts[part].name);
 }
 
 // A normal and a tangent that are about as long as halves can be of 1.
@@ -425,10 +457,12 @@ static relume_status check_texels(relume_baked *b, const struct reader *r)
         const bool none = b->cluster[i] == BAKED_NONE;
         b->info.texels += !none;
         if (!none && has_part(b, FRAMES) && !good_frame(b->frame[i]))
-            return wrong(r, "frames", "normals and tangents of length 1");
+            return wrong(r, "its part 'frames' has a vector of another length",
+                         "normals and tangents of length 1");
         for (int k = 1; k < b->blocks; k++)
             if ((b->cluster[(size_t)k * n + i] == BAKED_NONE) != none)
-                return wrong(r, "a texel has clusters for some views only", "for all or none");
+                return wrong(r, "a texel has clusters for some views only",
+                             "for all views, or for none");
     }
     return RELUME_OK;
 }
@@ -445,7 +479,7 @@ relume_status relume_baked_open(relume_baked **out, const char *path,
     if (!status)
         status = check_sizes(b, &r);
     if (!status)
-        status = baked_make(b, log);
+        status = baked_make(b, &r.limits, log);
     if (!status) {
         b->triangle = mem_zeroed(b->info.triangles, sizeof *b->triangle);
         status = b->triangle ? RELUME_OK : RELUME_ENOMEM;

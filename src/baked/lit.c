@@ -45,17 +45,12 @@ vec3 view_direction(int side, int number)
 
 // ---------------------------------------------------------------- lights
 
-static vec3 turned_back(const struct frame *f, vec3 d)
-{
-    return vec3_unit(vec3_of(vec3_dot(d, f->x), vec3_dot(d, f->y), vec3_dot(d, f->z)));
-}
-
 static void add_light(float *weights, const relume_baked *b, const struct frame *stands,
                       const struct relume_light *light)
 {
     int n;
     if (light->kind == RELUME_LIGHT_DIRECTIONAL)
-        basis_add(weights, &b->basis, turned_back(stands, light->direction), light->rgb);
+        basis_add(weights, &b->basis, frame_turned_back(stands, light->direction), light->rgb);
     if (light->kind != RELUME_LIGHT_ENVIRONMENT)
         return;
     const struct relume_environment_cell *cell = relume_environment_cells(&n, light->environment);
@@ -63,7 +58,7 @@ static void add_light(float *weights, const relume_baked *b, const struct frame 
         const vec3 d = relume_environment_turn(cell[i].direction, light->rotate_deg);
         const float rgb[3] = {cell[i].rgb[0] * light->rgb[0], cell[i].rgb[1] * light->rgb[1],
                               cell[i].rgb[2] * light->rgb[2]};
-        basis_add(weights, &b->basis, turned_back(stands, d), rgb);
+        basis_add(weights, &b->basis, frame_turned_back(stands, d), rgb);
     }
 }
 

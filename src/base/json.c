@@ -161,6 +161,12 @@ bool jvalue_may_hold(const char *text)
 }
 
 // JSON is UTF-8; a name that is not, as disks allow, is written as it is shown.
+char *jvalue_print(const jvalue *value)
+{
+    char *made = json_dumps(value, JSON_COMPACT | JSON_ENSURE_ASCII);
+    return mem_take(made);
+}
+
 char *jvalue_quote(const char *text)
 {
     char *copy = jvalue_may_hold(text) ? NULL : mem_text(text);

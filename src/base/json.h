@@ -44,6 +44,8 @@ bool jvalue_numbers(const jvalue *array, double *out, size_t count);
 bool jvalue_place(int line_column[2], const char *path, const struct relume_log *log,
                   const char *array, size_t index, const char *key);
 
+// The value as JSON in one line of ASCII, to be freed; NULL when memory is short.
+char *jvalue_print(const jvalue *value);
 // `text` as a JSON string with its quotes, to be freed; NULL when it cannot be one.
 char *jvalue_quote(const char *text);
 // Whether it can: it is UTF-8.

@@ -250,9 +250,10 @@ struct memory_size memory_text(uint64_t bytes, uint64_t beside)
     return size;
 }
 
-relume_status limits_memory(uint64_t bytes, const char *what, const struct relume_log *log)
+relume_status limits_memory(const struct relume_limits *limits, uint64_t bytes, const char *what,
+                            const struct relume_log *log)
 {
-    const uint64_t most = limits_or_default(limits_of(NULL, log)).max_memory;
+    const uint64_t most = limits_or_default(limits_of(limits, log)).max_memory;
     return bytes <= most
                ? RELUME_OK
                : log_fail(log, RELUME_ELIMIT, "%s takes %s; expected at most %s (--max-memory)",

@@ -46,8 +46,9 @@ bool limits_allow(const struct relume_limits *limits, int64_t width, int64_t hei
 relume_status limits_picture(const struct relume_limits *limits, const char *path, int64_t width,
                              int64_t height, const struct relume_log *log);
 // RELUME_ELIMIT with a sentence when `what` takes more bytes than one picture, view or model may by
-// the limits of the log's context.
-relume_status limits_memory(uint64_t bytes, const char *what, const struct relume_log *log);
+// these limits, or where they are NULL by those of the log's context.
+relume_status limits_memory(const struct relume_limits *limits, uint64_t bytes, const char *what,
+                            const struct relume_log *log);
 // For people, in MB of 2^20 bytes, rounded up, unless `beside` would look the same: "12 MB".
 struct memory_size {
     char text[32];

@@ -1,6 +1,8 @@
 // thread.c - loops over independent items on several cores
 #include "base/thread.h"
 
+#include "base/log.h"
+
 #include <sched.h>
 #include <stdatomic.h>
 
@@ -30,6 +32,8 @@ struct loop {
     size_t items;
     void (*body)(void *, size_t, int);
     void *context;
+    const struct thread_told *told;  // NULL: nobody listens
+    atomic_bool stopped;
 };
 
 struct worker {
@@ -50,19 +54,31 @@ int thread_count(int threads)
     return n > MAX_THREADS ? MAX_THREADS : n;
 }
 
+// In the caller's thread, the first worker, alone.
+static bool tell(const struct thread_told *t, size_t item, size_t items)
+{
+    const double share = ((double)item + 1.0) / (double)items;
+    return log_progress(t->log, t->what, t->from + (t->to - t->from) * share);
+}
+
 static void *run(void *argument)
 {
     const struct worker *w = argument;
     struct loop *loop = w->loop;
     size_t item;
-    while ((item = atomic_fetch_add(&loop->next, 1)) < loop->items)
+    while (!atomic_load(&loop->stopped) &&
+           (item = atomic_fetch_add(&loop->next, 1)) < loop->items) {
         loop->body(loop->context, item, w->index);
+        if (loop->told && w->index == 0 && !tell(loop->told, item, loop->items))
+            atomic_store(&loop->stopped, true);
+    }
     return NULL;
 }
 
-void thread_for(int threads, size_t items, void (*body)(void *, size_t, int), void *context)
+bool thread_for_told(int threads, size_t items, void (*body)(void *, size_t, int), void *context,
+                     const struct thread_told *told)
 {
-    struct loop loop = {.items = items, .body = body, .context = context};
+    struct loop loop = {.items = items, .body = body, .context = context, .told = told};
     struct worker workers[MAX_THREADS];
     pthread_t ids[MAX_THREADS];
     int count = thread_count(threads);
@@ -80,6 +96,12 @@ void thread_for(int threads, size_t items, void (*body)(void *, size_t, int), vo
     run(&workers[0]);
     for (int i = 1; i < started; i++)
         pthread_join(ids[i], NULL);
+    return !atomic_load(&loop.stopped);
+}
+
+void thread_for(int threads, size_t items, void (*body)(void *, size_t, int), void *context)
+{
+    (void)thread_for_told(threads, items, body, context, NULL);
 }
 
 static void *run_task(void *argument)

@@ -15,6 +15,17 @@ int thread_count(int threads);
 void thread_for(int threads, size_t items, void (*body)(void *context, size_t item, int worker),
                 void *context);
 
+// The same, while a log hears how much of the work is done: from `from` on up to `to`. False where
+// it asks to stop: then some items are left out.
+struct thread_told {
+    const struct relume_log *log;
+    const char *what;
+    double from, to;
+};
+bool thread_for_told(int threads, size_t items,
+                     void (*body)(void *context, size_t item, int worker), void *context,
+                     const struct thread_told *told);
+
 // One piece of work beside the caller's; runs at once where no thread can be had. A zeroed task is
 // idle; start only idle tasks.
 struct thread_task {

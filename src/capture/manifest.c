@@ -369,6 +369,18 @@ static relume_status read_transfer(const struct parser *p, const jvalue *value)
     return relume_response_load(response, path, p->log);
 }
 
+static relume_status read_provenance(const struct parser *p, const jvalue *value)
+{
+    if (!value || jvalue_is_null(value))
+        return RELUME_OK;
+    if (!jvalue_is_object(value))
+        return wrong(p, "provenance", "an object");
+    char *text = jvalue_print(value);
+    p->d->m.provenance = text ? arena_text(&p->d->arena, text) : NULL;
+    mem_free(text);
+    return p->d->m.provenance ? RELUME_OK : RELUME_ENOMEM;
+}
+
 static relume_status read_root(const struct parser *p, const jvalue *root)
 {
     const char *format = jvalue_text(jvalue_member(root, "format"));
@@ -391,6 +403,8 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
         status = read_lights(p, jvalue_member(root, "lights"));
     if (!status)
         status = read_views(p, jvalue_member(root, "views"));
+    if (!status)
+        status = read_provenance(p, jvalue_member(root, "provenance"));
     draft_publish(d);
     return status;
 }

@@ -138,6 +138,8 @@ relume_status relume_manifest_write(const struct relume_manifest *manifest, cons
     fprintf(f, "{\n  \"format\": \"relume-capture\",\n  \"version\": %d,\n", MANIFEST_VERSION);
     if (manifest->transfer.curve != RELUME_CURVE_AUTO)
         fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
+    if (manifest->provenance)
+        fprintf(f, "  \"provenance\": %s,\n", manifest->provenance);
     put_geometry(f, manifest);
     put_lights(f, manifest);
     fputs("  \"views\": [\n", f);

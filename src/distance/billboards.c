@@ -85,7 +85,7 @@ static relume_status find_planes(struct work *w)
     if (status)
         return status;
     return p->method == RELUME_BILLBOARDS_GREEDY
-               ? greedy_planes(&w->partition, &w->soup, w->error)
+               ? greedy_planes(&w->partition, &w->soup, w->error, p->log)
                : cluster_planes(&w->partition, &w->soup, w->error, p);
 }
 
@@ -150,8 +150,11 @@ static relume_status fill(struct relume_billboards *out, const struct work *w,
     if (!out->owner)
         return RELUME_ENOMEM;
     memset(out->owner, 0xff, triangle_count * sizeof *out->owner);
-    for (size_t i = 0; i < out->count; i++)
+    for (size_t i = 0; i < out->count; i++) {
         texels_fill(out, i, &w->soup, &w->partition, &f);
+        if (!log_progress(w->p->log, "texels", (i + 1.0) / (double)out->count))
+            return RELUME_ECANCEL;
+    }
     return RELUME_OK;
 }
 
@@ -179,10 +182,11 @@ relume_status relume_billboards_create(struct relume_billboards *out,
     if (!status)
         status = fill(out, &w, mesh->triangle_count);
     if (!status && p.count && out->count > (size_t)p.count)
-        log_line(p.log, RELUME_WARNING,
-                 "%zu billboards in place of %d: others would turn from their triangles by more "
-                 "than %g degrees, or be emptier than allowed",
-                 out->count, p.count, p.angle_deg);
+        log_line(
+            p.log, RELUME_WARNING,
+            "%zu billboards, more than the %d asked for: fewer would be tilted by more than %g "
+            "degrees against what they show, or be emptier than %g %% (--angle, --waste)",
+            out->count, p.count, p.angle_deg, 100.0 * p.waste);
     if (status)
         relume_billboards_free(out);
     soup_free(&w.soup);

@@ -13,6 +13,7 @@
 #include "distance/near.h"
 #include "distance/partition.h"
 
+#include "base/log.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -309,17 +310,21 @@ static bool merge(struct work *w, uint32_t a, uint32_t b)
     return good;
 }
 
-static bool run(struct work *w, size_t wanted)
+static relume_status run(struct work *w, size_t wanted, const struct relume_log *log)
 {
+    enum { TOLD_EVERY = 1024 };
     bool good = true;
-    while (good && w->pairs && w->left > wanted) {
+    for (size_t i = 0; good && w->pairs && w->left > wanted; i++) {
         const struct pair p = pop(w);
+        if (i % TOLD_EVERY == 0 &&
+            !log_progress(log, "clusters", 1.0 - (double)w->left / (double)w->s->count))
+            return RELUME_ECANCEL;
         const struct cluster *const a = &w->cluster[p.a], *const b = &w->cluster[p.b];
         const bool is_old = a->version != p.version_a || b->version != p.version_b;
         if (!is_old && fits(w, a, b))
             good = merge(w, p.a, p.b);
     }
-    return good;
+    return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
 // ---------------------------------------------------------------- begin and end
@@ -399,11 +404,15 @@ relume_status cluster_planes(struct partition *out, const struct soup *s, double
                      .neighbours = params->neighbours};
     w.cluster = mem_zeroed(s->count, sizeof *w.cluster);
     w.seen = mem_zeroed(s->count, sizeof *w.seen);
-    const bool good = w.cluster && w.seen && begin(&w) && run(&w, (size_t)params->count) && end(&w);
+    relume_status status = w.cluster && w.seen && begin(&w) ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = run(&w, (size_t)params->count, params->log);
+    if (!status && !end(&w))
+        status = RELUME_ENOMEM;
     for (size_t i = 0; w.cluster && i < s->count; i++)
         mem_free(w.cluster[i].near);
     mem_free(w.cluster);
     mem_free(w.seen);
     mem_free(w.heap);
-    return good ? RELUME_OK : RELUME_ENOMEM;
+    return status;
 }

@@ -10,6 +10,7 @@
 // subdivision of cells.
 #include "distance/partition.h"
 
+#include "base/log.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -159,7 +160,8 @@ static bool sort(struct work *w)
     return sized != NULL;
 }
 
-relume_status greedy_planes(struct partition *out, const struct soup *s, double error)
+relume_status greedy_planes(struct partition *out, const struct soup *s, double error,
+                            const struct relume_log *log)
 {
     enum { MOST_OFFSETS = 8192 };
     struct work w = {.s = s, .out = out, .error = error, .left = s->count};
@@ -173,13 +175,17 @@ relume_status greedy_planes(struct partition *out, const struct soup *s, double 
     out->plane = mem_array(s->count, sizeof *out->plane);
     out->head = mem_array(s->count, sizeof *out->head);
     const bool good = w.votes && w.taken && w.order && out->plane && out->head && sort(&w);
+    relume_status status = good ? RELUME_OK : RELUME_ENOMEM;
     spread(w.direction);
-    for (size_t i = 0; good && i < s->count; i++)
+    for (size_t i = 0; !status && i < s->count; i++)
         vote(&w, i, 1.0);
-    while (good && w.left)
+    while (!status && w.left) {
         take(&w, choose(&w));
+        if (!log_progress(log, "planes", 1.0 - (double)w.left / (double)s->count))
+            status = RELUME_ECANCEL;
+    }
     mem_free(w.votes);
     mem_free(w.taken);
     mem_free(w.order);
-    return good ? RELUME_OK : RELUME_ENOMEM;
+    return status;
 }

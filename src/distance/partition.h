@@ -17,9 +17,10 @@ struct partition {
 relume_status partition_create(struct partition *out, const struct soup *s);
 void partition_free(struct partition *p);
 
-// `error` is a length here, infinite for none. RELUME_ENOMEM.
+// `error` is a length here, infinite for none. RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status cluster_planes(struct partition *out, const struct soup *s, double error,
                              const struct relume_billboards_params *params);
-relume_status greedy_planes(struct partition *out, const struct soup *s, double error);
+relume_status greedy_planes(struct partition *out, const struct soup *s, double error,
+                            const struct relume_log *log);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "math/base64.h"
 #include "math/bilinear.h"
 #include "math/scalar.h"
 
@@ -34,8 +35,6 @@ relume_status drawing_keep(struct relume_image *out, const struct relume_image *
 }
 
 // ---------------------------------------------------------------- as text
-
-static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 // How many bytes from `at` on are alike, up to 128.
 static size_t run_length(const uint8_t *byte, size_t at, size_t n)
@@ -88,39 +87,12 @@ static bool unpack(uint8_t *out, size_t n, const uint8_t *packed, size_t size)
     return at == n;
 }
 
-static char *base64(const uint8_t *byte, size_t n)
+static char *text_of(const uint8_t *bytes, size_t n)
 {
-    char *text = mem_array((n + 2) / 3 * 4 + 1, 1), *to = text;
-    for (size_t i = 0; text && i < n; i += 3) {
-        const uint32_t bits = (uint32_t)byte[i] << 16 |
-                              (i + 1 < n ? (uint32_t)byte[i + 1] << 8 : 0) |
-                              (i + 2 < n ? (uint32_t)byte[i + 2] : 0);
-        for (int k = 0; k < 4; k++)
-            *to++ = i + (size_t)k > n ? '=' : digits[bits >> (18 - 6 * k) & 63];
-    }
+    char *text = mem_zeroed(base64_length(n) + 1, 1);
     if (text)
-        *to = '\0';
+        base64_text(text, bytes, n);
     return text;
-}
-
-// How many bytes, or -1 for a text that is none.
-static ptrdiff_t from_base64(uint8_t *out, const char *text)
-{
-    const size_t n = strlen(text);
-    const size_t end = n - (n && text[n - 1] == '=') - (n > 1 && text[n - 2] == '=');
-    uint32_t bits = 0;
-    ptrdiff_t size = 0;
-    if (n % 4)
-        return -1;
-    for (size_t i = 0; i < n; i++) {
-        const char *digit = i < end ? strchr(digits, text[i]) : digits;
-        if (!digit)
-            return -1;
-        bits = bits << 6 | (uint32_t)(digit - digits);
-        for (int k = 2; i % 4 == 3 && k >= 0; k--)
-            out[size++] = (uint8_t)(bits >> 8 * k);
-    }
-    return size - (ptrdiff_t)(n - end);
 }
 
 char *drawing_text(const struct relume_image *picture)
@@ -131,7 +103,7 @@ char *drawing_text(const struct relume_image *picture)
     for (size_t i = 0; level && i < n; i++)
         level[i] = (uint8_t)level_of(picture->data[i]);
     if (level && packed)
-        text = base64(packed, pack(packed, level, n));
+        text = text_of(packed, pack(packed, level, n));
     mem_free(level);
     mem_free(packed);
     return text;
@@ -147,7 +119,7 @@ bool drawing_from_text(struct relume_image *out, int width, int height, const ch
     uint8_t *packed = mem_array(strlen(text) + 1, 1), *level = mem_array(n, 1);
     bool good = true;
     if (packed && level) {
-        const ptrdiff_t size = from_base64(packed, text);
+        const ptrdiff_t size = base64_bytes(packed, text);
         good = size >= 0 && unpack(level, n, packed, (size_t)size);
         for (size_t i = 0; good && i < n; i++)
             out->data[i] = (float)level[i] / 255.0f;

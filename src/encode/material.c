@@ -146,6 +146,7 @@ void material_contents(struct relume_pack_contents *contents, const struct mater
         .view = m->view,
         .preview = relume_pack_preview,
         .preview_user = contents,
+        .provenance = manifest->provenance,
     };
 }
 

@@ -71,10 +71,14 @@ relume_status field_plan(struct field *f, double voxel, const struct relume_log 
     const double longest = fmax(extent.x, fmax(extent.y, extent.z));
     f->voxel = voxel > 0.0 ? voxel : fmax(median_step(f, step), longest / MOST_VOXELS);
     const double most = longest / f->voxel + 2 * FIELD_BAND + 4;
-    if (!(f->voxel > 0.0) || !(most < 65536.0))
+    if (!(f->voxel > 0.0))
+        return log_fail(log, RELUME_EUNFIT,
+                        "all of the depth lies at one place; expected a surface");
+    if (!(most < 65536.0))
         return log_fail(log, RELUME_EINVAL,
-                        "voxels of %g for a scene of %g; expected at most 65536 along a side",
-                        f->voxel, longest);
+                        "voxels of a side of %g are too fine for a scene that is %g long; expected "
+                        "at least %.3g, 65536 of them along a side",
+                        f->voxel, longest, longest / 65000.0);
     const double margin = (FIELD_BAND + 1) * f->voxel, e[3] = {extent.x, extent.y, extent.z};
     f->origin = vec3_sub(low, vec3_of(margin, margin, margin));
     for (int c = 0; c < 3; c++)
@@ -197,9 +201,13 @@ relume_status field_fuse(struct field *f, const struct relume_volume_params *par
     k.near = mem_zeroed(blocks, 1);
     if (!k.near)
         return RELUME_ENOMEM;
-    thread_for(f->threads, (size_t)f->witnesses, mark_view, &k);
-    thread_for(f->threads, (size_t)k.blocks[2], fuse_layer, &k);
+    struct thread_told told = {params->log, "fusing", 0.0, 0.1};
+    bool whole = thread_for_told(f->threads, (size_t)f->witnesses, mark_view, &k, &told);
+    told = (struct thread_told){params->log, "fusing", 0.1, 1.0};
+    whole = whole && thread_for_told(f->threads, (size_t)k.blocks[2], fuse_layer, &k, &told);
     mem_free(k.near);
+    if (!whole)
+        return RELUME_ECANCEL;
     f->volume->min = 0.0f;
     f->volume->max = UINT16_MAX;
     return RELUME_OK;

@@ -24,7 +24,8 @@ struct field {
 // Where the volume lies that holds all that is seen; `voxel` 0: chosen. RELUME_EUNFIT,
 // RELUME_EINVAL with a sentence.
 relume_status field_plan(struct field *f, double voxel, const struct relume_log *log);
-// Fuse: `f->volume` is the caller's to destroy. RELUME_ENOMEM, RELUME_ELIMIT, RELUME_EIO.
+// Fuse: `f->volume` is the caller's to destroy. RELUME_ENOMEM, RELUME_ELIMIT, RELUME_EIO,
+// RELUME_ECANCEL.
 relume_status field_fuse(struct field *f, const struct relume_volume_params *params);
 
 #endif

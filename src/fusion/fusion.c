@@ -51,7 +51,7 @@ static relume_status open_witnesses(struct witness *witness, relume_pack *pack,
     const struct relume_pack_info *info = relume_pack_info(pack);
     const uint64_t bytes =
         (uint64_t)info->views * (uint64_t)info->width * (uint64_t)info->height * 8;
-    relume_status status = limits_memory(bytes, "the depth of all views", p->log);
+    relume_status status = limits_memory(NULL, bytes, "the depth of all views", p->log);
     for (int i = 0; i < info->views && !status; i++) {
         status = open_witness(&witness[i], pack, i, p);
         if (!status && !log_progress(p->log, "depth", (i + 1.0) / info->views))

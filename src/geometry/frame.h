@@ -31,6 +31,12 @@ static inline vec3 frame_normal(const struct frame *f, vec3 n)
     return vec3_length(v) > 0.0 ? vec3_unit(v) : n;
 }
 
+// The unit direction of a vector of the world, in a frame that turns and scales evenly.
+static inline vec3 frame_turned_back(const struct frame *f, vec3 v)
+{
+    return vec3_unit(vec3_of(vec3_dot(v, f->x), vec3_dot(v, f->y), vec3_dot(v, f->z)));
+}
+
 // First `inner`, then `outer`.
 static inline struct frame frame_compose(struct frame outer, struct frame inner)
 {

@@ -292,13 +292,15 @@ static relume_status run(struct relume_mesh *out, struct relume_isosurface_repor
                          struct climb *k)
 {
     const struct signs *g = k->g;
-    thread_for(g->threads, (size_t)k->blocks[2], climb_layer, k);
+    if (!signs_pass(g, (size_t)k->blocks[2], climb_layer, k, 0.0, 0.6))
+        return RELUME_ECANCEL;
     for (int z = 0; z < k->blocks[2]; z++)
         if (k->layer[z].failed)
             return RELUME_ENOMEM;
     for (int i = 0; i < g->threads; i++)
         faces_begin(&k->worker[i].faces, g, k->share);
-    thread_for(g->threads, (size_t)k->blocks[2], put_layer, k);
+    if (!signs_pass(g, (size_t)k->blocks[2], put_layer, k, 0.6, 0.9))
+        return RELUME_ECANCEL;
     return finish(out, report, k);
 }
 

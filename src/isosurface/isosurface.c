@@ -59,9 +59,8 @@ relume_status relume_isosurface(struct relume_mesh *out, struct relume_isosurfac
         status = signs_create(&g, volume, (float)threshold, thread_count(p.threads));
     for (int i = 0; i < levels && !status; i++) {
         struct relume_isosurface_report own = {0};
-        status = log_progress(p.log, "surface", (double)i / levels)
-                     ? mesh_level(&out[i], &own, &g, blocks[i])
-                     : RELUME_ECANCEL;
+        g.told = (struct thread_told){p.log, "surface", (double)i / levels, (i + 1.0) / levels};
+        status = mesh_level(&out[i], &own, &g, blocks[i]);
         own.seconds = now_s() - start;
         start += own.seconds;
         if (report)

@@ -93,6 +93,17 @@ relume_status signs_create(struct signs *g, const relume_volume *volume, float t
     return RELUME_OK;
 }
 
+bool signs_pass(const struct signs *g, size_t layers,
+                void (*body)(void *context, size_t item, int worker), void *context, double from,
+                double to)
+{
+    struct thread_told told = g->told;
+    const double all = told.to - told.from;
+    told.to = told.from + to * all;
+    told.from += from * all;
+    return thread_for_told(g->threads, layers, body, context, &told);
+}
+
 void signs_free(struct signs *g)
 {
     mem_free(g->bits);

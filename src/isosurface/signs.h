@@ -5,6 +5,7 @@
 #ifndef ISOSURFACE_SIGNS_H
 #define ISOSURFACE_SIGNS_H
 
+#include "base/thread.h"
 #include "volume/volume.h"
 
 struct signs {
@@ -15,7 +16,13 @@ struct signs {
     float threshold;
     uint64_t *bits;  // [rows][words]; beyond the end of a row stands its last bit
     int threads;
+    struct thread_told told;  // of the mesh that is made
 };
+
+// All layers of a pass, which is that share of a mesh; false: somebody asked to stop.
+bool signs_pass(const struct signs *g, size_t layers,
+                void (*body)(void *context, size_t item, int worker), void *context, double from,
+                double to);
 
 // RELUME_ENOMEM.
 relume_status signs_create(struct signs *g, const relume_volume *volume, float threshold,

@@ -5,8 +5,11 @@
 
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,28 +22,133 @@ static vec3 vector(const struct aiVector3D *list, unsigned i)
                 : vec3_of(0, 0, 0);
 }
 
-static int part_of(struct mesh_file *out, const struct aiScene *scene, const struct aiMesh *mesh)
+// ---------------------------------------------------------------- materials
+
+// Within the model; NULL: it is none of those. A star stands before a number.
+static const struct aiTexture *texture_in(const struct aiScene *scene, const char *name)
 {
-    struct aiString name = {.length = 0};
-    char number[32];
-    if (mesh->mMaterialIndex < scene->mNumMaterials)
-        (void)aiGetMaterialString(scene->mMaterials[mesh->mMaterialIndex], AI_MATKEY_NAME, &name);
-    snprintf(number, sizeof number, "%u", mesh->mMaterialIndex);
-    return mesh_file_part(out, name.length ? name.data : number);
+    const unsigned long number = *name == '*' ? strtoul(name + 1, NULL, 10) : ULONG_MAX;
+    for (unsigned i = 0; i < scene->mNumTextures; i++)
+        if (number == i || !strcmp(scene->mTextures[i]->mFilename.data, name))
+            return scene->mTextures[i];
+    return NULL;
 }
 
-static bool add_mesh(struct mesh_file *out, const struct aiScene *scene, const struct aiMesh *from)
+// A picture within the model, or the name of a file; -1: it cannot be had.
+static int picture_named(struct mesh_file *out, const struct aiScene *scene, const char *name)
 {
-    const int part = part_of(out, scene, from);
+    const struct aiTexture *t = texture_in(scene, name);
+    if (!t)
+        return mesh_file_picture(out, name);
+    // without a height it is a file of that many bytes
+    return t->mHeight ? -1 : mesh_file_picture_of(out, name, t->pcData, t->mWidth);
+}
+
+static int picture_of(struct mesh_file *out, const struct aiScene *scene,
+                      const struct aiMaterial *material, enum aiTextureType type)
+{
+    struct aiString name = {.length = 0};
+    const bool found = aiGetMaterialTexture(material, type, 0, &name, NULL, NULL, NULL, NULL, NULL,
+                                            NULL) == aiReturn_SUCCESS;
+    return found && name.length ? picture_named(out, scene, name.data) : -1;
+}
+
+static float within(float x)
+{
+    return fminf(fmaxf(x, 0.0f), 1.0f);  // NaN: 0
+}
+
+static void read_factor(float *to, const struct aiMaterial *material, const char *key)
+{
+    ai_real value = 0;
+    unsigned most = 1;
+    if (aiGetMaterialFloatArray(material, key, 0, 0, &value, &most) == aiReturn_SUCCESS)
+        *to = within((float)value);
+}
+
+// Where the file is no glTF it may say only what is diffuse.
+static struct mesh_look look_of(struct mesh_file *out, const struct aiScene *scene,
+                                const struct aiMaterial *material)
+{
+    struct mesh_look look = {
+        .given = true, .colour = {1, 1, 1}, .roughness = 1, .picture = -1, .surface = -1};
+    struct aiColor4D c;
+    if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &c) == aiReturn_SUCCESS ||
+        aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &c) == aiReturn_SUCCESS) {
+        look.colour[0] = within(c.r);
+        look.colour[1] = within(c.g);
+        look.colour[2] = within(c.b);
+    }
+    read_factor(&look.metallic, material, "$mat.metallicFactor");
+    read_factor(&look.roughness, material, "$mat.roughnessFactor");
+    look.picture = picture_of(out, scene, material, aiTextureType_BASE_COLOR);
+    if (look.picture < 0)
+        look.picture = picture_of(out, scene, material, aiTextureType_DIFFUSE);
+    look.surface = picture_of(out, scene, material, aiTextureType_UNKNOWN);
+    return look;
+}
+
+// Materials may share a name.
+static int part_of(struct mesh_file *out, const struct aiScene *scene, const struct aiMesh *mesh,
+                   int *part)
+{
+    const unsigned number = mesh->mMaterialIndex;
+    struct aiString name = {.length = 0};
+    char text[32];
+    if (number >= scene->mNumMaterials)
+        return mesh_file_part(out, "0");
+    if (part[number] >= 0)
+        return part[number];
+    const struct aiMaterial *material = scene->mMaterials[number];
+    (void)aiGetMaterialString(material, AI_MATKEY_NAME, &name);
+    snprintf(text, sizeof text, "%u", number);
+    part[number] = mesh_file_new_part(out, name.length ? name.data : text);
+    if (part[number] >= 0)
+        out->look[part[number]] = look_of(out, scene, material);
+    return part[number];
+}
+
+// ---------------------------------------------------------------- meshes
+
+static uint8_t srgb_byte(float linear)
+{
+    const double x = (double)within(linear);
+    const double code = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;
+    return (uint8_t)lrint(255.0 * code);
+}
+
+// Colours of vertices are linear in glTF. Where only some meshes have them the others are white.
+static bool add_colour(struct mesh_file *out, uint32_t vertex, const struct aiColor4D *c)
+{
+    uint8_t rgba[4] = {255, 255, 255, 255};
+    if (!mem_grow(&out->colour, vertex, sizeof *out->colour))
+        return false;
+    if (c) {
+        const float value[3] = {c->r, c->g, c->b};
+        for (int i = 0; i < 3; i++)
+            rgba[i] = srgb_byte(value[i]);
+        rgba[3] = (uint8_t)lrintf(255.0f * within(c->a));
+    }
+    memcpy(out->colour[vertex], rgba, sizeof rgba);
+    return true;
+}
+
+static bool add_mesh(struct mesh_file *out, const struct aiScene *scene, const struct aiMesh *from,
+                     int *parts, bool coloured)
+{
+    const int part = part_of(out, scene, from, parts);
     const uint32_t first = (uint32_t)out->mesh.vertex_count;
     if (part < 0)
         return false;
     out->has_uv |= from->mTextureCoords[0] != NULL;
-    for (unsigned i = 0; i < from->mNumVertices; i++) {
+    for (unsigned i = 0; i < from->mNumVertices && !out->mesh.failed; i++) {
         const vec3 n = vector(from->mNormals, i);
-        mesh_vertex(&out->mesh, vector(from->mVertices, i),
-                    vec3_length(n) > 0.0 ? vec3_unit(n) : vec3_of(0, 0, 1),
-                    vector(from->mTextureCoords[0], i));
+        const uint32_t vertex = mesh_vertex(&out->mesh, vector(from->mVertices, i),
+                                            vec3_length(n) > 0.0 ? vec3_unit(n) : vec3_of(0, 0, 1),
+                                            vector(from->mTextureCoords[0], i));
+        if (coloured && !out->mesh.failed)
+            out->mesh.failed =
+                !add_colour(out, vertex, from->mColors[0] ? &from->mColors[0][i] : NULL);
     }
     for (unsigned i = 0; i < from->mNumFaces; i++) {
         const struct aiFace *f = &from->mFaces[i];
@@ -50,6 +158,20 @@ static bool add_mesh(struct mesh_file *out, const struct aiScene *scene, const s
                           first + f->mIndices[2], (uint32_t)part);
     }
     return !out->mesh.failed;
+}
+
+static bool add_meshes(struct mesh_file *out, const struct aiScene *scene)
+{
+    int *part = mem_array(scene->mNumMaterials, sizeof *part);
+    bool good = part != NULL, coloured = false;
+    for (unsigned i = 0; part && i < scene->mNumMaterials; i++)
+        part[i] = -1;
+    for (unsigned i = 0; i < scene->mNumMeshes; i++)
+        coloured |= scene->mMeshes[i]->mColors[0] != NULL;
+    for (unsigned i = 0; i < scene->mNumMeshes && good; i++)
+        good = add_mesh(out, scene, scene->mMeshes[i], part, coloured);
+    mem_free(part);
+    return good;
 }
 
 // Assimp leaves out faces of vertices that are not there, and says so in passing.
@@ -179,9 +301,7 @@ static bool read_model(struct mesh_file *out, const struct mesh_source *source,
         out->made_normals |= !scene->mMeshes[i]->mNormals;
     if (out->made_normals)
         (void)aiApplyPostProcessing(scene, aiProcess_GenSmoothNormals);
-    bool good = true;
-    for (unsigned i = 0; i < scene->mNumMeshes && good; i++)
-        good = add_mesh(out, scene, scene->mMeshes[i]);
+    const bool good = add_meshes(out, scene);
     aiReleaseImport(scene);
     return good;
 }

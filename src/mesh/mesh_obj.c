@@ -6,7 +6,6 @@
 #include "mesh/mesh_file.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 // One of the file's three lists of vectors.
@@ -30,6 +29,7 @@ struct obj {
     uint32_t *smooth_of;  // vertex -> position number
     bool has_materials;   // parts go by usemtl, else by g
     uint32_t part;
+    struct mesh_library library;
 };
 
 static relume_status push(struct list *list, vec3 v)
@@ -159,10 +159,18 @@ static relume_status read_library(struct obj *o, const char *name)
     char *path = mesh_beside(o->path, name);
     if (!path)
         return RELUME_ENOMEM;
-    if (!o->out->picture)
-        o->out->picture = mesh_mtl_picture(path, o->log);
+    const relume_status status = mesh_read_mtl(&o->library, o->out, path, o->log);
     mem_free(path);
-    return RELUME_OK;
+    return status;
+}
+
+static void take_looks(const struct obj *o)
+{
+    for (int i = 0; i < o->out->parts && o->has_materials; i++) {
+        const struct mesh_look *look = mesh_library_find(&o->library, o->out->part[i]);
+        if (look)
+            o->out->look[i] = *look;
+    }
 }
 
 // What follows belongs to this part.
@@ -283,6 +291,9 @@ relume_status mesh_read_obj(struct mesh_file *out, const char *text, size_t size
         status = make_normals(&o);
     if (!status && o.v.count && o.colour.count == o.v.count)
         status = take_colours(&o);
+    if (!status)
+        take_looks(&o);
+    mesh_library_free(&o.library);
     mem_free(copy);
     mem_free(o.colour.at);
     mem_free(o.v.at);
@@ -290,21 +301,4 @@ relume_status mesh_read_obj(struct mesh_file *out, const char *text, size_t size
     mem_free(o.vn.at);
     mem_free(o.smooth_of);
     return status;
-}
-
-char *mesh_mtl_picture(const char *path, const struct relume_log *log)
-{
-    FILE *file = input_open(path, log);
-    char line[4096], *picture = NULL;
-    while (file && !picture && fgets(line, sizeof line, file)) {
-        char *text = line + strspn(line, " \t");
-        text[strcspn(text, "\r\n")] = '\0';
-        if (!strncmp(text, "map_Kd", 6) && strchr(" \t", text[6])) {
-            text += 6 + strspn(text + 6, " \t");
-            picture = *text ? mesh_beside(path, text) : NULL;
-        }
-    }
-    if (file)
-        fclose(file);
-    return picture;
 }

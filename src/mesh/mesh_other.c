@@ -63,6 +63,7 @@ static relume_status ask(struct helper_job *job, struct mesh_answer *answer,
     answer->text[sizeof answer->text - 1] = '\0';
     helper_bool(&answer->has_uv);
     helper_bool(&answer->made_normals);
+    helper_bool(&answer->has_colours);
     return RELUME_OK;
 }
 
@@ -84,10 +85,10 @@ static relume_status have_read(struct helper_job *job, struct mesh_answer *answe
 
 static bool names_are_whole(const char *names, const struct mesh_answer *a)
 {
-    uint64_t parts = 0;
+    uint64_t count = 0;
     for (uint64_t i = 0; i < a->names_bytes; i++)
-        parts += !names[i];
-    return parts == a->parts && (!a->names_bytes || !names[a->names_bytes - 1]);
+        count += !names[i];
+    return count == a->parts + a->pictures && (!a->names_bytes || !names[a->names_bytes - 1]);
 }
 
 static bool triangles_are_sound(const struct mesh *mesh, uint64_t parts)
@@ -103,41 +104,111 @@ static bool triangles_are_sound(const struct mesh *mesh, uint64_t parts)
     return true;
 }
 
+static bool in_range(float x)
+{
+    return x >= 0.0f && x <= 1.0f;
+}
+
+static bool look_is_sound(const struct mesh_look *l, int pictures)
+{
+    return in_range(l->colour[0]) && in_range(l->colour[1]) && in_range(l->colour[2]) &&
+           in_range(l->metallic) && in_range(l->roughness) && l->picture >= -1 &&
+           l->picture < pictures && l->surface >= -1 && l->surface < pictures;
+}
+
+// %20 and the like, which URIs have in place of a letter.
+static void decode_uri(char *name)
+{
+    char *to = name;
+    for (const char *from = name; *from; from++) {
+        char byte[3] = "", *end = byte;
+        if (*from == '%' && from[1] && from[2])
+            memcpy(byte, from + 1, 2);
+        const long value = strtol(byte, &end, 16);
+        const bool is_code = end == byte + 2 && value > 0;
+        *to++ = is_code ? (char)value : *from;
+        from += is_code ? 2 : 0;
+    }
+    *to = '\0';
+}
+
+// The file of a picture: below the folder of the model, whatever was on the disk of its maker.
+static char *picture_file(const char *path, const char *name)
+{
+    const char *slash = strrchr(name, '/'), *back = strrchr(name, '\\');
+    const char *last = slash && (!back || slash > back) ? slash + 1 : back ? back + 1 : name;
+    char *file = mesh_beside(path, stays_below(name) ? name : last);
+    if (!file || !access(file, R_OK))
+        return file;
+    char *decoded = mem_text(name);
+    if (decoded)
+        decode_uri(decoded);
+    if (decoded && strcmp(decoded, name) && stays_below(decoded)) {
+        mem_free(file);
+        file = mesh_beside(path, decoded);
+    }
+    mem_free(decoded);
+    return file;
+}
+
+// What follows the arrays: sizes, looks, names, pictures.
+static relume_status copy_parts(struct mesh_file *out, const char *from, const char *path,
+                                const struct mesh_answer *a)
+{
+    const char *look = from + a->pictures * sizeof(uint64_t);
+    const char *name = look + a->parts * sizeof *out->look;
+    const char *bytes = name + a->names_bytes;
+    uint64_t left = a->picture_bytes;
+    if (!names_are_whole(name, a))
+        return RELUME_EDAMAGED;
+    for (uint64_t i = 0; i < a->parts; i++, name += strlen(name) + 1) {
+        if (mesh_file_new_part(out, name) != (int)i)
+            return RELUME_EDAMAGED;
+        memcpy(&out->look[i], look + i * sizeof *out->look, sizeof *out->look);
+        helper_bool(&out->look[i].given);
+        if (!look_is_sound(&out->look[i], (int)a->pictures))
+            return RELUME_EDAMAGED;
+    }
+    for (uint64_t i = 0; i < a->pictures; i++, name += strlen(name) + 1) {
+        uint64_t size;
+        memcpy(&size, from + i * sizeof size, sizeof size);
+        if (size > left)
+            return RELUME_EDAMAGED;
+        char *beside = size ? mem_text(name) : picture_file(path, name);
+        const int number =
+            beside ? mesh_file_picture_of(out, beside, size ? bytes : NULL, (size_t)size) : -1;
+        mem_free(beside);
+        if (number != (int)i)
+            return RELUME_ENOMEM;
+        bytes += size, left -= size;
+    }
+    return RELUME_OK;
+}
+
 // From memory that the process cannot change any more: it has ended.
-static relume_status copy(struct mesh_file *out, const char *map, const struct mesh_answer *a)
+static relume_status copy(struct mesh_file *out, const char *map, const char *path,
+                          const struct mesh_answer *a)
 {
     struct mesh *m = &out->mesh;
     const size_t vertices = (size_t)a->vertices, triangles = (size_t)a->triangles;
     const char *const from = map + vertices * sizeof *m->vertices;
-    const char *name = from + triangles * sizeof *m->triangles;
-    if (!names_are_whole(name, a))
-        return RELUME_EDAMAGED;
+    const char *const colour = from + triangles * sizeof *m->triangles;
     m->vertices = mem_copy(map, vertices, sizeof *m->vertices);
     m->triangles = mem_copy(from, triangles, sizeof *m->triangles);
-    if (!m->vertices || !m->triangles)
+    if (a->has_colours)
+        out->colour = mem_copy(colour, vertices, sizeof *out->colour);
+    if (!m->vertices || !m->triangles || (a->has_colours && !out->colour))
         return RELUME_ENOMEM;
     m->vertex_count = vertices;
     m->triangle_count = triangles;
     out->has_uv = a->has_uv;
     out->made_normals = a->made_normals;
-    for (uint64_t i = 0; i < a->parts; i++, name += strlen(name) + 1)
-        if (mesh_file_part(out, name) != (int)i)
-            return RELUME_EDAMAGED;
-    return triangles_are_sound(m, a->parts) ? RELUME_OK : RELUME_EDAMAGED;
+    const relume_status status =
+        copy_parts(out, colour + (a->has_colours ? vertices * sizeof *out->colour : 0), path, a);
+    return status ? status : triangles_are_sound(m, a->parts) ? RELUME_OK : RELUME_EDAMAGED;
 }
 
-// Bytes of the model, 0 where the numbers make no sense or exceed `most`.
-static size_t model_bytes(const struct mesh_answer *a, uint64_t most)
-{
-    const uint64_t bound = UINT32_MAX;
-    if (a->vertices > bound || a->triangles > bound || a->names_bytes > 1 << 20)
-        return 0;
-    const uint64_t bytes = a->vertices * sizeof(struct vertex) +
-                           a->triangles * sizeof(struct triangle) + a->names_bytes;
-    return bytes <= most ? (size_t)bytes : 0;
-}
-
-static relume_status fetch(struct mesh_file *out, struct helper_job *job,
+static relume_status fetch(struct mesh_file *out, struct helper_job *job, const char *path,
                            const struct mesh_answer *read, size_t bytes)
 {
     const struct mesh_ask take = {.what = MESH_TAKE};
@@ -147,7 +218,7 @@ static relume_status fetch(struct mesh_file *out, struct helper_job *job,
     relume_status status = map ? ask(job, &answer, &take, memory) : RELUME_ENOMEM;
     helper_end(job);
     if (!status)
-        status = copy(out, map, read);
+        status = copy(out, map, path, read);
     if (map)
         munmap(map, bytes);
     if (memory >= 0)
@@ -176,15 +247,15 @@ static relume_status read_there(struct mesh_file *out, struct helper_job *job, c
                               "%s: cannot be read as a 3D model; %s", path, why)
                    : RELUME_ENOMEM;
     }
-    const size_t bytes = model_bytes(&answer, limits.max_memory);
-    if (answer.triangles && !bytes)
+    const size_t bytes = mesh_answer_bytes(&answer);
+    if (answer.triangles && (!bytes || bytes > limits.max_memory))
         return log_fail(log, RELUME_ELIMIT,
                         "%s: a model of %llu vertices and %llu triangles; expected one that fits "
                         "%llu MB (--max-memory)",
                         path, (unsigned long long)answer.vertices,
                         (unsigned long long)answer.triangles,
                         (unsigned long long)(limits.max_memory >> 20));
-    status = answer.triangles ? fetch(out, job, &answer, bytes) : RELUME_OK;
+    status = answer.triangles ? fetch(out, job, path, &answer, bytes) : RELUME_OK;
     return status != RELUME_EDAMAGED
                ? status
                : log_fail(log, status, "%s: cannot be read as a 3D model; its parts do not fit",

@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "math/fnv.h"
 #include "mesh/mesh_read.h"
 
 #include <relume/mesh.h>
@@ -30,14 +31,9 @@ static bool is_alike(const struct mesh_file *f, size_t a, size_t b)
            (!f->colour || !memcmp(f->colour[a], f->colour[b], sizeof *f->colour));
 }
 
-// FNV-1a over words.
 static size_t hash_of(const struct vertex *v)
 {
-    uint32_t words[sizeof *v / sizeof(uint32_t)];
-    uint64_t hash = 14695981039346656037u;
-    memcpy(words, v, sizeof words);
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        hash = (hash ^ words[i]) * 1099511628211u;
+    const uint64_t hash = fnv_of_words(FNV_START, v, sizeof *v);
     return (size_t)(hash ^ hash >> 29);
 }
 

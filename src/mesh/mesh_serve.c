@@ -41,6 +41,16 @@ static size_t names_bytes(const struct mesh_file *m)
     size_t bytes = 0;
     for (int i = 0; i < m->parts; i++)
         bytes += strlen(m->part[i]) + 1;
+    for (int i = 0; i < m->picture_count; i++)
+        bytes += strlen(m->pictures[i].name) + 1;
+    return bytes;
+}
+
+static size_t picture_bytes(const struct mesh_file *m)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < m->picture_count; i++)
+        bytes += m->pictures[i].size;
     return bytes;
 }
 
@@ -49,10 +59,24 @@ static struct mesh_answer answer_of(const struct mesh_file *m)
     return (struct mesh_answer){.what = MESH_READ,
                                 .has_uv = m->has_uv,
                                 .made_normals = m->made_normals,
+                                .has_colours = m->colour != NULL,
                                 .vertices = m->mesh.vertex_count,
                                 .triangles = m->mesh.triangle_count,
                                 .parts = (uint64_t)m->parts,
-                                .names_bytes = names_bytes(m)};
+                                .pictures = (uint64_t)m->picture_count,
+                                .names_bytes = names_bytes(m),
+                                .picture_bytes = picture_bytes(m)};
+}
+
+size_t mesh_answer_bytes(const struct mesh_answer *a)
+{
+    const uint64_t bound = UINT32_MAX, few = 1 << 16;
+    if (a->vertices > bound || a->triangles > bound || a->parts > few || a->pictures > few ||
+        a->names_bytes > 1 << 20 || a->picture_bytes > bound)
+        return 0;
+    return (size_t)(a->vertices * (sizeof(struct vertex) + (a->has_colours ? 4 : 0)) +
+                    a->triangles * sizeof(struct triangle) + a->pictures * sizeof(uint64_t) +
+                    a->parts * sizeof(struct mesh_look) + a->names_bytes + a->picture_bytes);
 }
 
 double mesh_read_s(uint64_t file_bytes)
@@ -91,19 +115,36 @@ static char *put(char *to, const void *from, size_t size)
     return to + size;
 }
 
+static char *put_parts(char *to, const struct mesh_file *m)
+{
+    for (int i = 0; i < m->picture_count; i++) {
+        const uint64_t size = m->pictures[i].size;
+        to = put(to, &size, sizeof size);
+    }
+    to = put(to, m->look, (size_t)m->parts * sizeof *m->look);
+    for (int i = 0; i < m->parts; i++)
+        to = put(to, m->part[i], strlen(m->part[i]) + 1);
+    for (int i = 0; i < m->picture_count; i++)
+        to = put(to, m->pictures[i].name, strlen(m->pictures[i].name) + 1);
+    for (int i = 0; i < m->picture_count; i++)
+        to = put(to, m->pictures[i].bytes, m->pictures[i].size);
+    return to;
+}
+
 static bool hand_over(struct serving *s, int memory)
 {
     const struct mesh_file *m = &s->model;
     const struct mesh_answer answer = answer_of(m);
     const size_t vertices = m->mesh.vertex_count * sizeof *m->mesh.vertices;
     const size_t triangles = m->mesh.triangle_count * sizeof *m->mesh.triangles;
-    const size_t all = vertices + triangles + names_bytes(m);
+    const size_t all = mesh_answer_bytes(&answer);
     char *const map = channel_map(memory, all);
     if (!map)
         return false;
     char *to = put(put(map, m->mesh.vertices, vertices), m->mesh.triangles, triangles);
-    for (int i = 0; i < m->parts; i++)
-        to = put(to, m->part[i], strlen(m->part[i]) + 1);
+    if (m->colour)
+        to = put(to, m->colour, m->mesh.vertex_count * sizeof *m->colour);
+    put_parts(to, m);
     munmap(map, all);
     return channel_send(s->channel, &answer, sizeof answer, -1);
 }

@@ -3,6 +3,7 @@
 #define MESH_MESH_SERVE_H
 
 #include "base/helper.h"
+#include "mesh/mesh_file.h"
 
 // Messages to the process.
 enum mesh_ask_what {
@@ -18,12 +19,17 @@ struct mesh_ask {
 enum mesh_answer_what { MESH_NEEDS, MESH_READ, MESH_FAILED };
 struct mesh_answer {
     int what;
-    bool has_uv, made_normals;
+    bool has_uv, made_normals, has_colours;
     int memory;  // MESH_FAILED without a text: enum helper_short
-    // MESH_READ. In memory these follow each other: vertices, triangles, the names, each with a 0.
-    uint64_t vertices, triangles, parts, names_bytes;
+    // MESH_READ. In memory these follow each other: vertices, triangles, colours where there are,
+    // the sizes of pictures (0: a file), the looks of parts, the names of parts and then of
+    // pictures, each with a 0, and the pictures.
+    uint64_t vertices, triangles, parts, pictures, names_bytes, picture_bytes;
     char text[1024];  // the file that is needed, or why it failed
 };
+
+// Bytes of that memory; 0 where the numbers make no sense.
+size_t mesh_answer_bytes(const struct mesh_answer *answer);
 
 // What it may take of a processor for a model.
 double mesh_read_s(uint64_t file_bytes);

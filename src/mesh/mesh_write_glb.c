@@ -35,19 +35,30 @@ static size_t padded(size_t bytes)
     return (bytes + 3) & ~(size_t)3;
 }
 
-static struct picture load_picture(const struct relume_mesh *m, const struct relume_log *log)
+// One that cannot be put in is left out, with a warning; short memory is none of these.
+static relume_status load_picture(struct picture *p, const struct relume_mesh *m,
+                                  const struct relume_log *log)
 {
-    struct picture p = {.bytes = NULL};
     const char *dot = m->picture && m->texture ? strrchr(m->picture, '.') : NULL;
-    if (!dot)
-        return p;
-    p.type = !strcasecmp(dot, ".png") ? "image/png" : "image/jpeg";
-    const bool known =
-        !strcasecmp(dot, ".png") || !strcasecmp(dot, ".jpg") || !strcasecmp(dot, ".jpeg");
-    if (!known || input_load(&p.bytes, &p.size, m->picture, (uint64_t)1 << 30, "a picture", NULL))
-        log_line(log, RELUME_WARNING, "%s: not put into the mesh; expected a PNG or JPEG picture",
+    *p = (struct picture){.bytes = NULL};
+    if (!m->picture || !m->texture)
+        return RELUME_OK;
+    const bool png = dot && !strcasecmp(dot, ".png");
+    p->type = png ? "image/png" : "image/jpeg";
+    if (!png && !(dot && (!strcasecmp(dot, ".jpg") || !strcasecmp(dot, ".jpeg")))) {
+        log_line(log, RELUME_WARNING,
+                 "%s: this picture is left out of the mesh, which has no texture then; glTF takes "
+                 ".png and .jpg",
                  m->picture);
-    return p;
+        return RELUME_OK;
+    }
+    const relume_status status =
+        input_load(&p->bytes, &p->size, m->picture, (uint64_t)1 << 30, "a picture", NULL);
+    if (status && status != RELUME_ENOMEM)
+        log_line(log, RELUME_WARNING,
+                 "%s: this picture cannot be read; the mesh is written without its texture",
+                 m->picture);
+    return status == RELUME_ENOMEM ? status : RELUME_OK;
 }
 
 static int list_views(struct view view[MOST_VIEWS], const struct relume_mesh *m,
@@ -230,8 +241,10 @@ static relume_status write_chunks(struct sink *to, const struct relume_mesh *m, 
 relume_status mesh_write_glb(struct sink *to, const struct relume_mesh *mesh, const char *path,
                              const struct relume_log *log)
 {
-    struct picture p = load_picture(mesh, log);
-    const relume_status status = write_chunks(to, mesh, path, &p, log);
+    struct picture p;
+    relume_status status = load_picture(&p, mesh, log);
+    if (!status)
+        status = write_chunks(to, mesh, path, &p, log);
     mem_free(p.bytes);
     return status;
 }

@@ -158,7 +158,7 @@ static relume_status prepare(struct run *r, const struct relume_simplify_params 
     s->slide = texture_length(s);
     set_weights(s);
     set_limits(r, p);
-    relume_status status = limits_memory(bytes_of(s), "simplifying the mesh", p->log);
+    relume_status status = limits_memory(NULL, bytes_of(s), "simplifying the mesh", p->log);
     if (!status)
         status = connect_create(&s->connect, s->mesh);
     if (!status)

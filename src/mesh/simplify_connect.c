@@ -3,6 +3,7 @@
 // A vertex goes along features only where two of them meet in it, anywhere where none does, else
 // stays. The surface keeps its topology: the points next to both ends of an edge that goes must be
 // those of the triangles that go (Dey, Edelsbrunner, Guha, Nekhayev 1999).
+#include "math/fnv.h"
 #include "mesh/simplify.h"
 
 #include <string.h>
@@ -19,13 +20,8 @@ void connect_free(struct connect *c)
 // Of the bits of a place; -0 is 0.
 static size_t hash_of(const float p[3])
 {
-    uint64_t hash = 14695981039346656037u;
-    for (int k = 0; k < 3; k++) {
-        const float v = p[k] + 0.0f;
-        uint32_t bits;
-        memcpy(&bits, &v, sizeof bits);
-        hash = (hash ^ bits) * 1099511628211u;
-    }
+    const float place[3] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};
+    const uint64_t hash = fnv_of_words(FNV_START, place, sizeof place);
     return (size_t)(hash ^ hash >> 29);
 }
 

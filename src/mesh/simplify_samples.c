@@ -9,6 +9,7 @@
 #include "mesh/simplify.h"
 
 #include <math.h>
+#include <relume/image.h>
 #include <relume/jnd.h>
 #include <string.h>
 
@@ -155,24 +156,20 @@ static double turn_of(const struct simplify *s, uint32_t vertex, const struct fa
     return length > 1e-9 ? vec3_angle(vec3_scale(n, 1.0 / length), normal_of(s, vertex)) : PI;
 }
 
-static double linear_of(double code)
-{
-    return code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4);
-}
-
 // From how far a colour is seen to differ; its pattern is as fine as its vertices lie.
 static double colour_distance(const struct simplify *s, uint32_t vertex, const struct facet *f,
                               const double w[3])
 {
     double was[3], now[3], a[RELUME_OPPONENTS], b[RELUME_OPPONENTS], most = 0.0;
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     if (!s->mesh->colour)
         return 0.0;
     for (int k = 0; k < 3; k++) {
         double code = 0.0;
         for (int i = 0; i < 3; i++)
             code += w[i] * s->mesh->colour[f->vertex[i]][k] / 255.0;
-        was[k] = linear_of(s->mesh->colour[vertex][k] / 255.0);
-        now[k] = linear_of(code);
+        was[k] = (double)relume_transfer_decode(srgb, s->mesh->colour[vertex][k] / 255.0f);
+        now[k] = (double)relume_transfer_decode(srgb, (float)code);
     }
     relume_jnd_opponent(a, was, s->white);
     relume_jnd_opponent(b, now, s->white);

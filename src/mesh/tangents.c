@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { KEY = 9 };  // position, normal, texture, handedness
+enum { KEY = 12 };  // position, normal, texture, handedness, colour
 
 struct corner {
     float key[KEY];
@@ -37,7 +37,7 @@ static vec3 along_s(const struct mesh *mesh, const uint32_t v[3], double *handed
     return vec3_scale(along, area == 0.0 ? 0.0 : *handedness);
 }
 
-static void fill_corners(struct corner *corner, const struct mesh *mesh)
+static void fill_corners(struct corner *corner, const struct mesh *mesh, float (*tint)[3])
 {
     for (size_t i = 0; i < 3 * mesh->triangle_count; i++) {
         const uint32_t *v = mesh->triangles[i / 3].vertex;
@@ -52,6 +52,8 @@ static void fill_corners(struct corner *corner, const struct mesh *mesh)
         key[6] = from->texture[0] + 0.0f;
         key[7] = from->texture[1] + 0.0f;
         key[8] = (float)handedness;
+        for (int c = 0; c < 3; c++)
+            key[9 + c] = tint ? tint[v[i % 3]][c] : 1.0f;
         corner[i].number = i;
     }
 }
@@ -67,6 +69,8 @@ static void join(struct tangents *out, const struct corner *corner, size_t corne
             memcpy(v->normal, key + 3, sizeof v->normal);
             memcpy(v->texture, key + 6, sizeof v->texture);
             v->tangent[3] = key[8];
+            if (out->tint)
+                memcpy(out->tint[out->vertex_count - 1], key + 9, sizeof *out->tint);
         }
         const size_t number = corner[i].number;
         out->triangles[number / 3][number % 3] = (uint32_t)(out->vertex_count - 1);
@@ -116,18 +120,19 @@ static vec3 across(vec3 n)
     return vec3_unit(off_normal(axis, n));
 }
 
-relume_status tangents_make(struct tangents *out, const struct mesh *mesh)
+relume_status tangents_make(struct tangents *out, const struct mesh *mesh, float (*tint)[3])
 {
     const size_t corners = 3 * mesh->triangle_count;
     struct corner *corner = mem_array(corners, sizeof *corner);
     *out = (struct tangents){
         .vertices = mem_array(corners, sizeof *out->vertices),
+        .tint = tint ? mem_array(corners, sizeof *out->tint) : NULL,
         .triangles = mem_array(mesh->triangle_count, sizeof *out->triangles),
     };
     vec3 *sum = mem_zeroed(corners, sizeof *sum);
-    const bool room = corner && out->vertices && out->triangles && sum;
+    const bool room = corner && out->vertices && out->triangles && sum && (out->tint || !tint);
     if (room) {
-        fill_corners(corner, mesh);
+        fill_corners(corner, mesh, tint);
         qsort(corner, corners, sizeof *corner, by_key);
         join(out, corner, corners);
         add_tangents(sum, out, mesh);

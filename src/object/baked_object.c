@@ -115,15 +115,11 @@ static void find_share(float share[3], const relume_objects *o, const struct sur
         share[c] = sent[c] > 0.0f ? arrived[c] / sent[c] : 1.0f;
 }
 
-static vec3 own_axes(const struct frame *f, vec3 d)
-{
-    return vec3_unit(vec3_of(vec3_dot(d, f->x), vec3_dot(d, f->y), vec3_dot(d, f->z)));
-}
-
 static struct baked_look look_at(const struct standing_baked *b, const struct surface_point *p,
                                  vec3 eye)
 {
-    return (struct baked_look){{p->s, p->t}, own_axes(&b->frame, vec3_sub(eye, p->position))};
+    return (struct baked_look){{p->s, p->t},
+                               frame_turned_back(&b->frame, vec3_sub(eye, p->position))};
 }
 
 static void add_near(float rgb[3], const relume_objects *o, const struct surface_point *p,
@@ -136,7 +132,7 @@ static void add_near(float rgb[3], const relume_objects *o, const struct surface
     if (!relume_object_light_at(&towards, arriving, &distance, sample, p->position) ||
         !arrives(o, p, l, towards, distance))
         return;
-    baked_lamp(shown, b->baked, look, own_axes(&b->frame, towards), arriving);
+    baked_lamp(shown, b->baked, look, frame_turned_back(&b->frame, towards), arriving);
     for (int c = 0; c < 3; c++)
         rgb[c] += shown[c];
 }
@@ -187,7 +183,7 @@ bool baked_return(float rgb[3], const relume_objects *o, const struct surface_po
     for (int c = 0; c < 3; c++)
         light[c] = (float)(arrival->share / fmax(cosine, GRAZING)) * arrival->with[c];
     const struct baked_look look = look_at(b, p, eye);
-    baked_lamp(rgb, b->baked, &look, own_axes(&b->frame, arrival->towards), light);
+    baked_lamp(rgb, b->baked, &look, frame_turned_back(&b->frame, arrival->towards), light);
     return true;
 }
 
@@ -211,33 +207,35 @@ bool relume_objects_baked(struct relume_baked_arrays *out, const relume_objects 
     return true;
 }
 
-// A light as it shines on the middle of the objects; false: not at all.
-static bool from_afar(struct relume_light *out, const relume_objects *o,
-                      const struct relume_light *light)
+// A light as it shines on the middle of the objects, and whether it does. RELUME_ENOMEM.
+static relume_status from_afar(struct relume_light *out, bool *shines, const relume_objects *o,
+                               const struct relume_light *light)
 {
     const vec3 middle = vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);
     struct relume_object_light *sample;
     int n;
-    bool is = false;
     *out = *light;
-    if (!relume_light_is_near(light->kind))
-        return true;
+    *shines = !relume_light_is_near(light->kind);
+    if (*shines)
+        return RELUME_OK;
     *out = (struct relume_light){.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0, 0, 0}};
-    if (relume_objects_lights(&sample, &n, o, light, 1))
-        return false;
+    const relume_status status = relume_objects_lights(&sample, &n, o, light, 1);
+    if (status)
+        return status;
     for (int i = 0; i < n; i++) {
         float rgb[3];
         double distance;
         vec3 towards;
         if (!relume_object_light_at(&towards, rgb, &distance, &sample[i], middle))
             continue;
-        is = true;
+        *shines = true;
         out->direction = vec3_along(out->direction, towards, (double)(rgb[0] + rgb[1] + rgb[2]));
         for (int c = 0; c < 3; c++)
             out->rgb[c] += rgb[c];
     }
     relume_free(sample);
-    return is && vec3_length(out->direction) > 0.0;
+    *shines = *shines && vec3_length(out->direction) > 0.0;
+    return RELUME_OK;
 }
 
 relume_status relume_objects_baked_colours(float (**out)[3], const relume_objects *o, int material,
@@ -250,12 +248,15 @@ relume_status relume_objects_baked_colours(float (**out)[3], const relume_object
         return RELUME_EINVAL;
     const struct standing_baked *s = &o->standing[material];
     struct relume_light *far = mem_array((size_t)n, sizeof *far);
-    if (!far)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < n; i++)
-        used += from_afar(&far[used], o, &lights[i]);
+    relume_status status = far ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; i < n && !status; i++) {
+        bool shines;
+        status = from_afar(&far[used], &shines, o, &lights[i]);
+        used += !status && shines;
+    }
     baked_lit *lit;
-    relume_status status = lit_create(&lit, s->baked, &s->frame, far, used, 0);
+    if (!status)
+        status = lit_create(&lit, s->baked, &s->frame, far, used, 0);
     mem_free(far);
     if (status)
         return status;

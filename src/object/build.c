@@ -39,9 +39,16 @@ static relume_status make_uv(struct mesh_file *file)
 {
     struct mesh made = {0};
     project(&made, &file->mesh);
+    uint8_t(*colour)[4] =
+        file->colour && !made.failed ? mem_array(made.vertex_count, sizeof *colour) : NULL;
+    for (size_t i = 0; colour && i < made.vertex_count; i++)
+        memcpy(colour[i], file->colour[file->mesh.triangles[i / 3].vertex[i % 3]], sizeof *colour);
+    const bool failed = made.failed || (file->colour && !colour);
+    mem_free(file->colour);
+    file->colour = colour;
     mesh_free(&file->mesh);
     file->mesh = made;
-    return made.failed ? RELUME_ENOMEM : RELUME_OK;
+    return failed ? RELUME_ENOMEM : RELUME_OK;
 }
 
 struct edge {
@@ -88,7 +95,31 @@ static relume_status count_fins(size_t *out, const struct mesh *m)
     return RELUME_OK;
 }
 
-static relume_status complete(struct mesh_file *file, const char *path,
+// ---------------------------------------------------------------- coverings
+
+static const struct covering *covering_of(struct standing *s, const char *part)
+{
+    struct covering *found = NULL;
+    for (int i = 0; i < s->coverings; i++)
+        if (s->covering[i].part ? !strcmp(s->covering[i].part, part) : !found)
+            found = &s->covering[i];
+    if (found)
+        found->used = true;
+    return found;
+}
+
+// Whether some part shows a picture, and so asks where on it.
+static bool needs_uv(const struct mesh_file *file, struct standing *s)
+{
+    for (int i = 0; i < file->parts; i++) {
+        const struct covering *c = covering_of(s, file->part[i]);
+        if ((c && c->material >= 0) || file->look[i].picture >= 0 || file->look[i].surface >= 0)
+            return true;
+    }
+    return false;
+}
+
+static relume_status complete(struct mesh_file *file, struct standing *s, const char *path,
                               const struct relume_log *log)
 {
     size_t fins;
@@ -103,31 +134,26 @@ static relume_status complete(struct mesh_file *file, const char *path,
                  path);
     if (status || file->has_uv)
         return status;
-    log_line(log, RELUME_WARNING,
-             "%s: no texture coordinates; they were made by projection along the axes", path);
+    if (needs_uv(file, s))
+        log_line(log, RELUME_WARNING,
+                 "%s: no texture coordinates; they were made by projection along the axes", path);
     return make_uv(file);
 }
 
 // ---------------------------------------------------------------- into the world
 
-static const struct covering *covering_of(struct standing *s, const char *part)
-{
-    struct covering *found = NULL;
-    for (int i = 0; i < s->coverings; i++)
-        if (s->covering[i].part ? !strcmp(s->covering[i].part, part) : !found)
-            found = &s->covering[i];
-    if (found)
-        found->used = true;
-    return found;
-}
+// A part that nothing covers shows what the file of the mesh says.
+static const struct covering own_look = {.material = -1, .repeat = {1, 1}};
 
 static relume_status add_part(relume_objects *o, const struct mesh_file *file, int number,
-                              struct standing *s, const char *path, const struct relume_log *log)
+                              const struct covering *c, const char *path,
+                              const struct relume_objects_params *params)
 {
-    const struct covering *c = covering_of(s, file->part[number]);
-    if (!c)
-        return log_fail(log, RELUME_EUNFIT, "%s: part '%s' has no material", path,
-                        file->part[number]);
+    int material = c->material;
+    relume_status status =
+        material < 0 ? objects_own_look(o, file, number, path, &material, params) : RELUME_OK;
+    if (status)
+        return status;
     char *name = mem_text(file->part[number]);
     if (!name || !mem_grow(&o->part, (size_t)o->info.parts, sizeof *o->part)) {
         mem_free(name);
@@ -135,7 +161,7 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
     }
     o->part[o->info.parts++] = (struct relume_object_part){
         .name = name,
-        .material = c->material,
+        .material = material,
         .bilinear = !c->nearest,
         .first = o->mesh.triangle_count,
         .object = o->info.objects,
@@ -143,38 +169,55 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
     return RELUME_OK;
 }
 
-// Texture coordinates in repeats, t down from the upper edge of the sample.
-static uint32_t add_vertex(relume_objects *o, const struct vertex *v, const struct frame *frame,
-                           const struct covering *c)
+// What the values of a vertex are multiplied by: the colours of a file are part of its own look.
+static void tint_vertex(relume_objects *o, uint32_t vertex, const uint8_t *colour)
 {
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    o->mesh.failed = o->mesh.failed || !mem_grow(&o->vertex_tint, vertex, sizeof *o->vertex_tint);
+    for (int c = 0; c < 3 && !o->mesh.failed; c++)
+        o->vertex_tint[vertex][c] =
+            colour ? relume_transfer_decode(srgb, (float)colour[c] / 255.0f) : 1.0f;
+    o->tinted |= colour != NULL;
+}
+
+// Texture coordinates in repeats, t down from the upper edge of the sample.
+static uint32_t add_vertex(relume_objects *o, const struct mesh_file *file, uint32_t number,
+                           const struct frame *frame, const struct covering *c)
+{
+    const struct vertex *v = &file->mesh.vertices[number];
     const double s = (double)v->texture[0] * c->repeat[0] + c->offset[0];
     const double t = 1.0 - ((double)v->texture[1] * c->repeat[1] + c->offset[1]);
-    return mesh_vertex(&o->mesh, frame_point(frame, vertex_position(v)),
-                       frame_normal(frame, vertex_normal(v)), vec3_of(s, t, 0));
+    const uint32_t made = mesh_vertex(&o->mesh, frame_point(frame, vertex_position(v)),
+                                      frame_normal(frame, vertex_normal(v)), vec3_of(s, t, 0));
+    const bool tinted =
+        c->material < 0 && file->colour && !o->material[o->part[o->info.parts - 1].material].mirror;
+    tint_vertex(o, made, tinted ? file->colour[number] : NULL);
+    return made;
 }
 
 // Wound as the normals say; a triangle without extent is left out.
-static void add_triangle(relume_objects *o, const struct vertex *v[3], const struct standing *s,
-                         const struct covering *c)
+static void add_triangle(relume_objects *o, const struct mesh_file *file, const uint32_t number[3],
+                         const struct frame *frame, const struct covering *c)
 {
     vec3 p[3], normal = {0, 0, 0};
     uint32_t made[3];
     for (int k = 0; k < 3; k++) {
-        p[k] = vertex_position(v[k]);
-        normal = vec3_add(normal, vertex_normal(v[k]));
+        const struct vertex *v = &file->mesh.vertices[number[k]];
+        p[k] = vertex_position(v);
+        normal = vec3_add(normal, vertex_normal(v));
     }
     const vec3 out = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
     if (!(vec3_length(out) > 0.0))
         return;
     const bool turned = vec3_dot(out, normal) < 0.0;
     for (int k = 0; k < 3; k++)
-        made[k] = add_vertex(o, v[k], &s->frame, c);
+        made[k] = add_vertex(o, file, number[k], frame, c);
     mesh_triangle(&o->mesh, made[0], made[turned ? 2 : 1], made[turned ? 1 : 2],
                   (uint32_t)o->info.parts - 1);
 }
 
 static relume_status add_parts(relume_objects *o, const struct mesh_file *file, struct standing *s,
-                               const char *path, const struct relume_log *log)
+                               const char *path, const struct relume_objects_params *params)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; i < file->parts && !status; i++) {
@@ -184,15 +227,12 @@ static relume_status add_parts(relume_objects *o, const struct mesh_file *file, 
             k++;
         if (k == m->triangle_count)
             continue;
-        status = add_part(o, file, i, s, path, log);
-        const struct covering *c = covering_of(s, file->part[i]);
-        for (; k < m->triangle_count && !status; k++) {
-            const uint32_t *v = m->triangles[k].vertex;
-            const struct vertex *corner[3] = {&m->vertices[v[0]], &m->vertices[v[1]],
-                                              &m->vertices[v[2]]};
+        const struct covering *named = covering_of(s, file->part[i]);
+        const struct covering *c = named ? named : &own_look;
+        status = add_part(o, file, i, c, path, params);
+        for (; k < m->triangle_count && !status; k++)
             if (m->triangles[k].material == (uint32_t)i)
-                add_triangle(o, corner, s, c);
-        }
+                add_triangle(o, file, m->triangles[k].vertex, &s->frame, c);
         if (!status)
             o->part[o->info.parts - 1].count =
                 o->mesh.triangle_count - o->part[o->info.parts - 1].first;
@@ -209,9 +249,9 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
     struct mesh_file file;
     relume_status status = mesh_read(&file, path, log);
     if (!status)
-        status = complete(&file, path, log);
+        status = complete(&file, standing, path, log);
     if (!status)
-        status = add_parts(o, &file, standing, path, log);
+        status = add_parts(o, &file, standing, path, params);
     for (int i = 0; i < standing->coverings && !status; i++)
         if (standing->covering[i].part && !standing->covering[i].used)
             status = log_fail(log, RELUME_EUNFIT, "%s: no part '%s'; its first is '%s'", path,
@@ -253,7 +293,7 @@ relume_status objects_add_cushion(relume_objects *o, struct standing *standing,
     struct mesh_file file;
     relume_status status = make_cushion(&file);
     if (!status)
-        status = add_parts(o, &file, standing, "cushion", params ? params->log : NULL);
+        status = add_parts(o, &file, standing, "cushion", params);
     mesh_file_free(&file);
     return status;
 }
@@ -264,9 +304,11 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     struct tangents t;
     if (!o->mesh.triangle_count)
         return log_fail(log, RELUME_EUNFIT, "the objects have no surface");
-    relume_status status = tangents_make(&t, &o->mesh);
+    relume_status status = tangents_make(&t, &o->mesh, o->tinted ? o->vertex_tint : NULL);
+    mem_free(o->vertex_tint);
+    o->vertex_tint = NULL;
     o->reflection = mem_zeroed((size_t)o->info.objects, sizeof *o->reflection);
-    o->vertices = t.vertices, o->triangles = t.triangles;
+    o->vertices = t.vertices, o->triangles = t.triangles, o->tint = t.tint;
     if (status || !o->reflection)
         return status ? status : RELUME_ENOMEM;
     if (t.flat)
@@ -277,6 +319,7 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     o->info.vertices = o->vertices, o->info.vertex_count = t.vertex_count;
     o->info.triangles = (const uint32_t(*)[3])o->triangles;
     o->info.triangle_count = o->mesh.triangle_count;
+    o->info.tint = (const float(*)[3])o->tint;
     o->info.part = o->part, o->info.material = o->material;
     o->info.min = b.min, o->info.max = b.max;
     return trace_create_clouds(&o->tracer, &o->mesh, o->cloud, o->clouds, log);

@@ -120,7 +120,9 @@ static relume_status read_covering(const struct reader *r, const jvalue *value, 
         return log_fail(r->log, RELUME_EFORMAT, "repeat: expected a number or two, not 0");
     if (!read_pair(jvalue_member(value, "offset"), c->offset))
         return log_fail(r->log, RELUME_EFORMAT, "offset: expected a number or two");
-    return read_material(r, jvalue_member(value, "material"), &c->material);
+    c->material = -1;
+    const jvalue *material = jvalue_member(value, "material");
+    return material ? read_material(r, material, &c->material) : RELUME_OK;
 }
 
 static struct frame turn(const double axis_angle[4])
@@ -171,6 +173,8 @@ static relume_status read_coverings(const struct reader *r, const jvalue *object
 {
     const jvalue *parts = jvalue_member(object, "parts");
     const size_t n = jvalue_is_array(parts) ? jvalue_count(parts) : 0;
+    if (!parts)  // the mesh shows its own look
+        return RELUME_OK;
     if (n < 1 || n > MOST_COVERINGS)
         return log_fail(r->log, RELUME_EFORMAT, "parts: expected a list of 1 to %d",
                         MOST_COVERINGS);
@@ -330,7 +334,7 @@ relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
     const struct relume_objects_params own = PARAMS_WORK(relume_objects_params, params);
     relume_objects *o = mem_zeroed(1, sizeof *o);
     const double times = repeat != 0.0 ? repeat : 1.0;
-    struct covering c = {.repeat = {times, times}};
+    struct covering c = {.material = count ? 0 : -1, .repeat = {times, times}};
     struct standing s = {.frame = frame_world, .covering = &c, .coverings = 1};
     relume_status status = o ? RELUME_OK : RELUME_ENOMEM;
     *out = NULL;

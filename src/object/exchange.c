@@ -140,7 +140,7 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
     const int width = places->width, height = places->height;
     *out = NULL;
     relume_status status =
-        limits_memory((uint64_t)width * (uint64_t)height * PIXEL_BYTES,
+        limits_memory(NULL, (uint64_t)width * (uint64_t)height * PIXEL_BYTES,
                       "light between objects and a picture of this size", params->log);
     struct exchange *e = status ? NULL : mem_zeroed(1, sizeof *e);
     if (!e)

@@ -4,6 +4,7 @@
 
 #include "baked/baked.h"
 #include "base/json.h"
+#include "mesh/mesh_file.h"
 #include "mesh/trace.h"
 #include "transport/scattering.h"
 #include "transport/transport.h"
@@ -31,6 +32,9 @@ struct relume_objects {
     int clouds;
     struct relume_object_vertex *vertices;
     uint32_t (*triangles)[3];
+    float (*tint)[3];                 // of each vertex, as relume_objects_info; NULL: none has one
+    float (*vertex_tint)[3];          // the same of the mesh's, until the objects are finished
+    bool tinted;                      // one of these is not white
     struct relume_object_part *part;  // [parts]
     struct relume_object_material *material;
     char **folder;                    // [materials]: as it was opened
@@ -49,6 +53,17 @@ static inline vec3 objects_middle(const relume_objects *o)
 
 // The part's material, opened when it is not there yet; its number. An input status, RELUME_ENOMEM.
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
+                               const struct relume_objects_params *params);
+
+// Room for one more. RELUME_ELIMIT with a sentence, RELUME_ENOMEM.
+relume_status objects_need_material(relume_objects *o, const char *name,
+                                    const struct relume_log *log);
+// The model becomes the material's, and is destroyed where that fails. RELUME_ENOMEM.
+relume_status objects_take_model(struct relume_object_material *m, relume_btf_fitted *fitted,
+                                 const struct relume_log *log);
+// What the file of a mesh says of a part itself, as a material; likewise, and an input status.
+relume_status objects_own_look(relume_objects *o, const struct mesh_file *file, int part,
+                               const char *path, int *number,
                                const struct relume_objects_params *params);
 
 // A mirror of that reflectance. RELUME_ELIMIT with a sentence, RELUME_ENOMEM.
@@ -71,7 +86,7 @@ relume_status translucent_read(struct translucent *out, const jvalue *value,
 // How a mesh stands and how its parts are covered.
 struct covering {
     const char *part;  // NULL: all others
-    int material;
+    int material;      // -1: what the mesh's file says itself
     double repeat[2], offset[2];
     bool nearest;
     bool used;

@@ -9,7 +9,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-enum { MOST_MATERIALS = 256 };
+enum { MOST_MATERIALS = 1024 };
 
 static void close_material(struct relume_object_material *m)
 {
@@ -45,6 +45,8 @@ void relume_objects_destroy(relume_objects **objects)
     for (int i = 0; o->reflection && i < o->info.objects; i++)
         relume_reflection_destroy(&o->reflection[i]);
     mem_free(o->reflection);
+    mem_free(o->tint);
+    mem_free(o->vertex_tint);
     mem_free(o->vertices);
     mem_free(o->triangles);
     mem_free(o->part);
@@ -127,9 +129,8 @@ static relume_status cover_whole(struct relume_object_material *m, relume_btf_fi
     return status;
 }
 
-// Takes over the model, whatever is returned.
-static relume_status take_model(struct relume_object_material *m, relume_btf_fitted *fitted,
-                                const struct relume_log *log)
+relume_status objects_take_model(struct relume_object_material *m, relume_btf_fitted *fitted,
+                                 const struct relume_log *log)
 {
     const relume_status status = cover_whole(m, fitted, log);
     if (status)
@@ -147,7 +148,7 @@ static relume_status open_model(struct relume_object_material *m, const char *fo
 {
     relume_btf_fitted *fitted;
     const relume_status status = relume_btf_fitted_open(&fitted, folder, p);
-    return status ? status : take_model(m, fitted, p->log);
+    return status ? status : objects_take_model(m, fitted, p->log);
 }
 
 static relume_status open_measured(struct relume_object_material *m, const char *folder,
@@ -187,9 +188,8 @@ static relume_status open_material(struct relume_object_material *m, const char 
                                                                     : open_measured(m, folder, &p);
 }
 
-// Room for one more.
-static relume_status need_material(relume_objects *o, const char *name,
-                                   const struct relume_log *log)
+relume_status objects_need_material(relume_objects *o, const char *name,
+                                    const struct relume_log *log)
 {
     const size_t count = (size_t)o->info.materials;
     if (o->info.materials == MOST_MATERIALS)
@@ -211,7 +211,7 @@ relume_status objects_material(relume_objects *o, const char *folder, int *numbe
     for (*number = 0; *number < o->info.materials; ++*number)
         if (o->folder[*number] && !strcmp(o->folder[*number], folder))
             return RELUME_OK;
-    relume_status status = need_material(o, folder, params ? params->log : NULL);
+    relume_status status = objects_need_material(o, folder, params ? params->log : NULL);
     if (status)
         return status;
     o->folder[*number] = mem_text(folder);
@@ -234,7 +234,7 @@ static relume_status find_reflectance(struct relume_object_material **out, relum
             !memcmp(m->reflectance, like->reflectance, sizeof m->reflectance))
             return RELUME_OK;
     }
-    const relume_status status = need_material(o, like->name, log);
+    const relume_status status = objects_need_material(o, like->name, log);
     char *name = status ? NULL : mem_text(like->name);
     if (!name)
         return status ? status : RELUME_ENOMEM;
@@ -300,7 +300,7 @@ relume_status objects_matte(relume_objects *o, const float reflectance[3], int *
     if (status || !added)
         return status;
     status = fit_matte(&fitted, reflectance, params);
-    return status ? status : take_model(added, fitted, params ? params->log : NULL);
+    return status ? status : objects_take_model(added, fitted, params ? params->log : NULL);
 }
 
 static bool is_like(const struct translucent *a, const struct translucent *b)
@@ -322,7 +322,7 @@ relume_status objects_translucent(relume_objects *o, const struct translucent *t
     dipole_make(&d, &translucent->scattering, 1.0);
     for (int c = 0; c < 3; c++)
         matte[c] = (float)(d.enters * dipole_disc(&d, c, INFINITY));
-    relume_status status = need_material(o, translucent->name, log);
+    relume_status status = objects_need_material(o, translucent->name, log);
     char *name = status ? NULL : mem_text(translucent->name);
     if (!name)
         return status ? status : RELUME_ENOMEM;
@@ -333,14 +333,14 @@ relume_status objects_translucent(relume_objects *o, const struct translucent *t
     o->translucent[*number] = *translucent;
     o->info.materials++;
     status = fit_matte(&fitted, matte, params);
-    return status ? status : take_model(m, fitted, log);
+    return status ? status : objects_take_model(m, fitted, log);
 }
 
 relume_status objects_take_baked(relume_objects *o, relume_baked **baked, const char *path,
                                  const struct frame *frame, int *number,
                                  const struct relume_objects_params *params)
 {
-    const relume_status status = need_material(o, path, params ? params->log : NULL);
+    const relume_status status = objects_need_material(o, path, params ? params->log : NULL);
     char *name = status ? NULL : name_of(path);
     if (!name)
         return status ? status : RELUME_ENOMEM;

@@ -203,6 +203,18 @@ static vec3 local(const struct surface_point *p, vec3 d)
     return vec3_of(vec3_dot(d, p->tangent), vec3_dot(d, p->bitangent), vec3_dot(d, p->normal));
 }
 
+// Colours of the corners, where the mesh has some.
+static void tint(float rgb[3], const relume_objects *o, const struct surface_point *p)
+{
+    const uint32_t *v = o->triangles[p->triangle];
+    for (int c = 0; c < 3; c++) {
+        double part = 0.0;
+        for (int k = 0; k < 3; k++)
+            part += p->corner[k] * (double)o->tint[v[k]][c];
+        rgb[c] *= (float)part;
+    }
+}
+
 void objects_ask(float rgb[3], const relume_objects *o, const struct surface_point *p,
                  const struct relume_btf_ray *ray)
 {
@@ -217,6 +229,8 @@ void objects_ask(float rgb[3], const relume_objects *o, const struct surface_poi
         relume_btf_surface_filter(m->surface, &pixel, ray, rgb);
     else
         relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, ray, rgb);
+    if (o->tint)
+        tint(rgb, o, p);
 }
 
 bool objects_lit(const relume_objects *o, const struct surface_point *p, const struct lighting *l,

@@ -49,6 +49,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_MOST          "relume.functions.most"
 #define ATTR_STEPPED       "relume.functions.stepped"
 #define ATTR_SUMS          "relume.sums"
+#define ATTR_PROVENANCE    "relume.provenance"
 
 // A part of the work (docs/format.md, "Parts"): format and attributes of the first part beside
 // those of the whole, and of a view's

@@ -3,12 +3,12 @@
 
 #include "base/memory.h"
 #include "lossy/entropy.h"
+#include "math/base64.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 enum { BASE = 64, DIGIT_BITS = 6 };
 
 // Steps are 2^-e: the digit of e, from the coarsest on.
@@ -16,8 +16,8 @@ enum { COARSEST = -32, FINEST = COARSEST + BASE - 1, MOST_STEPS = 32767 };
 
 static int digit_of(char c)
 {
-    const char *found = c ? strchr(DIGITS, c) : NULL;
-    return found ? (int)(found - DIGITS) : -1;
+    const char *found = c ? strchr(base64_digits, c) : NULL;
+    return found ? (int)(found - base64_digits) : -1;
 }
 
 // ---------------------------------------------------------------- models
@@ -146,12 +146,12 @@ static char *text_of(const struct steps *s, const struct entropy_writer *w)
     if (!text)
         return NULL;
     for (size_t k = 0; k < head; k++)
-        text[k] = DIGITS[s->exponent[k] - COARSEST];
+        text[k] = base64_digits[s->exponent[k] - COARSEST];
     for (size_t k = 0; k < digits; k++) {
         unsigned digit = 0;
         for (size_t bit = DIGIT_BITS * k; bit < DIGIT_BITS * (k + 1); bit++)
             digit = 2 * digit + (bit < 8 * size ? w->byte[bit / 8] >> (7 - bit % 8) & 1u : 0u);
-        text[head + k] = DIGITS[digit];
+        text[head + k] = base64_digits[digit];
     }
     text[head + digits] = 0;
     return text;

@@ -357,6 +357,7 @@ static relume_status write_views(struct rows_joining *j, const struct relume_enc
         .report = *report,
         .preview = relume_pack_preview,
         .preview_user = &contents,
+        .provenance = info->provenance,
     };
     struct relume_pack_params p = *j->p;
     if (relume_compression_parse(&p.compression, exr_part_info(j->part[0]->file, 0).codec))

@@ -275,5 +275,6 @@ relume_status reader_read_header(relume_pack *p)
     if (!status)
         status = read_geometry(p);
     read_report(p);
+    p->info.provenance = exr_get_text(p->file, 0, ATTR_PROVENANCE);
     return status ? status : read_coder(p);
 }

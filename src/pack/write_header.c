@@ -300,6 +300,8 @@ void writer_add_header(struct writer *w)
                                      : FORMAT_PLAIN);
     writer_text(part, ATTR_CREATOR, "relume " RELUME_VERSION);
     writer_text(part, ATTR_SUMS, EXR_SUMS_CHANNEL);
+    if (c->provenance)
+        writer_text(part, ATTR_PROVENANCE, c->provenance);
     writer_text(part, ATTR_DOMAIN, c->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear");
     writer_text(part, ATTR_DISPLAY, w->display);
     writer_text(part, ATTR_STORAGE, relume_storage_name(info->storage));

@@ -212,7 +212,7 @@ relume_status relume_environment_load(relume_environment **out, const char *path
     return status;
 }
 
-relume_status environment_of_lamp(relume_environment **out, const struct relume_light *lamp)
+relume_status relume_environment_of_lamp(relume_environment **out, const struct relume_light *lamp)
 {
     relume_environment *e = *out = mem_zeroed(1, sizeof *e);
     if (!e || !(e->cell = mem_zeroed(1, sizeof *e->cell))) {

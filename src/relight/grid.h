@@ -19,10 +19,6 @@ struct relume_vec3 grid_shown(const relume_weight_grid *grid, struct relume_vec3
 // That of a refit's coder; belongs to the refit, or to the one it is like.
 const relume_weight_grid *refit_grid(const relume_refit *refit);
 
-// An environment that has nothing but a directional lamp: what a sum over directions has of it.
-// RELUME_ENOMEM.
-relume_status environment_of_lamp(relume_environment **out, const struct relume_light *lamp);
-
 // An environment as the captured lights of a coder that it shines by, those of no light left out:
 // appended to `out`, where *count are. RELUME_ENOMEM.
 relume_status environment_on_lights(struct relume_light *out, int *count, const relume_coder *coder,

@@ -195,7 +195,7 @@ static relume_status exchange_sun(struct relume_image *out, struct relume_image 
     const size_t n = 3 * (size_t)out->width * (size_t)out->height;
     struct relume_light alone = {.kind = RELUME_LIGHT_ENVIRONMENT, .rgb = {1.0f, 1.0f, 1.0f}};
     relume_environment *environment;
-    relume_status status = environment_of_lamp(&environment, lamp);
+    relume_status status = relume_environment_of_lamp(&environment, lamp);
     alone.environment = environment;
     if (!status)
         status = relume_relight(sun, relit->codes, &alone, 1, p);

@@ -354,7 +354,7 @@ static relume_status complete(struct goniometer *g, const struct relume_btf_synt
         return log_fail(g->p.log, RELUME_EINVAL, "noise, flicker: expected 0 to 1; found %g, %g",
                         f->noise, f->flicker);
     const uint64_t side = (uint64_t)g->p.size * (uint64_t)fineness(g);
-    const relume_status status = limits_memory(12 * side * side * (uint64_t)g->p.lights,
+    const relume_status status = limits_memory(NULL, 12 * side * side * (uint64_t)g->p.lights,
                                                "a view of this size under all lights", g->p.log);
     if (status)
         return status;

@@ -97,8 +97,8 @@ static relume_status check(const struct synth *s)
     if (!(p->spread >= 0.0 && p->spread <= 1000.0))
         return log_fail(p->log, RELUME_EINVAL, "spread: expected 0 to 1000; found %g", p->spread);
     // a picture of three floats and its depth
-    return limits_memory((uint64_t)s->width * (uint64_t)s->height * 16, "a picture of this size",
-                         p->log);
+    return limits_memory(NULL, (uint64_t)s->width * (uint64_t)s->height * 16,
+                         "a picture of this size", p->log);
 }
 
 static relume_status one_eye_at_most(const struct synth *s)

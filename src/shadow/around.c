@@ -28,6 +28,17 @@ relume_status shadows_need_between(relume_shadows *s, const struct relume_coder_
                                &p);
 }
 
+relume_status relume_shadows_between(const relume_coder **out, relume_shadows *s,
+                                     const relume_coder *coder)
+{
+    *out = NULL;
+    if (s->gloss.data)
+        return RELUME_EINVAL;
+    const relume_status status = shadows_need_between(s, relume_coder_info(coder), false);
+    *out = s->between;
+    return status;
+}
+
 static int gather(int *light, float *weight, const relume_shadows *s, const float *weights)
 {
     const bool highlights = s->gloss.data != NULL;

@@ -248,10 +248,10 @@ static relume_status judge(struct judging *j, const bool *skip)
     const int lights = relume_capture_manifest(j->capture)->lights;
     const uint64_t pixels =
         (uint64_t)relume_capture_width(j->capture) * (uint64_t)relume_capture_height(j->capture);
-    relume_status status = limits_memory(pixels * LEFT_OUT * (1 + COMPARED) * 3 * sizeof(float),
-                                         j->gloss ? "comparing the highlights of a view"
-                                                  : "comparing the shadows of a view",
-                                         j->p->log);
+    relume_status status = limits_memory(
+        NULL, pixels * LEFT_OUT * (1 + COMPARED) * 3 * sizeof(float),
+        j->gloss ? "comparing the highlights of a view" : "comparing the shadows of a view",
+        j->p->log);
     if (!status)
         status = select_rest(j, skip);
     if (!status)

@@ -62,7 +62,7 @@ static relume_status looked_create(struct looked *l, const struct relume_manifes
     l->pixels = (size_t)depth->width * (size_t)depth->height;
     l->workers = threads < MOST_WORKERS ? threads : MOST_WORKERS;
     relume_status status =
-        limits_memory(held(l, m->lights), "tracing the shadows of a view", p->log);
+        limits_memory(NULL, held(l, m->lights), "tracing the shadows of a view", p->log);
     if (!status)
         status = stage_create(&l->stage, g, m->view[view].uv, depth);
     if (status)

@@ -146,19 +146,32 @@ static relume_status copy_film(struct make *m, const char *from, const char *to,
     return status;
 }
 
-// The picture of a scene in a folder, whatever its ending; NULL where there is none or no memory.
-static char *picture_of(const char *folder, const char *scene)
+// The first picture of a scene in a folder, by the alphabet, whatever its ending; NULL where there
+// is none.
+static relume_status picture_of(char **out, const char *folder, const char *scene,
+                                const struct relume_log *log)
 {
-    static const char *const endings[] = {"png",  "exr", "jpg", "jpeg", "hdr", "tif", "tiff",
-                                          "webp", "ppm", "bmp", "pfm",  "tga", NULL};
-    struct stat s;
-    for (const char *const *e = endings; *e; e++) {
-        char *path = mem_format("%s/%s.%s", folder, scene, *e);
-        if (!path || !stat(path, &s))
-            return path;
-        mem_free(path);
+    const size_t length = strlen(scene);
+    struct dirent **list;
+    int n;
+    relume_status status = list_folder(&list, &n, folder, log);
+    *out = NULL;
+    if (status)
+        return status;
+    for (int i = 0; i < n && !*out && !status; i++) {
+        const char *name = list[i]->d_name, *dot = strrchr(name, '.');
+        if (!dot || (size_t)(dot - name) != length || strncmp(name, scene, length))
+            continue;
+        char *path = mem_format("%s/%s", folder, name);
+        if (!path)
+            status = RELUME_ENOMEM;
+        else if (relume_image_can_save(path) && !is_folder(path))
+            *out = path;
+        else
+            mem_free(path);
     }
-    return NULL;
+    free_list(list, n);
+    return status;
 }
 
 static relume_status copy_scene(struct make *m, int scene, int c)
@@ -166,13 +179,16 @@ static relume_status copy_scene(struct make *m, int scene, int c)
     const char *folder = m->condition[c].folder, *name = m->scene[scene];
     char *film = mem_format("%s/%s", folder, name);
     char *base = mem_format("%s/%s/%s", m->to, m->condition[c].name, name);
-    char *picture = picture_of(folder, name), *png = base ? mem_format("%s.png", base) : NULL;
+    char *picture = NULL, *png = base ? mem_format("%s.png", base) : NULL;
     relume_status status = film && base && png ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && is_folder(film))
+    const bool is_film = !status && is_folder(film);
+    if (is_film)
         status = copy_film(m, film, base, &m->frames[scene][c]);
-    else if (!status && picture)
-        status = copy_picture(m, picture, png);
     else if (!status)
+        status = picture_of(&picture, folder, name, m->p->log);
+    if (!status && !is_film && picture)
+        status = copy_picture(m, picture, png);
+    else if (!status && !is_film)
         status = log_fail(m->p->log, RELUME_EUNFIT,
                           "%s: no picture of '%s'; expected one of every scene of %s", folder, name,
                           m->condition[0].folder);
@@ -202,15 +218,18 @@ static relume_status copy_all(struct make *m)
 
 // ---------------------------------------------------------------- study.json
 
-static void put_texts(FILE *to, const char *name, const char *const *text, int n)
+static relume_status put_texts(FILE *to, const char *name, const char *const *text, int n)
 {
     fprintf(to, "  \"%s\": [", name);
     for (int i = 0; i < n; i++) {
         char *quoted = jvalue_quote(text[i]);
-        fprintf(to, "%s%s", i ? ", " : "", quoted ? quoted : "\"?\"");
+        if (!quoted)
+            return RELUME_ENOMEM;
+        fprintf(to, "%s%s", i ? ", " : "", quoted);
         mem_free(quoted);
     }
     fputs("],\n", to);
+    return RELUME_OK;
 }
 
 static relume_status write_json(const struct make *m, const char *const *question, int questions)
@@ -224,9 +243,11 @@ static relume_status write_json(const struct make *m, const char *const *questio
         names[c] = m->condition[c].name;
     if (to) {
         fputs("{ \"format\": \"relume-study\", \"version\": 1,\n", to);
-        put_texts(to, "conditions", names, m->conditions);
-        put_texts(to, "scenes", (const char *const *)m->scene, m->scenes);
-        put_texts(to, "questions", question, questions);
+        status = put_texts(to, "conditions", names, m->conditions);
+        if (!status)
+            status = put_texts(to, "scenes", (const char *const *)m->scene, m->scenes);
+        if (!status)
+            status = put_texts(to, "questions", question, questions);
         fputs("  \"frames\": [", to);
         for (int s = 0; s < m->scenes; s++)
             for (int c = 0; c < m->conditions; c++)
@@ -238,7 +259,7 @@ static relume_status write_json(const struct make *m, const char *const *questio
         fprintf(to, "],\n  \"frames_per_second\": %.9g, \"seed\": %llu }\n",
                 m->p->frames_per_second > 0.0 ? m->p->frames_per_second : 24.0,
                 (unsigned long long)m->p->seed);
-        if (fclose(to))
+        if (fclose(to) && !status)
             status = RELUME_ENOMEM;
     }
     if (!status)

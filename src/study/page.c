@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "base/params.h"
+#include "math/base64.h"
 #include "math/random.h"
 #include "study/stimuli.h"
 
@@ -76,19 +77,6 @@ static const char tail[] =
     "setInterval(draw, 1000 / RATE);\n"
     "</script></html>\n";
 
-static void put_base64(FILE *to, const uint8_t *p, size_t n)
-{
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < n; i += 3) {
-        const unsigned v = (unsigned)p[i] << 16 | (i + 1 < n ? (unsigned)p[i + 1] << 8 : 0u) |
-                           (i + 2 < n ? p[i + 2] : 0u);
-        const char four[4] = {digit[v >> 18], digit[v >> 12 & 63],
-                              i + 1 < n ? digit[v >> 6 & 63] : '=',
-                              i + 2 < n ? digit[v & 63] : '='};
-        fwrite(four, 1, 4, to);
-    }
-}
-
 static relume_status put_picture(FILE *to, const char *path, const struct relume_log *log)
 {
     char *bytes;
@@ -98,7 +86,7 @@ static relume_status put_picture(FILE *to, const char *path, const struct relume
     if (status)
         return status;
     fputs("\"data:image/png;base64,", to);
-    put_base64(to, (const uint8_t *)bytes, size);
+    base64_print(to, (const uint8_t *)bytes, size);
     fputs("\"", to);
     mem_free(bytes);
     return RELUME_OK;
@@ -125,13 +113,15 @@ static relume_status put_stimulus(FILE *to, const char *folder, const struct stu
 }
 
 // As a script may hold it: an end of the script is none.
-static void put_texts(FILE *to, const char *name, const char *const *text, int n)
+static relume_status put_texts(FILE *to, const char *name, const char *const *text, int n)
 {
     fprintf(to, "const %s = [", name);
     for (int i = 0; i < n; i++) {
         char *quoted = jvalue_quote(text[i]);
+        if (!quoted)
+            return RELUME_ENOMEM;
         fputs(i ? ", " : "", to);
-        for (const char *c = quoted ? quoted : "\"\""; *c; c++)
+        for (const char *c = quoted; *c; c++)
             if (*c == '<')
                 fputs("\\u003c", to);
             else
@@ -139,6 +129,7 @@ static void put_texts(FILE *to, const char *name, const char *const *text, int n
         mem_free(quoted);
     }
     fputs("];\n", to);
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- trials
@@ -191,12 +182,13 @@ static relume_status put_trials(FILE *to, const struct study *s, int subject)
 static relume_status put_page(FILE *to, const char *folder, const struct study *s, int subject,
                               const struct relume_log *log)
 {
-    relume_status status = RELUME_OK;
     fputs(head, to);
     fprintf(to, "const SUBJECT = %d, RATE = %.9g;\n", subject, s->frames_per_second);
-    put_texts(to, "QUESTIONS", s->question, s->questions);
-    put_texts(to, "SCENES", s->scene, s->scenes);
-    put_texts(to, "CONDITIONS", s->condition, s->conditions);
+    relume_status status = put_texts(to, "QUESTIONS", s->question, s->questions);
+    if (!status)
+        status = put_texts(to, "SCENES", s->scene, s->scenes);
+    if (!status)
+        status = put_texts(to, "CONDITIONS", s->condition, s->conditions);
     fputs("const PICTURES = [", to);
     for (int i = 0; !status && i < s->scenes; i++) {
         fputs(i ? ",\n[" : "[", to);

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/gram.h"
 #include "math/lsq.h"
 #include "math/scalar.h"
@@ -50,19 +51,15 @@ static int surroundings(const struct alike_texels *t)
     return t->side * t->side * t->values;
 }
 
-static int within(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 static void load(const struct alike_texels *t, size_t texel, double *to)
 {
     const int x = (int)(texel % (size_t)t->width), y = (int)(texel / (size_t)t->width);
     const int r = t->side / 2;
     for (int j = -r; j <= r; j++)
         for (int i = -r; i <= r; i++) {
-            const size_t at = (size_t)within(y + j * t->spacing, t->height) * (size_t)t->width +
-                              (size_t)within(x + i * t->spacing, t->width);
+            const size_t at =
+                (size_t)index_clamped(y + j * t->spacing, t->height) * (size_t)t->width +
+                (size_t)index_clamped(x + i * t->spacing, t->width);
             for (int k = 0; k < t->values; k++)
                 *to++ = (double)t->value[at * (size_t)t->values + (size_t)k];
         }

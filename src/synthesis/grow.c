@@ -64,8 +64,8 @@ static relume_status check(struct relume_grow_params *p, int width, int height,
         (int64_t)width * height > MOST_TEXELS)
         return log_fail(p->log, RELUME_ELIMIT, "map: expected 1 x 1 to 2^30 texels; found %d x %d",
                         width, height);
-    const relume_status fits =
-        limits_memory((uint64_t)width * (uint64_t)height * sizeof(uint32_t), "the map", p->log);
+    const relume_status fits = limits_memory(
+        NULL, (uint64_t)width * (uint64_t)height * sizeof(uint32_t), "the map", p->log);
     if (fits)
         return fits;
     if (p->regular && (p->regular->width != t->width || p->regular->height != t->height))

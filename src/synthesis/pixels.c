@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/random.h"
 #include "math/scalar.h"
 
@@ -57,17 +58,6 @@ struct level {
     double *turn;                             // [workers][4 BLOCK]
 };
 
-static int wrap(int i, int n)
-{
-    const int rest = i % n;
-    return rest < 0 ? rest + n : rest;
-}
-
-static int within(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 // ---------------------------------------------------------------- samples
 
 // One step of a binomial filter whose taps lie `step` apart; [1 4 6 4 1] / 16 along x, then y.
@@ -78,7 +68,8 @@ static void blur_line(float *to, const float *from, int n, size_t stride, int va
         for (int k = 0; k < values; k++) {
             float sum = 0.0f;
             for (int t = -2; t <= 2; t++)
-                sum += tap[t + 2] * from[(size_t)within(i + t * step, n) * stride + (size_t)k];
+                sum +=
+                    tap[t + 2] * from[(size_t)index_clamped(i + t * step, n) * stride + (size_t)k];
             to[(size_t)i * stride + (size_t)k] = sum;
         }
 }
@@ -110,8 +101,8 @@ static uint32_t texel_of(const struct relume_texture *t, int x, int y)
 static bool map_place(const struct level *l, int x, int y, uint32_t *out)
 {
     if (l->g->params->tile) {
-        x = wrap(x, l->width);
-        y = wrap(y, l->height);
+        x = index_wrapped(x, l->width);
+        y = index_wrapped(y, l->height);
     } else if (x < 0 || y < 0 || x >= l->width || y >= l->height) {
         return false;
     }
@@ -156,8 +147,8 @@ static inline __attribute__((always_inline)) float compare_values(const struct l
                 continue;
             if (!inside)
                 b = l->value +
-                    (size_t)values * texel_of(t, within(x + (i - r) * l->spacing, t->width),
-                                              within(y + (j - r) * l->spacing, t->height));
+                    (size_t)values * texel_of(t, index_clamped(x + (i - r) * l->spacing, t->width),
+                                              index_clamped(y + (j - r) * l->spacing, t->height));
             float part = 0.0f;
             for (int k = 0; k < values; k++)
                 part += (a[k] - b[k]) * (a[k] - b[k]);
@@ -366,7 +357,7 @@ static void refine(const struct level *l, const uint32_t *coarse, int coarse_wid
             const int sx = (int)(id % (uint32_t)t->width) + x % 2 * l->spacing,
                       sy = (int)(id / (uint32_t)t->width) + y % 2 * l->spacing;
             l->texel[(size_t)y * (size_t)l->width + (size_t)x] =
-                texel_of(t, within(sx, t->width), within(sy, t->height));
+                texel_of(t, index_clamped(sx, t->width), index_clamped(sy, t->height));
         }
 }
 

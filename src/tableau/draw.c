@@ -106,7 +106,7 @@ static relume_status make_room(struct drawing *d)
     enum { PIXEL_BYTES = 5 * 3 * sizeof(float) + sizeof(int) };
     const size_t captures = (size_t)d->t->info.captures;
     const relume_status status =
-        limits_memory(pixels_of(d) * (PIXEL_BYTES + captures * 2 * 3 * sizeof(float)),
+        limits_memory(NULL, pixels_of(d) * (PIXEL_BYTES + captures * 2 * 3 * sizeof(float)),
                       "a picture of this size of several captures", d->t->params.log);
     if (status)
         return status;

@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "base/thread.h"
+#include "math/fnv.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -42,18 +43,6 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// FNV-1a, eight bytes at a time.
-static uint64_t sum_of(const void *bytes, size_t size)
-{
-    uint64_t sum = 0xcbf29ce484222325u;
-    for (size_t i = 0; i < size; i += sizeof sum) {
-        uint64_t word = 0;
-        memcpy(&word, (const char *)bytes + i, size - i < sizeof word ? size - i : sizeof word);
-        sum = (sum ^ word) * 0x100000001b3u;
-    }
-    return sum;
-}
-
 // ---------------------------------------------------------------- one piece
 
 static char *piece_path(const relume_team_files *f, const char *what, int member, const char *more)
@@ -65,7 +54,7 @@ static char *piece_head(const relume_team_files *f, const char *what, int member
                         size_t size)
 {
     return mem_format(FIRST_LINE " %s.%dof%d\n%s\n%zu %016" PRIx64 "\n", what, member + 1,
-                      f->team.members, f->about, size, sum_of(bytes, size));
+                      f->team.members, f->about, size, fnv_of_words(FNV_START, bytes, size));
 }
 
 static relume_status write_piece(const relume_team_files *f, const char *path, const char *what,
@@ -114,7 +103,7 @@ static relume_status take_piece(const relume_team_files *f, const char *path, co
     const char *numbers = about ? take_line(&at) : NULL;
     if (!numbers || strncmp(first, FIRST_LINE " ", sizeof FIRST_LINE) ||
         sscanf(numbers, "%zu %" SCNx64, &bytes, &sum) != 2 || bytes != size - (size_t)(at - all) ||
-        sum != sum_of(at, bytes))
+        sum != fnv_of_words(FNV_START, at, bytes))
         return damaged(f, path);
     if (strcmp(about, f->about))
         return log_fail(f->log, RELUME_EUNFIT,

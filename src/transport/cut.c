@@ -8,6 +8,8 @@
 // shared with its neighbours (bilinear), and what objects cover is right on average.
 #include "transport/cut.h"
 
+#include "math/bilinear.h"
+
 #include <math.h>
 
 // ---------------------------------------------------------------- pixels
@@ -155,11 +157,6 @@ static inline void put_object(struct cut_cell *cell, const struct cut_light *lig
     add_light(&cell->object, light, weight);
 }
 
-static int within(int i, int side)
-{
-    return i < 0 ? 0 : i < side ? i : side - 1;
-}
-
 // Shared among the four pixels about its place.
 static inline void draw(struct cut_cell *cells, const struct cut_place *place,
                         const struct seen *seen, int k, const struct sent *sent, bool objects)
@@ -178,8 +175,8 @@ static inline void draw(struct cut_cell *cells, const struct cut_place *place,
     const float x = (seen->u[k] + 1.0f) * half + 0.5f, y = (seen->v[k] + 1.0f) * half + 0.5f;
     const int i = (int)x, j = (int)y;
     const float right = x - (float)i, down = y - (float)j;
-    const int left = within(i - 1, side), next = within(i, side);
-    const int top = within(j - 1, side) * side, bottom = within(j, side) * side;
+    const int left = index_clamped(i - 1, side), next = index_clamped(i, side);
+    const int top = index_clamped(j - 1, side) * side, bottom = index_clamped(j, side) * side;
     const int pixel[] = {top + left, top + next, bottom + left, bottom + next};
     const float weight[] = {(1.0f - right) * (1.0f - down), right * (1.0f - down),
                             (1.0f - right) * down, right * down};
@@ -230,8 +227,8 @@ static void mark(struct cut_cell *cells, const struct cut_view *view, const stru
     // the chord, by which places on the disc are apart at most
     const float chord = sine < 1.0f ? sqrtf(2.0f - 2.0f * sqrtf(1.0f - sine * sine)) : 2.0f;
     const float u = (seen->u[k] + 1.0f) * half, v = (seen->v[k] + 1.0f) * half, r = chord * half;
-    const int left = within((int)(u - r), side), right = within((int)(u + r), side);
-    const int top = within((int)(v - r), side), bottom = within((int)(v + r), side);
+    const int left = index_clamped((int)(u - r), side), right = index_clamped((int)(u + r), side);
+    const int top = index_clamped((int)(v - r), side), bottom = index_clamped((int)(v + r), side);
     for (int y = top; y <= bottom; y++)
         for (int x = left; x <= right; x++)
             if (!is_met(disc, view->pixel[y * side + x].direction))

@@ -319,9 +319,9 @@ static relume_status make_lights(struct instant *s, const struct world *w, size_
 static relume_status make_room(struct instant *s, size_t lights, const struct relume_log *log)
 {
     const size_t maps = s->params.rays ? 0 : lights, side = (size_t)s->params.size;
-    relume_status status =
-        limits_memory((uint64_t)lights * sizeof *s->light + 2 * maps * side * side * sizeof(float),
-                      "virtual lights", log);
+    relume_status status = limits_memory(
+        NULL, (uint64_t)lights * sizeof *s->light + 2 * maps * side * side * sizeof(float),
+        "virtual lights", log);
     if (status)
         return status;
     s->light = mem_array(lights, sizeof *s->light);

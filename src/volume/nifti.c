@@ -1,6 +1,7 @@
 // nifti.c - NIfTI-1 (Cox et al. 2004): a header of 348 bytes, and samples behind it or beside it
 #include "volume/readers.h"
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -94,11 +95,14 @@ static relume_status open_image(unpack **out, const char *path, const struct rel
     const int length = dot ? (int)(dot - path) : (int)strlen(path);
     char *name = mem_format("%.*s.img", length, path);
     char *packed = mem_format("%.*s.img.gz", length, path);
-    relume_status status = name && packed ? unpack_open(out, name, 0, NULL, NULL) : RELUME_ENOMEM;
-    if (status && status != RELUME_ENOMEM)
-        status = unpack_open(out, packed, 0, NULL, NULL);
-    if (status && status != RELUME_ENOMEM)
-        status = log_fail(log, status, "%s: its samples, %s, cannot be opened", path, name);
+    relume_status status = name && packed ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && input_exists(name, log))
+        status = unpack_open(out, name, 0, NULL, log);
+    else if (!status && input_exists(packed, log))
+        status = unpack_open(out, packed, 0, NULL, log);
+    else if (!status)
+        status = log_fail(log, RELUME_ENOTFOUND, "%s: a header; its samples, %s, are missing", path,
+                          name);
     mem_free(name);
     mem_free(packed);
     return status;

@@ -1,4 +1,4 @@
-// open.c - volumes from files: which format a file is, and raw samples
+// open.c - volumes from files: which format a file is, and its samples
 #include "volume/readers.h"
 
 #include "base/infile.h"
@@ -19,7 +19,7 @@ void volume_set_spacing(struct store *s, const double spacing[3],
             s->volume->spacing[c] = spacing[c];
 }
 
-// ---------------------------------------------------------------- raw samples
+// ---------------------------------------------------------------- samples
 
 static relume_status check_exact(const struct store *s, unpack *from, const int64_t size[3],
                                  uint64_t bytes)
@@ -82,32 +82,6 @@ relume_status volume_take(struct store *s, unpack *from, const int64_t size[3], 
     if (!status)
         status = store_begin(s, size, p);
     return status ? status : take_rows(s, from, expected, exact);
-}
-
-relume_status volume_read_raw(struct store *s, const char *path,
-                              const struct relume_volume_params *p)
-{
-    const int64_t size[3] = {p->size[0], p->size[1], p->size[2]};
-    unpack *from;
-    if (!size[0])
-        return log_fail(p->log, RELUME_EINVAL,
-                        "%s: raw samples do not say how many they are; give --size XxYxZ, and "
-                        "--type where they are not u8",
-                        path);
-    s->type = sample_type_find(p->type ? p->type : "u8", &s->big);
-    if (!s->type)
-        return log_fail(p->log, RELUME_EINVAL,
-                        "samples of type '%s'; expected one of u8, i8, u16le, u16be and so on",
-                        p->type);
-    relume_status status = unpack_open(&from, path, 0, NULL, p->log);
-    if (status)
-        return status;
-    if (p->skip)
-        status = unpack_skip(from, p->skip, "more");
-    if (!status)
-        status = volume_take(s, from, size, true, p);
-    unpack_close(&from);
-    return status;
 }
 
 // ---------------------------------------------------------------- formats

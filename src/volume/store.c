@@ -215,9 +215,9 @@ relume_status store_put(struct store *s, const void *samples, size_t count)
 relume_status store_end(struct store *s)
 {
     const relume_volume *v = s->volume;
-    return v->min < v->max
-               ? RELUME_OK
-               : log_fail(s->log, RELUME_EUNFIT,
-                          "%s: all samples are %g; expected a volume in which something is",
-                          s->path, (double)v->min);
+    return v->min < v->max ? RELUME_OK
+                           : log_fail(s->log, RELUME_EUNFIT,
+                                      "%s: all samples are %g, so that there is no surface; wrong "
+                                      "--type, --size or file?",
+                                      s->path, (double)v->min);
 }

@@ -18,7 +18,7 @@ struct unpack {
     bool packed, ended;
     z_stream z;
     uint8_t chunk[CHUNK];
-    const char *path;
+    char *path;
     const struct relume_log *log;
 };
 
@@ -38,18 +38,23 @@ relume_status unpack_open(unpack **out, const char *path, uint64_t offset, const
                           const struct relume_log *log)
 {
     uint8_t head[2] = {0};
-    unpack *u = *out = mem_zeroed(1, sizeof *u);
-    if (!u)
+    unpack *u = mem_zeroed(1, sizeof *u);
+    char *name = mem_text(path);
+    *out = NULL;
+    if (!u || !name) {
+        mem_free(u);
+        mem_free(name);
         return RELUME_ENOMEM;
+    }
     if (!infile_open(&u->in, path, NULL, log)) {
         const int error = errno;
         infile_close(&u->in);
         mem_free(u);
-        *out = NULL;
+        mem_free(name);
         return relume_input_fail(log, path, "cannot be opened", error);
     }
     u->at = offset;
-    u->path = path;
+    u->path = name;
     u->log = log;
     u->z = (z_stream){.zalloc = allocate, .zfree = release};
     u->packed = packed ? *packed
@@ -57,9 +62,10 @@ relume_status unpack_open(unpack **out, const char *path, uint64_t offset, const
                              head[0] == 0x1f && head[1] == 0x8b;
     if (u->packed && inflateInit2(&u->z, 15 + 32) != Z_OK) {
         u->packed = false;
-        unpack_close(out);
+        unpack_close(&u);
         return RELUME_ENOMEM;
     }
+    *out = u;
     return RELUME_OK;
 }
 
@@ -70,6 +76,7 @@ void unpack_close(unpack **u)
     if ((*u)->packed)
         inflateEnd(&(*u)->z);
     infile_close(&(*u)->in);
+    mem_free((*u)->path);
     mem_free(*u);
     *u = NULL;
 }
@@ -103,23 +110,52 @@ static relume_status read_file(unpack *u, void *bytes, size_t size, size_t *got)
     return RELUME_OK;
 }
 
+// More of the file behind what is left of the chunk; `*more` is false at the end.
+static relume_status fill_chunk(unpack *u, bool *more)
+{
+    size_t n = 0;
+    const size_t left = u->z.avail_in;
+    if (left)
+        memmove(u->chunk, u->z.next_in, left);
+    const relume_status status = read_file(u, u->chunk + left, sizeof u->chunk - left, &n);
+    u->z.next_in = u->chunk;
+    u->z.avail_in = (unsigned)(left + n);
+    *more = n > 0;
+    return status;
+}
+
+// Files that gzip has packed in pieces, as bgzip and `cat` make them, are what all members give
+// (RFC 1952, 2.2). What follows the last one and is no member is passed over, as gzip does.
+static relume_status next_member(unpack *u)
+{
+    bool more = true;
+    relume_status status = RELUME_OK;
+    while (u->z.avail_in < 2 && more && !status)
+        status = fill_chunk(u, &more);
+    if (status)
+        return status;
+    u->ended = u->z.avail_in < 2 || u->z.next_in[0] != 0x1f || u->z.next_in[1] != 0x8b;
+    if (!u->ended)
+        inflateReset(&u->z);
+    return RELUME_OK;
+}
+
 // One step of zlib; more of the file first when it has used up what there was.
 static relume_status inflate_some(unpack *u)
 {
     if (!u->z.avail_in) {
-        size_t n = 0;
-        const relume_status status = read_file(u, u->chunk, sizeof u->chunk, &n);
+        bool more;
+        const relume_status status = fill_chunk(u, &more);
         if (status)
             return status;
-        if (!n)
+        if (!more)
             return log_fail(u->log, RELUME_EDAMAGED,
                             "%s: ends too early; expected more of what gzip has packed", u->path);
-        u->z.next_in = u->chunk;
-        u->z.avail_in = (unsigned)n;
     }
     const int result = inflate(&u->z, Z_NO_FLUSH);
-    u->ended = result == Z_STREAM_END;
-    if (result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR)
+    if (result == Z_STREAM_END)
+        return next_member(u);
+    if (result == Z_OK || result == Z_BUF_ERROR)
         return RELUME_OK;
     return result == Z_MEM_ERROR
                ? RELUME_ENOMEM

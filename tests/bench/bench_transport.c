@@ -3,6 +3,7 @@
 // the RMS there.
 //
 //   bench_transport [FOLDER]      the room is photographed into FOLDER, or found there
+//   bench_transport FOLDER rows   the ways in the Cornell box and the colonnade instead
 #include "bench.h"
 
 #include "capture_fixture.h"
@@ -24,22 +25,24 @@ static const char *path_of(const char *name)
     return p;
 }
 
-static const struct relume_light sun = {.direction = {0.55, 0.75, 0.6}, .rgb = {1, 1, 1}};
+static struct relume_light sun = {.direction = {0.55, 0.75, 0.6}, .rgb = {1, 1, 1}};
 
 // ---------------------------------------------------------------- the room
 
-static void photograph(const struct relume_scene_kind *kind, const char *name, const char *file)
+static void photograph(const struct relume_scene_kind *kind, const char *name, const char *file,
+                       int size, int samples, int light_count)
 {
     struct stat is;
-    const struct relume_vec3 lights[] = {light_direction, {0, 1, 0.2}, {1, 1, 0}, {0, 0.2, 1}};
+    const struct relume_vec3 lights[] = {sun.direction, {0, 1, 0.2}, {1, 1, 0}, {0, 0.2, 1}};
     relume_scene *scene;
     if (!stat(path_of(file), &is))
         return;
     bench_check(relume_scene_create(&scene, kind, NULL));
-    bench_check(
-        relume_scene_capture(scene, path_of(name),
-                             relume_synth_params(.size = HEIGHT, .lights = lights, .light_count = 4,
-                                                 .samples = 256, .bounces = BOUNCES + 2)));
+    bench_check(relume_scene_capture(
+        scene, path_of(name),
+        relume_synth_params(.projection_set = true, .projection = RELUME_SPHERICAL, .size = size,
+                            .lights = lights, .light_count = light_count, .samples = samples,
+                            .bounces = BOUNCES + 2)));
     relume_scene_destroy(&scene);
     bench_check(fixture_encode(path_of(name), path_of(file), &relume_basis_table, 0,
                                relume_pack_encode_params(.storage = RELUME_STORE_HALF)));
@@ -52,17 +55,26 @@ static relume_pack *open_pack(const char *file)
     return pack;
 }
 
-static relume_objects *open_ball(int segments)
+static relume_objects *open_ball_at(int segments, vec3 at, double radius)
 {
     relume_objects *o;
     char text[512];
-    ball_text(text, sizeof text, "ball.obj", vec3_of(ball[0], ball[1], ball[2]), ball_grey);
+    snprintf(text, sizeof text,
+             "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"ball.obj\","
+             "\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]},\"parts\":[{\"material\":"
+             "{\"diffuse\":%g}}]}]}",
+             radius, at.x, at.y, at.z, (double)ball_grey);
     FILE *file = fopen(path_of("ball.json"), "w");
     if (!file || !write_ball_mesh(path_of("ball.obj"), segments, false) || fputs(text, file) < 0 ||
         fclose(file))
         bench_check(RELUME_EIO);
     bench_check(relume_objects_open(&o, path_of("ball.json"), NULL));
     return o;
+}
+
+static relume_objects *open_ball(int segments)
+{
+    return open_ball_at(segments, vec3_of(ball[0], ball[1], ball[2]), ball_radius);
 }
 
 // ---------------------------------------------------------------- ways
@@ -132,14 +144,23 @@ struct judge {
     relume_pack *room;
     relume_objects *ball;
     struct relume_image before, truth;
+    struct relume_image touched;  // where this differs from before counts, too; empty: not
 };
+
+// Whether the ball changes a value.
+static bool counts(const struct judge *j, size_t i)
+{
+    const double ENOUGH = 0.02, before = (double)j->before.data[i];
+    return fabs((double)j->truth.data[i] - before) >= ENOUGH ||
+           (j->touched.data && fabs((double)j->touched.data[i] - before) >= ENOUGH);
+}
 
 static double difference(const struct judge *j, const struct relume_image *got,
                          const struct relume_image *want)
 {
     double wrong = 0.0, all = 0.0;
-    for (size_t i = 0; i < 3 * (size_t)WIDTH * HEIGHT; i++) {
-        if (fabs((double)j->truth.data[i] - (double)j->before.data[i]) < 0.02)
+    for (size_t i = 0; i < 3 * (size_t)j->truth.width * (size_t)j->truth.height; i++) {
+        if (!counts(j, i))
             continue;
         wrong += pow((double)got->data[i] - (double)want->data[i], 2.0);
         all += pow((double)want->data[i], 2.0);
@@ -326,14 +347,87 @@ static void time_growth(const struct judge *j)
     }
 }
 
+// ---------------------------------------------------------------- other scenes
+
+// A built-in scene, with a ball in it, under a sun.
+struct row {
+    const char *scene;
+    struct relume_vec3 sun, at;
+    double radius;
+    int samples;
+};
+static const struct row rows[] = {
+    {"cornell", {-0.2, 1.0, -0.15}, {0.34, -0.16, -0.54}, 0.25, 1024},
+    {"colonnade", {0.8, 0.7, 0.25}, {1.0, -1.25, -0.72}, 0.35, 256},
+};
+static const struct row *row;
+
+static relume_status build_with_ball(struct relume_scene_builder *b)
+{
+    struct mesh part = {0};
+    shape_sphere(&part, row->at, row->radius, 64);
+    build_put_exact(b, &part, build_material(b, build_matte(ball_grey, ball_grey, ball_grey)));
+    return relume_scene_find(row->scene)->build(b);
+}
+
+static void judge_row(const struct row *r)
+{
+    enum { SIZE = 64 };
+    char name[4][64];
+    const struct relume_scene_kind *alone = relume_scene_find(r->scene);
+    struct relume_scene_kind with = *alone;
+    struct judge j = {.touched = {0}};
+    row = r;
+    sun.direction = vec3_unit(r->sun);
+    with.build = build_with_ball;
+    snprintf(name[0], sizeof name[0], "%s", r->scene);
+    snprintf(name[1], sizeof name[1], "%s.exr", r->scene);
+    snprintf(name[2], sizeof name[2], "%s-truth", r->scene);
+    snprintf(name[3], sizeof name[3], "%s-truth.exr", r->scene);
+    photograph(alone, name[0], name[1], SIZE, r->samples, 1);
+    photograph(&with, name[2], name[3], SIZE, r->samples, 1);
+    relume_pack *truth = open_pack(name[3]);
+    j.room = open_pack(name[1]);
+    j.ball = open_ball_at(64, r->at, r->radius);
+    bench_check(relume_frame(&j.before, j.room, &unfolded, &sun, 1, NULL));
+    bench_check(relume_frame(&j.truth, truth, &unfolded, &sun, 1, NULL));
+    struct shot lamps = frame_of(j.room, j.ball, relume_transports[0], 1, &unfolded);
+    j.touched = lamps.image;
+    printf("\n%s: without the ball %.4f\n", r->scene, difference(&j, &j.before, &j.truth));
+    for (const struct relume_transport *const *t = relume_transports; *t; t++)
+        for (int samples = 0; samples <= 256; samples += 256) {
+            struct shot f = frame_of(j.room, j.ball, *t, samples, &unfolded);
+            printf("| %s | %d | %.4f | %.2f |\n", relume_transport_name(*t), samples,
+                   difference(&j, &f.image, &j.truth), f.seconds);
+            fflush(stdout);
+            snprintf(name[0], sizeof name[0], "%s-%s-%d.exr", r->scene, relume_transport_name(*t),
+                     samples);
+            bench_check(relume_image_save(&f.image, path_of(name[0]), NULL));
+            relume_image_destroy(&f.image);
+        }
+    snprintf(name[2], sizeof name[2], "%s-truth-picture.exr", r->scene);
+    bench_check(relume_image_save(&j.truth, path_of(name[2]), NULL));
+    relume_image_destroy(&j.before);
+    relume_image_destroy(&j.truth);
+    relume_image_destroy(&j.touched);
+    relume_objects_destroy(&j.ball);
+    relume_pack_destroy(&j.room);
+    relume_pack_destroy(&truth);
+}
+
 int main(int argc, char **argv)
 {
-    struct judge j;
+    struct judge j = {.touched = {0}};
     snprintf(folder, sizeof folder, "%s", argc > 1 ? argv[1] : "/tmp/bench-transport-XXXXXX");
     if (argc > 1 ? mkdir(folder, 0777) && access(folder, W_OK) : !mkdtemp(folder))
         bench_check(RELUME_EIO);
-    photograph(&room, "room", "room.exr");
-    photograph(&room_with_ball, "truth", "truth.exr");
+    if (argc > 2) {
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+            judge_row(&rows[i]);
+        return 0;
+    }
+    photograph(&room, "room", "room.exr", HEIGHT, 256, 4);
+    photograph(&room_with_ball, "truth", "truth.exr", HEIGHT, 256, 4);
     relume_pack *truth = open_pack("truth.exr");
     j.room = open_pack("room.exr");
     j.ball = open_ball(64);

@@ -52,6 +52,9 @@ printf 'subject,question,left,right,chosen\n1,q,a,b,a\n2,q,b,a,a\n3,q,a,b,a\n4,q
 "$RELUME" study analyse answers.csv --json >answers.json
 check 'three of four' grep -q '"wins": \[0, 3, 1, 0\]' answers.json
 check 'chi squared of 3 to 1' grep -q '"chi_squared": \[0, 1, 1, 0\]' answers.json
+mkdir upper && for s in x y; do cp "$picture" upper/$s."$(printf %s "${picture##*.}" | tr a-z A-Z)"; done
+expect_ok 'endings in capitals' - "$RELUME" study make a=plain b=upper -o capitals
+check 'both pictures of them' test -s capitals/b/x.png -a -s capitals/b/y.png
 expect_fail 'a condition without a scene' 1 "no picture of 'y'" bad sh -c 'rm glare/y.*; exec "$0" study make a=plain b=glare -o bad' "$RELUME"
 expect_fail 'no folder' 2 'NAME=FOLDER' bad "$RELUME" study make plain glare -o bad
 expect_fail 'no study' 1 'study.json' no.html "$RELUME" study run plain -o no.html

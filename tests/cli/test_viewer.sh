@@ -182,6 +182,38 @@ for bad in 'light=dir,nan,0,1' 'exposure=1e300' 'pass=nothing' 'light=%00' 'pan'
     expect_fail "state $bad" 2 "" none.png "$RELUME" relight teapot.exr -o none.png --state "$bad"
 done
 
+# notes: a line and an area by the mouse, a view; the tool reads them, and a picture shows them
+cat >jot.txt <<'END'
+size 700 480
+light dir 0.6 0.3 0.7
+key ctrl+n
+shot none.png
+click 163 48
+shot none.png
+click 430 200
+click 560 200
+click 560 300
+key enter
+shot lines.png
+light dir -0.6 0.3 0.7
+click 217 48
+shot none.png
+click 400 120
+key backspace
+click 400 100
+click 500 100
+click 500 150
+click 400 100
+shot shown.png
+END
+rm -f teapot.notes.json
+"$VIEWER" teapot.exr --script jot.txt
+"$RELUME" notes teapot.exr --json >notes.json
+check 'a line of the viewer' grep -q '"n1", "kind": "line", "places": \[\[16, 10\], \[22.5, 10\], \[22.5, 15\]\], "length": 11.5, "area": null, "degrees": 90' notes.json
+check 'an area, in its light' grep -q '"n2", "kind": "polygon", .*"area": 6.25, .*"state": "eye=0,0,3&light=dir,-0.6,0.3,0.7"' notes.json
+differ 'are drawn' lines.png shown.png
+rm -f teapot.notes.json
+
 "$VIEWER" teapot.exr --record turntable -o turn --frames 3
 check 'a recording is a folder of pictures' test -s turn/0002.png -a ! -e turn/0003.png -a -z "$(leftovers)"
 mkdir fake

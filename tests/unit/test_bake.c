@@ -508,7 +508,7 @@ static void long_frames_are_refused(void **state)
     relume_objects *o = of("hanging.obj", "\"sample\"");
     relume_baked *b;
     CHECK_OK(relume_bake(&b, o,
-                         relume_bake_params(.width = 8, .coefficients = 4, .side = 3, .clusters = 2,
+                         relume_bake_params(.width = 16, .coefficients = 4, .side = 3, .clusters = 2,
                                             .components = 1, .rays = 4)));
     CHECK_OK(relume_baked_save(b, path_of("frames.exr"), NULL));
     for (int i = 0; i < b->info.width * b->info.height; i++)
@@ -518,6 +518,10 @@ static void long_frames_are_refused(void **state)
     relume_baked_destroy(&b);
     CHECK_OK(relume_baked_open(&b, path_of("frames.exr"), NULL, NULL));
     relume_baked_destroy(&b);
+    const struct relume_limits little = {.max_memory = 7000};
+    assert_int_equal(relume_baked_open(&b, path_of("frames.exr"), &little, &log.log),
+                     RELUME_ELIMIT);
+    assert_non_null(strstr(log.text, "the baked object takes"));
     assert_int_equal(relume_baked_open(&b, path_of("long.exr"), NULL, &log.log), RELUME_EFORMAT);
     assert_non_null(strstr(log.text, "frames"));
     relume_objects_destroy(&o);
@@ -542,8 +546,30 @@ static void what_cannot_be_is_refused(void **state)
     assert_int_equal(
         relume_bake(&b, o, relume_bake_params(.log = &log.log, .basis = &relume_basis_hsh)),
         RELUME_EINVAL);
-    assert_int_equal(relume_bake(&b, o, relume_bake_params(.log = &log.log, .components = 1000)),
-                     RELUME_EINVAL);
+    static const struct {
+        struct relume_bake_params p;
+        relume_status status;
+        const char *said;
+    } bad[] = {
+        {{.components = 1000}, RELUME_EINVAL, "components: 1000; expected 1 to 256"},
+        {{.rays = -1}, RELUME_EINVAL, "rays from each texel: -1"},
+        {{.coefficients = 37}, RELUME_EINVAL, "sh cannot have 37 coefficients"},
+        {{.coefficients = -4}, RELUME_EINVAL, "-4 coefficients"},
+        {{.coefficients = 36, .lights = 20}, RELUME_EINVAL, "light from 20 directions"},
+        {{.lights = 1 << 30}, RELUME_EINVAL, "light from 1073741824 directions"},
+        // 32 x 32 views of 81 coefficients are a row of 82944
+        {{.side = 32, .coefficients = 81, .clusters = 1, .components = 1, .width = 16},
+         RELUME_ELIMIT,
+         "part 'components' of its file would have 82944"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct relume_bake_params p = bad[i].p;
+        p.struct_size = sizeof p;
+        p.log = &log.log;
+        assert_int_equal(relume_bake(&b, o, &p), bad[i].status);
+        assert_null(b);
+        assert_non_null(strstr(log.text, bad[i].said));
+    }
     relume_objects_destroy(&o);
 }
 

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "math/base64.h"
 
 static void test_whole(void **state)
 {
@@ -157,12 +158,42 @@ static void test_places(void **state)
     assert_int_equal(log.lines, 2);
 }
 
+// The vectors of RFC 4648, section 10.
+static void test_base64(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {{"", ""},
+                                           {"f", "Zg=="},
+                                           {"fo", "Zm8="},
+                                           {"foo", "Zm9v"},
+                                           {"foob", "Zm9vYg=="},
+                                           {"fooba", "Zm9vYmE="},
+                                           {"foobar", "Zm9vYmFy"}};
+    static const char *const none[] = {"Zg=", "Z===", "Zg==Zg==", "Z g=", "====", "Zm9\xe4"};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        char text[16] = "";
+        uint8_t bytes[16];
+        const size_t n = strlen(pairs[i][0]);
+        base64_text(text, (const uint8_t *)pairs[i][0], n);
+        assert_string_equal(text, pairs[i][1]);
+        assert_int_equal(base64_length(n), strlen(text));
+        assert_int_equal(base64_bytes(bytes, text), n);
+        assert_memory_equal(bytes, pairs[i][0], n);
+    }
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+        assert_int_equal(base64_bytes((uint8_t[16]){0}, none[i]), -1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_growing_array),       cmocka_unit_test(one_version),
-        cmocka_unit_test(params_of_other_versions), cmocka_unit_test(test_whole),
-        cmocka_unit_test(test_printable),           cmocka_unit_test(test_places),
+        cmocka_unit_test(test_growing_array),
+        cmocka_unit_test(one_version),
+        cmocka_unit_test(params_of_other_versions),
+        cmocka_unit_test(test_whole),
+        cmocka_unit_test(test_printable),
+        cmocka_unit_test(test_places),
+        cmocka_unit_test(test_base64),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -379,6 +379,40 @@ static void errors_are_seen_as_pixels(void **state)
     CHECK_NEAR(relume_lod_priority(4.0, 1.0, false), 0.75, 1e-12);
 }
 
+// Progress that ascends, until it is stopped at the n-th call.
+struct stop {
+    int calls, at;
+    double last;
+};
+
+static bool stops(void *user, const char *what, double done)
+{
+    struct stop *s = user;
+    assert_true(strlen(what) > 0 && done >= 0.0 && done <= 1.0);
+    s->last = done;
+    return ++s->calls != s->at;
+}
+
+static void it_can_be_stopped(void **state)
+{
+    (void)state;
+    const struct relume_mesh mesh = ball();
+    for (int method = 0; method < 2; method++)
+        for (int at = 0, last = 1; at <= last; at += at < 2 || at == last ? 1 : last - at) {
+            struct stop stop = {.at = at};
+            const struct relume_log log = {.progress = stops, .user = &stop};
+            struct relume_billboards cloud;
+            const relume_status status = relume_billboards_create(
+                &cloud, &mesh,
+                relume_billboards_params(.log = &log, .error = 0.5,
+                                         .method = (enum relume_billboards_method)method));
+            assert_int_equal(status, at ? RELUME_ECANCEL : RELUME_OK);
+            last = at ? last : stop.calls;
+            assert_true((cloud.count > 0) == !at);
+            relume_billboards_free(&cloud);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -393,6 +427,7 @@ int main(void)
         cmocka_unit_test(a_cloud_looks_like_its_mesh),
         cmocka_unit_test(bad_descriptions_are_refused),
         cmocka_unit_test(errors_are_seen_as_pixels),
+        cmocka_unit_test(it_can_be_stopped),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -280,7 +280,9 @@ static void test_depth_without_a_surface(void **state)
     assert_int_equal(field_plan(&f, 0.0, NULL), RELUME_EUNFIT);
     s.depth.data[9] = 2.0f;
     assert_int_equal(field_plan(&f, 0.1, NULL), RELUME_OK);
-    assert_int_equal(field_plan(&f, 0.0, NULL), RELUME_EINVAL);  // a point has no size
+    assert_int_equal(field_plan(&f, 0.0, NULL), RELUME_EUNFIT);  // a point has no size
+    s.depth.data[10] = 2.0f;
+    assert_int_equal(field_plan(&f, 1e-9, NULL), RELUME_EINVAL);
     witness_destroy(&s);
 }
 

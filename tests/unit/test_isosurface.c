@@ -531,11 +531,47 @@ static void test_boxes_tile_their_block(void **state)
     free(b);
 }
 
+// Progress that ascends, until it is stopped at the n-th call.
+struct stop {
+    int calls, at;
+    double last;
+};
+
+static bool stops(void *user, const char *what, double done)
+{
+    struct stop *s = user;
+    assert_true(strlen(what) > 0 && done >= 0.0 && done <= 1.0 && done >= s->last);
+    s->last = done;
+    return ++s->calls != s->at;
+}
+
+static void test_it_can_be_stopped(void **state)
+{
+    (void)state;
+    relume_volume *v = volume_of(gyroid, 33, 33, 33);
+    for (int at = 0, last = 1; at <= last; at++) {
+        struct stop stop = {.at = at};
+        const struct relume_log log = {.progress = stops, .user = &stop};
+        struct relume_mesh mesh[3] = {{0}};
+        const relume_status status = relume_isosurface(
+            mesh, NULL, v, 0.0,
+            relume_isosurface_params(.log = &log, .threads = 1, .blocks = {1, 4, 8}));
+        assert_int_equal(status, at ? RELUME_ECANCEL : RELUME_OK);
+        last = at ? last : stop.calls;
+        for (int i = 0; i < 3; i++) {
+            assert_true((mesh[i].position != NULL) == !at);
+            relume_mesh_free(&mesh[i]);
+        }
+    }
+    relume_volume_destroy(&v);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_dikes_of_every_pattern),
         cmocka_unit_test(test_boxes_tile_their_block),
+        cmocka_unit_test(test_it_can_be_stopped),
         cmocka_unit_test(test_a_sphere_is_one),
         cmocka_unit_test(test_a_torus_has_a_hole),
         cmocka_unit_test(test_a_gyroid_has_no_cracks),

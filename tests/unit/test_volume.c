@@ -16,9 +16,9 @@ static int sentences;
 
 static void count_sentence(void *user, enum relume_level level, const char *text)
 {
-    (void)user, (void)level;
+    (void)user;
     assert_true(strlen(text) > 0 && !strchr(text, '\n'));
-    sentences++;
+    sentences += level != RELUME_NOTE;
 }
 
 static const struct relume_log counting = {.message = count_sentence};
@@ -157,6 +157,39 @@ static void test_raw_that_does_not_fit(void **state)
                      RELUME_ENOTFOUND);
 }
 
+static void test_raw_whose_name_says_it(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *ending, *type;
+        size_t bytes;
+        double second;  // 0: refused
+    } cases[] = {
+        {"-3x5x2.raw", NULL, 30, 2},          {"_v2_3x5x2.raw", NULL, 60, 0x403},
+        {"_3x5x2_uint8.raw", NULL, 30, 2},    {"_3x5x2_int16.raw", NULL, 60, 0x403},
+        {"_3x5x2.raw", "u16be", 60, 0x304},   {"1x2_3x5x2.raw", NULL, 30, 2},
+        {"_3x5x2.raw", NULL, 31, 0},          {"_3x5x2_uint8.raw", NULL, 60, 0},
+        {"_3x5x2.raw", "f32", 60, 0},         {"_3x5.raw", NULL, 30, 0},
+        {"_30x1x1.raw", NULL, 30, 0},         {"_99999x99999x99999.raw", NULL, 30, 0},
+        {"_3x5x2_uint8.raw.gz", NULL, 30, 2}, {"_3x5x2.raw.gz", NULL, 30, 0},
+    };
+    uint8_t samples[61];
+    relume_volume *v;
+    for (size_t i = 0; i < sizeof samples; i++)
+        samples[i] = (uint8_t)(i + 1);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *path = name(cases[i].ending);
+        (strstr(path, ".gz") ? write_packed : write_file)(path, samples, cases[i].bytes);
+        assert_int_equal(open_it(&v, path, *relume_volume_params(.type = cases[i].type)),
+                         cases[i].second > 0.0 ? RELUME_OK : RELUME_EINVAL);
+        if (cases[i].second > 0.0)
+            expect_samples(v, (const int[3]){3, 5, 2}, (double)volume_sample(v, 0), cases[i].second,
+                           (double)volume_sample(v, 29));
+        relume_volume_destroy(&v);
+        unlink(path);
+    }
+}
+
 static void test_packed_that_is_damaged(void **state)
 {
     (void)state;
@@ -179,6 +212,44 @@ static void test_packed_that_is_damaged(void **state)
     write_packed(name(".gz"), samples, sizeof samples);
     assert_int_equal(open_it(&v, name(".gz"), *relume_volume_params(.size = {30, 30, 29})),
                      RELUME_EUNFIT);
+    unlink(name(".gz"));
+}
+
+// Members one after the other, as bgzip makes them, of which the first is as long as what is read
+// at once; the last is followed by what is none.
+static void test_packed_in_members(void **state)
+{
+    (void)state;
+    static uint8_t samples[343], file[1 << 17];
+    const size_t chunk = 65536;
+    relume_volume *v;
+    size_t size = 0, part[] = {100, 0, 200, 43}, from = 0;
+    for (size_t i = 0; i < sizeof samples; i++)
+        samples[i] = (uint8_t)(i * 7);
+    for (size_t i = 0; i < 4; from += part[i++]) {
+        write_packed(name(".gz"), samples + from, part[i]);
+        FILE *in = fopen(name(".gz"), "rb");
+        size += fread(file + size, 1, sizeof file - size, in);
+        fclose(in);
+        if (i)
+            continue;
+        // a comment in the header, so that the second member begins with the last byte of a chunk
+        memmove(file + chunk - 1 - (size - 10), file + 10, size - 10);
+        file[3] = 16;
+        memset(file + 10, '-', chunk - 1 - size);
+        file[chunk - 1 - (size - 10) - 1] = '\0';
+        size = chunk - 1;
+    }
+    const struct relume_volume_params p = *relume_volume_params(.size = {7, 7, 7});
+    for (int tail = 0; tail < 2; tail++) {
+        memcpy(file + size, "\0\0\0", 4);
+        write_file(name(".gz"), file, size + (tail ? 4 : 0));
+        assert_int_equal(open_it(&v, name(".gz"), p), RELUME_OK);
+        assert_memory_equal(v->data, samples, sizeof samples);
+        relume_volume_destroy(&v);
+    }
+    write_file(name(".gz"), file, size - 4);
+    assert_int_equal(open_it(&v, name(".gz"), p), RELUME_EDAMAGED);
     unlink(name(".gz"));
 }
 
@@ -316,7 +387,15 @@ static void test_nifti(void **state)
                      RELUME_OK);
     expect_samples(v, (const int[3]){2, 3, 4}, 0, 100, 2300);
     relume_volume_destroy(&v);
+    write_file(name(".img"), file + 336, 63);
+    assert_int_equal(open_it(&v, name(".hdr"), *relume_volume_params(.own_spacing = true)),
+                     RELUME_EUNFIT);
     unlink(name(".img"));
+    write_packed(name(".img.gz"), file + 336, 64);
+    assert_int_equal(open_it(&v, name(".hdr"), *relume_volume_params(.own_spacing = true)),
+                     RELUME_OK);
+    relume_volume_destroy(&v);
+    unlink(name(".img.gz"));
     unlink(name(".hdr"));
 }
 
@@ -349,7 +428,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_raw_of_every_type),
         cmocka_unit_test(test_raw_that_does_not_fit),
+        cmocka_unit_test(test_raw_whose_name_says_it),
         cmocka_unit_test(test_packed_that_is_damaged),
+        cmocka_unit_test(test_packed_in_members),
         cmocka_unit_test(test_nrrd),
         cmocka_unit_test(test_nifti),
         cmocka_unit_test(test_claims_without_samples),

@@ -2,6 +2,7 @@
 #include "app/app.h"
 
 #include "app/handles.h"
+#include "app/notes.h"
 #include "app/light_list.h"
 #include "app/orbit.h"
 #include "program/say.h"
@@ -114,6 +115,7 @@ void app_release(struct app *app)
     light_list_release(&app->start);
     light_list_release(&app->now);
     handles_destroy(&app->handles);
+    notes_destroy(&app->notes);
 }
 
 const char *const app_dock_names[APP_DOCKS + 1] = {"over", "left", "right", NULL};

@@ -5,6 +5,7 @@
 #include "app/gizmo.h"
 #include "app/handles_drag.h"
 #include "app/keys.h"
+#include "app/notes.h"
 #include "app/orbit.h"
 #include "app/way.h"
 #include "common/vec.h"
@@ -139,6 +140,12 @@ static bool begin_drag(struct app *app, const struct app_event *e)
         app->cursor[0] = e->x;
         app->cursor[1] = e->y;
         app_stand_still(app);
+        return true;
+    }
+    if (app->noting && !light && notes_press(app, e->x, e->y)) {
+        app->drag = APP_DRAG_NONE;
+        app->cursor[0] = e->x;
+        app->cursor[1] = e->y;
         return true;
     }
     const int grabbed = app->gizmos && !light ? gizmo_hit(app, e->x, e->y) : -1;

@@ -4,6 +4,7 @@
 #include "app/app.h"
 #include "app/handles.h"
 #include "app/handles_say.h"
+#include "app/notes.h"
 #include "app/light_list.h"
 #include "app/orbit.h"
 #include "app/way.h"
@@ -31,9 +32,13 @@ static bool press_quit(struct app *app, int key)
 // the app hears of the key.
 static bool press_escape(struct app *app, int key)
 {
-    bool *const open[] = {&app->asks,    &app->browse,   &app->help, &app->picks_focus,
-                          &app->inspect, &app->reflects, &app->panel};
+    bool *const open[] = {&app->asks,    &app->browse,   &app->help,   &app->picks_focus,
+                          &app->inspect, &app->reflects, &app->noting, &app->panel};
     (void)key;
+    if (app->noting && app->notes->places) {
+        app->notes->places = 0;
+        return true;
+    }
     for (size_t i = 0; i < sizeof open / sizeof *open; i++)
         if (*open[i]) {
             *open[i] = false;
@@ -47,7 +52,7 @@ static bool press_enter(struct app *app, int key)
 {
     (void)key;
     app->quit |= app->asks;
-    return false;
+    return !app->asks && app->noting && notes_finish(app);
 }
 
 static bool press_panel(struct app *app, int key)
@@ -321,6 +326,8 @@ static bool press_add(struct app *app, int key)
 static bool press_remove(struct app *app, int key)
 {
     (void)key;
+    if (app->noting && notes_take_back(app))
+        return true;
     if (app->reflects && handles_remove(app->handles))
         return true;
     return light_list_remove(&app->now, app->now.selected);
@@ -387,6 +394,12 @@ static bool press_save_rig(struct app *app, int key)
 {
     (void)key;
     return wish(app, APP_WISH_SAVE_RIG);
+}
+
+static bool press_notes(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_NOTES);
 }
 
 static bool press_copy(struct app *app, int key)
@@ -482,6 +495,7 @@ const struct key_binding key_bindings[] = {
     {APP_CONTROL | 's', NULL, NULL, press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
     {'w', "W", "save the lights as a rig file", press_save_rig, false},
+    {APP_CONTROL | 'n', "Ctrl+N", "notes and measures on the picture", press_notes, false},
     {APP_CONTROL | 'c', "Ctrl+C", "copy light and eye, for --state and pages", press_copy, false},
     {'k', "K", "record a light sweep", press_sweep, false},
     {'j', "J", "record a turntable", press_turntable, false},

@@ -142,6 +142,10 @@ enum app_wish {
     APP_WISH_SWEEP,        // a recording
     APP_WISH_TURNTABLE,    // a recording
     APP_WISH_COPY,         // how the file is seen, as a line
+    APP_WISH_NOTES,        // on the picture: show them, or no longer
+    APP_WISH_NOTE,         // what is drawn becomes one, or this view
+    APP_WISH_NOTE_SAVE,    // they were changed
+    APP_WISH_NOTE_BACK,    // to the light of the chosen one
     APP_WISH_ADD_LIGHT,    // of the SPEC app.spec
     APP_WISH_MAP,          // the environment map of the file app.spec
     APP_WISH_FULL_SCREEN,  // or back from it
@@ -163,6 +167,7 @@ struct app_scene {
                       struct relume_vec3 direction);
 };
 struct handles;
+struct notes;
 
 // Who looks at the objects from other threads lets go of them before they change. NULL: nobody.
 struct app_lookers {
@@ -170,7 +175,7 @@ struct app_lookers {
     void (*let_go)(void *user);
 };
 
-// Owns its lists of lights, and handles. Thread-safety: plain data.
+// Owns its lists of lights, handles and notes. Thread-safety: plain data.
 struct app {
     struct app_file file;
     struct app_state start, now;
@@ -188,6 +193,8 @@ struct app {
     bool picks_focus;                   // the next press does
     bool reflects;                      // handles of edited reflections are shown ...
     struct handles *handles;            // ... and kept; NULL: not asked for yet
+    bool noting;                        // notes are shown ...
+    struct notes *notes;                // ... and kept; NULL: not asked for yet
     struct app_scene scene;
     struct app_lookers lookers;
     bool recording;  // every frame becomes a picture

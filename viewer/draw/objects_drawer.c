@@ -55,6 +55,8 @@ enum {
     OVER_PLACE = DRAW_OWN,
     OVER_SHADED,
     OVER_OTHER,
+    TINT,
+    TINTED,
     DIFFERENCE,
     OVER_SCENE,
     IN_SCENE,
@@ -66,8 +68,8 @@ enum {
     OVER_COUNT
 };
 static const char *const over_uniforms[] = {
-    "rectangle", "frame_size", "place",        "shaded", "other", "difference", "scene",
-    "in_scene",  "returned",   "has_returned", "grid",   "eye",   "exposure"};
+    "rectangle", "frame_size", "place",    "shaded",       "other", "tint", "tinted",  "difference",
+    "scene",     "in_scene",   "returned", "has_returned", "grid",  "eye",  "exposure"};
 enum {
     CAST_SCENE = DRAW_OWN,
     CAST_LONE,
@@ -85,6 +87,21 @@ static const char *const cast_uniforms[] = {"rectangle",    "frame_size",    "sc
 enum { SHADOW_SIDE = 2048, SHADOW_SIDE_SOFTWARE = 1024, FINER = 2 };
 
 // ---------------------------------------------------------------- making
+
+// Attribute 4.
+static void upload_tints(struct objects_drawer *t, const struct relume_objects_info *info)
+{
+    const struct gl *gl = t->gl;
+    enum { TINT_AT = 4 };
+    if (!info->tint)
+        return;
+    gl->GenBuffers(1, &t->tints);
+    gl->BindBuffer(GL_ARRAY_BUFFER, t->tints);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(info->vertex_count * sizeof *info->tint),
+                   info->tint, GL_STATIC_DRAW);
+    gl->EnableVertexAttribArray(TINT_AT);
+    gl->VertexAttribPointer(TINT_AT, 3, GL_FLOAT, GL_FALSE, 0, NULL);
+}
 
 static void upload_mesh(struct objects_drawer *t, const struct relume_objects_info *info)
 {
@@ -113,6 +130,7 @@ static void upload_mesh(struct objects_drawer *t, const struct relume_objects_in
                                 sizeof(struct relume_object_vertex),
                                 (const void *)attribute[i].offset);
     }
+    upload_tints(t, info);
 }
 
 static relume_status create_programs(struct objects_drawer *t)
@@ -160,21 +178,22 @@ relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *g
     return status;
 }
 
-// The first four are what the surface is drawn into.
-enum { SURFACES = 4, TARGETS = 9 };
-static void find_targets(struct target *out[TARGETS], struct objects_drawer *t)
+// The last ones are what the surface is drawn into; the very last only where it is tinted.
+enum { SURFACES = 5, TARGETS = 10 };
+static int find_targets(struct target *out[TARGETS], struct objects_drawer *t)
 {
-    struct target *const all[TARGETS] = {&t->place,     &t->normal, &t->tangent,
-                                         &t->footprint, &t->shaded, &t->other,
-                                         &t->shown,     &t->sent,   &t->arrived};
+    struct target *const all[TARGETS] = {&t->shaded,    &t->other, &t->shown,  &t->sent,
+                                         &t->arrived,   &t->place, &t->normal, &t->tangent,
+                                         &t->footprint, &t->tint};
     memcpy(out, all, sizeof all);
+    return t->tints ? TARGETS : TARGETS - 1;
 }
 
 static void destroy_targets(struct objects_drawer *t)
 {
     struct target *target[TARGETS];
-    find_targets(target, t);
-    for (int i = 0; i < TARGETS; i++)
+    const int n = find_targets(target, t);
+    for (int i = 0; i < n; i++)
         target_destroy(target[i], t->gl);
     t->gl->DeleteFramebuffers(1, &t->surface_buffer);
     t->gl->DeleteFramebuffers(1, &t->share_buffer);
@@ -204,6 +223,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
     t->gl->DeleteVertexArrays(1, &t->array);
     t->gl->DeleteBuffers(1, &t->vertices);
     t->gl->DeleteBuffers(1, &t->indices);
+    t->gl->DeleteBuffers(1, &t->tints);
     free(t->program);
     free(t->material);
     relume_free(t->light_sample);
@@ -231,7 +251,7 @@ static relume_status join_targets(GLuint *out, struct objects_drawer *t,
         gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target[i]->texture, 0);
     }
     gl->DrawBuffers(n, buffers);
-    if (n == SURFACES)
+    if (target[0] == &t->place)
         gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D,
                                  t->depth_texture, 0);
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
@@ -248,8 +268,8 @@ static relume_status need_targets(struct objects_drawer *t, int width, int heigh
     if (t->place.width == width && t->place.height == height)
         return RELUME_OK;
     destroy_targets(t);
-    find_targets(target, t);
-    for (int i = 0; !status && i < TARGETS; i++)
+    const int n = find_targets(target, t), first = TARGETS - SURFACES;
+    for (int i = 0; !status && i < n; i++)
         status = target_create(target[i], gl, width, height, t->log);
     if (status)
         return status;
@@ -258,9 +278,9 @@ static relume_status need_targets(struct objects_drawer *t, int width, int heigh
     gl->TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT,
                    GL_FLOAT, NULL);
     texture_settings(gl, GL_TEXTURE_2D);
-    status = join_targets(&t->surface_buffer, t, target, SURFACES);
+    status = join_targets(&t->surface_buffer, t, target + first, n - first);
     if (!status)
-        status = join_targets(&t->share_buffer, t, target + TARGETS - 2, 2);
+        status = join_targets(&t->share_buffer, t, target + first - 2, 2);
     if (status)
         destroy_targets(t);
     return status;
@@ -612,6 +632,9 @@ void objects_drawer_over(const struct objects_drawer *t, const struct place *pla
     texture_use(gl, 2, GL_TEXTURE_2D, scene);
     texture_use(gl, 3, GL_TEXTURE_2D, t->other.texture);
     gl->Uniform1i(at[OVER_OTHER], 3);
+    texture_use(gl, 5, GL_TEXTURE_2D, t->tint.texture);
+    gl->Uniform1i(at[TINT], 5);
+    gl->Uniform1i(at[TINTED], t->tints != 0);
     gl->Uniform1i(at[DIFFERENCE], difference);
     gl->Uniform1i(at[OVER_PLACE], 0);
     gl->Uniform1i(at[OVER_SHADED], 1);

@@ -20,8 +20,8 @@ struct objects_drawer_program {
 struct objects_drawer {
     const struct gl *gl;
     const struct relume_log *log;
-    relume_objects *objects;  // borrowed
-    GLuint array, vertices, indices;
+    relume_objects *objects;                 // borrowed
+    GLuint array, vertices, indices, tints;  // the last: 0 where no vertex has one
     struct program surface, depth, over, cast, share, sky;
     struct objects_drawer_program *program;  // [programs]: of the models in use
     int programs;
@@ -33,7 +33,7 @@ struct objects_drawer {
     struct mirror_panorama panorama;  // that they show, of the present frame
     struct shadow_map shadow;
     // Of the frame, `grid` times finer; `other` is in another material, to compare with.
-    struct target place, normal, tangent, footprint, shaded, other;
+    struct target place, normal, tangent, footprint, tint, shaded, other;
     struct target shown, sent, arrived;  // of an environment
     GLuint surface_buffer, depth_texture, share_buffer;
     int grid;

@@ -61,6 +61,7 @@ extern "C" relume_status panel_create(struct panel **out, double scale, const ch
     ImGuiIO &io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.LogFilename = nullptr;
+    io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;  // as collect_runs has them
     io.MousePos = ImVec2(-FLT_MAX, -FLT_MAX);
     p->has_font = font && panel_add_font(font, p->scale);
     if (!p->has_font)
@@ -173,8 +174,8 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
 
 extern "C" bool panel_shown(const struct app *app)
 {
-    return app->panel || app->help || app->inspect || app->gizmos || app->reflects || app->asks ||
-           app->recording || app->browse || app->file.empty || app->picks_focus ||
+    return app->panel || app->help || app->inspect || app->gizmos || app->reflects || app->noting ||
+           app->asks || app->recording || app->browse || app->file.empty || app->picks_focus ||
            app->toast_s > 0 || app->hint_s > 0;
 }
 
@@ -239,6 +240,8 @@ static bool section(const char *name, const char *what, bool open = true)
 static bool sections(panel *panel, app *app, const panel_facts *facts)
 {
     bool changed = false;
+    if (app->noting && section("Notes", "notes and measures on the picture (Ctrl+N)"))
+        changed |= panel_jottings(panel, app);
     if (section("Lights", "the lights: direction, place, colour and brightness"))
         changed |= panel_lights(panel, app, facts);
     if (app->file.objects && section("Objects", "the materials of the objects"))
@@ -287,7 +290,8 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
 
 // ---------------------------------------------------------------- frame
 
-static void one_frame(panel *panel, app *app, const panel_facts *facts)
+// `shown`: it is the one that people see, and not only hears of events.
+static void one_frame(panel *panel, app *app, const panel_facts *facts, bool shown)
 {
     ImGuiIO &io = ImGui::GetIO();
     io.DisplaySize = ImVec2((float)app_window_width(app), (float)app->height);
@@ -298,6 +302,8 @@ static void one_frame(panel *panel, app *app, const panel_facts *facts)
         panel_handles(app, panel->scale);
     if (app->reflects)
         panel_reflection_handles(app, panel->scale);
+    if (app->noting && shown)
+        panel_jotted(app, panel->scale);
     if (app->file.empty && !app->browse)
         panel_start(app, panel->scale);
     if (app->panel && !app->file.empty)
@@ -325,9 +331,10 @@ static void collect_runs(panel *panel)
         const ImDrawList *list = data->CmdLists[n];
         for (const ImDrawCmd &cmd : list->CmdBuffer) {
             panel_run run = {};
-            run.vertex = reinterpret_cast<const panel_vertex *>(list->VtxBuffer.Data);
+            run.vertex =
+                reinterpret_cast<const panel_vertex *>(list->VtxBuffer.Data) + cmd.VtxOffset;
             run.index = list->IdxBuffer.Data;
-            run.vertices = list->VtxBuffer.Size;
+            run.vertices = list->VtxBuffer.Size - (int)cmd.VtxOffset;
             run.indices = list->IdxBuffer.Size;
             run.first = (int)cmd.IdxOffset;
             run.count = (int)cmd.ElemCount;
@@ -348,13 +355,13 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
     panel->changed = false;
     for (const app_event &e : panel->queue) {
         feed_imgui(e);
-        one_frame(panel, app, facts);
+        one_frame(panel, app, facts, false);
     }
     panel->queue.clear();
-    one_frame(panel, app, facts);
-    one_frame(panel, app, facts);
+    one_frame(panel, app, facts, false);
+    one_frame(panel, app, facts, panel->browsing == browsed);
     if (panel->browsing != browsed)
-        one_frame(panel, app, facts);
+        one_frame(panel, app, facts, true);
     collect_runs(panel);
     return panel->changed;
 }

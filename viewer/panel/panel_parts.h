@@ -48,6 +48,9 @@ struct panel {
     int listed;           // the light that the list has scrolled to
     panel_edit edit;
     char reflections[APP_SPEC];  // the file to save them to
+    char note[4096];             // the text of a note ...
+    int noted = -1;              // ... of this number
+    double ruler_mm = 10;        // of the line that sets the scale
 };
 
 // The letters of the panel, from a file (false: it is no font that can be read) or without one.
@@ -74,6 +77,7 @@ bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
 bool panel_ways(app *app, const panel_facts *facts);
 void panel_reflections(panel *panel, app *app, const panel_facts *facts);
+bool panel_jottings(panel *panel, app *app);
 void panel_edits(panel *panel, app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);
 void panel_file(app *app, const panel_facts *facts);
@@ -88,6 +92,7 @@ void panel_browse(panel *panel, app *app, const browser *b);
 ImVec2 panel_frame_point(const app *app, float across, float down);
 void panel_handles(const app *app, float scale);
 void panel_reflection_handles(const app *app, float scale);
+void panel_jotted(const app *app, float scale);
 void panel_inspector(const app *app, const panel_facts *facts, float scale);
 
 // The colour of a light's mark on discs of directions.

@@ -8,6 +8,7 @@
 #include "gl/target.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 struct light_uniforms_picture {
     const void *key;
@@ -125,4 +126,30 @@ relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int 
         gl_set_vec3(gl, at[LIGHT_UP], up);
     }
     return status;
+}
+
+static void put_vec3(float *texel, struct relume_vec3 v)
+{
+    texel[0] = (float)v.x;
+    texel[1] = (float)v.y;
+    texel[2] = (float)v.z;
+}
+
+relume_status light_uniforms_patches(const struct gl *gl, int unit, GLuint texture,
+                                     const struct relume_light *area, int side)
+{
+    struct relume_light_patch patch[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
+    const int n = side * side;
+    float *texels = malloc((size_t)n * 9 * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    relume_light_patches(patch, area, side);
+    for (int i = 0; i < n; i++) {
+        put_vec3(texels + 3 * i, patch[i].position);
+        put_vec3(texels + 3 * (n + i), patch[i].normal);
+        memcpy(texels + 3 * (2 * n + i), patch[i].rgb, sizeof patch[i].rgb);
+    }
+    light_uniforms_upload(gl, unit, texture, GL_RGB32F, GL_RGB, n, 3, texels);
+    free(texels);
+    return RELUME_OK;
 }

@@ -40,6 +40,11 @@ relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int 
 // Pictures and photometric files may have gone: forget what was kept of them.
 void light_uniforms_forget(struct light_uniforms *s);
 
+// Fill a texture with the side x side patches of an area light, a column each (light_patches.glsl),
+// and leave it bound to texture unit `unit`. RELUME_ENOMEM.
+relume_status light_uniforms_patches(const struct gl *gl, int unit, GLuint texture,
+                                     const struct relume_light *area, int side);
+
 // Fill a texture with floats, by way of texture unit `unit`.
 void light_uniforms_upload(const struct gl *gl, int unit, GLuint texture, GLint internal,
                            GLenum format, int width, int height, const float *values);

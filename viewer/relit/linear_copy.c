@@ -48,6 +48,19 @@ static relume_status need_linear(struct relighter *r)
     return status;
 }
 
+relume_status linear_copy_picture(const struct target **out, struct relighter *r,
+                                  const struct relit_view *v,
+                                  const struct relume_light *environments, int n)
+{
+    relume_status status = need_linear(r);
+    if (!status)
+        status = relighter_begin(r->linear, environments, n);
+    if (!status)
+        status = relighter_view(out, r->linear, (int)(v - r->view));
+    passes_begin(r);
+    return status;
+}
+
 // The linear copy under the environments alone.
 relume_status linear_copy_relight(struct relighter *r, struct relit_view *v)
 {
@@ -56,18 +69,14 @@ relume_status linear_copy_relight(struct relighter *r, struct relit_view *v)
     const struct target *copy;
     struct relume_light *environments = malloc((size_t)r->lights * sizeof *environments);
     int n = 0;
-    relume_status status = environments ? need_linear(r) : RELUME_ENOMEM;
-    for (int i = 0; !status && i < r->lights; i++)
+    for (int i = 0; environments && i < r->lights; i++)
         if (relighter_is_environment(r->light[i].kind))
             environments[n++] = r->light[i];
-    if (!status)
-        status = relighter_begin(r->linear, environments, n);
-    if (!status)
-        status = relighter_view(&copy, r->linear, (int)(v - r->view));
+    const relume_status status =
+        environments ? linear_copy_picture(&copy, r, v, environments, n) : RELUME_ENOMEM;
     free(environments);
     if (status)
         return status;
-    passes_begin(r);
     target_resume(&v->relit, r->gl);
     passes_develop(r, v, copy, linear, one);
     return RELUME_OK;

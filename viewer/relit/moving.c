@@ -2,6 +2,7 @@
 #include "relit/moving.h"
 
 #include "program/say.h"
+#include "relit/moving_parts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,68 +11,46 @@
 enum trace_uniform {
     TRACE_RECTANGLE,
     TRACE_SIZE,
-    TRACE_SURFACE,
-    TRACE_SPAN,
-    TRACE_FRONT,
-    TRACE_WINDOW,
-    TRACE_AXIS,
-    TRACE_PIXEL,
-    TRACE_LEAST,
-    TRACE_LOW,
-    TRACE_HIGH,
-    TRACE_DIRECTION,
+    TRACE_STAGE,
+    TRACE_DIRECTION = TRACE_STAGE + STAGE_UNIFORMS,
     TRACE_ORIGIN,
     TRACE_COUNT
 };
 static const char *const trace_uniforms[] = {
-    "rectangle",  "frame_size", "surface", "span", "front",     "window", "axis",
-    "pixel_side", "least_side", "low",     "high", "direction", "origin",
+    "rectangle", "frame_size", STAGE_NAMES, "direction", "origin",
 };
 
-// Of shadow.frag and gloss.frag, from SHOWN_OWN on of one of them.
-enum shown_uniform {
-    SHOWN_RECTANGLE,
-    SHOWN_SIZE,
-    SHOWN_CODED,
-    SHOWN_PICTURE_CURVE,
-    SHOWN_PICTURE_GAMMA,
-    SHOWN_TIMES,
-    SHOWN_DISPLAY_CURVE,
-    SHOWN_DISPLAY_GAMMA,
-    SHOWN_RGB,
-    SHOWN_ORIGIN,
-    SHOWN_COLOURS,
-    SHOWN_MATTE,
-    SHOWN_TOWARDS,
-    SHOWN_AROUND,
-    SHOWN_OWN,
-    GLOSS_LIGHTS = SHOWN_OWN,
+// Of shadow.frag and gloss.frag, from OWN on of one of them.
+enum moving_uniform {
+    TOWARDS = SHOWN_UNIFORMS,
+    AROUND,
+    OWN,
+    GLOSS_LIGHTS = OWN,
     GLOSS_COUNT,
-    SHADOW_CAPTURED = SHOWN_OWN,
+    SHADOW_CAPTURED = OWN,
     SHADOW_ARRIVES,
     SHADOW_REACHED,
     SHADOW_COUNT = SHADOW_REACHED + 4
 };
-#define SHOWN_NAMES                                                                                \
-    "rectangle", "frame_size", "coded", "picture.curve", "picture.gamma", "times",                 \
-        "display.curve", "display.gamma", "rgb", "origin", "colours", "matte", "towards", "around"
-static const char *const gloss_uniforms[] = {SHOWN_NAMES, "lights"};
+static const char *const gloss_uniforms[] = {SHOWN_NAMES, "towards", "around", "lights"};
 static const char *const shadow_uniforms[] = {
-    SHOWN_NAMES, "captured", "arrives", "reached0", "reached1", "reached2", "reached3",
+    SHOWN_NAMES, "towards",  "around",   "captured", "arrives",
+    "reached0",  "reached1", "reached2", "reached3",
 };
 
-// Texture units of the passes.
-enum {
-    UNIT_CODED,
-    UNIT_COLOURS,
-    UNIT_MATTE,
-    UNIT_ARRIVES,
-    UNIT_LIGHTS = UNIT_ARRIVES,
-    UNIT_REACHED
-};
-enum { UNIT_SURFACE, UNIT_SPAN, UNIT_FRONT };
+enum { UNIT_ARRIVES = MOVING_UNITS, UNIT_LIGHTS = UNIT_ARRIVES, UNIT_REACHED };
 
 static const float BACKGROUND = 1e30f;  // as stage.glsl
+
+void moving_create(struct moving *m, const struct gl *gl, const struct relume_log *log)
+{
+    *m = (struct moving){.gl = gl, .log = log, .near = {.uniforms = {.gl = gl, .log = log}}};
+}
+
+void moving_forget(struct moving *m)
+{
+    light_uniforms_forget(&m->near.uniforms);
+}
 
 void moving_destroy(struct moving *m)
 {
@@ -80,6 +59,7 @@ void moving_destroy(struct moving *m)
     program_destroy(&m->trace, m->gl);
     program_destroy(&m->shadow, m->gl);
     program_destroy(&m->gloss, m->gl);
+    moving_near_destroy(&m->near, m->gl);
     m->gl->DeleteFramebuffers(1, &m->framebuffer);
     m->gl->DeleteTextures(1, &m->arrives);
     m->gl->DeleteTextures(1, &m->lights);
@@ -141,16 +121,21 @@ static void upload_model(struct moving_view *v, const struct gl *gl, float *room
     }
 }
 
-static relume_status need_programs(struct moving *m, const struct relume_shadows_stage *s)
+void moving_defines(char text[MOVING_DEFINES], const struct moving_view *v)
 {
-    char rays[32];
-    if (s->gloss)
+    snprintf(text, MOVING_DEFINES, "#define RAYS %d\n", (int)v->stage.rays);
+}
+
+static relume_status need_programs(struct moving *m, const struct moving_view *v)
+{
+    char rays[MOVING_DEFINES];
+    if (v->stage.gloss)
         return m->gloss.id ? RELUME_OK
                            : program_create(&m->gloss, m->gl, "moving_gloss.frag", gloss_uniforms,
                                             GLOSS_COUNT, m->log);
     if (m->shadow.id)
         return RELUME_OK;
-    snprintf(rays, sizeof rays, "#define RAYS %d\n", (int)s->rays);
+    moving_defines(rays, v);
     if (!m->framebuffer)
         m->gl->GenFramebuffers(1, &m->framebuffer);
     relume_status status = m->trace.id
@@ -177,7 +162,7 @@ relume_status moving_view_create(struct moving_view *v, struct moving *m, relume
             say(m->log, RELUME_ESYSTEM, "shadows of %d x %d: OpenGL draws at most %d x %d here",
                 s->width, s->height, most, most);
     if (!status)
-        status = need_programs(m, s);
+        status = need_programs(m, v);
     float *room = status ? NULL : malloc(4 * pixels * sizeof *room);
     v->reached = calloc((size_t)v->lights, sizeof *v->reached);
     if (!status && !(room && v->reached))
@@ -207,24 +192,21 @@ void moving_view_destroy(struct moving_view *v, const struct gl *gl)
 
 // ---------------------------------------------------------------- where light arrives
 
-static void set_stage(const struct moving *m, const struct moving_view *v)
+void moving_set_stage(const struct gl *gl, const GLint *at, int unit, const struct moving_view *v)
 {
-    const struct gl *gl = m->gl;
     const struct relume_shadows_stage *s = &v->stage;
-    const GLint *at = m->trace.at;
-    texture_use(gl, UNIT_SURFACE, GL_TEXTURE_2D, v->surface);
-    texture_use(gl, UNIT_SPAN, GL_TEXTURE_2D, v->span);
-    texture_use(gl, UNIT_FRONT, GL_TEXTURE_2D, v->front);
-    gl->Uniform1i(at[TRACE_SURFACE], UNIT_SURFACE);
-    gl->Uniform1i(at[TRACE_SPAN], UNIT_SPAN);
-    gl->Uniform1i(at[TRACE_FRONT], UNIT_FRONT);
-    gl->Uniform4f(at[TRACE_WINDOW], (float)s->scale[0], (float)s->scale[1], (float)s->shift[0],
+    const GLuint texture[STAGE_UNITS] = {v->surface, v->span, v->front};
+    for (int i = 0; i < STAGE_UNITS; i++) {
+        texture_use(gl, unit + i, GL_TEXTURE_2D, texture[i]);
+        gl->Uniform1i(at[STAGE_SURFACE + i], unit + i);
+    }
+    gl->Uniform4f(at[STAGE_WINDOW], (float)s->scale[0], (float)s->scale[1], (float)s->shift[0],
                   (float)s->shift[1]);
-    gl->Uniform1f(at[TRACE_AXIS], (float)s->axis);
-    gl->Uniform1f(at[TRACE_PIXEL], (float)s->pixel);
-    gl->Uniform1f(at[TRACE_LEAST], (float)s->least_side);
-    gl_set_vec3(gl, at[TRACE_LOW], s->low);
-    gl_set_vec3(gl, at[TRACE_HIGH], s->high);
+    gl->Uniform1f(at[STAGE_AXIS], (float)s->axis);
+    gl->Uniform1f(at[STAGE_PIXEL], (float)s->pixel);
+    gl->Uniform1f(at[STAGE_LEAST], (float)s->least_side);
+    gl_set_vec3(gl, at[STAGE_LOW], s->low);
+    gl_set_vec3(gl, at[STAGE_HIGH], s->high);
 }
 
 // Into a texture of its own size: `rect` and a border of one pixel.
@@ -241,7 +223,7 @@ static relume_status trace(GLuint *texture, const struct moving *m, const struct
     gl->Viewport(0, 0, width, height);
     gl->Disable(GL_BLEND);
     gl->UseProgram(m->trace.id);
-    set_stage(m, v);
+    moving_set_stage(gl, m->trace.at + TRACE_STAGE, 0, v);
     gl_set_vec3(gl, m->trace.at[TRACE_DIRECTION], relume_pose_turn_back(&v->stage.pose, direction));
     gl->Uniform2i(m->trace.at[TRACE_ORIGIN], rect->left, rect->top);
     gl->Uniform4f(m->trace.at[TRACE_RECTANGLE], 0, 0, (float)width, (float)height);
@@ -272,35 +254,47 @@ struct around {
     int count;
 };
 
-static void set_shown(const struct moving *m, const struct program *p, const struct moving_view *v,
-                      const struct moving_picture *picture, int around, const struct target *into)
+void moving_set_shown(const struct gl *gl, const struct program *p, const struct moving_view *v,
+                      const struct moving_picture *picture, const struct target *into)
 {
-    const struct gl *gl = m->gl;
+    const struct target *whole = picture->whole ? picture->whole : picture->coded;
+    const GLuint texture[MOVING_UNITS] = {[MOVING_UNIT_CODED] = picture->coded->texture,
+                                          [MOVING_UNIT_WHOLE] = whole->texture,
+                                          [MOVING_UNIT_COLOURS] = v->colours,
+                                          [MOVING_UNIT_MATTE] = v->matte};
     const GLint *at = p->at;
     target_resume(into, gl);
     gl->UseProgram(p->id);
-    texture_use(gl, UNIT_CODED, GL_TEXTURE_2D, picture->coded->texture);
-    texture_use(gl, UNIT_COLOURS, GL_TEXTURE_2D, v->colours);
-    texture_use(gl, UNIT_MATTE, GL_TEXTURE_2D, v->matte);
-    gl->Uniform1i(at[SHOWN_CODED], UNIT_CODED);
-    gl->Uniform1i(at[SHOWN_COLOURS], UNIT_COLOURS);
-    gl->Uniform1i(at[SHOWN_MATTE], UNIT_MATTE);
-    gl->Uniform1i(at[SHOWN_PICTURE_CURVE], (GLint)picture->picture.curve);
-    gl->Uniform1f(at[SHOWN_PICTURE_GAMMA], picture->picture.gamma);
+    for (int i = 0; i < MOVING_UNITS; i++)
+        texture_use(gl, i, GL_TEXTURE_2D, texture[i]);
+    gl->Uniform1i(at[SHOWN_CODED], MOVING_UNIT_CODED);
+    gl->Uniform1i(at[SHOWN_WHOLE], MOVING_UNIT_WHOLE);
+    gl->Uniform1i(at[SHOWN_COLOURS], MOVING_UNIT_COLOURS);
+    gl->Uniform1i(at[SHOWN_MATTE], MOVING_UNIT_MATTE);
+    gl->Uniform1i(at[SHOWN_CODING_CURVE], (GLint)picture->picture.curve);
+    gl->Uniform1f(at[SHOWN_CODING_GAMMA], picture->picture.gamma);
     gl->Uniform1i(at[SHOWN_DISPLAY_CURVE], (GLint)picture->display.curve);
     gl->Uniform1f(at[SHOWN_DISPLAY_GAMMA], picture->display.gamma);
     gl->Uniform3f(at[SHOWN_TIMES], picture->times[0], picture->times[1], picture->times[2]);
     gl->Uniform3f(at[SHOWN_RGB], picture->rgb[0], picture->rgb[1], picture->rgb[2]);
     gl->Uniform2i(at[SHOWN_ORIGIN], picture->left, picture->top);
-    gl_set_vec3(gl, at[SHOWN_TOWARDS], picture->direction);
-    gl->Uniform1i(at[SHOWN_AROUND], around);
+    gl->Uniform1i(at[SHOWN_EXCHANGES], picture->whole != NULL);
 }
 
-static void draw(const struct moving *m, const struct program *p, const struct target *into)
+void moving_draw_all(const struct gl *gl, const struct program *p, const struct target *into)
 {
-    m->gl->Uniform4f(p->at[SHOWN_RECTANGLE], 0, 0, (float)into->width, (float)into->height);
-    m->gl->Uniform2f(p->at[SHOWN_SIZE], (float)into->width, (float)into->height);
-    m->gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    gl->Uniform4f(p->at[SHOWN_RECTANGLE], 0, 0, (float)into->width, (float)into->height);
+    gl->Uniform2f(p->at[SHOWN_SIZE], (float)into->width, (float)into->height);
+    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+// By the program of a directional light.
+static void set_light(const struct moving *m, const struct program *p, const struct moving_view *v,
+                      const struct moving_picture *picture, int around, const struct target *into)
+{
+    moving_set_shown(m->gl, p, v, picture, into);
+    gl_set_vec3(m->gl, p->at[TOWARDS], picture->direction);
+    m->gl->Uniform1i(p->at[AROUND], around);
 }
 
 static void put_light(float texel[4], const struct relume_coder_info *info, const struct around *a,
@@ -326,10 +320,10 @@ static relume_status draw_gloss(struct moving *m, const struct moving_view *v,
         put_light(texels + 4 * i, info, a, i);
     upload(gl, &m->lights, GL_RGBA32F, GL_RGBA, v->lights, 1, texels);
     free(texels);
-    set_shown(m, &m->gloss, v, picture, a->count, into);
+    set_light(m, &m->gloss, v, picture, a->count, into);
     texture_use(gl, UNIT_LIGHTS, GL_TEXTURE_2D, m->lights);
     gl->Uniform1i(m->gloss.at[GLOSS_LIGHTS], UNIT_LIGHTS);
-    draw(m, &m->gloss, into);
+    moving_draw_all(gl, &m->gloss, into);
     return RELUME_OK;
 }
 
@@ -350,7 +344,7 @@ static relume_status draw_shadow(struct moving *m, struct moving_view *v,
         status = trace(&m->arrives, m, v, picture->direction, &rect);
     if (status)
         return status;
-    set_shown(m, &m->shadow, v, picture, a->count, into);
+    set_light(m, &m->shadow, v, picture, a->count, into);
     texture_use(gl, UNIT_ARRIVES, GL_TEXTURE_2D, m->arrives);
     gl->Uniform1i(m->shadow.at[SHADOW_ARRIVES], UNIT_ARRIVES);
     for (int i = 0; i < 4; i++) {
@@ -359,7 +353,7 @@ static relume_status draw_shadow(struct moving *m, struct moving_view *v,
         gl->Uniform1i(m->shadow.at[SHADOW_REACHED + i], UNIT_REACHED + i);
     }
     gl->Uniform4fv(m->shadow.at[SHADOW_CAPTURED], 4, captured[0]);
-    draw(m, &m->shadow, into);
+    moving_draw_all(gl, &m->shadow, into);
     return RELUME_OK;
 }
 
@@ -371,7 +365,7 @@ relume_status moving_draw(struct moving *m, struct moving_view *v,
     relume_status status = a.light && a.weight ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relume_shadows_around(a.light, a.weight, &a.count, v->shadows, picture->coder,
-                                       picture->direction, false);
+                                       picture->direction, picture->whole != NULL);
     if (!status)
         status = v->stage.gloss ? draw_gloss(m, v, picture, &a, into)
                                 : draw_shadow(m, v, picture, &a, into);

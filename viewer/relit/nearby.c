@@ -4,6 +4,7 @@
 
 #include "gl/program.h"
 #include "program/say.h"
+#include "relit/captured_uniforms.h"
 #include "relit/weights.h"
 
 #include <math.h>
@@ -26,15 +27,8 @@ enum uniform {
     VECTORS,
     LIGHT,
     PATCHES = LIGHT + LIGHT_UNIFORMS,
-    HEMISPHERE,
-    POLE_Y,
-    ZONE_EVERYWHERE,
-    ZONE_RIGHT,
-    ZONE_UP,
-    ZONE_FACING,
-    ZONE_AXIS,
-    ZONE_BORDER,
-    FORM,
+    ZONE,
+    FORM = ZONE + ZONE_UNIFORMS,
     COEFFICIENTS,
     LAYERS,
     BOOKS,
@@ -44,12 +38,10 @@ enum uniform {
     UNIFORMS
 };
 static const char *const uniforms[] = {
-    "rectangle",   "frame_size", "codes",           "picture",       "surface",
-    "grid",        "triangles",  "triangle_count",  "grid_rows",     "tiles",
-    "affine",      "indices",    "vectors",         LIGHT_NAMES,     "patches",
-    "hemisphere",  "pole_y",     "zone_everywhere", "zone_right",    "zone_up",
-    "zone_facing", "zone_axis",  "zone_border",     "form",          "coefficients",
-    "layers",      "books",      "coded",           "display.curve", "display.gamma",
+    "rectangle", "frame_size",     "codes",     "picture",       "surface",       "grid",
+    "triangles", "triangle_count", "grid_rows", "tiles",         "affine",        "indices",
+    "vectors",   LIGHT_NAMES,      "patches",   ZONE_NAMES,      "form",          "coefficients",
+    "layers",    "books",          "coded",     "display.curve", "display.gamma",
 };
 
 // Texture units; each sampler has its own.
@@ -134,8 +126,9 @@ static relume_status upload_grid(struct nearby *near, const struct relume_weight
     if (!texels)
         return RELUME_ENOMEM;
     texture_use(gl, UNIT_GRID, GL_TEXTURE_2D_ARRAY, near->grid);
-    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, g->columns, rows, layers, 0, GL_RGBA,
-                   GL_FLOAT, NULL);
+    // Between triangles nodes are few, and nothing is filtered.
+    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, g->triangles ? GL_RGBA32F : GL_RGBA16F, g->columns, rows,
+                   layers, 0, GL_RGBA, GL_FLOAT, NULL);
     texture_settings(gl, GL_TEXTURE_2D_ARRAY);
     gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -151,45 +144,6 @@ static relume_status upload_grid(struct nearby *near, const struct relume_weight
     near->has_grid = true;
     near->grid_rows = g->rows;
     return gl_check(gl, "uploading weights", near->log);
-}
-
-// As near.frag: a row of four texels holds a triangle, then 16 cells of the map of starts.
-enum { TRIANGLE_TEXELS = 4, TRIANGLE_FLOATS = 4 * TRIANGLE_TEXELS };
-enum { STARTS = RELUME_WEIGHT_STARTS * RELUME_WEIGHT_STARTS };
-
-static int triangle_rows(const struct relume_weight_grid_info *g)
-{
-    return g->triangles + STARTS / TRIANGLE_FLOATS;
-}
-
-static void gather_triangle(float to[TRIANGLE_FLOATS], const struct relume_weight_triangle *t)
-{
-    for (int i = 0; i < 3; i++) {
-        float *row = to + 4 * (i + 1);
-        to[i] = (float)t->node[i];
-        memcpy(row, t->inverse[i], sizeof t->inverse[i]);
-        row[3] = (float)t->across[i];
-    }
-}
-
-static relume_status upload_triangles(struct nearby *near, const struct relume_weight_grid_info *g)
-{
-    const struct gl *gl = near->gl;
-    const int rows = triangle_rows(g);
-    float *texels = calloc((size_t)rows, TRIANGLE_FLOATS * sizeof *texels);
-    if (!texels)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < g->triangles; i++)
-        gather_triangle(texels + (size_t)i * TRIANGLE_FLOATS, &g->triangle[i]);
-    for (int i = 0; i < STARTS; i++)
-        texels[(size_t)g->triangles * TRIANGLE_FLOATS + (size_t)i] = (float)g->start[i];
-    texture_use(gl, UNIT_TRIANGLES, GL_TEXTURE_2D, near->triangles);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, TRIANGLE_TEXELS, rows, 0, GL_RGBA, GL_FLOAT,
-                   texels);
-    texture_settings(gl, GL_TEXTURE_2D);
-    free(texels);
-    near->triangle_count = g->triangles;
-    return gl_check(gl, "uploading triangles", near->log);
 }
 
 // The tiles of the grid's cells, then those of the tiles' own.
@@ -223,7 +177,7 @@ static relume_status make_grid(relume_weight_grid **grid, const struct gl *gl,
     if (status)
         return status;
     const struct relume_weight_grid_info *info = relume_weight_grid_info(*grid);
-    if (triangle_rows(info) <= gl->max_texture && relume_weight_grid_rows(info) <= gl->max_texture)
+    if (triangles_rows(info) <= gl->max_texture && relume_weight_grid_rows(info) <= gl->max_texture)
         return RELUME_OK;
     relume_weight_grid_destroy(grid);
     return relume_weight_grid_create(grid, coder, relume_weight_grid_params(.steps = 16));
@@ -237,14 +191,14 @@ static relume_status need_grid(struct nearby *near, const relume_coder *coder)
     relume_status status = make_grid(&grid, near->gl, coder);
     const struct relume_weight_grid_info *info = grid ? relume_weight_grid_info(grid) : NULL;
     if (!status && info->triangles)
-        status = upload_triangles(near, info);
+        status = triangles_upload(near->gl, UNIT_TRIANGLES, near->triangles, info);
+    near->triangle_count = info ? info->triangles : 0;
     if (!status && info->tiles)
         status = upload_tiles(near, info);
     if (!status)
         status = upload_grid(near, info);
     if (!status)
-        light_uniforms_upload(near->gl, UNIT_BORDER, near->border, GL_R32F, GL_RED,
-                              RELUME_CAPTURED_REGION_STEPS, 1, relume_coder_region(coder)->border);
+        zone_upload(near->gl, UNIT_BORDER, near->border, coder);
     relume_weight_grid_destroy(&grid);
     return status;
 }
@@ -356,59 +310,18 @@ void nearby_view_destroy(struct nearby_view *view, const struct gl *gl)
 
 // ---------------------------------------------------------------- lights
 
-static void put_vec3(float *texel, struct relume_vec3 v)
-{
-    texel[0] = (float)v.x;
-    texel[1] = (float)v.y;
-    texel[2] = (float)v.z;
-}
-
-// Rows: position, normal, radiance. Sets `n`, how many there are. RELUME_ENOMEM.
-static relume_status use_patches(const struct nearby *near, const struct nearby_view *view,
-                        const struct relume_light *light, int *n)
-{
-    struct relume_light_patch patch[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
-    const int side = relume_light_patch_side(light, relume_area_distance(light, &view->surface));
-    relume_light_patches(patch, light, side);
-    *n = side * side;
-    float *texels = malloc((size_t)*n * 9 * sizeof *texels);
-    if (!texels)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < *n; i++) {
-        put_vec3(texels + 3 * i, patch[i].position);
-        put_vec3(texels + 3 * (*n + i), patch[i].normal);
-        memcpy(texels + 3 * (2 * *n + i), patch[i].rgb, sizeof patch[i].rgb);
-    }
-    light_uniforms_upload(near->gl, UNIT_PICTURE, near->patches, GL_RGB32F, GL_RGB, *n, 3, texels);
-    free(texels);
-    return RELUME_OK;
-}
-
 static relume_status set_light(struct nearby *near, const struct nearby_view *view,
                                const struct relume_light *l)
 {
     const GLint *at = near->program.at;
-    int patches = 0;
+    const bool area = l->kind == RELUME_LIGHT_AREA;
+    const int side = area ? relume_light_patch_side(l, relume_area_distance(l, &view->surface)) : 0;
     const relume_status status =
-        l->kind == RELUME_LIGHT_AREA ? use_patches(near, view, l, &patches) : RELUME_OK;
+        area ? light_uniforms_patches(near->gl, UNIT_PICTURE, near->patches, l, side) : RELUME_OK;
     if (status)
         return status;
-    near->gl->Uniform1i(at[PATCHES], patches);
+    near->gl->Uniform1i(at[PATCHES], side * side);
     return light_uniforms_set(&near->uniforms, at + LIGHT, UNIT_PICTURE, l);
-}
-
-static void set_zone(const struct nearby *near, const struct relume_captured_region *zone)
-{
-    const struct gl *gl = near->gl;
-    const GLint *at = near->program.at;
-    texture_use(gl, UNIT_BORDER, GL_TEXTURE_2D, near->border);
-    gl->Uniform1i(at[ZONE_BORDER], UNIT_BORDER);
-    gl->Uniform1i(at[ZONE_EVERYWHERE], zone->everywhere);
-    gl_set_vec3(gl, at[ZONE_RIGHT], zone->right);
-    gl_set_vec3(gl, at[ZONE_UP], zone->up);
-    gl_set_vec3(gl, at[ZONE_FACING], zone->facing);
-    gl->Uniform4f(at[ZONE_AXIS], (float)zone->axis.x, (float)zone->axis.y, (float)zone->axis.z,
-                  (float)zone->inside);
 }
 
 static void set_codes(const struct nearby *near, const struct nearby_view *view,
@@ -435,8 +348,6 @@ static void set_codes(const struct nearby *near, const struct nearby_view *view,
     gl->Uniform1i(at[TRIANGLE_COUNT], near->triangle_count);
     gl->Uniform1i(at[GRID_ROWS], near->grid_rows);
     gl->Uniform1i(at[TILES], near->tiles);
-    gl->Uniform1i(at[HEMISPHERE], info->hemispherical);
-    gl->Uniform1i(at[POLE_Y], info->pole_y);
     gl->Uniform1i(at[FORM], info->luminance ? FORM_LUMINANCE
                             : info->joint   ? FORM_JOINT
                                             : FORM_SEPARATE);
@@ -461,7 +372,7 @@ relume_status nearby_draw(struct nearby *near, const struct nearby_view *view,
     if (status)
         return status;
     set_codes(near, view, codes);
-    set_zone(near, relume_coder_region(codes->codes->coder));
+    zone_set(gl, near->program.at + ZONE, UNIT_BORDER, near->border, codes->codes->coder);
     gl->Uniform4f(near->program.at[RECTANGLE], 0, 0, width, height);
     gl->Uniform2f(near->program.at[SIZE], width, height);
     gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);

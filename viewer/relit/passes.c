@@ -1,6 +1,7 @@
 // passes.c - distant lights on the GPU: dot products of planes, look-ups of codebooks
 #include "common/vec.h"
 #include "relit/books.h"
+#include "relit/moving.h"
 #include "relit/relighter_parts.h"
 #include "relit/weights.h"
 
@@ -168,21 +169,33 @@ void passes_develop(const struct relighter *r, const struct relit_view *v,
     develop(r, v, coded, display, rgb, false);
 }
 
-// What environments are part of is gathered in r->coded, then added without what is below 0.
-static void add_guarded(struct relighter *r, struct relit_view *v)
+void passes_guarded(const struct relighter *r, const struct relit_view *v,
+                    const struct target *picture)
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1, 1, 1};
+    develop(r, v, picture, linear, one, true);
+}
+
+// What environments are part of is gathered in r->coded, then added without what is below 0.
+static void add_guarded(struct relighter *r, struct relit_view *v)
+{
     target_resume(&v->relit, r->gl);
-    develop(r, v, &r->coded, linear, one, true);
+    passes_guarded(r, v, &r->coded);
+}
+
+relume_status passes_fit(const struct relighter *r, struct target *target,
+                         const struct relit_view *v)
+{
+    if (target->width == v->relit.width && target->height == v->relit.height)
+        return RELUME_OK;
+    target_destroy(target, r->gl);
+    return target_create(target, r->gl, v->relit.width, v->relit.height, r->log);
 }
 
 relume_status passes_scratch(struct relighter *r, const struct relit_view *v)
 {
-    if (r->coded.width == v->relit.width && r->coded.height == v->relit.height)
-        return RELUME_OK;
-    target_destroy(&r->coded, r->gl);
-    return target_create(&r->coded, r->gl, v->relit.width, v->relit.height, r->log);
+    return passes_fit(r, &r->coded, v);
 }
 
 static relume_status add_linear(struct relighter *r, struct relit_view *v, struct weights *w)
@@ -304,4 +317,24 @@ relume_status passes_distant(struct relighter *r, struct relit_view *v)
     status = (display || v->moving.shadows ? add_one_by_one : add_linear)(r, v, &w);
     weights_destroy(&w);
     return status;
+}
+
+relume_status passes_environment(struct relighter *r, struct relit_view *v,
+                                 const struct relume_light *light)
+{
+    struct weights w = {0};
+    relume_status status = need_grid(r, v->codes.coder);
+    if (!status)
+        status = passes_scratch(r, v);
+    if (!status && !v->codes.books)
+        status = weights_create(&w, v->codes.coder, v->codes.planes);
+    if (status)
+        return status;
+    target_begin(&r->coded, r->gl);
+    if (v->codes.books)
+        return pass_lookup(r, v, light, 1, &r->coded);
+    weights_add_environment(&w, &v->codes, code_format_of(&v->codes)->unit, r->grid, light);
+    pass_dot(r, v, &w, &r->coded);
+    weights_destroy(&w);
+    return RELUME_OK;
 }

@@ -3,6 +3,7 @@
 
 #include "program/say.h"
 #include "relit/books.h"
+#include "relit/moving.h"
 #include "relit/relighter_parts.h"
 
 #include <stdlib.h>
@@ -275,17 +276,46 @@ static bool moves_shadows(const struct relit_view *v)
     return v->moving.shadows && !v->moving.stage.gloss;
 }
 
-// Array textures that are several the shader does not read.
+// One that is relit alone, in r->coded, with what moves by it.
+static relume_status add_near_moving(struct relighter *r, struct relit_view *v,
+                                     const struct nearby_codes *codes,
+                                     const struct relume_light *light)
+{
+    struct moving_picture p = {.coded = &r->coded,
+                               .picture = {.curve = RELUME_CURVE_LINEAR},
+                               .times = {1.0f, 1.0f, 1.0f},
+                               .coder = v->codes.coder,
+                               .display = {.curve = RELUME_CURVE_LINEAR},
+                               .rgb = {1.0f, 1.0f, 1.0f}};
+    if (v->codes.domain == RELUME_DOMAIN_DISPLAY)
+        p.display = v->codes.display;
+    target_begin(&r->coded, r->gl);
+    const relume_status status = nearby_draw(&r->near, &v->near, codes, light);
+    return status
+               ? status
+               : moving_draw_near(&r->moving, &v->moving, &p, light, v->near.positions, &v->relit);
+}
+
+// Array textures that are several the shaders do not read.
 static relume_status add_near(struct relighter *r, struct relit_view *v)
 {
-    if (v->arrays > 1 || moves_shadows(v))
+    const bool moves = moves_shadows(v);
+    bool can = v->arrays == 1;
+    relume_status status = RELUME_OK;
+    if (can && moves)
+        status = moving_near_can(&can, &r->moving, &v->moving, v->codes.coder);
+    if (!status && !can)
         return add_by_library(r, v, relume_light_is_near);
     const struct nearby_codes codes = nearby_codes_of(v);
-    relume_status status = need_surface(r, v);
+    if (!status)
+        status = need_surface(r, v);
+    if (!status && moves)
+        status = passes_scratch(r, v);
     target_resume(&v->relit, r->gl);
     for (int i = 0; !status && i < r->lights; i++)
         if (relume_light_is_near(r->light[i].kind))
-            status = nearby_draw(&r->near, &v->near, &codes, &r->light[i]);
+            status = moves ? add_near_moving(r, v, &codes, &r->light[i])
+                           : nearby_draw(&r->near, &v->near, &codes, &r->light[i]);
     return status;
 }
 
@@ -312,13 +342,12 @@ static void count_moving(struct relighter *r, struct relit_view *v, size_t befor
     v->bytes += more;
 }
 
-// What moves by the suns of environments is left to the library.
 static relume_status add_environments(struct relighter *r, struct relit_view *v)
 {
     if (!relighter_has_kind(r, relighter_is_environment))
         return RELUME_OK;
     if (v->moving.shadows)
-        return add_by_library(r, v, relighter_is_environment);
+        return suns_relight(r, v);
     return v->codes.domain == RELUME_DOMAIN_DISPLAY ? linear_copy_relight(r, v) : RELUME_OK;
 }
 
@@ -331,9 +360,9 @@ static relume_status relight_by_passes(struct relighter *r, struct relit_view *v
     target_begin(&v->relit, r->gl);
     passes_begin(r);
     status = passes_distant(r, v);
-    count_moving(r, v, before);
     if (!status)
         status = add_environments(r, v);
+    count_moving(r, v, before);
     if (!status && relighter_has_kind(r, relume_light_is_near))
         status = add_near(r, v);
     r->gl->Disable(GL_BLEND);
@@ -358,7 +387,7 @@ relume_status relighter_create(struct relighter *r, const struct gl *gl,
 {
     *r = (struct relighter){
         .gl = gl, .log = log, .source = *source, .views = views, .budget = (size_t)1 << 30};
-    r->moving = (struct moving){.gl = gl, .log = log};
+    moving_create(&r->moving, gl, log);
     r->view = calloc((size_t)views, sizeof *r->view);
     relume_status status = r->view ? passes_create(r) : RELUME_ENOMEM;
     if (!status)
@@ -377,6 +406,7 @@ void relighter_destroy(struct relighter *r)
         release(r, &r->view[i]);
     relume_relighter_destroy(&r->library);
     linear_copy_destroy(r);
+    suns_destroy(r);
     passes_destroy(r);
     nearby_destroy(&r->near);
     moving_destroy(&r->moving);
@@ -426,6 +456,7 @@ relume_status relighter_begin(struct relighter *r, const struct relume_light *li
 void relighter_forget(struct relighter *r)
 {
     nearby_forget(&r->near);
+    moving_forget(&r->moving);
     free(r->light);
     r->light = NULL;
     if (r->library)

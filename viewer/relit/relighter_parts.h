@@ -36,14 +36,33 @@ relume_status passes_create(struct relighter *r);
 void passes_destroy(struct relighter *r);
 // Everything distant but environments on codes of the display domain.
 relume_status passes_distant(struct relighter *r, struct relit_view *view);
-// r->coded as large as the view.
+// A target as large as the view, and r->coded.
+relume_status passes_fit(const struct relighter *r, struct target *target,
+                         const struct relit_view *view);
 relume_status passes_scratch(struct relighter *r, const struct relit_view *view);
 // `coded` decoded by `display`, times `rgb`, into the view.
 void passes_develop(const struct relighter *r, const struct relit_view *view,
                     const struct target *coded, struct relume_transfer display, const float rgb[3]);
 
-// The environments on codes of the display domain, by their linear copy.
+// `picture`, linear, without what is below 0 (keep_above_zero), into the view or another target in
+// use of its size.
+void passes_guarded(const struct relighter *r, const struct relit_view *view,
+                    const struct target *picture);
+// What an environment shows, alone, in r->coded, with what is below 0: of linear codes.
+relume_status passes_environment(struct relighter *r, struct relit_view *view,
+                                 const struct relume_light *light);
+
+// Environments on codes of the display domain, by their linear copy: a picture, which holds until
+// the next one, ...
+relume_status linear_copy_picture(const struct target **out, struct relighter *r,
+                                  const struct relit_view *view,
+                                  const struct relume_light *environments, int n);
+// ... and all of those in use, into the view.
 relume_status linear_copy_relight(struct relighter *r, struct relit_view *view);
 void linear_copy_destroy(struct relighter *r);
+
+// The environments, where the view has shadows or highlights that move.
+relume_status suns_relight(struct relighter *r, struct relit_view *view);
+void suns_destroy(struct relighter *r);
 
 #endif

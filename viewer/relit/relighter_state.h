@@ -5,7 +5,7 @@
 #include "gl/program.h"
 #include "gl/target.h"
 #include "relit/loader.h"
-#include "relit/moving.h"
+#include "relit/moving_state.h"
 #include "relit/nearby.h"
 
 #include <relume/relight.h>
@@ -58,9 +58,10 @@ struct relighter {
     struct relighter *linear;   // the linear copy, under the environments; NULL: not made yet
     struct linear_source linear_source;
     GLuint vertices;
-    GLuint weights;       // texture [layers][3]
-    GLuint table;         // array texture [books] of relit code vectors
-    struct target coded;  // display domain: sum of one light, still coded
+    GLuint weights;         // texture [layers][3]
+    GLuint table;           // array texture [books] of relit code vectors
+    struct target suns[2];  // pictures of an environment, before and after its sun is exchanged
+    struct target coded;    // display domain: sum of one light, still coded
     struct relit_view *view;
     int views;
     struct relume_light *light;

@@ -254,6 +254,13 @@ relume_status session_rig(relume_rig **out, const struct session *s);
 // RELUME_ELIMIT when it does not fit, RELUME_ENOMEM.
 relume_status session_state_line(char *text, size_t size, struct session *s);
 
+// Notes on the file: shown, or no longer; what is drawn becomes one, or this view; the list goes to
+// disk; back to the state of the chosen one. What goes wrong is said. RELUME_ENOMEM.
+relume_status session_notes_show(struct session *s);
+relume_status session_notes_add(struct session *s);
+relume_status session_notes_save(struct session *s);
+relume_status session_notes_back(struct session *s);
+
 // Begin with the lights of `rig`, which becomes the session's; NULL: none. RELUME_EINVAL when there
 // are more than APP_LIGHTS, RELUME_ENOMEM.
 relume_status session_take_rig(struct session *s, relume_rig **rig, struct app_state *start);

@@ -1,27 +1,19 @@
 #version 330 core
 // A light that stands near: the basis at every pixel's own direction towards it (Wong 1998, Eq. 7.7
-// with its sign corrected). Twins: relume_light_at, relume_light_patch_at, relume_weight_grid_place,
-// cells_find of src/relight/cells.c, src/relight/triangles.c.
+// with its sign corrected). Twins: relume_weight_grid_place, cells_find of src/relight/cells.c.
 #include "transfer.glsl"
 #include "texels.glsl"
 #include "cube.glsl"
 #include "light.glsl"
-
-uniform int patches;  // of an area light: `picture` has a column for each: position, normal, radiance
+#include "light_patches.glsl"
+#include "captured.glsl"
+#include "triangles.glsl"
 
 uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
 uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer
-                               // holds the constants
-uniform sampler2D triangles;   // rows of nodes, then inverse and neighbour of each corner; then
-                               // starts, 16 a row
-uniform int triangle_count;    // 0: the weights are a grid, else those of nodes in a row
+                               // holds the constants; where there are triangles, nodes are a row
 uniform int grid_rows, tiles;  // of the grid, below which are tiles; `triangles` then holds the tile
                                // of each cell, and those of each tile's four, 4096 a row
-uniform bool hemisphere, pole_y;
-uniform bool zone_everywhere;  // struct relume_captured_region, in the world
-uniform vec3 zone_right, zone_up, zone_facing;
-uniform vec4 zone_axis;          // and the cosine within which all is inside
-uniform sampler2D zone_border;  // a row by azimuth
 
 const int JOINT = 1, LUMINANCE = 2;  // else each channel has coefficients of its own
 uniform int form;
@@ -34,20 +26,6 @@ uniform int books;                // 0: planes
 uniform bool coded;               // display domain
 uniform Transfer display;
 out vec4 color;
-
-// ---------------------------------------------------------------- what arrives
-
-bool patch_at(out vec3 towards, out vec3 rgb, int index, vec3 point)
-{
-    vec3 normal = texelFetch(picture, ivec2(index, 1), 0).xyz;
-    float distance;
-    bool arrives = ray_to(towards, distance, texelFetch(picture, ivec2(index, 0), 0).xyz, point);
-    float cosine = -dot(towards, normal);
-    rgb = texelFetch(picture, ivec2(index, 2), 0).rgb * cosine / (distance * distance);
-    return arrives && cosine > 0.0;
-}
-
-// ---------------------------------------------------------------- what is reflected
 
 // In nodes of the grid; `d` in the pole's frame.
 vec2 weight_grid_place(vec3 d)
@@ -84,38 +62,6 @@ vec2 cells_find(vec2 place)
     return vec2(corner) + at + 0.5;
 }
 
-int start_cell(vec3 d)
-{
-    vec2 at = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
-    vec2 folded = (1.0 - abs(at.yx)) * vec2(at.x < 0.0 ? -1.0 : 1.0, at.y < 0.0 ? -1.0 : 1.0);
-    ivec2 cell = clamp(ivec2((0.5 * (d.z >= 0.0 ? at : folded) + 0.5) * 32.0), 0, 31);
-    return cell.y * 32 + cell.x;
-}
-
-// Nodes and their shares.
-void triangles_find(out ivec3 node, out vec3 share, vec3 d)
-{
-    int start = start_cell(d);
-    ivec2 at = ivec2(start >> 2 & 3, triangle_count + (start >> 4));
-    int t = int(texelFetch(triangles, at, 0)[start & 3]);
-    vec4 inverse[3];
-    for (int i = 0; i <= 64; i++) {
-        for (int c = 0; c < 3; c++)
-            inverse[c] = texelFetch(triangles, ivec2(c + 1, t), 0);
-        share = vec3(dot(inverse[0].xyz, d), dot(inverse[1].xyz, d), dot(inverse[2].xyz, d));
-        float least = min(share.x, min(share.y, share.z));
-        if (least >= -1e-6)
-            break;
-        t = int(share.x == least ? inverse[0].w : share.y == least ? inverse[1].w : inverse[2].w);
-    }
-    vec3 corner = texelFetch(triangles, ivec2(0, t), 0).xyz;
-    vec3 says = vec3(greaterThanEqual(corner, vec3(0.0)));
-    share = max(share, 0.0) * says;
-    float sum = share.x + share.y + share.z;
-    share = sum > 0.0 ? share / sum : says / (says.x + says.y + says.z);
-    node = ivec3(max(corner, 0.0));
-}
-
 // Where the weights of a direction are: in the grid, or at three nodes.
 struct Place {
     vec2 at;
@@ -125,7 +71,7 @@ struct Place {
 
 Place weight_place(vec3 direction)
 {
-    vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
+    vec3 d = pole_from_world(direction);
     Place place = Place(vec2(0.0), ivec3(0), vec3(0.0));
     if (triangle_count == 0) {
         place.at = cells_find(weight_grid_place(d)) / vec2(textureSize(grid, 0).xy);
@@ -198,47 +144,6 @@ vec3 dot_luminance(ivec2 at, Place place)
                       plane_at(at, coefficients + 2));
 }
 
-// Below the horizon of a hemispherical capture: at the horizon of the same azimuth.
-vec3 above_horizon(vec3 d)
-{
-    vec2 flat_part = pole_y ? d.xz : d.xy;
-    if (!hemisphere || (pole_y ? d.y : d.z) >= 0.0)
-        return d;
-    vec2 straight_below = pole_y ? vec2(0.0, -1.0) : vec2(1.0, 0.0);
-    vec2 at = length(flat_part) > 0.0 ? normalize(flat_part) : straight_below;
-    return pole_y ? vec3(at.x, 0.0, at.y) : vec3(at, 0.0);
-}
-
-// Twin: border_at.
-float zone_border_at(vec2 d)
-{
-    int steps = textureSize(zone_border, 0).x;
-    float at = (atan(d.y, d.x) / (2.0 * PI) + 1.0) * float(steps), low = floor(at);
-    int i = int(low) % steps;
-    return mix(texelFetch(zone_border, ivec2(i, 0), 0).r,
-               texelFetch(zone_border, ivec2((i + 1) % steps, 0), 0).r, at - low);
-}
-
-// Twin: relume_coder_clamp. Where the light is taken from, and the share of it.
-vec3 captured(vec3 towards, out float share)
-{
-    vec3 d = above_horizon(towards);
-    float height = dot(d, zone_axis.xyz);
-    share = 1.0;
-    if (zone_everywhere || height >= zone_axis.w)
-        return d;
-    vec2 across = vec2(dot(d, zone_right), dot(d, zone_up));
-    float r = length(across), border = zone_border_at(across), beyond = atan(r, height) - border;
-    if (beyond <= 0.0)
-        return d;
-    across = sin(border) * (r > 0.0 ? across / r : vec2(1.0, 0.0));
-    vec3 from = cos(border) * zone_axis.xyz + across.x * zone_right + across.y * zone_up;
-    float facing = dot(from, zone_facing);
-    share = facing > 0.0 ? clamp((dot(d, zone_facing) + 0.05) / (facing + 0.05), 0.0, 1.0)
-                         : max(cos(beyond), 0.0);
-    return from;
-}
-
 vec3 reflectance(ivec2 at, vec3 towards)
 {
     float share;
@@ -261,7 +166,7 @@ void main()
     if (point.a > 0.0 && light.kind != AREA && light_at(towards, rgb, point.xyz))
         sum = rgb * reflectance(at, towards);
     for (int i = 0; point.a > 0.0 && i < patches; i++)
-        if (patch_at(towards, rgb, i, point.xyz))
+        if (patch_at(towards, rgb, i, point.xyz) && is_captured(towards))
             sum += rgb * reflectance(at, towards);
     color = vec4(sum, 1.0);
 }

@@ -10,7 +10,8 @@ struct capture_options {
     struct args args;
     const char *output, *mask, *ball_mask, *lights, *normals, *albedo, *height, *encode, *relight;
     struct relume_transfer transfer, ball_transfer;
-    double white[4];
+    double white[4], target_corners[8];
+    const char *target, *target_values;
     enum { ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
     bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
     struct points ball;
@@ -60,6 +61,13 @@ static const struct option options[] = {
     GROUP("corrections"),
     NUMBERS("--white", white, "x,y,w,h",
             "a grey region of the picture: removes the colour of the lamps", 4),
+    TEXT("--target", target, "FILE",
+         "a photograph of a ColorChecker 24, or auto where it stands in the photographs: makes "
+         "colours right"),
+    NUMBERS("--target-corners", target_corners, "x,y,...",
+            "outer corners of the target's four corner patches, pixels; default: found", 8),
+    TEXT("--target-values", target_values, "FILE",
+         "24 lines L* a* b* (D50) of your own target; default: the published ones"),
     TEXTS(
         "--flat", flat, "PATH",
         "photograph of an even white surface: removes uneven light; one, or one under each light"),
@@ -91,6 +99,8 @@ struct job {
     char likely_lights[4096];  // beside the photographs or above their folder
     struct relume_acquire_params p;
     struct relume_acquisition acquisition;
+    struct relume_chart chart;
+    const char *chart_path;
 };
 
 // ---------------------------------------------------------------- photographs
@@ -242,6 +252,12 @@ static relume_status check_options(const struct capture_options *o)
     if (given(o, &o->white) && !(o->white[2] >= 1.0 && o->white[3] >= 1.0))
         return usage_error("--white: expected a width and height of 1 or more; found %g and %g",
                            o->white[2], o->white[3]);
+    if (given(o, &o->white) && o->target)
+        return usage_error("capture: expected one of --white and --target, which gives the white "
+                           "balance as well");
+    if ((given(o, &o->target_corners) || o->target_values) && !o->target)
+        return usage_error("capture: %s needs --target FILE",
+                           o->target_values ? "--target-values" : "--target-corners");
     if (given(o, &o->width) && !o->height)
         return usage_error("capture: --width needs --height FILE.exr");
     if (o->relight && !o->encode)
@@ -283,6 +299,44 @@ static void read_options(const struct capture_options *o, struct job *job)
         find_likely_lights(job);
     for (int i = 0; i < 4; i++)
         job->p.white[i] = fabs(o->white[i]) < 1e6 ? (int)o->white[i] : -1;
+}
+
+// ---------------------------------------------------------------- colour
+
+static relume_status read_target(const struct capture_options *o, struct job *job)
+{
+    const bool among = o->target && !strcmp(o->target, "auto");
+    const char *const *paths = among ? (const char *const *)job->photos.path : &o->target;
+    double corner[4][2], values[RELUME_CHART_PATCHES][3];
+    if (!o->target)
+        return RELUME_OK;
+    memcpy(corner, o->target_corners, sizeof corner);
+    relume_status status = o->target_values
+                               ? relume_chart_reference_load(values, o->target_values, o->args.log)
+                               : RELUME_OK;
+    if (status)
+        return status;
+    status = relume_chart_load(
+        &job->chart, paths, among ? job->photos.count : 1,
+        relume_chart_params(.log = o->args.log, .transfer = o->transfer,
+                            .corner =
+                                given(o, &o->target_corners) ? (const double(*)[2])corner : NULL,
+                            .reference = o->target_values ? (const double(*)[3])values : NULL));
+    if (status)
+        return status;
+    const struct relume_chart *c = &job->chart;
+    job->chart_path = paths[c->photograph];
+    job->p.chart = c;
+    job->p.chart_path = job->chart_path;
+    announce(&o->args, RELUME_NOTE,
+             "%s: colour target, %d of 24 patches: colour difference %.1f (largest %.1f) as "
+             "photographed, %.1f (%.1f) with white balance, %.1f (%.1f) corrected: %s",
+             job->chart_path, c->used, c->before[0], c->before[1], c->balanced[0], c->balanced[1],
+             c->after[0], c->after[1],
+             c->after[0] < 2.0   ? "good"
+             : c->after[0] < 4.0 ? "usable"
+                                 : "poor; is the target clean, evenly lit, without shine?");
+    return status;
 }
 
 // ---------------------------------------------------------------- by-products
@@ -366,8 +420,37 @@ static void put_vector(const char *key, struct relume_vec3 v)
     printf(",\"%s\":[%.9g,%.9g,%.9g]", key, v.x, v.y, v.z);
 }
 
-static void print_json(const struct relume_acquisition *s)
+static void print_target(const struct relume_chart *c, const char *path)
 {
+    fputs(",\"target\":{\"file\":", stdout);
+    json_text(stdout, path);
+    printf(",\"corners\":[");
+    for (int i = 0; i < 4; i++)
+        printf("%s[%.6g,%.6g]", i ? "," : "", c->corner[i][0], c->corner[i][1]);
+    printf("],\"matrix\":[");
+    for (int i = 0; i < 9; i++)
+        printf("%s%.9g", i ? "," : "", (double)c->matrix[i]);
+    printf("],\"white\":[%.9g,%.9g,%.9g],\"exposure\":%.9g,\"uneven\":%.4g,\"used\":%d,"
+           "\"delta_e_before\":[%.4g,%.4g],\"delta_e_white\":[%.4g,%.4g],\"delta_e\":[%.4g,"
+           "%.4g],\"patches\":[",
+           (double)c->white[0], (double)c->white[1], (double)c->white[2], c->exposure, c->uneven,
+           c->used, c->before[0], c->before[1], c->balanced[0], c->balanced[1], c->after[0],
+           c->after[1]);
+    for (int i = 0; i < RELUME_CHART_PATCHES; i++) {
+        const struct relume_chart_patch *p = &c->patch[i];
+        printf("%s{\"name\":\"%s\",\"x\":%.6g,\"y\":%.6g,\"found\":[%.6g,%.6g,%.6g],"
+               "\"noise\":%.4g,\"used\":%s,\"delta_e_before\":%.4g,\"delta_e_white\":%.4g,"
+               "\"delta_e\":%.4g}",
+               i ? "," : "", p->name, p->place[0], p->place[1], (double)p->found[0],
+               (double)p->found[1], (double)p->found[2], p->noise, p->used ? "true" : "false",
+               p->delta_e_before, p->delta_e_balance, p->delta_e);
+    }
+    printf("]}");
+}
+
+static void print_json(const struct job *job)
+{
+    const struct relume_acquisition *s = &job->acquisition;
     printf("{\"lights\":%d,\"width\":%d,\"height\":%d,\"balls\":[", s->lights, s->width, s->height);
     for (int b = 0; b < s->balls; b++)
         printf("%s{\"x\":%.9g,\"y\":%.9g,\"radius\":%.9g,\"coverage\":%.4g}", b ? "," : "",
@@ -384,15 +467,20 @@ static void print_json(const struct relume_acquisition *s)
         if (s->intensity)
             printf(",\"intensity\":[%.9g,%.9g,%.9g]", (double)s->intensity[i][0],
                    (double)s->intensity[i][1], (double)s->intensity[i][2]);
-        printf(",\"error_deg\":%.6g,\"saturated\":%.6g}", s->photo[i].sigma_deg,
+        printf(",\"error_deg\":%.6g,\"saturated\":%.6g,\"sharpness\":", s->photo[i].sigma_deg,
                (double)s->photo[i].saturated);
+        json_number(stdout, (double)s->photo[i].sharpness);
+        putchar('}');
     }
     printf("],\"warnings\":[");
     for (int i = 0; i < s->warnings; i++) {
         fputs(i ? "," : "", stdout);
         json_text(stdout, s->warning[i]);
     }
-    puts("]}");
+    putchar(']');
+    if (job->chart_path)
+        print_target(&job->chart, job->chart_path);
+    puts("}");
 }
 
 static void say_made(const struct capture_options *o, const struct relume_acquisition *s)
@@ -427,7 +515,7 @@ static relume_status make(const struct capture_options *o, struct job *job)
     if (!status && o->relight)
         status = relight(o, o->encode);
     if (!status && o->json)
-        print_json(&job->acquisition);
+        print_json(job);
     else if (!status)
         say_made(o, &job->acquisition);
     return status;
@@ -442,8 +530,10 @@ static relume_status run(const struct args *args)
         status = gather(o, &job);
     if (!status) {
         read_options(o, &job);
-        status = make(o, &job);
+        status = read_target(o, &job);
     }
+    if (!status)
+        status = make(o, &job);
     relume_photographs_free(&job.photos);
     relume_photographs_free(&job.balls);
     relume_photographs_free(&job.flats);

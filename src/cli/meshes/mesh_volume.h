@@ -25,7 +25,8 @@ struct volume_options {
     GROUP("volumes"),                                                                              \
         NUMBER("--threshold", volume.threshold, "T",                                               \
                "the surface of all samples that are at least T", -1e38, 1e38),                     \
-        OWN("--size", volume.size, "XxYxZ", "samples of a raw file, x running fastest",            \
+        OWN("--size", volume.size, "XxYxZ",                                                        \
+            "samples of a raw file, x running fastest; default: as its name says",                 \
             take_volume_size),                                                                     \
         TEXT("--type", volume.type, "TYPE",                                                        \
              "of raw samples: u8 (default), i8, u16le, u16be, i16le, ..., f32le, f64be; without "  \

@@ -2,7 +2,7 @@
 // What lighting a surface needs: its place and frame, the place in its texture, and
 // what that grows by from pixel to pixel.
 // Rows run down, so that what faces the eye is wound the other way round here. Twin: objects_hit.
-in vec3 at_position, at_normal;
+in vec3 at_position, at_normal, at_tint;
 in vec4 at_tangent;
 in vec2 at_texture;
 uniform int part;
@@ -12,6 +12,7 @@ layout(location = 1) out vec4 normal_s;   // normal, s
 layout(location = 2) out vec4 tangent_t;  // tangent, t
 layout(location = 3) out vec4 footprint;  // (s, t) to the right, and down; of a mirror the
                                           // triangle's number
+layout(location = 4) out vec4 tint;       // what the material's values are multiplied by
 
 void main()
 {
@@ -21,6 +22,7 @@ void main()
     place = vec4(at_position, side * sign(at_tangent.w) * float(part + 1));
     normal_s = vec4(normal, at_texture.x);
     tangent_t = vec4(normalize(tangent), at_texture.y);
+    tint = vec4(at_tint, 1.0);
     footprint = first < 0 ? vec4(dFdx(at_texture), dFdy(at_texture))
                           : vec4(float(first + gl_PrimitiveID), 0.0, 0.0, 0.0);
 }

@@ -4,8 +4,9 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 tangent;
 layout(location = 3) in vec2 texture_at;
+layout(location = 4) in vec3 tint;
 uniform mat4 clip;
-out vec3 at_position, at_normal;
+out vec3 at_position, at_normal, at_tint;
 out vec4 at_tangent;
 out vec2 at_texture;
 
@@ -15,5 +16,6 @@ void main()
     at_normal = normal;
     at_tangent = tangent;
     at_texture = texture_at;
+    at_tint = tint;
     gl_Position = clip * vec4(position, 1.0);
 }

@@ -1,13 +1,16 @@
 // What is shown of one light: its relit picture and what the model adds, black where it would be
 // less.
 #include "transfer.glsl"
+#include "above_zero.glsl"
 
 uniform sampler2D coded;   // the relit picture ...
-uniform Transfer picture;  // ... by this curve ...
+uniform Transfer coding;   // ... by this curve ...
 uniform vec3 times;        // ... and this
 uniform Transfer display;  // what the codes are interpolated in
 uniform vec3 rgb;          // the light, linear
 uniform ivec2 origin;      // of the picture in the view
+uniform bool exchanges;    // the light is the sun of an environment ...
+uniform sampler2D whole;   // ... whose picture this is; twin: exchange_sun of src/relight/relighter.c
 out vec4 color;
 
 vec3 encoded(vec3 v)
@@ -24,6 +27,12 @@ vec3 decoded(Transfer curve, vec3 v)
 
 void show(vec3 more)
 {
-    vec3 relit = times * decoded(picture, texelFetch(coded, ivec2(gl_FragCoord.xy), 0).rgb);
-    color = vec4(max(relit + rgb * more, min(relit, 0.0)), 1.0);
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    vec3 relit = times * decoded(coding, texelFetch(coded, here, 0).rgb);
+    if (exchanges)
+        relit = above_zero(relit);
+    vec3 shown = max(relit + rgb * more, min(relit, 0.0));
+    if (exchanges)
+        shown = max(texelFetch(whole, here, 0).rgb - relit + shown, 0.0);
+    color = vec4(shown, 1.0);
 }

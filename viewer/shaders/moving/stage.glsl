@@ -100,10 +100,10 @@ bool is_free(Place p, float side)
     return p.far + float(TILE) * side < texelFetch(front, ivec2(p.at) / TILE, 0).r;
 }
 
-// Whether light from direction `d` (of the view) reaches a point of the surface.
-bool stage_reaches(vec3 point, vec3 d)
+// Whether light from direction `d` (of the view), and so far away, reaches a point of the surface.
+bool stage_reaches(vec3 point, vec3 d, float distance)
 {
-    float end = leaves_box(point, d);
+    float end = min(leaves_box(point, d), distance);
     Place p, last;
     if (!place_of(p, point))
         return true;
@@ -133,4 +133,21 @@ bool stage_reaches(vec3 point, vec3 d)
         t += STEP * side;
     }
     return true;
+}
+
+// The same of a quarter of a pixel.
+bool quarter_reached(ivec2 at, int quarter, vec3 d, float distance)
+{
+    vec3 point;
+    vec2 middle = vec2((quarter & 1) != 0 ? 0.75 : 0.25, (quarter & 2) != 0 ? 0.75 : 0.25);
+    return !stage_point(point, vec2(at) + middle) || stage_reaches(point, d, distance);
+}
+
+int quarters_reached(ivec2 at, vec3 d, float distance)
+{
+    int arrives = 0;
+    for (int i = 0; i < 4; i++)
+        if (quarter_reached(at, i, d, distance))
+            arrives++;
+    return arrives;
 }

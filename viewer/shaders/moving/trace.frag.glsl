@@ -12,13 +12,5 @@ void main()
     ivec2 size = textureSize(surface, 0), at = ivec2(gl_FragCoord.xy) + origin - 1;
     at.x = RAYS >= CYLINDER ? (at.x + size.x) % size.x : clamp(at.x, 0, size.x - 1);
     at.y = clamp(at.y, 0, size.y - 1);
-    int arrives = 0;
-    for (int i = 0; i < 4; i++) {
-        vec3 point;
-        if (!stage_point(point, vec2(at) + vec2((i & 1) != 0 ? 0.75 : 0.25,
-                                                (i & 2) != 0 ? 0.75 : 0.25)) ||
-            stage_reaches(point, direction))
-            arrives++;
-    }
-    color = vec4(float(arrives) / 255.0);
+    color = vec4(float(quarters_reached(at, direction, BACKGROUND)) / 255.0);
 }

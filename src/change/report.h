@@ -1,0 +1,21 @@
+// report.h - the page of a comparison, and what its pictures show
+#ifndef CHANGE_REPORT_H
+#define CHANGE_REPORT_H
+
+#include <relume/change.h>
+
+// What is white in the pictures.
+enum { RAMP_DEGREES = 15, RAMP_DELTA_E = 15, RAMP_SIGNIFICANCE = 20 };
+
+struct writing {
+    const struct relume_change *change;
+    const struct relume_change_write_params *params;
+    const char *folder;
+};
+relume_status writing_save(const struct writing *w, const struct relume_image *image,
+                           const char *name);
+
+// report.html in the folder, beside the pictures that it shows.
+relume_status report_write(const struct writing *w);
+
+#endif

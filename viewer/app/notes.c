@@ -1,0 +1,151 @@
+// notes.c - notes on the picture, and what the mouse does with them
+#include "app/notes.h"
+
+#include "app/place.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double near_px = 6;  // presses so close are on a place
+
+relume_status notes_create(struct notes **out, relume_notes *list)
+{
+    struct notes *n = calloc(1, sizeof *n);
+    *out = n;
+    if (!n) {
+        relume_notes_destroy(&list);
+        return RELUME_ENOMEM;
+    }
+    n->list = list;
+    n->chosen = -1;
+    return RELUME_OK;
+}
+
+void notes_destroy(struct notes **notes)
+{
+    struct notes *n = *notes;
+    *notes = NULL;
+    if (!n)
+        return;
+    relume_notes_destroy(&n->list);
+    free(n->place);
+    free(n);
+}
+
+bool notes_have_places(const struct app *app)
+{
+    return !app->file.around && !app->file.scene && app->file.width > 0 &&
+           app->now.camera.framing != RELUME_FRAME_LOOK;
+}
+
+void notes_to_picture(double place[2], const struct app *app, double x, double y)
+{
+    const struct app_rectangle r = app_picture(app);
+    place[0] = (x - r.left) / (r.right - r.left) * app->file.width;
+    place[1] = (y - r.top) / (r.bottom - r.top) * app->file.height;
+}
+
+void notes_to_frame(double xy[2], const struct app *app, const double place[2])
+{
+    const struct app_rectangle r = app_picture(app);
+    xy[0] = r.left + place[0] / app->file.width * (r.right - r.left);
+    xy[1] = r.top + place[1] / app->file.height * (r.bottom - r.top);
+}
+
+// ---------------------------------------------------------------- drawing
+
+static bool add(struct notes *n, const double place[2])
+{
+    double(*more)[2] = n->places < RELUME_NOTE_MOST_PLACES
+                           ? realloc(n->place, ((size_t)n->places + 1) * sizeof *more)
+                           : NULL;
+    if (!more)
+        return false;
+    n->place = more;
+    more[n->places][0] = place[0];
+    more[n->places++][1] = place[1];
+    return true;
+}
+
+static bool is_on(const struct app *app, int place, double x, double y)
+{
+    double at[2];
+    if (place < 0 || place >= app->notes->places)
+        return false;
+    notes_to_frame(at, app, app->notes->place[place]);
+    return hypot(at[0] - x, at[1] - y) <= near_px;
+}
+
+// The note that has a place there, -1 without one.
+static int find(const struct app *app, double x, double y)
+{
+    for (int i = relume_notes_count(app->notes->list) - 1; i >= 0; i--) {
+        const struct relume_note *note = relume_notes_get(app->notes->list, i);
+        for (int k = 0; k < note->places; k++) {
+            double at[2];
+            notes_to_frame(at, app, note->place[k]);
+            if (hypot(at[0] - x, at[1] - y) <= near_px)
+                return i;
+        }
+    }
+    return -1;
+}
+
+bool notes_press(struct app *app, double x, double y)
+{
+    struct notes *n = app->notes;
+    double place[2];
+    if (!notes_have_places(app))
+        return false;
+    const int hit = n->places ? -1 : find(app, x, y);
+    if (hit >= 0 || n->tool == RELUME_NOTE_VIEW) {
+        n->chosen = hit;
+        return hit >= 0;
+    }
+    notes_to_picture(place, app, x, y);
+    if (place[0] < 0 || place[1] < 0 || place[0] > app->file.width || place[1] > app->file.height)
+        return false;
+    const bool closes = n->tool == RELUME_NOTE_POLYGON && is_on(app, 0, x, y);
+    if (closes || is_on(app, n->places - 1, x, y))
+        (void)notes_finish(app);
+    else if (add(n, place) && n->tool == RELUME_NOTE_POINT)
+        (void)notes_finish(app);
+    return true;
+}
+
+bool notes_finish(struct app *app)
+{
+    static const int least[] = {
+        [RELUME_NOTE_POINT] = 1, [RELUME_NOTE_LINE] = 2, [RELUME_NOTE_POLYGON] = 3};
+    const struct notes *n = app->notes;
+    if (n->tool == RELUME_NOTE_VIEW || n->places < least[n->tool])
+        return false;
+    app->wish = APP_WISH_NOTE;
+    return true;
+}
+
+bool notes_take_back(struct app *app)
+{
+    const bool draws = app->notes->places > 0;
+    app->notes->places -= draws;
+    return draws;
+}
+
+struct relume_note notes_drawn(const struct notes *n)
+{
+    return (struct relume_note){
+        .kind = n->tool, .places = n->places, .place = (const double(*)[2])n->place};
+}
+
+double notes_scale_bar(const struct notes *n, double pixels, double most)
+{
+    static const double steps[] = {5, 2, 1};
+    const double mm = relume_notes_scale(n->list) * most / pixels;  // that fit
+    if (!(mm > 0) || !isfinite(mm))
+        return 0;
+    const double ten = pow(10, floor(log10(mm)));
+    for (int i = 0; i < 2; i++)
+        if (steps[i] * ten <= mm)
+            return steps[i] * ten;
+    return ten;
+}

@@ -1,0 +1,94 @@
+// suns.c - environments of files where shadows or highlights move, on the GPU: each sun is relit
+// alone and exchanged in the picture of the whole for what it shows with those. Twin: exchange_suns
+// of src/relight/relighter.c
+#include "common/vec.h"
+#include "relit/moving.h"
+#include "relit/relighter.h"
+#include "relit/relighter_parts.h"
+
+static relume_status need_room(struct relighter *r, const struct relit_view *v)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < 2; i++)
+        status = passes_fit(r, &r->suns[i], v);
+    return status;
+}
+
+void suns_destroy(struct relighter *r)
+{
+    for (int i = 0; i < 2; i++)
+        target_destroy(&r->suns[i], r->gl);
+}
+
+// What an environment shows, before what is below 0 is seen to.
+static relume_status relight_alone(const struct target **out, struct relighter *r,
+                                   struct relit_view *v, const struct relume_light *environment)
+{
+    if (v->codes.domain == RELUME_DOMAIN_DISPLAY) {
+        if (r->linear)
+            relighter_forget(r->linear);  // that of another sun may have had the same address
+        return linear_copy_picture(out, r, v, environment, 1);
+    }
+    *out = &r->coded;
+    return passes_environment(r, v, environment);
+}
+
+static relume_status exchange(struct relighter *r, struct relit_view *v,
+                              const struct relume_light *sun, const struct target *whole,
+                              const struct target *into)
+{
+    struct moving_picture p = {.picture = {.curve = RELUME_CURVE_LINEAR},
+                               .times = {1.0f, 1.0f, 1.0f},
+                               .coder = v->codes.coder,
+                               .display = {.curve = RELUME_CURVE_LINEAR},
+                               .left = v->at.left,
+                               .top = v->at.top,
+                               .whole = whole};
+    struct relume_light alone = {.kind = RELUME_LIGHT_ENVIRONMENT, .rgb = {1.0f, 1.0f, 1.0f}};
+    relume_environment *environment;
+    const float share =
+        (float)relume_coder_clamp(&p.direction, v->codes.coder, vec3_unit(sun->direction));
+    for (int c = 0; c < 3; c++)
+        p.rgb[c] = share * sun->rgb[c];
+    relume_status status = relume_environment_of_lamp(&environment, sun);
+    alone.environment = environment;
+    if (!status)
+        status = relight_alone(&p.coded, r, v, &alone);
+    if (!status) {
+        target_begin(into, r->gl);
+        status = moving_draw(&r->moving, &v->moving, &p, into);
+    }
+    relume_environment_destroy(&environment);
+    return status;
+}
+
+static relume_status add_one(struct relighter *r, struct relit_view *v,
+                             const struct relume_light *environment)
+{
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    static const float one[3] = {1.0f, 1.0f, 1.0f};
+    struct relume_light sun[RELUME_SHADOW_LAMPS];
+    const struct target *whole;
+    int count;
+    relume_status status = relume_shadows_suns(sun, &count, environment, v->codes.coder);
+    if (!status)
+        status = relight_alone(&whole, r, v, environment);
+    if (status)
+        return status;
+    target_begin(&r->suns[0], r->gl);
+    passes_guarded(r, v, whole);
+    for (int i = 0; !status && i < count; i++)
+        status = exchange(r, v, &sun[i], &r->suns[i % 2], &r->suns[(i + 1) % 2]);
+    target_resume(&v->relit, r->gl);
+    passes_develop(r, v, &r->suns[count % 2], linear, one);
+    return status;
+}
+
+relume_status suns_relight(struct relighter *r, struct relit_view *v)
+{
+    relume_status status = need_room(r, v);
+    for (int i = 0; !status && i < r->lights; i++)
+        if (relighter_is_environment(r->light[i].kind))
+            status = add_one(r, v, &r->light[i]);
+    return status;
+}

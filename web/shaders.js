@@ -53,17 +53,24 @@ vec3 value(int light)
 }
 `;
 
-// One tile under some lights: each decoded by itself, then added in linear light.
-export const relightShader = (layers) => `${HEAD}${DECODE}${weightsBlock(layers, MOST_LIGHTS)}
+// One tile under `count` lights: each decoded by itself, then added in linear light. Written out, since
+// software renderers look up what an index is computed for pixel by pixel.
+export function relightShader(layers, count) {
+    const stride = 3 * layers + 2, each = Array.from({ length: layers }, (_, j) => j);
+    const value = (w) => [`weight[${w + 3 * layers}].rgb`, ...each.flatMap((j) => ['r', 'g', 'b'].map((c, k) =>
+        `code${j}.${c} * weight[${w + 3 * j + k}].rgb`))].join(' + ');
+    return `${HEAD}${DECODE}
+uniform sampler2DArray codes;
+layout(std140) uniform Weights { vec4 weight[${stride * count}]; };
 out vec4 colour;
 void main()
 {
     vec3 sum = vec3(0.0);
-    fetch();
-    for (int i = 0; i < lights; i++)
-        sum += weight[i * STRIDE + 3 * LAYERS + 1].rgb * decode(value(i));
+    ${each.map((j) => `vec3 code${j} = texelFetch(codes, ivec3(gl_FragCoord.xy, ${j}), 0).rgb;`).join('\n    ')}
+    ${Array.from({ length: count }, (_, i) => `sum += weight[${i * stride + stride - 1}].rgb * decode(${value(i * stride)});`).join('\n    ')}
     colour = vec4(sum, 1.0);
 }`;
+}
 
 // Normals and albedo of a tile by robust photometric stereo; after src/math/lambert.c.
 export const normalShader = (layers) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, MOST_SAMPLES)}

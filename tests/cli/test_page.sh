@@ -41,6 +41,7 @@ fi
     "$RELUME" notes dome.exr --ruler n1 --length 4 -q >>note.txt 2>&1 || exit 1
 "$RELUME" publish dome.exr pot.exr room.exr -o site -q 2>note.txt ||
     { not_ok 'a site is published' "$(cat note.txt)"; finish; exit; }
+node --check site/relume/relume.js 2>check.txt || { not_ok 'the modules join to a script' "$(head -n 5 check.txt)"; finish; exit; }
 cp -r site bad
 sed -i 's/"version": 1/"version": 9/' bad/pot/scene.json
 { printf 'relume.put("pot/scene.json", "'; base64 -w0 bad/pot/scene.json; printf '");\n'; } >bad/pot/scene.json.js

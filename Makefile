@@ -128,7 +128,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $B/relume-view
 
-.PHONY: all lib cli viewer samples deps deps-web web deps-stitch deps-mpi deps-python demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
+.PHONY: all lib cli viewer samples deps deps-web web deps-stitch deps-mpi deps-python demo demo-web tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -393,6 +393,10 @@ replay: $(FUZZ)
 
 demo: all $B/samples/figures
 	@scripts/demo.sh $B build/demo
+
+# A site with a thing of each kind (docs/publish.md)
+demo-web: cli
+	@scripts/demo-web.sh $B build/demo-web
 
 # A film of everything the viewer does: build/tour/film.mp4, or a folder of pictures without ffmpeg
 tour: all

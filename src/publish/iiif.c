@@ -8,7 +8,8 @@
 #include <string.h>
 
 // Whole pictures are there up to MOST_WHOLE pixels a side, and at full size.
-enum { TILE = 512, MOST_WHOLE = 1024, MOST_FACTOR = 1 << 16 };
+// Larger files are here reduced to MOST_SIDE, which lies in memory as floats.
+enum { TILE = 512, MOST_WHOLE = 1024, MOST_SIDE = 8192, MOST_FACTOR = 1 << 16 };
 
 // ---------------------------------------------------------------- the image service
 
@@ -257,7 +258,9 @@ relume_status iiif_write(const struct site *site, const struct page *page, relum
                          bool notes)
 {
     struct relume_image still = {0};
-    relume_status status = picture_still(&still, pack, 0, site);
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const bool large = larger_of(info->width, info->height) > MOST_SIDE;
+    relume_status status = picture_still(&still, pack, large ? MOST_SIDE : 0, false, site);
     const int width = still.width, height = still.height;
     if (!status)
         status = write_service(site, page->name, &still);

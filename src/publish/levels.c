@@ -10,10 +10,11 @@
 
 #include <string.h>
 
-int levels_count(int width, int height)
+int levels_count(int width, int height, int views)
 {
+    const int last = views > 1 ? 64 : 128;
     int n = 1;
-    for (int side = larger_of(width, height); side > LEVELS_LAST_SIDE; side = (side + 1) / 2)
+    for (int side = larger_of(width, height); side > last; side = (side + 1) / 2)
         n++;
     return n;
 }
@@ -186,15 +187,14 @@ relume_status levels_write(const struct site *site, const char *name, const stru
                            const struct levels *how, uint64_t *bytes, uint8_t *codes)
 {
     struct level l = {.how = how, .width = p->width, .height = p->height, .codes = codes};
-    const int count = levels_count(p->width, p->height);
     float **own = mem_zeroed((size_t)how->planes, sizeof *own);
     for (int i = 0; i < how->planes; i++)
         l.plane[i] = planes_at(p, i);
     relume_status status = own ? RELUME_OK : RELUME_ENOMEM;
-    for (int i = 0; !status && i < count; i++) {
+    for (int i = 0; !status && i < how->count; i++) {
         status = write_level(site, name, i, &l, &bytes[i]);
         l.codes = NULL;
-        if (!status && i + 1 < count)
+        if (!status && i + 1 < how->count)
             status = go_up(&l, own);
     }
     for (int i = 0; own && i < how->planes; i++)

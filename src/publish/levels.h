@@ -9,20 +9,21 @@
 #include "foreign/planes.h"
 #include "publish/site.h"
 
-// The last level is the first that fits into LAST_SIDE.
-enum { LEVELS_TILE = 512, LEVELS_LAST_SIDE = 128, LEVELS_MOST = 24 };
+enum { LEVELS_TILE = 512, LEVELS_MOST = 24 };
 enum { PUBLISH_MOST_PLANES = 45 };
 
 // How all views of a file are coded.
 struct levels {
-    int planes;
+    int planes, count;                // of levels
     double step;                      // in units of the picture's error
     const double *minimum, *maximum;  // [planes], of all views
     float *scale, *offset;            // [planes], found while writing: C = code * scale + offset
     int threads;
 };
 
-int levels_count(int width, int height);
+// Of views of that size: the last level has at most 128 pixels a side, 64 where there are several
+// views, of which a page shows four at once.
+int levels_count(int width, int height, int views);
 
 // Write the pyramid of `p` into the folder `name` of the site.
 // bytes[level] grows by what was written. With `codes`, [planes][height][width], what a reader

@@ -84,13 +84,17 @@ static void put_licence(FILE *f, const char *licence)
     fputs("</a></dd>\n", f);
 }
 
+static void put_description(FILE *f, const struct details *d)
+{
+    if (!d->description)
+        return;
+    fputs("<p>", f);
+    text_html(f, d->description);
+    fputs("</p>\n", f);
+}
+
 static void put_details(FILE *f, const struct details *d)
 {
-    if (d->description && *d->description) {
-        fputs("<p>", f);
-        text_html(f, d->description);
-        fputs("</p>\n", f);
-    }
     fputs("<dl>\n", f);
     put_row(f, "Maker", d->maker);
     put_row(f, "Object", d->object);
@@ -103,7 +107,7 @@ static void put_poster(FILE *f, const struct page *p, const char *more)
     fprintf(f, "<img %ssrc=\"%s/poster.jpg\" width=\"%d\" height=\"%d\" alt=\"", more, p->name,
             p->poster_width, p->poster_height);
     text_html(f, p->details.title);
-    fputs(", lit from the front\">", f);
+    fputs(", in one light\">", f);
 }
 
 // What another page needs to show the same: two lines of HTML.
@@ -138,6 +142,7 @@ relume_status page_write(const struct site *site, const struct page *p, const ch
     fputs("\"><noscript>", f);
     put_poster(f, p, "class=\"still\" ");
     fputs("<p>This page needs JavaScript to move the light.</p></noscript></relume-view>\n", f);
+    put_description(f, &p->details);
     put_details(f, &p->details);
     put_embedding(f, site, p);
     fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
@@ -160,7 +165,9 @@ relume_status page_write_index(const struct site *site, const struct page *pages
     put_head(f, site, "index.html", poster, &d, false);
     fputs("<main>\n<h1>", f);
     text_html(f, d.title);
-    fputs("</h1>\n<ul class=\"gallery\">\n", f);
+    fputs("</h1>\n", f);
+    put_description(f, &d);
+    fputs("<ul class=\"gallery\">\n", f);
     for (int i = 0; i < count; i++) {
         fprintf(f, "<li><a href=\"%s.html\">", pages[i].name);
         put_poster(f, &pages[i], i < 12 ? "" : "loading=\"lazy\" ");

@@ -13,15 +13,22 @@
 // Of the quantiser, in codes of luminance: no block is seen.
 #define STEP 6.0
 
-relume_status picture_still(struct relume_image *out, relume_pack *pack, int side,
+relume_status picture_still(struct relume_image *out, relume_pack *pack, int side, bool look,
                             const struct site *site)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     const bool pole_y = relume_coder_info(info->coder)->pole_y;
-    const struct relume_light front = {.direction = {0.0, pole_y, !pole_y}, .rgb = {1, 1, 1}};
+    const struct relume_light front = {.direction = pole_y ? (struct relume_vec3){0.35, 0.8, 0.49}
+                                                           : (struct relume_vec3){0, 0, 1},
+                                       .rgb = {1, 1, 1}};
     const int longer = larger_of(info->width, info->height);
     struct relume_camera camera = {.framing = RELUME_FRAME_DEFAULT};
-    if (side && longer > side) {
+    if (look && info->geometry.projection >= RELUME_CYLINDRICAL) {
+        camera.framing = RELUME_FRAME_LOOK;
+        camera.look.zoom = 1.0;
+        camera.width = side;
+        camera.height = side / 2;
+    } else if (side && longer > side) {
         camera.width = larger_of(1, (int)lround((double)info->width * side / longer));
         camera.height = larger_of(1, (int)lround((double)info->height * side / longer));
     }

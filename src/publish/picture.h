@@ -7,10 +7,10 @@
 #include <relume/image.h>
 #include <relume/pack.h>
 
-// The view that stands for all of them, lit from the front: an ordinary picture of a file, linear,
-// at most `side` pixels wide and high (0: as it is), which the caller destroys. Errors of
-// relume_frame.
-relume_status picture_still(struct relume_image *out, relume_pack *pack, int side,
+// An ordinary picture of a file, linear, at most `side` pixels wide and high (0: as it is), which
+// the caller destroys: what a camera in the middle sees, lit from the front; a panorama unfolded,
+// lit from above, or with `look` a look into it. Errors of relume_frame.
+relume_status picture_still(struct relume_image *out, relume_pack *pack, int side, bool look,
                             const struct site *site);
 // A rectangle of a linear picture as a JPEG of the site, coded as sRGB.
 relume_status picture_save_jpeg(const struct site *site, const char *name,

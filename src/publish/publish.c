@@ -71,7 +71,7 @@ static relume_status write_poster(const struct scene *s, struct page *page)
     struct relume_image still = {0};
     char name[128];
     snprintf(name, sizeof name, "%s/poster.jpg", s->name);
-    relume_status status = picture_still(&still, s->pack, POSTER_SIDE, s->site);
+    relume_status status = picture_still(&still, s->pack, POSTER_SIDE, true, s->site);
     const struct relume_rect all = {0, 0, still.width, still.height};
     if (!status)
         status = picture_save_jpeg(s->site, name, &still, &all);
@@ -166,10 +166,15 @@ static relume_status write_assets(const struct site *site)
     return status;
 }
 
-static relume_status check(int count, const struct relume_publish_params *p)
+static relume_status check(const char *const *files, int count, const char *path,
+                           const struct relume_publish_params *p)
 {
-    if (count < 1)
-        return log_fail(p->log, RELUME_EINVAL, "nothing to publish; expected a file or more");
+    bool named = path != NULL;
+    for (int i = 0; i < count; i++)
+        named = named && files[i];
+    if (count < 1 || !named)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "nothing to publish; expected a file or more, and a name for the site");
     if ((p->bytes_per_pixel > 0.0) + (p->psnr_db > 0.0) + (p->quality > 0) > 1)
         return log_fail(p->log, RELUME_EINVAL,
                         "expected at most one of bytes per pixel, PSNR and quality");
@@ -189,7 +194,7 @@ relume_status relume_publish(const char *const *files, int count, const char *pa
     const struct relume_publish_params p = PARAMS_WORK(relume_publish_params, params);
     struct work w = {.params = &p, .files = files, .count = count, .reports = reports};
     outdir *dir = NULL;
-    relume_status status = check(count, &p);
+    relume_status status = check(files, count, path, &p);
     if (!status)
         status = work_begin(&w);
     if (!status)

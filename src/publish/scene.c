@@ -6,10 +6,12 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/scratch.h"
 #include "exchange/web_step.h"
 #include "foreign/measure.h"
 #include "math/scalar.h"
 
+#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -177,6 +179,15 @@ static relume_status measure(struct scene *s, const struct planes *middle, uint8
     return measure_psnr(&s->report->psnr_db, &f, &s->common.source, &how, s->site->params->threads);
 }
 
+static relume_status scratch_failed(const struct scene *s, size_t size)
+{
+    return errno == ENOMEM
+               ? RELUME_ENOMEM
+               : log_fail(s->site->params->log, RELUME_EIO,
+                          "%s: no temporary file of %zu bytes can be made beside it; %s",
+                          s->site->path, size, strerror(errno));
+}
+
 static relume_status give_up(const struct scene *s, double found)
 {
     const struct relume_publish_params *p = s->site->params;
@@ -196,8 +207,9 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
     const struct relume_publish_params *p = s->site->params;
     const size_t pixels = (size_t)middle->width * (size_t)middle->height;
     const double wanted = s->usual ? USUAL_DB - USUAL_SLACK : p->psnr_db;
-    uint8_t *codes = mem_array((size_t)s->levels.planes, pixels);
-    relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
+    const size_t size = (size_t)s->levels.planes * pixels;
+    uint8_t *codes = scratch_map(s->site->path, size);
+    relume_status status = codes ? RELUME_OK : scratch_failed(s, size);
     const double first = s->levels.step;
     double before = 0.0, lacked = 0.0;
     for (int i = 0; !status; i++) {
@@ -222,7 +234,7 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
         if (s->usual)
             s->levels.step = fmax(s->levels.step, first / USUAL_FINER);
     }
-    mem_free(codes);
+    scratch_unmap(codes, size);
     return status;
 }
 
@@ -256,7 +268,7 @@ static void choose_first(struct scene *s, const uint64_t *bytes)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const uint64_t shown = (uint64_t)smaller_of(info->views, FIRST_VIEWS);
-    int level = levels_count(info->width, info->height) - 1;
+    int level = s->levels.count - 1;
     while (level > 0 && bytes[level - 1] * shown / (uint64_t)info->views <= FIRST_BYTES)
         level--;
     s->first_level = level;
@@ -267,9 +279,12 @@ static void choose_first(struct scene *s, const uint64_t *bytes)
 
 static relume_status allocate(struct scene *s, double **minimum, double **maximum)
 {
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
     const size_t n = (size_t)s->common.plan.planes;
-    s->levels = (struct levels){.planes = (int)n, .threads = s->site->params->threads};
-    s->layers = mem_zeroed((size_t)relume_pack_info(s->pack)->views, sizeof *s->layers);
+    s->levels = (struct levels){.planes = (int)n,
+                                .count = levels_count(info->width, info->height, info->views),
+                                .threads = s->site->params->threads};
+    s->layers = mem_zeroed((size_t)info->views, sizeof *s->layers);
     *minimum = mem_array(n, sizeof **minimum);
     *maximum = mem_array(n, sizeof **maximum);
     s->levels.minimum = *minimum;

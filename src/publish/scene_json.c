@@ -83,7 +83,7 @@ static void put_levels(FILE *f, const struct scene *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     int width = info->width, height = info->height;
-    const int n = levels_count(width, height);
+    const int n = s->levels.count;
     fprintf(f, "  \"tile\": %d, \"levels\": [", LEVELS_TILE);
     for (int i = 0; i < n; i++) {
         fprintf(f, "%s{\"width\": %d, \"height\": %d}", i ? ", " : "", width, height);

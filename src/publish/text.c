@@ -72,7 +72,7 @@ void text_address(FILE *to, const char *text)
     for (; text && *text; text++) {
         const unsigned char c = (unsigned char)*text;
         if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-            strchr("-._~:/", c))
+            strchr("-._~:/%", c))
             putc(c, to);
         else
             fprintf(to, "%%%02X", c);

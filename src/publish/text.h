@@ -9,7 +9,7 @@
 void text_html(FILE *to, const char *text);
 // As a JSON string with its quotes, which may also stand inside a script of a page.
 void text_json(FILE *to, const char *text);
-// As a part of an address: what is not plain is percent-encoded.
+// As an address: what may not stand in one is percent-encoded.
 void text_address(FILE *to, const char *text);
 void text_base64(FILE *to, const void *bytes, size_t size);
 

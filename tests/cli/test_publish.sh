@@ -118,4 +118,6 @@ expect_fail 'a size that is too small' 1 'planar.exr: 0.001 bytes a pixel is too
 expect_fail 'two wishes' 2 'expected one of --quality' site2 "$RELUME" publish planar.exr -o site2 --psnr 40 --quality 90
 expect_fail 'an address of another kind' 2 "address 'javascript:1'; expected one that begins with https://" site2 "$RELUME" publish round.exr -o site2 --url javascript:1
 expect_fail 'a full disk' 3 'writing failed|cannot be written|temporary' site2 sh -c "ulimit -f 20; exec \"$RELUME\" publish planar.exr -o site2"
+timeout --foreground -s INT 0.3 "$RELUME" publish planar.exr planar.exr -o stopped >out.txt 2>err.txt
+check 'nothing is left when it is stopped' [ $? -ne 0 -a ! -e stopped -a -z "$(leftovers)" ]
 finish

@@ -45,6 +45,26 @@ static const struct option options[] = {
     {0},
 };
 
+// Below this people see that it is not the original.
+#define SEEN_DB 38.0
+
+static void say_result(const struct publish_options *o, const struct relume_publish_report *r)
+{
+    const bool wished = o->quality || o->psnr > 0.0 || o->bytes_per_pixel > 0.0 || o->coefficients;
+    announce(&o->args, RELUME_NOTE,
+             "%s/%s.html: %d view%s, %d planes, %.1f kB, of which %.1f kB show the first picture; "
+             "%.2f dB from the original (%s)",
+             o->output, r->name, r->views, relume_plural(r->views), r->planes,
+             (double)r->bytes / 1e3, (double)r->first_bytes / 1e3, r->psnr_db,
+             judgement(r->psnr_db));
+    if (r->psnr_db < SEEN_DB && !wished)
+        announce(
+            &o->args, RELUME_NOTE,
+            "%s/%s.html: its hard shadows and highlights are softer than in the file, for they "
+            "need more than %d planes; --quality 100 comes nearest",
+            o->output, r->name, r->planes);
+}
+
 static relume_status run(const struct args *args)
 {
     const struct publish_options *o = (const void *)args;
@@ -74,13 +94,7 @@ static relume_status run(const struct args *args)
     };
     const relume_status status = relume_publish(args->input, args->inputs, o->output, report, &p);
     for (int i = 0; !status && i < args->inputs; i++)
-        announce(args, RELUME_NOTE,
-                 "%s/%s.html: %d view%s, %d planes, %.1f kB, of which %.1f kB show the first "
-                 "picture; %.2f dB from the original (%s)",
-                 o->output, report[i].name, report[i].views, relume_plural(report[i].views),
-                 report[i].planes, (double)report[i].bytes / 1e3,
-                 (double)report[i].first_bytes / 1e3, report[i].psnr_db,
-                 judgement(report[i].psnr_db));
+        say_result(o, &report[i]);
     return status;
 }
 

@@ -183,6 +183,13 @@ relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint
     return reader->format->read_bytes(reader, row, rows, out);
 }
 
+relume_status picture_turn(picture_reader *reader, int page, const struct relume_limits *limits)
+{
+    if (reader->format->turn)
+        return reader->format->turn(reader, page, limits);
+    return page ? RELUME_ENOTFOUND : RELUME_OK;
+}
+
 static relume_status exif_notes(const picture_reader *of, struct relume_exif *out,
                                 const struct relume_log *log)
 {

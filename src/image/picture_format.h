@@ -24,6 +24,8 @@ struct picture_format {
     const void *(*profile)(const picture_reader *reader, size_t *size);
     const char *(*error)(const picture_reader *reader);
     void (*close)(picture_reader *reader);
+    // NULL: no file has several pages.
+    relume_status (*turn)(picture_reader *reader, int page, const struct relume_limits *limits);
 };
 
 // What every reader begins with.

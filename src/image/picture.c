@@ -287,12 +287,19 @@ relume_status picture_write_bytes(const char *path, const struct relume_writer *
                                   int height, int channels, const uint8_t *samples,
                                   const struct relume_log *log)
 {
+    return picture_write_tagged(path, writer, width, height, channels, samples, NULL, 0, log);
+}
+
+relume_status picture_write_tagged(const char *path, const struct relume_writer *writer, int width,
+                                   int height, int channels, const uint8_t *samples,
+                                   const void *profile, size_t size, const struct relume_log *log)
+{
     if (picture_has_extension(path, ".png"))
         return png_write(path, writer, width, height, channels, samples, log);
     const relume_status status = need_bridge(path, log);
     return status ? status
-                  : bridge->write_bytes(path, writer, width, height, channels, samples,
-                                        outfile_save_to, log);
+                  : bridge->write_bytes(path, writer, width, height, channels, samples, profile,
+                                        size, outfile_save_to, log);
 }
 
 // Which OpenImageIO reads and does not write: rows from the bottom up, the sign says little endian.

@@ -68,6 +68,10 @@ bool picture_writes_bytes(const char *path);
 relume_status picture_write_bytes(const char *path, const struct relume_writer *writer, int width,
                                   int height, int channels, const uint8_t *samples,
                                   const struct relume_log *log);
+// The same with an ICC profile of `size` bytes, which formats without one leave out; NULL: none.
+relume_status picture_write_tagged(const char *path, const struct relume_writer *writer, int width,
+                                   int height, int channels, const uint8_t *samples,
+                                   const void *profile, size_t size, const struct relume_log *log);
 relume_status picture_write_floats(const char *path, const struct relume_writer *writer, int width,
                                    int height, int channels, const float *samples,
                                    const struct relume_log *log);

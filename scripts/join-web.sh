@@ -26,7 +26,7 @@ for name in $order; do
         /^import *\{/ { inside = 1 }
         inside { if (/from *\047/) inside = 0; next }
         /^ *\/\// { next }
-        { sub(/^export /, ""); print }
+        { sub(/^export /, ""); sub(/^ +/, ""); sub(/  \/\/ .*/, ""); print }
     ' "$folder/$name"
 done
 echo "})();"

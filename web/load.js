@@ -51,7 +51,7 @@ async function loadTwin(address) {
     }
 }
 
-async function fetchBytes(address) {
+export async function fetchBytes(address) {
     const answer = await fetch(address);
     if (!answer.ok)
         throw missing(address);

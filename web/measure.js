@@ -56,3 +56,9 @@ export function meterExposure(light) {
         return 0;
     return Math.log2(0.18) - kept.reduce((sum, y) => sum + Math.log2(y), 0) / kept.length;
 }
+
+// The exposure in EV that takes the brightest channels, but for a hundredth of them, to white.
+export function brightestExposure(light) {
+    const most = new Float32Array(light.length / 4).map((_, i) => Math.max(light[4 * i], light[4 * i + 1], light[4 * i + 2]));
+    return -Math.log2(Math.max(percentile(most, 0.99), 1e-6));
+}

@@ -35,13 +35,14 @@ export class Painter {
     // What shall be drawn of `level` and, where tiles of it are missing, of coarser ones; coarse first.
     chosen(view, level, part) {
         const last = this.scene.levels.length - 1, lists = [];
+        const early = [...new Set([last, Math.max(this.scene.first, level)])].filter((l) => l > level)
+            .flatMap((l) => this.touching(l, part).map(([x, y]) => this.tiles.get(view, l, x, y)));
+        // the first picture is loaded before the full one
+        const waiting = early.some((tile) => tile.state !== 'ready' && tile.state !== 'failed');
         let missing = true;
-        for (const l of [...new Set([last, Math.max(this.scene.first, level)])])
-            if (l > level)  // the first picture is loaded before the full one
-                this.touching(l, part).forEach(([x, y]) => this.tiles.get(view, l, x, y));
         for (let l = level; l <= last && missing; l++) {
             const all = this.touching(l, part);
-            const found = all.map(([x, y]) => (l === level ? this.tiles.get(view, l, x, y)
+            const found = all.map(([x, y]) => (l === level && !waiting ? this.tiles.get(view, l, x, y)
                 : this.tiles.tiles.get(`${view}/${l}_${x}_${y}`))).filter((t) => t && t.state === 'ready');
             missing = found.length < all.length;
             if (l === level && missing)

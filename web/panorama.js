@@ -10,9 +10,11 @@ const FACES = [  // of a cube: ahead, right, up
 ];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
+const discsOf = (scene) => (scene.projection === 'cylindrical' && scene.panorama.discs) || 0;
+
 // The direction that a place of the unfolded picture looks along; any length.
 function rayOf(scene, x, y) {
-    const { width, height, projection, panorama } = scene, phi = (2 * x / width - 1) * Math.PI;
+    const { width, projection, panorama } = scene, height = scene.height - discsOf(scene), phi = (2 * x / width - 1) * Math.PI;
     if (projection === 'cube') {
         const face = Math.min(Math.max(Math.floor(x / height), 0), 5), [ahead, right, up] = FACES[face];
         const a = 2 * (x - face * height) / height - 1, b = 1 - 2 * y / height;
@@ -26,7 +28,7 @@ function rayOf(scene, x, y) {
 
 // Its inverse.
 function pixelOf(scene, d) {
-    const { width, height, projection, panorama } = scene, across = Math.hypot(d[0], d[2]);
+    const { width, projection, panorama } = scene, height = scene.height - discsOf(scene), across = Math.hypot(d[0], d[2]);
     const column = (Math.atan2(d[0], -d[2]) / Math.PI + 1) / 2 * width;
     if (projection === 'cube') {
         const face = FACES.reduce((best, [ahead], i) => (dot(d, ahead) > dot(d, FACES[best][0]) ? i : best), 0);
@@ -43,6 +45,8 @@ export class Panorama {
         Object.assign(this, { scene, painter, device });
         this.level = -1;
         this.whole = {};
+        this.discs = discsOf(scene);  // rows below the cylinder
+        this.layout = this.discs ? 'discs' : scene.projection;
     }
 
     // The picture as large as the look needs it, and as textures may be.
@@ -83,9 +87,9 @@ export class Panorama {
         const whole = this.whole[kind] = this.whole[kind] || { ...this.device.target(width, height), cache: {} };
         this.painter.paint(whole, scene.views[0], kind, this.level, { scale: 2 ** -this.level, left: 0, top: 0, flip: true, cache: whole.cache },
                            [0, 0, scene.width, scene.height]);
-        const program = this.device.program('panorama', () => panoramaShader(scene.projection));
+        const program = this.device.program(`panorama ${this.layout}`, () => panoramaShader(this.layout));
         this.device.begin(target);
-        program.set({ view: { texture: whole.texture }, frame: [target.width, target.height], planet: camera.planet ? 1 : 0,
+        program.set({ ...(this.discs ? { disc: this.discs * 2 ** -this.level } : {}), view: { texture: whole.texture }, frame: [target.width, target.height], planet: camera.planet ? 1 : 0,
                       look: [camera.pan * RADIANS, camera.tilt * RADIANS, 1 / camera.zoom],
                       elevation: scene.panorama ? [scene.panorama.v_min || 0, scene.panorama.v_max || 0] : [0, 0] });
         program.draw();

@@ -2,6 +2,7 @@
 import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader } from './shaders.js';
 import { spread } from './lights.js';
 
+const SIZES = [1, 2, 4, 8, MOST_LIGHTS];  // lights of a batch: few shaders
 let relighters = 0;
 
 export class Relighter {
@@ -30,12 +31,13 @@ export class Relighter {
         }
     }
 
+    // Batches of so many lights; those of `most` that are missing are dark.
     blocks(lights, most) {
         const size = 4 * (3 * this.scene.layers + 2), batches = [];
         for (let first = 0; first < lights.length; first += most) {
             const some = lights.slice(first, first + most), data = new Float32Array(size * most);
             some.forEach((light, i) => this.block(data, i * size, light.weights, light.colour));
-            batches.push({ data, count: some.length });
+            batches.push({ data, count: some.length, most });
         }
         return batches;
     }
@@ -55,7 +57,8 @@ export class Relighter {
             return { weights, colour: light.rgb.map((v) => share * v) };
         });
         this.count = plain.length;
-        this.batches = this.blocks(this.scene.curve === 1 ? this.joined(plain) : plain, MOST_LIGHTS);
+        const sums = this.scene.curve === 1 ? this.joined(plain) : plain;
+        this.batches = this.blocks(sums, SIZES.find((size) => size >= Math.min(sums.length, MOST_LIGHTS)));
         this.version++;
     }
 
@@ -78,9 +81,10 @@ export class Relighter {
     lit(tile) {
         if (this.isLit(tile))
             return tile.lit[this.key];
-        const { layers } = this.scene, program = this.device.program(`relight ${layers}`, () => relightShader(layers));
+        const { layers } = this.scene;
         const lit = tile.lit[this.key] = tile.lit[this.key] || this.device.target(tile.width, tile.height);
         this.batches.forEach((batch, i) => {
+            const program = this.device.program(`relight ${layers} ${batch.most}`, () => relightShader(layers, batch.most));
             this.device.begin(lit, { clear: i === 0, add: i > 0 && 'rgb' });
             this.draw(program, tile, batch);
         });

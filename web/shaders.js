@@ -53,17 +53,24 @@ vec3 value(int light)
 }
 `;
 
-// One tile under some lights: each decoded by itself, then added in linear light.
-export const relightShader = (layers) => `${HEAD}${DECODE}${weightsBlock(layers, MOST_LIGHTS)}
+// One tile under `count` lights: each decoded by itself, then added in linear light. Written out, since
+// software renderers look up what an index is computed for pixel by pixel.
+export function relightShader(layers, count) {
+    const stride = 3 * layers + 2, each = Array.from({ length: layers }, (_, j) => j);
+    const value = (w) => [`weight[${w + 3 * layers}].rgb`, ...each.flatMap((j) => ['r', 'g', 'b'].map((c, k) =>
+        `code${j}.${c} * weight[${w + 3 * j + k}].rgb`))].join(' + ');
+    return `${HEAD}${DECODE}
+uniform sampler2DArray codes;
+layout(std140) uniform Weights { vec4 weight[${stride * count}]; };
 out vec4 colour;
 void main()
 {
     vec3 sum = vec3(0.0);
-    fetch();
-    for (int i = 0; i < lights; i++)
-        sum += weight[i * STRIDE + 3 * LAYERS + 1].rgb * decode(value(i));
+    ${each.map((j) => `vec3 code${j} = texelFetch(codes, ivec3(gl_FragCoord.xy, ${j}), 0).rgb;`).join('\n    ')}
+    ${Array.from({ length: count }, (_, i) => `sum += weight[${i * stride + stride - 1}].rgb * decode(${value(i * stride)});`).join('\n    ')}
     colour = vec4(sum, 1.0);
 }`;
+}
 
 // Normals and albedo of a tile by robust photometric stereo; after src/math/lambert.c.
 export const normalShader = (layers) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, MOST_SAMPLES)}
@@ -386,6 +393,71 @@ vec4 texel_at(int face, ivec2 at)
     ivec2 most = ivec2(size);
     return fetch(ivec2(wrap_index(at.x, most.x), clamp(at.y, 0, most.y - 1)));
 }`,
+    discs: `
+uniform float disc;  // side of a disc's square in the rows below the cylinder
+float rows() { return size.y - disc; }
+vec4 cylinder_texel(ivec2 at)
+{
+    return fetch(ivec2(wrap_index(at.x, int(size.x)), clamp(at.y, 0, int(rows()) - 1)));
+}
+vec4 cylinder_bilinear(vec2 position)
+{
+    ivec2 at = ivec2(floor(position));
+    vec2 part = position - vec2(at);
+    return mix(mix(cylinder_texel(at), cylinder_texel(at + ivec2(1, 0)), part.x),
+               mix(cylinder_texel(at + ivec2(0, 1)), cylinder_texel(at + 1), part.x), part.y);
+}
+float height_of(bool lower) { return lower ? elevation.x : elevation.y; }
+vec3 square_ray(bool lower, vec2 position)
+{
+    float right = 2.0 * position.x / disc - 1.0, up = 1.0 - 2.0 * position.y / disc;
+    return vec3(right, height_of(lower), lower ? -up : up);
+}
+vec2 square_pixel(bool lower, vec3 d)
+{
+    return (0.5 + 0.5 * height_of(lower) / d.y * vec2(d.x, lower ? d.z : -d.z)) * disc;
+}
+vec2 cylinder_position(vec3 d, float h)
+{
+    return vec2(azimuth_column(d), (elevation.y - h) / (elevation.y - elevation.x) * rows());
+}
+vec4 disc_texel(bool lower, ivec2 at)
+{
+    vec3 d = square_ray(lower, vec2(at) + 0.5);
+    if (dot(d.xz, d.xz) > 1.0)
+        return cylinder_bilinear(cylinder_position(d, d.y / length(d.xz)) - 0.5);
+    return fetch(ivec2(lower ? int(disc) + at.x : at.x, int(rows()) + at.y));
+}
+vec4 disc_value(bool lower, vec2 position)
+{
+    ivec2 at = ivec2(floor(position - 0.5));
+    vec2 part = position - 0.5 - vec2(at);
+    return mix(mix(disc_texel(lower, at), disc_texel(lower, at + ivec2(1, 0)), part.x),
+               mix(disc_texel(lower, at + ivec2(0, 1)), disc_texel(lower, at + 1), part.x), part.y);
+}
+float texels_of(vec3 d, vec3 move)
+{
+    float square = dot(d.xz, d.xz), h = d.y / sqrt(square);
+    if (!(h >= elevation.x && h <= elevation.y))
+        return length(0.5 * disc * height_of(d.y < 0.0) / d.y * (move.xz - move.y / d.y * d.xz));
+    float turn = (d.x * move.z - d.z * move.x) / square;
+    float rise = move.y / sqrt(square) - h * dot(d.xz, move.xz) / square;
+    return length(vec2(turn * size.x / (2.0 * PI), rise * rows() / (elevation.y - elevation.x)));
+}
+vec4 sample_at(vec3 d)
+{
+    float h = d.y / length(d.xz);
+    bool lower = d.y < 0.0;
+    if (!(h >= elevation.x && h <= elevation.y))
+        return disc_value(lower, square_pixel(lower, d));
+    vec2 xy = cylinder_position(d, h);
+    float from_rim = min(xy.y, rows() - xy.y);
+    if (from_rim >= 0.5)
+        return cylinder_bilinear(xy - 0.5);
+    vec3 at = vec3(d.xz / length(d.xz), height_of(lower)).xzy;
+    vec4 row = cylinder_bilinear(vec2(xy.x - 0.5, lower ? rows() - 1.0 : 0.0));
+    return mix(disc_value(lower, square_pixel(lower, at)), row, 2.0 * from_rim);
+}`,
     spherical: `
 bool pixel_of(out vec2 xy, out int face, vec3 d)
 {
@@ -453,6 +525,21 @@ vec4 texel_at(int face, ivec2 at)
 }`,
 };
 
+// What layouts of one kind of texels show in a direction; nothing where they show nothing.
+const SAMPLE = `
+vec4 sample_at(vec3 d)
+{
+    vec2 xy;
+    int face;
+    if (!pixel_of(xy, face, d))
+        return vec4(0.0);
+    ivec2 at = ivec2(floor(xy - 0.5));
+    vec2 part = xy - 0.5 - vec2(at);
+    return mix(mix(texel_at(face, at), texel_at(face, at + ivec2(1, 0)), part.x),
+               mix(texel_at(face, at + ivec2(0, 1)), texel_at(face, at + 1), part.x), part.y);
+}
+`;
+
 // A look into a panorama; after viewer/shaders/panorama.glsl.
 export const panoramaShader = (projection) => `${HEAD}${FOOTPRINT}
 uniform sampler2D view;
@@ -477,19 +564,7 @@ vec4 fetch(ivec2 at) { return texelFetch(view, at, 0); }
 int wrap_index(int i, int n) { return i < 0 ? i + n : i >= n ? i - n : i; }
 float azimuth_column(vec3 d) { return (atan(d.x, -d.z) + PI) / (2.0 * PI) * size.x; }
 ${LAYOUTS[projection]}
-
-vec4 sample_at(vec3 d)
-{
-    vec2 xy;
-    int face;
-    if (!pixel_of(xy, face, d))
-        return vec4(0.0);
-    ivec2 at = ivec2(floor(xy - 0.5));
-    vec2 part = xy - 0.5 - vec2(at);
-    return mix(mix(texel_at(face, at), texel_at(face, at + ivec2(1, 0)), part.x),
-               mix(texel_at(face, at + ivec2(0, 1)), texel_at(face, at + 1), part.x), part.y);
-}
-
+${projection === 'discs' ? '' : SAMPLE}
 void main()
 {
     size = vec2(textureSize(view, 0));

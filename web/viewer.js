@@ -11,7 +11,7 @@ import { Panorama } from './panorama.js';
 import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
 import { readState, writeState } from './state.js';
-import { measureRange, meterExposure } from './measure.js';
+import { brightestExposure, measureRange, meterExposure } from './measure.js';
 import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
 
 const MOST_LAMPS = 8;  // that passes enhance
@@ -344,13 +344,18 @@ export class Viewer {
         return there ? out : null;
     }
 
-    // Raking light is dim: the first picture is as bright as it should be.
+    // Raking light is dim: the first picture is brighter, but never so much that light from the front
+    // would burn it out.
     meter(look) {
         const read = this.metering && this.small(look.layer, ['light']);
         if (!read)
             return;
+        const front = this.layerOf(this.scene, this.basis, this.tiles);
         this.metering = false;
-        this.exposure = Math.round(10 * Math.min(Math.max(meterExposure(read[0]), 0), 2)) / 10;
+        front.relighter.setLights([{ kind: 'dir', direction: this.isPanorama ? [0, 1, 0] : [0, 0, 1], rgb: [1, 1, 1] }]);
+        const exposure = Math.min(meterExposure(read[0]), brightestExposure(this.small(front, ['light'])[0]), 2);
+        front.stage.close();
+        this.exposure = Math.round(10 * Math.max(exposure - 0.05, 0)) / 10;
         this.changed();
     }
 

@@ -1,5 +1,5 @@
 // wasm.js - the library's own arithmetic, compiled to WebAssembly (core/core.c)
-import { Failure, addScript } from './load.js';
+import { Failure, addScript, fetchBytes } from './load.js';
 
 let coreBytes = null, corePromise = null;
 
@@ -20,7 +20,15 @@ const surroundings = {
     },
 };
 
+// Servers give the file itself, which is smaller than its script.
+async function fetchCore(home) {
+    const address = new URL('relume-core.wasm', home).href;
+    if (address.startsWith('http'))
+        coreBytes = await fetchBytes(address).catch(() => null);
+}
+
 async function compile(home) {
+    await fetchCore(home);
     if (!coreBytes)
         await addScript(new URL('core.js', home).href).catch(() => {
             throw new Failure('relume/core.js is missing');

@@ -46,6 +46,7 @@ static void run_free(struct run *r)
     mem_free(s->spread);
     mem_free(s->curvature);
     mem_free(s->spacing);
+    near_free(&s->near);
     mem_free(s->sample_first);
     mem_free(s->sample_next);
     mem_free(r->samples.landing);
@@ -130,8 +131,9 @@ static void set_weights(struct simplify *s)
 static size_t bytes_of(const struct simplify *s)
 {
     const size_t v = s->mesh->vertex_count, t = s->mesh->triangle_count;
-    return quadrics_bytes(s, v) + t * (12 + 12 + 4) + v * (4 + 4 + 4 + 4 + 4 + 12 + 1) +
-           (size_t)sizeof(struct relume_simplify_step) * v;
+    return quadrics_bytes(s, v) + t * (12 + 12 + 4) +
+           t * (NEAR_CELLS + NEAR_REFERENCES) * sizeof(uint32_t) +
+           v * (4 + 4 + 4 + 4 + 4 + 12 + 1) + (size_t)sizeof(struct relume_simplify_step) * v;
 }
 
 static void set_limits(struct run *r, const struct relume_simplify_params *p)
@@ -165,6 +167,8 @@ static relume_status prepare(struct run *r, const struct relume_simplify_params 
         status = quadrics_create(s);
     if (!status && s->tested)
         status = samples_create(s);
+    if (!status && s->tested && isfinite(r->most.length))
+        status = near_create(&s->near, s, r->most.length);
     if (!status && s->tested)
         status = visible_create(&s->visible, s->jnd,
                                 p->gloss > 0.0   ? p->gloss
@@ -270,7 +274,7 @@ static void try_point(struct run *r, uint32_t point)
             r->status = RELUME_ENOMEM;
             return;
         }
-        if (!(error.length < (double)INFINITY))  // a triangle would turn over
+        if (!(error.length < (double)INFINITY))  // a triangle would turn over, or leave the surface
             continue;
         if (r->last_resort)
             error.distance = r->done.distance;

@@ -41,6 +41,7 @@ fi
     "$RELUME" notes dome.exr --ruler n1 --length 4 -q >>note.txt 2>&1 || exit 1
 "$RELUME" publish dome.exr pot.exr room.exr -o site -q 2>note.txt ||
     { not_ok 'a site is published' "$(cat note.txt)"; finish; exit; }
+node --check site/relume/relume.js 2>check.txt || { not_ok 'the modules join to a script' "$(head -n 5 check.txt)"; finish; exit; }
 cp -r site bad
 sed -i 's/"version": 1/"version": 9/' bad/pot/scene.json
 { printf 'relume.put("pot/scene.json", "'; base64 -w0 bad/pot/scene.json; printf '");\n'; } >bad/pot/scene.json.js
@@ -108,6 +109,15 @@ snap room 'light=dir,0,1,0.3&pan=30&tilt=10&zoom=1' '--size 128x64 --pan 30 --ti
 ask "(document.body.append(document.querySelector('relume-view')), document.querySelector('relume-view').ready.then(() => 'put elsewhere'))"
 ask "(document.querySelector('relume-view').controls.node.remove(), new Promise(done => setTimeout(done, 200)))"
 snap room 'light=dir,0.5,0.5,0.7&projection=planet' '--size 128x64 --projection planet' --light 'dir 0.5 0.5 0.7'
+axe=$TOP/build/web/node_modules/axe-core/axe.min.js
+if [ -e "$axe" ]; then
+    cp "$axe" site/axe.js
+    echo "open file://$work/site/dome.html" >>orders.txt
+    ask "(document.querySelector('relume-view').toggleNotes(), new Promise(done => { const script = document.createElement('script'); script.src = 'axe.js'; script.onload = done; document.head.append(script); }))"
+    ask "axe.run().then(found => 'axe ' + found.violations.filter(v => ['serious', 'critical'].includes(v.impact)).map(v => v.id))"
+else
+    skip 'pages are accessible' 'no axe-core; make deps-web gets it'
+fi
 # pages that cannot be shown
 for page in dome pot room; do
     echo "open file://$work/bad/$page.html" >>orders.txt
@@ -143,6 +153,7 @@ else
 fi
 says 'two looks are compared' '^"difference"'
 says 'without WebGL2 there is a still picture and a sentence' '^\["Only a still picture can be shown: this browser has no WebGL2\.",true,"'
+[ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'
 says 'a view that is put elsewhere opens again' '^"put elsewhere"'
 says 'a newer file says so' '^\["Only a still picture can be shown: this file was published by a newer relume .format 9.*",true\]'
 says 'a missing tile is said' '^\["Only a still picture can be shown: room/v0/0_0_0.bin is missing\."'

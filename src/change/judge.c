@@ -25,7 +25,7 @@ static const double smooth_part = 0.75, smooth_chi = 1.323;  // quantile of smoo
 static const double freedom = 20.0;                          // degrees of freedom of a variance
 static const double floor_normal = 4e-3;                     // a quarter of a degree
 static const double floor_colour = 2e-3;                     // cube root
-static const double least_scale = 0.25;  // of the statistic, of what is expected
+static const double least_scale = 0.06;  // of the statistic, of what is expected
 static const double steep_part = 0.9;    // of the pixels are less steep than those that tell shifts
 static const double most_shift = 1.0, least_shift = 0.05;           // pixels
 static const double median_chi[4] = {0.0, 0.4549, 1.3863, 2.3660};  // of 1, 2, 3 components
@@ -39,6 +39,7 @@ struct judged {
     struct relume_image variance;    // three
     struct relume_image slope;       // three: squares of the change per pixel
     struct relume_image statistic;   // one
+    double scale;                    // of the variances, by the bulk of the picture
 };
 
 static relume_status known_of(struct judged *j)
@@ -250,9 +251,9 @@ static relume_status statistics(struct judged *j, const double floor, double shi
         some[count++] = sum;
     }
     sort_doubles(some, count);
-    const double scale = fmax(count ? some[count / 2] / median_chi[components] : 1.0, least_scale);
+    j->scale = fmax(count ? some[count / 2] / median_chi[components] : 1.0, least_scale);
     for (size_t i = 0; i < j->n; i++)
-        j->statistic.data[i] /= (float)scale;
+        j->statistic.data[i] /= (float)j->scale;
     mem_free(some);
     return RELUME_OK;
 }
@@ -309,7 +310,7 @@ static relume_status median_noise(double *out, const struct judged *j)
         if (j->known.data[i] > 0.5f)
             some[count++] = sum3(j->variance.data + 3 * i);
     sort_doubles(some, count);
-    *out = count ? sqrt(some[count / 2]) : 0.0;
+    *out = count ? sqrt(j->scale * some[count / 2]) : 0.0;
     mem_free(some);
     return RELUME_OK;
 }

@@ -86,7 +86,7 @@ relume_status relume_chart_reference_load(double reference[RELUME_CHART_PATCHES]
     char line[512];
     int count = 0, number = 0, bad = 0;
     while (!bad && fgets(line, sizeof line, file)) {
-        double extra[3];
+        double extra[3] = {0.0, 0.0, 0.0};
         number++;
         line[strcspn(line, "#\r\n")] = '\0';
         if (!line[strspn(line, " \t")])

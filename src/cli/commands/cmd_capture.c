@@ -336,7 +336,7 @@ static relume_status read_target(const struct capture_options *o, struct job *jo
              c->after[0] < 2.0   ? "good"
              : c->after[0] < 4.0 ? "usable"
                                  : "poor; is the target clean, evenly lit, without shine?");
-    return status;
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- by-products

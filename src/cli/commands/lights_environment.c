@@ -223,7 +223,7 @@ static void print_natron(const struct weighed *w)
          "total.setLabel('Environment')");
 }
 
-// For its Text Editor or blender --python: nodes in the scene's compositor.
+// For its Text Editor or blender -P: nodes in the scene's compositor.
 static void print_blender(const struct weighed *w, const char *file)
 {
     puts("# Blender: run in the Text Editor; makes the compositor's nodes\n"

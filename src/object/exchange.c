@@ -356,6 +356,9 @@ static relume_status gather_at_all_objects(struct exchange *e, int rays)
         status = exchange_over_pixels(e, rays, exchange_fill_objects);
     if (!status)
         status = smooth_objects(e);
+    if (!status && e->share && e->spacing == 1)
+        status = transport_smooth(&e->share, 1, &e->objects.places, &e->objects.normals, e->eye,
+                                  SKY_PATTERN, e->params.threads);
     return status ? status : exchange_over_pixels(e, 1, light_objects);
 }
 

@@ -126,7 +126,12 @@ static void put_share(const struct exchange *e, size_t pixel, const struct surfa
         return;
     if (e->befores)
         lighting.scenery = e->before, lighting.sceneries = e->befores;
-    share_of_sky(e->share->data + 3 * pixel, e->o, point, &lighting, 0);
+    float *share = e->share->data + 3 * pixel;
+    if (e->spacing > 1)
+        share_of_sky(share, e->o, point, &lighting, 0);
+    else
+        share_in_pattern(share, e->o, point, &lighting, 0, (int)(pixel % (size_t)e->share->width),
+                         (int)(pixel / (size_t)e->share->width));
 }
 
 void exchange_gather_objects(struct exchange *e, int x, int y)

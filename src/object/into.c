@@ -4,6 +4,7 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "frame/renderer.h"
+#include "mesh/places.h"
 #include "object/coarse.h"
 #include "object/object.h"
 
@@ -78,6 +79,7 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
 struct middles {
     const struct layered *layers;
     int sky;
+    struct relume_image places, normals;  // of the objects there; NaN: none
 };
 
 static void share_value(float rgb[3], const void *context, double x, double y, double step)
@@ -85,24 +87,39 @@ static void share_value(float rgb[3], const void *context, double x, double y, d
     const struct middles *m = context;
     const struct layered *l = m->layers;
     const struct ray ray = ray_of(l->viewport, x, y);
+    const vec3 nowhere = vec3_of(NAN, NAN, NAN);
+    const size_t pixel = (size_t)y * (size_t)m->places.width + (size_t)x;
     struct surface_point point;
     (void)step;
     rgb[0] = rgb[1] = rgb[2] = NAN;
-    if (objects_hit(&point, l->o, ray.origin, ray.direction))
-        share_of_sky(rgb, l->o, &point, l->lighting, m->sky);
+    const bool is = objects_hit(&point, l->o, ray.origin, ray.direction);
+    if (is)
+        share_in_pattern(rgb, l->o, &point, l->lighting, m->sky, (int)x, (int)y);
+    places_put(&m->places, pixel, is ? point.position : nowhere);
+    places_put(&m->normals, pixel, is ? point.normal : nowhere);
 }
 
 static relume_status find_shares(struct relume_image *shares, const struct layered *l,
                                  const struct relume_render_params *params)
 {
+    const int width = l->scene->width, height = l->scene->height;
+    struct middles m = {.layers = l};
     struct relume_render_params one = *params;
-    relume_status status = RELUME_OK;
+    relume_status status = relume_image_create(&m.places, width, height, 3);
+    if (!status)
+        status = relume_image_create(&m.normals, width, height, 3);
     one.samples = 1;
-    for (int i = 0; i < l->lighting->skies && !status; i++) {
-        status = relume_image_create(&shares[i], l->scene->width, l->scene->height, 3);
+    for (; m.sky < l->lighting->skies && !status; m.sky++) {
+        struct relume_image *const share = &shares[m.sky];
+        status = relume_image_create(share, width, height, 3);
         if (!status)
-            status = objects_trace(&shares[i], share_value, &(struct middles){l, i}, &one);
+            status = objects_trace(share, share_value, &m, &one);
+        if (!status)
+            status = transport_smooth(&share, 1, &m.places, &m.normals,
+                                      relume_viewport_eye(l->viewport), SKY_PATTERN, one.threads);
     }
+    relume_image_destroy(&m.places);
+    relume_image_destroy(&m.normals);
     return status;
 }
 

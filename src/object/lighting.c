@@ -48,7 +48,10 @@ static relume_status make_sky(struct sky_light *sky, const relume_objects *o,
     const size_t materials = (size_t)o->info.materials;
     sky->prefiltered = mem_zeroed(materials, sizeof *sky->prefiltered);
     sky->sky = mem_zeroed(materials, sizeof *sky->sky);
-    relume_status status = sky->prefiltered && sky->sky ? RELUME_OK : RELUME_ENOMEM;
+    sky->fine = mem_array(SKY_FINE, sizeof *sky->fine);
+    relume_status status = sky->prefiltered && sky->sky && sky->fine ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = relume_environment_sample(sky->fine, SKY_FINE, light, 0);
     for (int i = 0; i < o->info.materials && !status; i++) {
         relume_prefiltered_maps *prefiltered;
         if (!needs_sky(o, i))
@@ -100,6 +103,7 @@ void lighting_destroy(struct lighting *l)
         }
         mem_free(l->sky[i].prefiltered);
         mem_free(l->sky[i].sky);
+        mem_free(l->sky[i].fine);
     }
     relume_image_destroy(&l->surround.panorama);
     relume_image_destroy(&l->surround.places);

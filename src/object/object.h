@@ -167,9 +167,12 @@ bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towa
 
 // ---------------------------------------------------------------- light
 
+// Neighbours look for other ones of the finer samples of an environment each; their mean is taken.
+enum { SKY_PATTERN = 2, SKY_FINE = SKY_PATTERN * SKY_PATTERN * RELUME_OBJECT_LIGHTS_MOST };
 // An environment on each of the materials; what is not shown has none.
 struct sky_light {
     int first, light_samples;
+    struct relume_light *fine;  // [SKY_FINE]: more of them, shared by SKY_PATTERN^2 pixels
     relume_prefiltered_maps **prefiltered;  // [materials]; NULL also where it is that of another
     relume_btf_environment **sky;           // [materials]
 };
@@ -285,6 +288,9 @@ bool translucent_return(float rgb[3], const struct lighting *l, const struct sur
 // Of what the samples of environment number `sky` send, each by its cosine, the part that arrives.
 void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
                   const struct lighting *l, int sky);
+// The same by the finer samples that pixel (x, y) has of SKY_PATTERN x SKY_PATTERN.
+void share_in_pattern(float share[3], const relume_objects *o, const struct surface_point *p,
+                      const struct lighting *l, int sky, int x, int y);
 // What the point throws back of light that arrives; nothing of a mirror.
 void objects_return(float rgb[3], const relume_objects *o, const struct surface_point *point,
                     vec3 eye, const struct arrival *arrival);

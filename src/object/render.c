@@ -264,25 +264,49 @@ static void add_sample(float rgb[3], const relume_objects *o, const struct surfa
         rgb[c] += arriving[c] * value[c];
 }
 
+// What environment samples send, each by its cosine, and what of it arrives.
+struct sky_sums {
+    float sent[3], arrived[3];
+};
+
+static void add_to_share(struct sky_sums *s, const relume_objects *o, const struct surface_point *p,
+                         const struct lighting *l, const struct relume_light *sample)
+{
+    const float cosine = (float)vec3_dot(sample->direction, p->normal);
+    if (!(cosine > 0.0f))
+        return;
+    const bool reached = objects_lit(o, p, l, sample->direction, INFINITY);
+    for (int c = 0; c < 3; c++) {
+        s->sent[c] += cosine * sample->rgb[c];
+        s->arrived[c] += reached ? cosine * sample->rgb[c] : 0.0f;
+    }
+}
+
+static void take_share(float share[3], const struct sky_sums *s)
+{
+    for (int c = 0; c < 3; c++)
+        share[c] = s->sent[c] > 0.0f ? s->arrived[c] / s->sent[c] : 1.0f;
+}
+
 void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
                   const struct lighting *l, int number)
 {
     const struct sky_light *sky = &l->sky[number];
-    float sent[3] = {0.0f, 0.0f, 0.0f}, arrived[3] = {0.0f, 0.0f, 0.0f};
+    struct sky_sums sums = {{0.0f}, {0.0f}};
     const int every = l->every > 1 ? l->every : 1, begin = (int)(l->key % (uint64_t)every);
-    for (int i = begin; i < sky->light_samples && !l->no_shadows; i += every) {
-        const struct relume_light *light_sample = &l->light_sample[sky->first + i].light;
-        const float cosine = (float)vec3_dot(light_sample->direction, p->normal);
-        if (!(cosine > 0.0f))
-            continue;
-        const bool reached = objects_lit(o, p, l, light_sample->direction, INFINITY);
-        for (int c = 0; c < 3; c++) {
-            sent[c] += cosine * light_sample->rgb[c];
-            arrived[c] += reached ? cosine * light_sample->rgb[c] : 0.0f;
-        }
-    }
-    for (int c = 0; c < 3; c++)
-        share[c] = sent[c] > 0.0f ? arrived[c] / sent[c] : 1.0f;
+    for (int i = begin; i < sky->light_samples && !l->no_shadows; i += every)
+        add_to_share(&sums, o, p, l, &l->light_sample[sky->first + i].light);
+    take_share(share, &sums);
+}
+
+void share_in_pattern(float share[3], const relume_objects *o, const struct surface_point *p,
+                      const struct lighting *l, int number, int x, int y)
+{
+    struct sky_sums sums = {{0.0f}, {0.0f}};
+    const int n = SKY_PATTERN, first = x % n + n * (y % n);
+    for (int i = first; i < SKY_FINE && !l->no_shadows; i += n * n)
+        add_to_share(&sums, o, p, l, &l->sky[number].fine[i]);
+    take_share(share, &sums);
 }
 
 static void add_sky(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 view,

@@ -17,6 +17,8 @@
 #define LEAST_ANGLE (PI / 180.0 / 30.0)
 // Of a value of 1 (a normal's component, white's), diagonals.
 #define VALUE_WEIGHT 0.03
+// Seen where one looks for it: at 1 few triangles of a scan could go.
+#define USUAL_JND 4.0
 // Errors below this share of the most are as good as none.
 #define FINE_SHARE 0.5
 // Between looks at whether to stop.
@@ -155,7 +157,7 @@ static relume_status prepare(struct run *r, const struct relume_simplify_params 
 {
     struct simplify *s = &r->s;
     s->tested = !p->quadrics;
-    s->jnd = p->jnd > 0.0 ? p->jnd : 1.0;
+    s->jnd = p->jnd > 0.0 ? p->jnd : USUAL_JND;
     s->white = p->white > 0.0 ? p->white : 200.0;
     s->slide = texture_length(s);
     set_weights(s);

@@ -382,13 +382,32 @@ static void test_fingerprints(void **state)
     assert_true(got[0] != got[2] && got[0] != got[3] && got[2] != got[3]);
 }
 
+static void test_nothing_but_a_lamp(void **state)
+{
+    (void)state;
+    const struct relume_light lamp = {
+        .kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0, 3, 4}, .rgb = {1, 2, 0.5f}};
+    relume_environment *e;
+    int n;
+    CHECK_OK(relume_environment_of_lamp(&e, &lamp));
+    const struct relume_environment_cell *cell = relume_environment_cells(&n, e);
+    assert_int_equal(n, 1);
+    CHECK_NEAR(cell->direction.y, 0.6, 1e-12);
+    CHECK_NEAR(cell->direction.z, 0.8, 1e-12);
+    assert_memory_equal(cell->rgb, lamp.rgb, sizeof lamp.rgb);
+    assert_null(relume_environment_map(e)->data);
+    assert_true(relume_environment_fingerprint(e) == 0);
+    relume_environment_destroy(&e);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_solid_angles), cmocka_unit_test(test_directions),
-        cmocka_unit_test(test_oddities),     cmocka_unit_test(test_weights),
-        cmocka_unit_test(test_uniform_sky),  cmocka_unit_test(test_sampling),
-        cmocka_unit_test(test_fingerprints), cmocka_unit_test(test_a_small_sun_is_one_light),
+        cmocka_unit_test(test_solid_angles),       cmocka_unit_test(test_directions),
+        cmocka_unit_test(test_oddities),           cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_uniform_sky),        cmocka_unit_test(test_sampling),
+        cmocka_unit_test(test_fingerprints),       cmocka_unit_test(test_a_small_sun_is_one_light),
+        cmocka_unit_test(test_nothing_but_a_lamp),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

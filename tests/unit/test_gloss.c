@@ -303,6 +303,17 @@ static void what_cannot_be_is_refused(void **state)
     CHECK_OK(relume_image_create(&model, 2, 2, 3));
     assert_int_equal(relume_gloss_create(&shadows, &model), RELUME_EINVAL);
     relume_image_destroy(&model);
+    // Highlights have no triangles of captured lights.
+    const relume_coder *between;
+    relume_coder *coder;
+    CHECK_OK(relume_coder_create(&coder, &relume_basis_sh, s.light, LIGHTS, NULL));
+    CHECK_OK(relume_image_create(&model, 2, 2, RELUME_GLOSS_CHANNELS));
+    CHECK_OK(relume_gloss_create(&shadows, &model));
+    assert_int_equal(relume_shadows_between(&between, shadows, coder), RELUME_EINVAL);
+    assert_null(between);
+    relume_shadows_destroy(&shadows);
+    relume_coder_destroy(&coder);
+    relume_image_destroy(&model);
 }
 
 int main(void)

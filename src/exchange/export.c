@@ -111,7 +111,7 @@ relume_status relume_export(relume_pack *pack, const char *path, enum relume_exc
     if (!status && format == RELUME_EXCHANGE_OLAT)
         status = export_olat(codes, path, &found, &p);
     else if (!status)
-        status = source_open(&source, codes, false, p.log);
+        status = source_open(&source, codes, SOURCE_UPPER, p.log);
     const struct export e = {&source, &p, p.log, format == RELUME_EXCHANGE_DEEPZOOM};
     if (!status && format != RELUME_EXCHANGE_OLAT)
         status = is_blocks(format)   ? export_blocks(&e, path, format, &found)

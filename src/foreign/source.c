@@ -47,14 +47,16 @@ static relume_status choose_lights(struct source *s, bool whole)
     return RELUME_OK;
 }
 
-relume_status source_open(struct source *s, const struct relume_codes *codes, bool whole,
+relume_status source_open(struct source *s, const struct relume_codes *codes, enum source_kind kind,
                           const struct relume_log *log)
 {
     *s =
         (struct source){.codes = codes, .width = codes->width, .height = codes->height, .log = log};
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     s->numbers = info->basis->joint ? info->coefficients : 3 * info->coefficients;
-    s->coding = whole ? coding_of(codes) : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
+    const bool whole = kind != SOURCE_UPPER;
+    s->coding = kind == SOURCE_WHOLE ? coding_of(codes)
+                                     : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
     const bool as_it_is = is_srgb(codes) || s->coding.curve != RELUME_CURVE_SRGB;
     const relume_status status = choose_lights(s, whole);
     if (status || (as_it_is && s->numbers <= MOST_NUMBERS))

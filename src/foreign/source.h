@@ -20,9 +20,13 @@ struct source {
     const struct relume_log *log;
 };
 
-// `whole`: the file's own coding, and what it knows of light from below the horizon and from every
-// side; else sRGB and the hemisphere around z, which is all that other formats know.
-relume_status source_open(struct source *s, const struct relume_codes *codes, bool whole,
+// As what a file is taken.
+enum source_kind {
+    SOURCE_UPPER,  // sRGB and the hemisphere around z, which is all that other formats know
+    SOURCE_WHOLE,  // its own coding; light from below the horizon and from every side counts too
+    SOURCE_CODED,  // likewise, but in sRGB
+};
+relume_status source_open(struct source *s, const struct relume_codes *codes, enum source_kind kind,
                           const struct relume_log *log);
 void source_close(struct source *s);
 

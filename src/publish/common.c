@@ -96,7 +96,7 @@ static relume_status look_at_views(struct common *c, struct statistics *all, rel
         const int number = (int)(((long long)2 * i + 1) * views / (2 * looked));
         status = relume_pack_codes(&codes, pack, number);
         if (!status)
-            status = source_open(&s, codes, true, log);
+            status = source_open(&s, codes, c->kind, log);
         if (!status)
             status = source_statistics(&s, threads, view.mean, view.covariance);
         if (!status)
@@ -226,15 +226,15 @@ static relume_status find(struct common *c, struct statistics *all, int planes)
     return status;
 }
 
-relume_status common_find(struct common *c, relume_pack *pack, int planes, int threads,
-                          const struct relume_log *log)
+relume_status common_find(struct common *c, relume_pack *pack, enum source_kind kind, int planes,
+                          int threads, const struct relume_log *log)
 {
     const struct relume_codes *codes;
     struct statistics all = {0};
-    *c = (struct common){0};
+    *c = (struct common){.kind = kind};
     relume_status status = relume_pack_codes(&codes, pack, relume_pack_info(pack)->views / 2);
     if (!status)
-        status = source_open(&c->source, codes, true, log);
+        status = source_open(&c->source, codes, kind, log);
     if (!status)
         status = statistics_alloc(&all, (size_t)c->source.numbers);
     if (!status)

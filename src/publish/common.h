@@ -13,6 +13,7 @@
 #include <relume/pack.h>
 
 struct common {
+    enum source_kind kind;
     struct plan plan;      // joint, without functions of its own
     struct source source;  // of the first view that was looked at; its weights are those of all
     relume_coder *raw;     // whose weights are f, without any transform
@@ -22,8 +23,8 @@ struct common {
 };
 
 // At most `planes`. Errors of reading; RELUME_ENOMEM, RELUME_ECANCEL.
-relume_status common_find(struct common *c, relume_pack *pack, int planes, int threads,
-                          const struct relume_log *log);
+relume_status common_find(struct common *c, relume_pack *pack, enum source_kind kind, int planes,
+                          int threads, const struct relume_log *log);
 // Keep the first `planes`, which is what transform then has.
 void common_keep(struct common *c, int planes);
 // Row c of weights[3][planes] and constant[c] at a unit direction.

@@ -26,6 +26,9 @@ enum { USUAL_PLANES = 27, CORRECTIONS = 8, TRIAL_PIXELS = 1 << 17 };
 #define USUAL_MARGIN 1.0
 // A finer step that makes up for no more than this part of what lacks is of no use: planes lack.
 #define LEAST_GAIN 0.2
+// Linear light of so high a dynamic range that 8 bits show less than this of it is coded first, and
+// ends at white.
+#define POOR_DB 28.0
 // Nor does it become finer than this without anybody\'s wish.
 #define USUAL_FINER 2.0
 #define USUAL_SLACK 0.8  // measured values are rounded to 8 bits
@@ -52,7 +55,7 @@ static relume_status planes_of(struct planes *out, const struct scene *s, int vi
     struct source source = {0};
     relume_status status = relume_pack_codes(&codes, s->pack, view);
     if (!status)
-        status = source_open(&source, codes, true, s->site->log);
+        status = source_open(&source, codes, s->common.kind, s->site->log);
     if (!status)
         status =
             planes_make(out, &s->common.plan, &source, s->site->path, s->site->params->threads);
@@ -278,51 +281,75 @@ static void choose_first(struct scene *s, const uint64_t *bytes)
         s->report->bytes += bytes[i];
 }
 
-static relume_status allocate(struct scene *s, double **minimum, double **maximum)
+static relume_status allocate(struct scene *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const size_t n = (size_t)s->common.plan.planes;
+    s->layers = mem_zeroed((size_t)info->views, sizeof *s->layers);
+    s->minimum = mem_array(n, sizeof *s->minimum);
+    s->maximum = mem_array(n, sizeof *s->maximum);
     s->levels = (struct levels){.planes = (int)n,
                                 .count = levels_count(info->width, info->height, info->views),
+                                .minimum = s->minimum,
+                                .maximum = s->maximum,
+                                .scale = mem_zeroed(n, sizeof *s->levels.scale),
+                                .offset = mem_zeroed(n, sizeof *s->levels.offset),
                                 .threads = s->site->params->threads};
-    s->layers = mem_zeroed((size_t)info->views, sizeof *s->layers);
-    *minimum = mem_array(n, sizeof **minimum);
-    *maximum = mem_array(n, sizeof **maximum);
-    s->levels.minimum = *minimum;
-    s->levels.maximum = *maximum;
-    s->levels.scale = mem_zeroed(n, sizeof *s->levels.scale);
-    s->levels.offset = mem_zeroed(n, sizeof *s->levels.offset);
-    return s->layers && *minimum && *maximum && s->levels.scale && s->levels.offset ? RELUME_OK
-                                                                                    : RELUME_ENOMEM;
+    return s->layers && s->minimum && s->maximum && s->levels.scale && s->levels.offset
+               ? RELUME_OK
+               : RELUME_ENOMEM;
 }
 
-static relume_status find_components(struct scene *s)
+static void forget(struct scene *s)
+{
+    mem_free(s->layers);
+    mem_free(s->minimum);
+    mem_free(s->maximum);
+    mem_free(s->levels.scale);
+    mem_free(s->levels.offset);
+    common_free(&s->common);
+    s->layers = NULL;
+    s->minimum = s->maximum = NULL;
+    s->levels = (struct levels){0};
+}
+
+static relume_status find_components(struct scene *s, enum source_kind kind)
 {
     const struct relume_publish_params *p = s->site->params;
     struct plan *plan = &s->common.plan;
-    const relume_status status =
-        common_find(&s->common, s->pack, p->coefficients ? p->coefficients : PUBLISH_MOST_PLANES,
-                    p->threads, s->site->log);
+    const relume_status status = common_find(
+        &s->common, s->pack, kind, p->coefficients ? p->coefficients : PUBLISH_MOST_PLANES,
+        p->threads, s->site->log);
     if (!status && !p->coefficients && plan->planes > USUAL_PLANES &&
         decibels(lost_from(plan, USUAL_PLANES) / 3.0) >= USUAL_DB + USUAL_MARGIN)
         common_keep(&s->common, USUAL_PLANES);
     return status;
 }
 
+// Components, ranges and step of the file as a source of that kind.
+static relume_status prepare(struct scene *s, enum source_kind kind, struct planes *middle)
+{
+    relume_status status = find_components(s, kind);
+    if (!status)
+        status = allocate(s);
+    if (!status)
+        status = find_ranges(s, middle, s->minimum, s->maximum);
+    if (!status)
+        status = find_step(s, middle);
+    return status ? status : correct_step(s, middle);
+}
+
 relume_status scene_write(struct scene *s)
 {
     uint64_t bytes[LEVELS_MOST] = {0};
-    double *minimum = NULL, *maximum = NULL;
     struct planes middle = {0};
-    relume_status status = find_components(s);
-    if (!status)
-        status = allocate(s, &minimum, &maximum);
-    if (!status)
-        status = find_ranges(s, &middle, minimum, maximum);
-    if (!status)
-        status = find_step(s, &middle);
-    if (!status)
-        status = correct_step(s, &middle);
+    relume_status status = prepare(s, SOURCE_WHOLE, &middle);
+    if (!status && s->report->linear && s->report->psnr_db < POOR_DB) {
+        planes_free(&middle);
+        forget(s);
+        s->usual = false;
+        status = prepare(s, SOURCE_CODED, &middle);
+    }
     if (!status)
         status = write_views(s, &middle, bytes);
     if (!status) {
@@ -330,18 +357,11 @@ relume_status scene_write(struct scene *s)
         status = scene_write_json(s);
     }
     planes_free(&middle);
-    s->levels.minimum = s->levels.maximum = NULL;
-    mem_free(minimum);
-    mem_free(maximum);
     return status;
 }
 
 void scene_free(struct scene *s)
 {
-    mem_free(s->layers);
-    mem_free(s->levels.scale);
-    mem_free(s->levels.offset);
-    common_free(&s->common);
+    forget(s);
     relume_pack_destroy(&s->pack);
-    s->levels = (struct levels){0};
 }

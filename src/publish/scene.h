@@ -18,8 +18,9 @@ struct scene {
     bool notes;           // there are some
     struct common common;
     struct levels levels;
-    struct layers *layers;  // [views]
-    bool usual;             // the step is that of nobody's wish
+    struct layers *layers;      // [views]
+    double *minimum, *maximum;  // [planes]
+    bool usual;                 // the step is that of nobody's wish
     int first_level;
     struct relume_publish_report *report;
 };

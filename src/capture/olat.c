@@ -7,6 +7,7 @@
 #include "base/tree.h"
 #include "capture/capture.h"
 #include "image/exr.h"
+#include "image/picture.h"
 
 #include <errno.h>
 #include <relume/directions.h>
@@ -313,7 +314,7 @@ relume_status olat_open(relume_capture **out, const char *path,
 bool olat_is_stage(const char *path, const struct relume_log *log)
 {
     struct layers l;
-    if (!is_exr(path, log) || open_layers(&l, path, NULL, NULL))
+    if (!is_exr(path, log) || picture_is_relume(path, log) || open_layers(&l, path, NULL, NULL))
         return false;
     const bool is = l.count >= LEAST;
     close_layers(&l);

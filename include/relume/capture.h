@@ -148,6 +148,11 @@ struct relume_capture_params {
 RELUME_RESULT relume_status relume_capture_open(relume_capture **out, const char *path,
                                                 const struct relume_capture_params *params);
 RELUME_API void relume_capture_destroy(relume_capture **capture);
+// Whether `path` is what light stages leave, one light at a time, and relume_capture_open takes as
+// well: an EXR with three layers or more of red, green and blue (directions in its attribute
+// olat.directions, or in a list beside it), or a folder of pictures with such a list (light_dirs,
+// light_directions, lights, directions or dirs; .txt, .csv, .json), in the order of their numbers.
+RELUME_API bool relume_capture_is_olat(const char *path, const struct relume_log *log);
 // The same capture with some of its lights, in the order of `light[lights]`. What it was opened
 // with is borrowed: `capture` must outlive it. RELUME_EINVAL for a light that is not there,
 // RELUME_ENOMEM.

@@ -80,8 +80,9 @@ enum relume_exchange {
     RELUME_EXCHANGE_BC1,          // DDS textures of 4 bits a pixel and term, for shaders
     RELUME_EXCHANGE_BC7,          // the same of 8 bits
     RELUME_EXCHANGE_BC6H,         // the same as half floats
+    RELUME_EXCHANGE_OLAT,         // one EXR with a layer for every light: one light at a time
 };
-// "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h". RELUME_EINVAL when `name` is
+// "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h", "olat". RELUME_EINVAL when `name` is
 // none of these.
 RELUME_RESULT relume_status relume_exchange_parse(enum relume_exchange *out, const char *name);
 
@@ -116,7 +117,7 @@ struct relume_export_params {
                              // seen; PTM, LPTM: default 0, raw planes; not for RTI
     bool force;              // replace an existing folder that is not empty
     int threads;             // default: all cores
-    const struct relume_writer *writer;  // PTM, LPTM, RTI: write here in place of the file; `path`
+    const struct relume_writer *writer;  // PTM, LPTM, RTI, OLAT: write here in place of the file; `path`
                                          // is only a name then, or NULL
     int level;  // of a view with reduced levels (relume_pack_info): 1 is half its size, of which no
                 // more is read; default: 0, the view itself
@@ -131,6 +132,7 @@ struct relume_export_report {
     double psnr_db;          // mean over the lights, 8-bit sRGB, against the file's own pictures
     bool exact;              // the file's codes as they are
     int quality;             // of RELIGHT, DEEPZOOM: asked for or chosen; 0: by size or PSNR
+    int layers;              // of OLAT: lights; the others are 0 then
 };
 
 // Write view `params->view` of `pack` as a file or folder `path`, whole or not at all; `report` may

@@ -67,7 +67,8 @@ struct relume_image_params {
     const struct relume_reader *reader;  // loading: read this in place of the file; `path` is only
                                          // a name, or NULL
     const struct relume_writer
-        *writer;  // saving: write here; `path` is a name that says the format
+        *writer;   // saving: write here; `path` is a name that says the format
+    bool profile;  // saving .jpg and .tif: with an ICC profile of sRGB (PNG always says sRGB)
 };
 #define relume_image_params(...)                                                                   \
     (&(const struct relume_image_params){RELUME_SIZED(relume_image_params), __VA_ARGS__})

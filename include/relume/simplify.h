@@ -5,8 +5,9 @@
 //
 // Half-edge collapses in the order of quadric errors with attributes (Garland, Heckbert 1997;
 // Hoppe 1999), each allowed only while two things hold everywhere: the surface stays near (every
-// vertex of the original to the new surface), and its shading looks the same from the distance
-// that somebody looks from (Guthe 2008, chapter 10). Vertices are those of the original; none
+// vertex of the original to the new surface, and middles of new triangles and edges to the
+// original), and its shading looks the same from the distance that somebody looks from (Guthe 2008,
+// chapter 10). Vertices are those of the original; none
 // moves.
 #ifndef RELUME_SIMPLIFY_H
 #define RELUME_SIMPLIFY_H
@@ -26,7 +27,8 @@ struct relume_simplify_params {
     double error;      // most distance between the surfaces, (0, 1]; default: see `distance`
     size_t triangles;  // as many or a few less; what can be seen no longer counts once no other
                        // collapse is left. Default: as few as can be
-    double jnd;        // what must not be seen of the shading, JND, (0, 100]; default 1
+    double jnd;        // what must not be seen of the shading, JND, (0, 100]; 1 is 0.7 to 2 in
+                       // most places of pictures. Default 4: seen where one looks for it
     double distance;   // of the eye, (0, 1e6]; default: where `error` is seen under 1/30 degree,
                        // without it 1.9, a picture on a screen, whose `error` is 0.0011
     double gloss;      // exponent of the highlight, [0, 1000]: 0 is matte; default 20. Negative: 0
@@ -56,8 +58,8 @@ struct relume_simplified {
 
 // `*out` is new; `report` may be NULL. Edges of three and more triangles stay, as do borders,
 // seams of texture, normals or colour, and edges between parts, along which vertices go. Triangles
-// of less than three places go. RELUME_EINVAL for params out of range or vertices that are not there,
-// RELUME_ELIMIT with a sentence when it would take more memory than a model may,
+// of less than three places go. RELUME_EINVAL for params out of range or vertices that are not
+// there, RELUME_ELIMIT with a sentence when it would take more memory than a model may,
 // RELUME_EUNFIT where nothing is left, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_mesh_simplify(struct relume_mesh *out,
                                                  struct relume_simplified *report,

@@ -63,14 +63,16 @@ struct relume_tableau_info {
     struct relume_camera camera;  // as the file says, else as its first entity is looked at
 };
 RELUME_API const struct relume_tableau_info *relume_tableau_info(const relume_tableau *tableau);
-// The lights of the file, of an empty list none; of a file without that, "dir 0 0 1". The rig belongs to the tableau.
+// The lights of the file, of an empty list none; of a file without that, "dir 0 0 1". The rig
+// belongs to the tableau.
 RELUME_API relume_rig *relume_tableau_rig(relume_tableau *tableau);
 
 // What an eye sees: of the camera only `eye`, `look_at` and the size count, all zero being those of
-// relume_tableau_info. `*out` is created. `params` as relume_renderer_set_objects; with a way of
-// transport the first capture is what light goes between, and objects. RELUME_EINVAL (an eye
-// that looks nowhere, lights, samples), RELUME_EUNFIT with a sentence (light that a turned capture
-// cannot take; transport without a capture), errors of relume_frame.
+// relume_tableau_info; of the default framing not `eye`, which is that one, too. `*out` is created.
+// `params` as relume_renderer_set_objects; with a way of transport the first capture is what light
+// goes between, and objects. RELUME_EINVAL (an eye that looks nowhere, lights, samples),
+// RELUME_EUNFIT with a sentence (light that a turned capture cannot take; transport without a
+// capture), errors of relume_frame.
 RELUME_RESULT relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tableau,
                                                  const struct relume_camera *camera,
                                                  const struct relume_light *lights, int n,

@@ -43,12 +43,12 @@ struct relume_volume_params {
 // NULL-terminated names: "u8", "i8", "u16le", "u16be", ..., "f64be"; without an end it is little.
 RELUME_API extern const char *const relume_volume_types[];
 
-// Open NRRD (.nrrd, .nhdr), NIfTI-1 (.nii, and .hdr with .img), a folder of slices or else raw
-// samples; what gzip has packed is unpacked. Slices are pictures in the order of their names, as
-// code values: of 8 bits 0 to 255, of 16 bits 0 to 65535, else as they are. At least 2 samples
-// along each axis. An input status with a sentence (sizes that do not fit, samples that are not
-// finite, all alike), RELUME_EINVAL (no size of raw samples, nor one in their name), RELUME_ENOMEM, RELUME_EIO (no scratch
-// space).
+// Open NRRD (.nrrd, .nhdr), NIfTI-1 (.nii, and .hdr with .img), a folder of slices, a TIFF of
+// several pages or else raw samples; what gzip has packed is unpacked. Slices are pictures in the
+// order of their names, as code values: of 8 bits 0 to 255, of 16 bits 0 to 65535, else as they
+// are. At least 2 samples along each axis. An input status with a sentence (sizes that do not fit,
+// samples that are not finite, all alike), RELUME_EINVAL (no size of raw samples, nor one in their
+// name), RELUME_ENOMEM, RELUME_EIO (no scratch space).
 RELUME_RESULT relume_status relume_volume_open(relume_volume **out, const char *path,
                                                const struct relume_volume_params *params);
 // A copy of samples in memory: `size` and `type` of params say what they are. As above.

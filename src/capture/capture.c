@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/scratch.h"
 #include "math/vec.h"
 
 #include <relume/response.h>
@@ -15,6 +16,8 @@ void relume_capture_destroy(relume_capture **capture)
         return;
     image_cache_destroy(&(*capture)->cache);
     draft_free(&(*capture)->draft);
+    if ((*capture)->owned)
+        scratch_unmap((*capture)->owned, (*capture)->owned_bytes);
     mem_free((*capture)->path);
     mem_free(*capture);
     *capture = NULL;

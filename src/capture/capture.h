@@ -11,7 +11,9 @@ struct relume_capture {
     char *path;
     struct relume_pictures pictures;  // `data` is NULL: files
     int pictured;                     // lights of `pictures`
-    const int *light_of;              // [lights]: of those; NULL: the same
+    void *owned;  // what `pictures` are in, where that is the capture's own (base/scratch.h)
+    size_t owned_bytes;
+    const int *light_of;  // [lights]: of those; NULL: the same
     int width, height;
     int x, y;     // origin of the images' data windows
     bool floats;  // an image holds floating-point numbers
@@ -24,6 +26,15 @@ struct relume_capture {
     struct relume_transfer stated;    // for all images; AUTO: each file's own
     struct relume_transfer transfer;  // of the first image, never AUTO
 };
+
+// One light at a time: an EXR of layers named by lights, which becomes a capture of pictures; and a
+// folder of pictures with a list of directions, which becomes a draft, and the list's path.
+bool olat_is_stage(const char *path, const struct relume_log *log);
+relume_status olat_open(relume_capture **out, const char *path,
+                        const struct relume_capture_params *p);
+bool olat_is_folder(const char *folder, const struct relume_log *log);
+relume_status olat_read_folder(struct draft *out, char **path, const char *folder,
+                               const struct relume_log *log);
 
 // What opening a capture does after its manifest is known: its images are looked at, defaults
 // filled in. Frees `c` on failure.

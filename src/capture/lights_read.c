@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"
+#include "image/picture_kind.h"
 
 #include <errno.h>
 #include <relume/directions.h>
@@ -39,7 +40,7 @@ static relume_status look(enum kind *kind, const char *path, const struct relume
     double v[3];
     const char *start = next_line(line, file);
     const bool some = *start;
-    *kind = *start == '{' ? KIND_JSON : KIND_LINES;
+    *kind = *start == '{' || *start == '[' ? KIND_JSON : KIND_LINES;
     if (is_count(start)) {
         start = next_line(line, file);
         if (sscanf(start, "%lf%*[ \t,]%lf%*[ \t,]%lf", &v[0], &v[1], &v[2]) != 3)
@@ -51,12 +52,43 @@ static relume_status look(enum kind *kind, const char *path, const struct relume
     return RELUME_OK;
 }
 
+// [[x, y, z], ...], or objects that have such a "direction", "dir" or "position".
+static relume_status list_lights(struct relume_captured_lights *out, const jvalue *list,
+                                 const char *path, const struct relume_log *log)
+{
+    static const char *const keys[] = {"direction", "dir", "position"};
+    const size_t n = jvalue_count(list);
+    if (n < 1 || n > (size_t)limits_or_default(NULL).max_lights)
+        return log_fail(log, RELUME_EFORMAT, "%s: no light directions; expected [x, y, z] for each",
+                        path);
+    out->direction = mem_array(n, sizeof *out->direction);
+    if (!out->direction)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < n; i++) {
+        const jvalue *item = jvalue_item(list, i), *vector = item;
+        double v[3] = {0.0, 0.0, 0.0};
+        for (size_t k = 0; jvalue_is_object(item) && k < sizeof keys / sizeof *keys; k++)
+            vector = jvalue_is_array(vector) ? vector : jvalue_member(item, keys[k]);
+        const bool good = jvalue_numbers(vector, v, 3);
+        out->direction[i] = (struct relume_vec3){v[0], v[1], v[2]};
+        if (!good || !direction_normalise(&out->direction[i]))
+            return log_fail(log, RELUME_EFORMAT,
+                            "%s: light %zu; expected three numbers x y z, not all 0", path, i);
+    }
+    out->count = (int)n;
+    return RELUME_OK;
+}
+
 static relume_status from_json(struct relume_captured_lights *out, const char *path,
                                const struct relume_log *log)
 {
     jvalue *root;
     relume_status status = jvalue_load(&root, path, log);
-    if (!status)
+    const jvalue *lights = jvalue_member(root, "lights");
+    const jvalue *list = jvalue_is_array(root) ? root : jvalue_is_array(lights) ? lights : NULL;
+    if (!status && list)
+        status = list_lights(out, list, path, log);
+    else if (!status)
         status = (is_dome(root) ? dome_lights : manifest_lights)(out, root, path, log);
     jvalue_free(&root);
     return status;
@@ -94,6 +126,21 @@ static int parse_line(char *line, struct relume_vec3 *v)
                : -1;
 }
 
+// A line of a table, "light0001,0.1,0.2,0.9,..." or without the name; the same of its numbers.
+static int parse_row(const char *line, struct relume_vec3 *v)
+{
+    double first;
+    const char *comma = strchr(line, ',');
+    if (!line[strspn(line, " \t\r\n")])
+        return 0;
+    if (sscanf(line, "%lf , %lf , %lf", &v->x, &v->y, &v->z) == 3)
+        return 1;
+    return comma && sscanf(line, "%lf ,", &first) != 1 &&
+                   sscanf(comma + 1, "%lf , %lf , %lf", &v->x, &v->y, &v->z) == 3
+               ? 1
+               : -1;
+}
+
 static relume_status read_lines(struct relume_captured_lights *out, FILE *file, const char *path,
                                 const struct relume_log *log)
 {
@@ -101,6 +148,7 @@ static relume_status read_lines(struct relume_captured_lights *out, FILE *file, 
     char line[512];
     double stated = 0.0;
     bool first = true;
+    const bool table = picture_has_extension(path, ".csv");
     out->direction = mem_array((size_t)most, sizeof *out->direction);
     out->position = mem_array((size_t)most, sizeof *out->position);
     if (!out->direction || !out->position)
@@ -110,7 +158,9 @@ static relume_status read_lines(struct relume_captured_lights *out, FILE *file, 
         const bool count = first && is_count(line);
         if (count)
             stated = atof(line);
-        const int found = count ? 0 : parse_line(line, &v);
+        int found = count ? 0 : table ? parse_row(line, &v) : parse_line(line, &v);
+        if (found < 0 && table && first)  // what the columns are called
+            found = 0, first = false;
         first &= !count && !found;
         if (!found)
             continue;

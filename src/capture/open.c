@@ -29,9 +29,22 @@ static relume_status find_description(char **out, const char *folder, const stru
                     folder, folder);
 }
 
+static bool has_description(const char *folder, const struct relume_log *log)
+{
+    char *path = NULL;
+    struct relume_log silent = log ? *log : (struct relume_log){0};
+    silent.message = NULL;
+    const bool has =
+        input_kind(folder, log) != INPUT_FOLDER || !find_description(&path, folder, &silent);
+    mem_free(path);
+    return has;
+}
+
 static relume_status read_description(relume_capture *c, const char *path,
                                       const struct relume_capture_params *p)
 {
+    if (!has_description(path, p->log) && olat_is_folder(path, p->log))
+        return olat_read_folder(&c->draft, &c->path, path, p->log);
     if (input_kind(path, p->log) == INPUT_FOLDER) {
         const relume_status status = find_description(&c->path, path, p->log);
         if (status)
@@ -235,6 +248,10 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
     if (!c)
         return RELUME_ENOMEM;
     p.limits = limits_of(p.limits, p.log);
+    if (olat_is_stage(path, p.log)) {
+        mem_free(c);
+        return olat_open(out, path, &p);
+    }
     relume_status status = read_description(c, path, &p);
     if (!status)
         status = p.skip_missing ? skip_missing(c, p.log) : count_missing(c, p.log);

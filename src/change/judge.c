@@ -299,18 +299,19 @@ static void clear(struct judged *j)
     relume_image_destroy(&j->slope);
 }
 
-static double median_noise(const struct judged *j)
+static relume_status median_noise(double *out, const struct judged *j)
 {
     double *some = mem_array(j->n, sizeof *some);
     size_t count = 0;
-    for (size_t i = 0; some && i < j->n; i++)
+    if (!some)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < j->n; i++)
         if (j->known.data[i] > 0.5f)
             some[count++] = sum3(j->variance.data + 3 * i);
-    if (some)
-        sort_doubles(some, count);
-    const double median = count ? sqrt(some[count / 2]) : 0.0;
+    sort_doubles(some, count);
+    *out = count ? sqrt(some[count / 2]) : 0.0;
     mem_free(some);
-    return median;
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- shape
@@ -334,7 +335,8 @@ static relume_status judge_shape(struct relume_change *out, struct judged *j,
     if (!status)
         status = mark(out, j, 0, 2, p->false_share, &out->degrees, p->least_deg);
     if (!status)
-        out->noise_deg = 57.29577951308232 * median_noise(j);
+        status = median_noise(&out->noise_deg, j);
+    out->noise_deg *= 57.29577951308232;
     clear(j);
     return status;
 }
@@ -396,8 +398,9 @@ static relume_status judge_colour(struct relume_change *out, struct judged *j,
     }
     if (!status)
         status = mark(out, j, 1, 3, p->false_share, &out->delta_e, p->least_de);
-    if (!status)  // brightness of 0.01 as a cube root is about one step of L*
-        out->noise_de = 100.0 * median_noise(j);
+    if (!status)
+        status = median_noise(&out->noise_de, j);
+    out->noise_de *= 100.0;  // 0.01 as a cube root is about one step of L*
     clear(j);
     return status;
 }

@@ -138,8 +138,8 @@ static void set_lights(const struct fit *f, const struct pixel *p)
     }
 }
 
-// Without halves: of the size that residuals of independent samples would make, with a sign that
-// changes from pixel to pixel as noise does.
+// Without halves: of the size that residuals of independent samples would make, with signs that
+// change from pixel to pixel as those of noise do.
 static void set_noise(float normal[3], float colour[3], const struct fit *f, const struct pixel *p,
                       const struct found all[PARTS])
 {
@@ -232,14 +232,11 @@ static double lean(const struct fit *f, int part)
 
 static bool half_spans(const struct fit *f, int part)
 {
-    vec3 *some = mem_array((size_t)f->lights, sizeof *some);
     int n = 0;
-    for (int i = 0; some && i < f->lights; i++)
+    for (int i = 0; i < f->lights; i++)
         if (f->half[i] == part)
-            some[n++] = f->distant[i];
-    const bool spans = some && lambert_spans(some, n);
-    mem_free(some);
-    return spans;
+            f->towards[n++] = f->distant[i];
+    return lambert_spans(f->towards, n);
 }
 
 // Of some draws the one whose halves stand around the object most evenly.

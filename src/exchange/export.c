@@ -13,8 +13,8 @@
 
 relume_status relume_exchange_parse(enum relume_exchange *out, const char *name)
 {
-    static const char *const names[] = {"relight",  "ptm", "lptm", "rti",
-                                        "deepzoom", "bc1", "bc7",  "bc6h"};
+    static const char *const names[] = {"relight", "ptm", "lptm", "rti", "deepzoom",
+                                        "bc1",     "bc7", "bc6h", "olat"};
     const int i = name_find(name, names, sizeof names / sizeof *names);
     *out = (enum relume_exchange)(i < 0 ? 0 : i);
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
@@ -108,10 +108,12 @@ relume_status relume_export(relume_pack *pack, const char *path, enum relume_exc
     relume_status status = check(pack, path, format, &p);
     if (!status)
         status = read_codes(&codes, &level, pack, &p);
-    if (!status)
+    if (!status && format == RELUME_EXCHANGE_OLAT)
+        status = export_olat(codes, path, &found, &p);
+    else if (!status)
         status = source_open(&source, codes, false, p.log);
     const struct export e = {&source, &p, p.log, format == RELUME_EXCHANGE_DEEPZOOM};
-    if (!status)
+    if (!status && format != RELUME_EXCHANGE_OLAT)
         status = is_blocks(format)   ? export_blocks(&e, path, format, &found)
                  : is_folder(format) ? export_web(&e, path, &found)
                                      : export_legacy(&e, path, format, &found);

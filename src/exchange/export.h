@@ -22,6 +22,11 @@ relume_status export_legacy(const struct export *e, const char *path, enum relum
 relume_status export_blocks(const struct export *e, const char *path, enum relume_exchange format,
                             struct relume_export_report *report);
 
+// A layer of half floats for every light that the codes were made from.
+relume_status export_olat(const struct relume_codes *codes, const char *path,
+                          struct relume_export_report *report,
+                          const struct relume_export_params *params);
+
 // Mean distance of a light from its nearest neighbour.
 double export_light_spacing(const struct source *s);
 

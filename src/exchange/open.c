@@ -40,7 +40,7 @@ static enum relume_kind kind_of_folder(const char *path, const struct relume_log
     char *lp = holds(path, "capture.json", log) ? NULL : tree_only(path, ".lp");
     const bool capture = lp || holds(path, "capture.json", log);
     mem_free(lp);
-    return capture ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
+    return capture || relume_capture_is_olat(path, log) ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
 }
 
 enum { HEAD = 4096 };
@@ -87,7 +87,9 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
     if (n > 4 && !memcmp(head, exr_magic, 4) && memmem(head, n, gbrdf, sizeof gbrdf))
         return RELUME_KIND_MATERIAL;
     if (n > 4 && !memcmp(head, exr_magic, 4))
-        return picture_head_is_relume(head, n) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
+        return picture_head_is_relume(head, n)     ? RELUME_KIND_RELUME
+               : relume_capture_is_olat(path, log) ? RELUME_KIND_CAPTURE
+                                                   : RELUME_KIND_PICTURE;
     if (relume_image_can_save(path) || is_among(path, photographs))
         return path_ends(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     return RELUME_KIND_UNKNOWN;

@@ -10,6 +10,7 @@
 #include "image/exr.h"
 #include "base/half.h"
 #include "image/picture_kind.h"
+#include "image/profile.h"
 
 #include <errno.h>
 #include <math.h>
@@ -394,8 +395,14 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
         const float v = alpha ? image->data[i] : relume_transfer_encode(srgb, image->data[i]);
         bytes[i] = (uint8_t)(v >= 1.0f ? 255 : v > 0.0f ? (int)(v * 255.0f + 0.5f) : 0);
     }
-    const relume_status status = picture_write_bytes(path, p->writer, image->width, image->height,
-                                                     image->channels, bytes, p->log);
+    size_t size = 0;
+    void *profile = p->profile ? profile_srgb(&size) : NULL;
+    const relume_status status =
+        p->profile && !profile
+            ? RELUME_ENOMEM
+            : picture_write_tagged(path, p->writer, image->width, image->height, image->channels,
+                                   bytes, profile, size, p->log);
+    mem_free(profile);
     mem_free(bytes);
     return status;
 }

@@ -74,6 +74,7 @@ struct oiio_reader : picture_reader {
     std::string name, error;
     std::vector<unsigned char> tiles;  // the row of tiles that is being read
     int tiles_row = -1;                // its first row
+    int page = 0;
     TypeDesc tiles_type;
     ~oiio_reader()
     {
@@ -202,27 +203,9 @@ bool try_all(oiio_reader *r, const ImageSpec &hints)
     return false;
 }
 
-relume_status open_input(oiio_reader *r, const std::string &format, const relume_limits *limits)
+// Of the page that is open.
+relume_status take_spec(oiio_reader *r, const relume_limits *limits)
 {
-    OIIO::attribute("exr_threads", -1);  // our own threads work on many files at once
-    OIIO::attribute("threads", 1);
-    ImageSpec hints;
-    hints["oiio:UnassociatedAlpha"] = 1;
-    hints["raw:ColorSpace"] = "Linear";
-    hints["raw:auto_bright"] = 0;  // exposures of a bracket keep their ratios
-    hints["raw:adjust_maximum_thr"] = 0.0f;
-    hints["raw:use_camera_wb"] = 1;
-    const bool opened = format.empty() ? try_all(r, hints) : try_format(r, format, hints);
-    const std::string why = one_line(r->error.empty() ? OIIO::geterror() : r->error);
-    if (!opened && format == "raw")
-        return broken(r,
-                      "a RAW photograph that the installed OpenImageIO cannot read; expected a "
-                      "build with LibRaw that knows this camera, or TIFF; " +
-                          why,
-                      RELUME_EUNSUPPORTED);
-    if (!opened)
-        return broken(r, "not a readable image; " + why,
-                      format.empty() ? RELUME_EFORMAT : RELUME_EDAMAGED);
     const ImageSpec &spec = r->input->spec();
     if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
         return broken(r, "expected a flat image with colour channels", RELUME_EUNSUPPORTED);
@@ -247,6 +230,30 @@ relume_status open_input(oiio_reader *r, const std::string &format, const relume
     return RELUME_OK;
 }
 
+relume_status open_input(oiio_reader *r, const std::string &format, const relume_limits *limits)
+{
+    OIIO::attribute("exr_threads", -1);  // our own threads work on many files at once
+    OIIO::attribute("threads", 1);
+    ImageSpec hints;
+    hints["oiio:UnassociatedAlpha"] = 1;
+    hints["raw:ColorSpace"] = "Linear";
+    hints["raw:auto_bright"] = 0;  // exposures of a bracket keep their ratios
+    hints["raw:adjust_maximum_thr"] = 0.0f;
+    hints["raw:use_camera_wb"] = 1;
+    const bool opened = format.empty() ? try_all(r, hints) : try_format(r, format, hints);
+    const std::string why = one_line(r->error.empty() ? OIIO::geterror() : r->error);
+    if (!opened && format == "raw")
+        return broken(r,
+                      "a RAW photograph that the installed OpenImageIO cannot read; expected a "
+                      "build with LibRaw that knows this camera, or TIFF; " +
+                          why,
+                      RELUME_EUNSUPPORTED);
+    if (!opened)
+        return broken(r, "not a readable image; " + why,
+                      format.empty() ? RELUME_EFORMAT : RELUME_EDAMAGED);
+    return take_spec(r, limits);
+}
+
 // Row `y` lies in a row of tiles: they are read once, in the type that is asked for.
 const void *row_in_tiles(oiio_reader *r, int y, TypeDesc type)
 {
@@ -257,8 +264,9 @@ const void *row_in_tiles(oiio_reader *r, int y, TypeDesc type)
     if (r->tiles_row != first || r->tiles_type != type) {
         r->tiles.resize(stride * size_t(spec.tile_height));
         r->tiles_row = -1;
-        if (!r->input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + end,
-                                  spec.z, spec.z + 1, 0, spec.nchannels, type, r->tiles.data()))
+        if (!r->input->read_tiles(r->page, 0, spec.x, spec.x + spec.width, spec.y + first,
+                                  spec.y + end, spec.z, spec.z + 1, 0, spec.nchannels, type,
+                                  r->tiles.data()))
             return nullptr;
         r->tiles_row = first;
         r->tiles_type = type;
@@ -289,7 +297,7 @@ relume_status read_rows(oiio_reader *r, int row, int rows, TypeDesc type, void *
         if (spec.tile_width)
             good = read_tiled_rows(r, row, rows, type, (char *)out);
         else if (type == spec.format && spec.channelformats.empty())
-            good = r->input->read_native_scanlines(0, 0, y, y + rows, spec.z, out);
+            good = r->input->read_native_scanlines(r->page, 0, y, y + rows, spec.z, out);
         else  // one by one: the call for many rows sets aside 64 MB at every call
             for (int i = 0; good && i < rows; i++)
                 good = r->input->read_scanline(y + i, spec.z, type, (char *)out + i * stride);
@@ -356,8 +364,8 @@ relume_status write_elsewhere(ImageOutput &output, const char *path, const relum
 }
 
 relume_status write_image(const char *path, const relume_writer *writer, int width, int height,
-                          int channels, TypeDesc type, const void *samples, picture_save *save,
-                          const relume_log *log)
+                          int channels, TypeDesc type, const void *samples, const void *profile,
+                          size_t profile_size, picture_save *save, const relume_log *log)
 {
     try {
         auto output = writer_for(path);
@@ -369,6 +377,8 @@ relume_status write_image(const char *path, const relume_writer *writer, int wid
         spec["CompressionQuality"] = 95;
         spec["jpeg:subsampling"] = "4:4:4";  // colour edges of paintings survive
         spec["oiio:ColorSpace"] = type == TypeUInt8 ? "sRGB" : "Linear";
+        if (profile)
+            spec.attribute("ICCProfile", TypeDesc(TypeDesc::UINT8, int(profile_size)), profile);
         // OpenImageIO 2.4 writes unreadable TIFF files through a memory proxy.
         const bool in_memory =
             output->supports("ioproxy") && std::string(output->format_name()) != "tiff";
@@ -429,7 +439,25 @@ void close(picture_reader *reader)
     delete static_cast<oiio_reader *>(reader);
 }
 
-const picture_format format = {read_floats, read_bytes, notes, profile, error, close};
+relume_status turn(picture_reader *reader, int page, const relume_limits *limits)
+{
+    oiio_reader *r = static_cast<oiio_reader *>(reader);
+    try {
+        if (page < 0 || !r->input->seek_subimage(page, 0)) {
+            (void)r->input->geterror();
+            return broken(r, "no such page", RELUME_ENOTFOUND);
+        }
+        r->page = page;
+        r->tiles_row = -1;
+        return take_spec(r, limits);
+    } catch (const std::bad_alloc &) {
+        return RELUME_ENOMEM;
+    } catch (const std::exception &e) {
+        return broken(r, std::string("damaged; ") + e.what());
+    }
+}
+
+const picture_format format = {read_floats, read_bytes, notes, profile, error, close, turn};
 
 relume_status bridge_open(picture_reader **out, int file, const char *format_name, const char *name,
                           const relume_limits *limits, const relume_log *log)
@@ -454,16 +482,19 @@ relume_status bridge_open(picture_reader **out, int file, const char *format_nam
 
 relume_status bridge_write_bytes(const char *path, const relume_writer *writer, int width,
                                  int height, int channels, const uint8_t *samples,
-                                 picture_save *save, const relume_log *log)
+                                 const void *profile, size_t profile_size, picture_save *save,
+                                 const relume_log *log)
 {
-    return write_image(path, writer, width, height, channels, TypeUInt8, samples, save, log);
+    return write_image(path, writer, width, height, channels, TypeUInt8, samples, profile,
+                       profile_size, save, log);
 }
 
 relume_status bridge_write_floats(const char *path, const relume_writer *writer, int width,
                                   int height, int channels, const float *samples,
                                   picture_save *save, const relume_log *log)
 {
-    return write_image(path, writer, width, height, channels, TypeFloat, samples, save, log);
+    return write_image(path, writer, width, height, channels, TypeFloat, samples, nullptr, 0, save,
+                       log);
 }
 
 }  // namespace

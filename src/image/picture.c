@@ -183,6 +183,13 @@ relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint
     return reader->format->read_bytes(reader, row, rows, out);
 }
 
+relume_status picture_turn(picture_reader *reader, int page, const struct relume_limits *limits)
+{
+    if (reader->format->turn)
+        return reader->format->turn(reader, page, limits);
+    return page ? RELUME_ENOTFOUND : RELUME_OK;
+}
+
 static relume_status exif_notes(const picture_reader *of, struct relume_exif *out,
                                 const struct relume_log *log)
 {
@@ -280,12 +287,19 @@ relume_status picture_write_bytes(const char *path, const struct relume_writer *
                                   int height, int channels, const uint8_t *samples,
                                   const struct relume_log *log)
 {
+    return picture_write_tagged(path, writer, width, height, channels, samples, NULL, 0, log);
+}
+
+relume_status picture_write_tagged(const char *path, const struct relume_writer *writer, int width,
+                                   int height, int channels, const uint8_t *samples,
+                                   const void *profile, size_t size, const struct relume_log *log)
+{
     if (picture_has_extension(path, ".png"))
         return png_write(path, writer, width, height, channels, samples, log);
     const relume_status status = need_bridge(path, log);
     return status ? status
-                  : bridge->write_bytes(path, writer, width, height, channels, samples,
-                                        outfile_save_to, log);
+                  : bridge->write_bytes(path, writer, width, height, channels, samples, profile,
+                                        size, outfile_save_to, log);
 }
 
 // Which OpenImageIO reads and does not write: rows from the bottom up, the sign says little endian.

@@ -37,6 +37,10 @@ const struct picture_info *picture_info_of(const picture_reader *reader);
 // each. No log: threads that read must not speak; picture_error has the sentence.
 relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out);
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
+// Another page of a file that has several (TIFF), counted from 0; the reader's info becomes that
+// page's, and its rows are asked for from the top on. RELUME_ENOTFOUND where there is no such page;
+// no log, as above.
+relume_status picture_turn(picture_reader *reader, int page, const struct relume_limits *limits);
 // What the camera noted: all but the profile; EXIF of files only. RELUME_ESYSTEM without the
 // helper, where it takes that.
 relume_status picture_notes(const picture_reader *reader, struct relume_exif *out,
@@ -64,6 +68,10 @@ bool picture_writes_bytes(const char *path);
 relume_status picture_write_bytes(const char *path, const struct relume_writer *writer, int width,
                                   int height, int channels, const uint8_t *samples,
                                   const struct relume_log *log);
+// The same with an ICC profile of `size` bytes, which formats without one leave out; NULL: none.
+relume_status picture_write_tagged(const char *path, const struct relume_writer *writer, int width,
+                                   int height, int channels, const uint8_t *samples,
+                                   const void *profile, size_t size, const struct relume_log *log);
 relume_status picture_write_floats(const char *path, const struct relume_writer *writer, int width,
                                    int height, int channels, const float *samples,
                                    const struct relume_log *log);

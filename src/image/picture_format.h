@@ -24,6 +24,8 @@ struct picture_format {
     const void *(*profile)(const picture_reader *reader, size_t *size);
     const char *(*error)(const picture_reader *reader);
     void (*close)(picture_reader *reader);
+    // NULL: no file has several pages.
+    relume_status (*turn)(picture_reader *reader, int page, const struct relume_limits *limits);
 };
 
 // What every reader begins with.
@@ -74,7 +76,8 @@ struct oiio_bridge {
     // `save` is the library's own outfile_save_to, for `path` and `writer`.
     relume_status (*write_bytes)(const char *path, const struct relume_writer *writer, int width,
                                  int height, int channels, const uint8_t *samples,
-                                 picture_save *save, const struct relume_log *log);
+                                 const void *profile, size_t profile_size, picture_save *save,
+                                 const struct relume_log *log);
     relume_status (*write_floats)(const char *path, const struct relume_writer *writer, int width,
                                   int height, int channels, const float *samples,
                                   picture_save *save, const struct relume_log *log);

@@ -154,9 +154,6 @@ static void close_helped(picture_reader *reader)
     mem_free(h);
 }
 
-static const struct picture_format format = {read_floats, read_bytes, notes,
-                                             profile,     error,      close_helped};
-
 static bool is_sound(const struct picture_info *i, const struct relume_limits *limits)
 {
     enum { MOST_CHANNELS = 4096 };
@@ -192,6 +189,31 @@ static void make_whole(struct picture_answer *answer)
     notes->camera[sizeof notes->camera - 1] = '\0';
 }
 
+static relume_status senseless(struct helped *h)
+{
+    snprintf(h->why, sizeof h->why,
+             "its reader gave an answer that makes no sense; the file is probably damaged");
+    return RELUME_EDAMAGED;
+}
+
+static relume_status turn(picture_reader *reader, int page, const struct relume_limits *limits)
+{
+    struct helped *h = (struct helped *)reader;
+    struct picture_answer answer;
+    const struct picture_ask what = {
+        .what = PICTURE_TURN, .row = page, .limits = limits_or_default(limits)};
+    const relume_status status = ask(h, &answer, what, -1);
+    if (status)
+        return status;
+    make_whole(&answer);
+    reader->info = answer.info;
+    h->job.processor_s += picture_read_s(&reader->info);
+    return is_sound(&reader->info, limits) ? RELUME_OK : senseless(h);
+}
+
+static const struct picture_format format = {read_floats, read_bytes,   notes, profile,
+                                             error,       close_helped, turn};
+
 static relume_status open_there(struct helped *h, int file, const char *path,
                                 const struct picture_kind *kind, uint64_t file_bytes,
                                 const struct relume_limits *limits)
@@ -210,11 +232,8 @@ static relume_status open_there(struct helped *h, int file, const char *path,
     make_whole(&answer);
     h->reader.info = answer.info;
     h->notes = answer.notes;
-    if (is_sound(&h->reader.info, limits))
-        return fetch_profile(h, answer.profile_bytes);
-    snprintf(h->why, sizeof h->why,
-             "its reader gave an answer that makes no sense; the file is probably damaged");
-    return RELUME_EDAMAGED;
+    return is_sound(&h->reader.info, limits) ? fetch_profile(h, answer.profile_bytes)
+                                             : senseless(h);
 }
 
 relume_status helped_picture_open(picture_reader **out, int file, const char *path,

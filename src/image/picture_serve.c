@@ -171,6 +171,16 @@ static void read_rows(struct serving *s, struct place *p, bool floats)
     snprintf(s->answer.why, sizeof s->answer.why, "%s", format->error(p->reader));
 }
 
+static void turn_page(struct serving *s, struct place *p)
+{
+    const struct picture_format *format = p->reader->format;
+    s->answer.status =
+        format->turn ? format->turn(p->reader, s->ask.row, &s->ask.limits) : RELUME_ENOTFOUND;
+    s->answer.info = p->reader->info;
+    snprintf(s->answer.why, sizeof s->answer.why, "%s", format->error(p->reader));
+    p->seconds += picture_read_s(&p->reader->info);
+}
+
 static void obey(struct serving *s, struct place *p)
 {
     s->answer.status = RELUME_OK;
@@ -182,6 +192,7 @@ static void obey(struct serving *s, struct place *p)
     case PICTURE_READ_BYTES: read_rows(s, p, false); break;
     case PICTURE_READ_FLOATS: read_rows(s, p, true); break;
     case PICTURE_CLOSE: close_picture(p); break;
+    case PICTURE_TURN: turn_page(s, p); break;
     }
 }
 

@@ -13,11 +13,12 @@ enum picture_ask_what {
     PICTURE_READ_BYTES,  // rows `row` to row + rows - 1 into the band
     PICTURE_READ_FLOATS,
     PICTURE_CLOSE,
+    PICTURE_TURN,  // to page `row`, with `limits`; the answer has its `info`
 };
 struct picture_ask {
     int what, place;
     int row, rows;
-    struct relume_limits limits;  // PICTURE_OPEN
+    struct relume_limits limits;  // PICTURE_OPEN, PICTURE_TURN
     uint64_t file_bytes;
     char format[16];  // OpenImageIO's name; "": any
     char name[256];   // of the file, for its extension
@@ -26,7 +27,7 @@ struct picture_answer {
     int status;         // relume_status
     int memory, place;  // RELUME_ENOMEM: enum helper_short; PICTURE_OPEN
     char why[HELPER_WHY];
-    struct picture_info info;  // PICTURE_OPEN
+    struct picture_info info;  // PICTURE_OPEN, PICTURE_TURN
     struct relume_exif notes;
     uint64_t profile_bytes;
 };

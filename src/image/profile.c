@@ -1,7 +1,10 @@
 // profile.c - the one place that knows Little CMS (ICC.1:2010: three-component matrix profiles)
 #include "image/profile.h"
 
+#include "base/memory.h"
+
 #include <lcms2.h>
+#include <string.h>
 
 // PCS XYZ (D50) -> linear sRGB: the inverse of the colorants of IEC 61966-2-1 adapted by Bradford.
 static const double xyz_to_srgb[3][3] = {
@@ -40,6 +43,27 @@ bool profile_read(struct profile *out, const void *icc, size_t size)
         good = read_channel(out, h, c);
     cmsCloseProfile(h);
     return good;
+}
+
+void *profile_srgb(size_t *size)
+{
+    enum { DATE = 24, DATE_BYTES = 12 };  // ICC.1:2010, 7.2: when it was made
+    static const uint8_t date[DATE_BYTES] = {0x07, 0xe8, 0, 1, 0, 1};
+    cmsUInt32Number n = 0;
+    uint8_t *bytes = NULL;
+    cmsHPROFILE h = cmsCreate_sRGBProfile();
+    if (h && cmsSaveProfileToMem(h, NULL, &n) && n > DATE + DATE_BYTES)
+        bytes = mem_array(n, 1);
+    if (bytes && cmsSaveProfileToMem(h, bytes, &n)) {
+        memcpy(bytes + DATE, date, sizeof date);
+    } else {
+        mem_free(bytes);
+        bytes = NULL;
+    }
+    if (h)
+        cmsCloseProfile(h);
+    *size = bytes ? n : 0;
+    return bytes;
 }
 
 float profile_decode(const struct profile *profile, int channel, float code)

@@ -14,6 +14,9 @@ struct profile {
 
 // False when it is no RGB profile of curves and a matrix.
 bool profile_read(struct profile *out, const void *icc, size_t size);
+// The profile of sRGB as a file holds it, to be freed; NULL when memory is short. Equal bytes at
+// all times.
+void *profile_srgb(size_t *size);
 float profile_decode(const struct profile *profile, int channel, float code);
 
 #endif

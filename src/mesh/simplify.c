@@ -17,6 +17,8 @@
 #define LEAST_ANGLE (PI / 180.0 / 30.0)
 // Of a value of 1 (a normal's component, white's), diagonals.
 #define VALUE_WEIGHT 0.03
+// Seen where one looks for it: at 1 few triangles of a scan could go.
+#define USUAL_JND 4.0
 // Errors below this share of the most are as good as none.
 #define FINE_SHARE 0.5
 // Between looks at whether to stop.
@@ -46,6 +48,7 @@ static void run_free(struct run *r)
     mem_free(s->spread);
     mem_free(s->curvature);
     mem_free(s->spacing);
+    near_free(&s->near);
     mem_free(s->sample_first);
     mem_free(s->sample_next);
     mem_free(r->samples.landing);
@@ -130,8 +133,9 @@ static void set_weights(struct simplify *s)
 static size_t bytes_of(const struct simplify *s)
 {
     const size_t v = s->mesh->vertex_count, t = s->mesh->triangle_count;
-    return quadrics_bytes(s, v) + t * (12 + 12 + 4) + v * (4 + 4 + 4 + 4 + 4 + 12 + 1) +
-           (size_t)sizeof(struct relume_simplify_step) * v;
+    return quadrics_bytes(s, v) + t * (12 + 12 + 4) +
+           t * (NEAR_CELLS + NEAR_REFERENCES) * sizeof(uint32_t) +
+           v * (4 + 4 + 4 + 4 + 4 + 12 + 1) + (size_t)sizeof(struct relume_simplify_step) * v;
 }
 
 static void set_limits(struct run *r, const struct relume_simplify_params *p)
@@ -153,7 +157,7 @@ static relume_status prepare(struct run *r, const struct relume_simplify_params 
 {
     struct simplify *s = &r->s;
     s->tested = !p->quadrics;
-    s->jnd = p->jnd > 0.0 ? p->jnd : 1.0;
+    s->jnd = p->jnd > 0.0 ? p->jnd : USUAL_JND;
     s->white = p->white > 0.0 ? p->white : 200.0;
     s->slide = texture_length(s);
     set_weights(s);
@@ -165,6 +169,8 @@ static relume_status prepare(struct run *r, const struct relume_simplify_params 
         status = quadrics_create(s);
     if (!status && s->tested)
         status = samples_create(s);
+    if (!status && s->tested && isfinite(r->most.length))
+        status = near_create(&s->near, s, r->most.length);
     if (!status && s->tested)
         status = visible_create(&s->visible, s->jnd,
                                 p->gloss > 0.0   ? p->gloss
@@ -270,7 +276,7 @@ static void try_point(struct run *r, uint32_t point)
             r->status = RELUME_ENOMEM;
             return;
         }
-        if (!(error.length < (double)INFINITY))  // a triangle would turn over
+        if (!(error.length < (double)INFINITY))  // a triangle would turn over, or leave the surface
             continue;
         if (r->last_resort)
             error.distance = r->done.distance;

@@ -88,6 +88,24 @@ relume_status visible_create(struct visible *v, double jnd, double gloss, double
 // `curvature`, 1 / diagonal; infinite where it is seen from any distance.
 double visible_distance(const struct visible *v, double angle, double curvature);
 
+// ---------------------------------------------------------------- the original surface
+
+// Its triangles by the cells of a cube about the mesh, all of whose places lie in [-1/2, 1/2].
+struct simplify;
+struct near_grid {
+    double radius;  // of what is near; 0: nobody asks
+    double side;    // of a cell
+    int across;     // cells along each axis
+    uint32_t *first, *triangle;
+};
+enum { NEAR_CELLS = 4, NEAR_REFERENCES = 8 };  // for each triangle, at most
+relume_status near_create(struct near_grid *g, const struct simplify *s, double radius);
+void near_free(struct near_grid *g);
+// Whether the original is no farther from there than the radius.
+bool near_is(const struct near_grid *g, const struct simplify *s, vec3 p);
+// The place on a triangle that is nearest to p, as weights of its corners.
+void nearest_place(const vec3 t[3], vec3 p, double w[3]);
+
 // ---------------------------------------------------------------- the surfaces
 
 struct simplify {
@@ -107,6 +125,7 @@ struct simplify {
     float *spacing;          // [points]: of edges, diagonals
     uint32_t *sample_first;  // [triangles]: original vertices that lie there
     uint32_t *sample_next;   // [vertices]
+    struct near_grid near;
     struct visible visible;
     double seen_per_length;  // distance at which a length counts as seen: 1 / (2 tan (1/60 degree))
     double white, jnd;

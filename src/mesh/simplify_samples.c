@@ -99,8 +99,8 @@ static bool find_facets(const struct simplify *s, const struct fan *fan, uint32_
     return *count > 0;
 }
 
-// The place on a triangle that is nearest to p, as weights of its corners (Ericson 2005, 5.1.5).
-static void nearest(const vec3 t[3], vec3 p, double w[3])
+// Ericson 2005, 5.1.5.
+void nearest_place(const vec3 t[3], vec3 p, double w[3])
 {
     const vec3 ab = vec3_sub(t[1], t[0]), ac = vec3_sub(t[2], t[0]), ap = vec3_sub(p, t[0]);
     const double d1 = vec3_dot(ab, ap), d2 = vec3_dot(ac, ap);
@@ -187,7 +187,7 @@ static struct error error_at(const struct simplify *s, uint32_t vertex, const st
 {
     const vec3 p = place(s, vertex);
     double w[3];
-    nearest(f->p, p, w);
+    nearest_place(f->p, p, w);
     vec3 there = vec3_scale(f->p[0], w[0]);
     there = vec3_along(vec3_along(there, f->p[1], w[1]), f->p[2], w[2]);
     struct error e = {.length = vec3_length(vec3_sub(p, there))};
@@ -238,6 +238,26 @@ static bool try_vertex(const struct simplify *s, struct samples *to, struct erro
     return land(to, vertex, triangle);
 }
 
+// Whether the new triangles are near the original, too: at their middles and those of their new
+// edges.
+static bool stay_near(const struct simplify *s, uint32_t target, const struct facet *facet,
+                      int count)
+{
+    for (int i = 0; i < count && s->near.radius > 0.0; i++) {
+        const vec3 *p = facet[i].p;
+        int k = 0;
+        while (k < 2 && s->connect.point[facet[i].vertex[k]] != target)
+            k++;
+        const vec3 next = vec3_add(p[k], p[(k + 1) % 3]), last = vec3_add(p[k], p[(k + 2) % 3]);
+        const vec3 all = vec3_add(next, p[(k + 2) % 3]);
+        if (!near_is(&s->near, s, vec3_scale(all, 1.0 / 3.0)) ||
+            !near_is(&s->near, s, vec3_scale(next, 0.5)) ||
+            !near_is(&s->near, s, vec3_scale(last, 0.5)))
+            return false;
+    }
+    return true;
+}
+
 bool samples_try(const struct simplify *s, struct samples *to, struct error *error,
                  const struct fan *fan, uint32_t target, const struct moves *moves,
                  const struct error *most)
@@ -261,6 +281,8 @@ bool samples_try(const struct simplify *s, struct samples *to, struct error *err
             if (!try_vertex(s, to, error, v, facet, count))
                 return false;
         }
+    if (!stay_near(s, target, facet, count))
+        error->length = INFINITY;
     return true;
 }
 

@@ -9,9 +9,9 @@
 //
 // A harmonic of degree l turned by `angle` differs by at most a sqrt(2 - 2 cos(l angle)); on a
 // surface of principal curvatures k1, k2 it has l sqrt(k1^2 + k2^2) / 2 pi cycles per length. It is
-// seen where difference * C(f) reaches the threshold that its own amplitude sets by masking. From
-// farther away f is higher: the largest distance of all degrees and channels counts. Where C has a
-// second root nearby, nearer than its peak, that is passed over.
+// seen where difference * C(f) reaches the threshold that part of its own amplitude sets by
+// masking. From farther away f is higher: the largest distance of all degrees and channels counts.
+// Where C has a second root nearby, nearer than its peak, that is passed over.
 #include "mesh/simplify.h"
 
 #include "math/lsq.h"
@@ -37,6 +37,10 @@ enum {
 #define AMBIENT   0.02
 // Against samples, so that the fit is as good as the samples are.
 #define PENALTY 1e-4
+// What of a harmonic's amplitude, over all ways that a surface can be turned, stands beside a place
+// and masks there. With all of it what was called 1 JND was 3 to 5 in pictures; with a tenth it is
+// 0.7 to 1.6 (docs/measurements/simplification.md).
+#define MASKER_SHARE 0.1
 
 struct fit {
     double normal[NORMALS][3];
@@ -108,7 +112,7 @@ static double reach_of(enum relume_opponent channel, double amplitude, int degre
                                                          : relume_jnd_sensitivity(channel, 0.0);
     const double turn = fmin(degree * angle, PI);
     const double difference = amplitude * sqrt(2.0 - 2.0 * cos(turn));
-    const double threshold = jnd * relume_jnd_threshold(amplitude * peak);
+    const double threshold = jnd * relume_jnd_threshold(MASKER_SHARE * amplitude * peak);
     const double finest =
         difference > 0.0 ? relume_jnd_finest(channel, threshold / difference) : 0.0;
     // cycles per degree = distance * pi / 180 * degree * curvature / (2 pi)

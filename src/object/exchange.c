@@ -172,6 +172,12 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
     return status;
 }
 
+void exchange_stand_before(struct exchange *e, const struct scenery *const *all, int count)
+{
+    e->before = all;
+    e->befores = count;
+}
+
 // ---------------------------------------------------------------- the world
 
 static void site_of(struct site *out, const void *context, const struct trace_hit *hit,
@@ -202,6 +208,23 @@ static void sent_by(float rgb[3], const void *context, const struct trace_hit *h
     }
 }
 
+// A matte surface is a lit texture; mirrors, and what is baked, do not gather for themselves.
+static bool is_shiny(const struct relume_objects_info *info)
+{
+    for (int i = 0; i < info->parts; i++) {
+        const struct relume_object_material *m = &info->material[info->part[i].material];
+        if (!m->mirror && !m->baked && strcmp(m->model, "lit"))
+            return true;
+    }
+    return false;
+}
+
+static int usual_samples(const struct exchange *e)
+{
+    const struct relume_transport *t = e->transport;
+    return t->glossy && is_shiny(relume_objects_info(e->o)) ? t->glossy : t->samples;
+}
+
 static void begin_world(struct exchange *e)
 {
     const struct relume_objects_info *info = relume_objects_info(e->o);
@@ -218,7 +241,7 @@ static void begin_world(struct exchange *e)
         .bare = {&e->scene.places, &e->scene.normals, e->lone, NULL},
         .full = {&e->frame.places, &e->frame.normals, &e->shown, e->behind},
         .radius = 0.5 * vec3_length(vec3_sub(info->max, info->min)),
-        .samples = p->transport_samples ? p->transport_samples : e->transport->samples,
+        .samples = p->transport_samples ? p->transport_samples : usual_samples(e),
         .bounces = p->bounces < 0 ? 0
                    : p->bounces   ? p->bounces
                                   : 1,

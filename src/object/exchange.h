@@ -24,6 +24,8 @@ struct exchange {
     struct relume_render_params params;
     int spacing;  // pixels from one that gathers to the next
     const struct bodies *bodies;
+    const struct scenery *const *before;  // [befores]: all that stands before lamps, for `share`
+    int befores;
     struct layer scene, objects, frame;
     float *behind;  // [pixels]: how far off the eye the backs of objects are
     vec3 eye;

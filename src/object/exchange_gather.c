@@ -121,8 +121,12 @@ static void look_ahead(float rgb[3], const struct exchange *e, const struct surf
 
 static void put_share(const struct exchange *e, size_t pixel, const struct surface_point *point)
 {
-    if (e->share)
-        share_of_sky(e->share->data + 3 * pixel, e->o, point, &e->lighting, 0);
+    struct lighting lighting = e->lighting;
+    if (!e->share)
+        return;
+    if (e->befores)
+        lighting.scenery = e->before, lighting.sceneries = e->befores;
+    share_of_sky(e->share->data + 3 * pixel, e->o, point, &lighting, 0);
 }
 
 void exchange_gather_objects(struct exchange *e, int x, int y)

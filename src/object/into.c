@@ -73,18 +73,65 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
         rgb[c] += l->reflected->data[pixel + c];
 }
 
-relume_status objects_layer(struct relume_image *out, const struct layered *l,
+// Shares of environments hardly differ within a pixel: they are looked for once, through its
+// middle, where more rays than one go through it.
+struct middles {
+    const struct layered *layers;
+    int sky;
+};
+
+static void share_value(float rgb[3], const void *context, double x, double y, double step)
+{
+    const struct middles *m = context;
+    const struct layered *l = m->layers;
+    const struct ray ray = ray_of(l->viewport, x, y);
+    struct surface_point point;
+    (void)step;
+    rgb[0] = rgb[1] = rgb[2] = NAN;
+    if (objects_hit(&point, l->o, ray.origin, ray.direction))
+        share_of_sky(rgb, l->o, &point, l->lighting, m->sky);
+}
+
+static relume_status find_shares(struct relume_image *shares, const struct layered *l,
+                                 const struct relume_render_params *params)
+{
+    struct relume_render_params one = *params;
+    relume_status status = RELUME_OK;
+    one.samples = 1;
+    for (int i = 0; i < l->lighting->skies && !status; i++) {
+        status = relume_image_create(&shares[i], l->scene->width, l->scene->height, 3);
+        if (!status)
+            status = objects_trace(&shares[i], share_value, &(struct middles){l, i}, &one);
+    }
+    return status;
+}
+
+static bool lacks_shares(const struct layered *l, const struct relume_render_params *params)
+{
+    return !l->shares && l->lighting->skies && params->samples > 1 && !params->no_shadows;
+}
+
+relume_status objects_layer(struct relume_image *out, const struct layered *given,
                             const struct relume_render_params *params)
 {
-    const int width = l->scene->width, height = l->scene->height;
-    struct both both = {.layers = l};
+    struct layered l = *given;
+    const int width = l.scene->width, height = l.scene->height, skies = l.lighting->skies;
+    struct both both = {.layers = &l};
+    struct relume_image *shares = NULL;
     relume_status status = relume_image_create(out, width, height, 3);
+    if (!status && lacks_shares(&l, params)) {
+        l.shares = shares = mem_zeroed((size_t)skies, sizeof *shares);
+        status = shares ? find_shares(shares, given, params) : RELUME_ENOMEM;
+    }
     if (!status)
         status =
-            seen_create(&both.seen, l->o, l->lighting, width, height, ray_of, l->viewport, params);
+            seen_create(&both.seen, l.o, l.lighting, width, height, ray_of, l.viewport, params);
     if (!status)
         status = objects_trace(out, layered_value, &both, params);
     seen_destroy(&both.seen);
+    for (int i = 0; i < skies && shares; i++)
+        relume_image_destroy(&shares[i]);
+    mem_free(shares);
     return status;
 }
 

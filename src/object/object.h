@@ -359,6 +359,8 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
                               const struct relume_image *places,
                               const struct relume_render_params *params);
 void exchange_destroy(struct exchange **e);
+// What else than its scenery stands before lamps, for `share` below: with it all of them, borrowed.
+void exchange_stand_before(struct exchange *e, const struct scenery *const *all, int count);
 // Under one light, in which the scene alone shows `lone` and `captured` sends it: the scene as it
 // is with the objects is added to `scene`, what objects show of its light to `reflected` (NULL:
 // nobody asks), at pixels where objects are; `share` is filled with share_of_sky there, elsewhere

@@ -13,7 +13,9 @@ static relume_status load_picture(struct relume_image *out, const struct mesh_pi
                                   bool colour, const char *path,
                                   const struct relume_objects_params *params)
 {
-    char *name = picture->bytes ? mem_format("%s (%s)", path, picture->name) : NULL;
+    const bool numbered = picture->name[0] == '*';  // within the model
+    char *name =
+        picture->bytes ? mem_format("%s, picture %s", path, picture->name + numbered) : NULL;
     const struct relume_reader reader = relume_memory_reader(picture->bytes, picture->size);
     const relume_status status =
         picture->bytes && !name

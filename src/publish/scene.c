@@ -154,6 +154,7 @@ static relume_status find_step(struct scene *s, const struct planes *middle)
     if (!status) {
         common_keep(&s->common, kept);
         s->levels.planes = s->report->planes = kept;
+        s->report->linear = s->common.source.coding.curve == RELUME_CURVE_LINEAR;
     }
     planes_free(&sample);
     return status;

@@ -1,5 +1,6 @@
 // scene_json.c - scene.json: what the tiles mean
 #include "publish/scene.h"
+#include "math/base64.h"
 
 #include <relume/coder.h>
 
@@ -7,7 +8,7 @@
 static void put_floats(FILE *f, const char *key, const float *v, size_t n)
 {
     fprintf(f, "  \"%s\": \"", key);
-    text_base64(f, v, n * sizeof *v);
+    base64_print(f, (const uint8_t *)v, n * sizeof *v);
     fputs("\",\n", f);
 }
 

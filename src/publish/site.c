@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "math/base64.h"
 #include "base/outfile.h"
 
 #include <errno.h>
@@ -43,7 +44,7 @@ static relume_status save_twin(const struct site *site, const char *name, const 
         fputs("relume.put(", t.file);
         text_json(t.file, name);
         fputs(", \"", t.file);
-        text_base64(t.file, bytes, size);
+        base64_print(t.file, bytes, size);
         fputs("\");\n", t.file);
         status = site_save_text(site, twin, false, &t);
     }

@@ -1,4 +1,4 @@
-// text.c - texts of people inside HTML, JSON and addresses; bytes inside a script
+// text.c - texts of people inside HTML, JSON and addresses
 #include "publish/text.h"
 
 #include "base/memory.h"
@@ -76,20 +76,6 @@ void text_address(FILE *to, const char *text)
             putc(c, to);
         else
             fprintf(to, "%%%02X", c);
-    }
-}
-
-void text_base64(FILE *to, const void *bytes, size_t size)
-{
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const uint8_t *p = bytes;
-    for (size_t i = 0; i < size; i += 3) {
-        const size_t n = size - i < 3 ? size - i : 3;
-        const uint32_t v = (uint32_t)p[i] << 16 | (uint32_t)(n > 1 ? p[i + 1] : 0) << 8 |
-                           (uint32_t)(n > 2 ? p[i + 2] : 0);
-        const char four[4] = {digit[v >> 18], digit[v >> 12 & 63], n > 1 ? digit[v >> 6 & 63] : '=',
-                              n > 2 ? digit[v & 63] : '='};
-        fwrite(four, 1, 4, to);
     }
 }
 

@@ -1,4 +1,4 @@
-// text.h - texts of people inside HTML, JSON and addresses; bytes inside a script
+// text.h - texts of people inside HTML, JSON and addresses
 #ifndef PUBLISH_TEXT_H
 #define PUBLISH_TEXT_H
 
@@ -11,7 +11,6 @@ void text_html(FILE *to, const char *text);
 void text_json(FILE *to, const char *text);
 // As an address: what may not stand in one is percent-encoded.
 void text_address(FILE *to, const char *text);
-void text_base64(FILE *to, const void *bytes, size_t size);
 
 // What a memory stream collects.
 struct text {

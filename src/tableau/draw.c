@@ -29,6 +29,8 @@ struct drawing {
     const struct scenery **scenery;  // [sceneries]: of captures that are shown
     int sceneries;
     struct exchange *exchange;
+    struct relume_image *shares;  // [lights], of environments first: which share reaches objects
+    int lights, skies;
     struct lighting lighting;
     const struct relume_object_light *light_sample;
     int light_samples;
@@ -77,8 +79,10 @@ static relume_status take_camera(struct drawing *d, const struct relume_camera *
     const struct relume_camera *own = &d->t->info.camera;
     const int size[2] = {own->width, own->height};
     d->camera = *own;
-    if (camera && camera->framing == RELUME_FRAME_EYE) {
+    if (camera && camera->framing == RELUME_FRAME_EYE)
         d->camera.eye = camera->eye;
+    if (camera &&
+        (camera->framing == RELUME_FRAME_EYE || camera->framing == RELUME_FRAME_DEFAULT)) {
         if (camera->look_at.aimed)
             d->camera.look_at.at = camera->look_at.at;
         if (!vec3_is_zero(camera->look_at.up))
@@ -150,6 +154,9 @@ static void end(struct drawing *d)
             relume_image_destroy(&d->colour[i]);
     }
     exchange_destroy(&d->exchange);
+    for (int i = 0; i < d->lights && d->shares; i++)
+        relume_image_destroy(&d->shares[i]);
+    mem_free(d->shares);
     lighting_destroy(&d->lighting);
     relume_image_destroy(&d->places);
     relume_image_destroy(&d->lone);
@@ -250,8 +257,20 @@ static relume_status relight_captures(struct drawing *d, const struct relume_lig
     return status;
 }
 
+// Where the share of an environment goes that exchange_light finds.
+static relume_status need_share(struct relume_image **out, struct drawing *d,
+                                const struct relume_light *light)
+{
+    *out = NULL;
+    if (!d->exchange || light->kind != RELUME_LIGHT_ENVIRONMENT)
+        return RELUME_OK;
+    *out = &d->shares[d->skies++];
+    return relume_image_create(*out, d->camera.width, d->camera.height, 3);
+}
+
 static relume_status add_light(struct drawing *d, const struct relume_light *light)
 {
+    struct relume_image *share;
     relume_tableau *t = d->t;
     struct relume_object_light *light_samples;
     const size_t rows = (size_t)d->camera.height;
@@ -270,8 +289,10 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
         status = add_surround(d);
     if (!status)
         thread_for(d->params.threads, rows, light_row, d);
+    if (!status)
+        status = need_share(&share, d, light);
     if (!status && d->exchange)
-        status = exchange_light(d->exchange, &d->scene, &d->reflected, NULL, &d->lone, light);
+        status = exchange_light(d->exchange, &d->scene, &d->reflected, share, &d->lone, light);
     else if (!status)
         scene_add(&(struct scene_in_shadow){t->objects, &d->places, &d->lone, &d->scene,
                                             light_samples, d->light_samples, d->params.no_shadows},
@@ -282,7 +303,7 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
 
 // ---------------------------------------------------------------- frames
 
-static relume_status begin_exchange(struct drawing *d)
+static relume_status begin_exchange(struct drawing *d, int lights)
 {
     relume_tableau *t = d->t;
     if (!render_exchanges(&d->params) || !t->objects->info.triangle_count) {
@@ -294,11 +315,17 @@ static relume_status begin_exchange(struct drawing *d)
                         "%s: light goes between objects and a capture, and there is none; leave "
                         "out the transport",
                         t->path);
-    const relume_status status =
-        relume_image_create(&d->reflected, d->camera.width, d->camera.height, 3);
-    return status ? status
-                  : exchange_create(&d->exchange, t->objects, t->bodies, t->capture[0].scenery,
-                                    &d->viewport, &d->places, &d->params);
+    relume_status status = relume_image_create(&d->reflected, d->camera.width, d->camera.height, 3);
+    d->shares = mem_zeroed((size_t)lights, sizeof *d->shares);
+    d->lights = lights;
+    if (!status && !d->shares)
+        status = RELUME_ENOMEM;
+    if (!status)
+        status = exchange_create(&d->exchange, t->objects, t->bodies, t->capture[0].scenery,
+                                 &d->viewport, &d->places, &d->params);
+    if (!status)
+        exchange_stand_before(d->exchange, d->scenery, d->sceneries);
+    return status;
 }
 
 static relume_status begin_lighting(struct drawing *d, const struct relume_light *lights, int n)
@@ -343,7 +370,7 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
     if (!status)
         status = begin_lighting(&d, lights, n);
     if (!status)
-        status = begin_exchange(&d);
+        status = begin_exchange(&d, n);
     for (int i = 0; i < n && !status; i++) {
         status = add_light(&d, &lights[i]);
         if (!status && !log_progress(d.params.log, "relighting the scene", (i + 1.0) / n))
@@ -354,6 +381,7 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
                                    .scene = &d.scene,
                                    .places = &d.places,
                                    .reflected = &d.reflected,
+                                   .shares = d.shares,
                                    .lighting = &d.lighting};
     if (!status)
         status = objects_layer(out, &layers, &d.params);

@@ -474,7 +474,8 @@ static relume_status begin(struct world *w, const struct relume_log *log)
 const struct relume_transport transport_micro = {
     .name = "micro",
     .summary = "a small picture of the surroundings for each place, drawn from points",
-    .samples = 256,
+    .samples = 64,
+    .glossy = 256,
     .spacing = 4,
     .pattern = 1,
     .begin = begin,

@@ -60,6 +60,7 @@ typedef void take_arrival(void *context, const struct arrival *arrival);
 struct relume_transport {
     const char *name, *summary;
     int samples;  // at a site, by default
+    int glossy;   // the same where objects shine; 0: as many
     int spacing;  // sites gather at every so many pixels each way, by default; 0: always at each
     int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
     bool screen;  // needs the frames

@@ -91,10 +91,18 @@ static const struct format {
     relume_status (*read)(struct store *s, const char *path,
                           const struct relume_volume_params *params);
 } raw = {"raw", volume_read_raw}, nrrd = {"nrrd", volume_read_nrrd},
-  nifti = {"nifti", volume_read_nifti}, slices = {"slices", volume_read_slices};
+  nifti = {"nifti", volume_read_nifti}, slices = {"slices", volume_read_slices},
+  pages = {"slices", volume_read_pages};
 
 // Magic numbers of NIfTI-1 stand at the end of its header of 348 bytes.
 enum { NIFTI_BYTES = 352, NIFTI_MAGIC = 344 };
+
+// With places of 32 or 64 bits.
+static bool is_tiff(const char *head)
+{
+    return !memcmp(head, "II*", 4) || !memcmp(head, "MM\0*", 4) || !memcmp(head, "II+", 4) ||
+           !memcmp(head, "MM\0+", 4);
+}
 
 static relume_status find(const struct format **out, const char *path,
                           const struct relume_volume_params *p)
@@ -116,9 +124,8 @@ static relume_status find(const struct format **out, const char *path,
         return status;
     if (!memcmp(head, "NRRD000", 7))
         *out = &nrrd;
-    else if (!memcmp(head, "II*", 4) || !memcmp(head, "MM\0*", 4))
-        return log_fail(p->log, RELUME_EUNSUPPORTED,
-                        "%s: one TIFF; expected a folder with a picture for each slice", path);
+    else if (is_tiff(head))
+        *out = &pages;
     else if (!memcmp(head + NIFTI_MAGIC, "n+1", 4) || !memcmp(head + NIFTI_MAGIC, "ni1", 4))
         *out = &nifti;
     return RELUME_OK;

@@ -15,6 +15,8 @@ relume_status volume_read_nifti(struct store *s, const char *path,
                                 const struct relume_volume_params *params);
 relume_status volume_read_slices(struct store *s, const char *path,
                                  const struct relume_volume_params *params);
+relume_status volume_read_pages(struct store *s, const char *path,
+                                const struct relume_volume_params *params);
 
 // All samples from where `from` stands, layer by layer; what follows them is passed over, unless
 // `exact`.

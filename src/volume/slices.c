@@ -1,10 +1,12 @@
-// slices.c - volumes of pictures in a folder: the first is the layer z = 0
+// slices.c - volumes of pictures, in a folder or the pages of a TIFF: the first is the layer z = 0
 #include "volume/readers.h"
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/picture.h"
 
+#include <errno.h>
 #include <math.h>
 #include <string.h>
 
@@ -108,5 +110,88 @@ relume_status volume_read_slices(struct store *s, const char *path,
     }
     s->path = path;
     relume_photographs_free(&list);
+    return status;
+}
+
+// ---------------------------------------------------------------- pages
+
+enum { PAGES_MOST = 65536 };
+
+static uint64_t whole_at(const uint8_t *at, int bytes, bool big)
+{
+    uint64_t v = 0;
+    for (int i = 0; i < bytes; i++)
+        v |= (uint64_t)at[i] << 8 * (big ? bytes - 1 - i : i);
+    return v;
+}
+
+// Directories follow each other (TIFF 6.0; BigTIFF): so many entries, then where the next one is;
+// -1 where one lies beyond the end of the file. Readers of pictures take that for the last one.
+static int chain_length(struct infile *in)
+{
+    uint8_t word[16] = {0};
+    bool good = infile_read(in, word, sizeof word, 0) >= 8;
+    const bool big_end = word[0] == 'M', wide = whole_at(word + 2, 2, big_end) == 43;
+    const int place = wide ? 8 : 4, number = wide ? 8 : 2, entry = wide ? 20 : 12;
+    uint64_t at = whole_at(word + (wide ? 8 : 4), place, big_end);
+    int count = 0;
+    for (; good && at && count <= PAGES_MOST; count++) {
+        good = at < in->size && infile_read(in, word, (size_t)number, at) == number;
+        const uint64_t entries = whole_at(word, number, big_end);
+        good = good && entries < 65536;
+        at += (uint64_t)number + entries * (uint64_t)entry;
+        good = good && infile_read(in, word, (size_t)place, at) == place;
+        at = whole_at(word, place, big_end);
+    }
+    return good ? count : -1;
+}
+
+static relume_status count_pages(int *count, const char *path, const struct relume_log *log)
+{
+    struct infile in;
+    if (!infile_open(&in, path, NULL, log))
+        return relume_input_fail(log, path, "cannot be opened", errno);
+    *count = chain_length(&in);
+    infile_close(&in);
+    if (*count < 0)
+        return log_fail(log, RELUME_EDAMAGED, "%s: truncated or damaged TIFF; a page is missing",
+                        path);
+    return *count > 1 ? RELUME_OK
+                      : log_fail(log, RELUME_EUNFIT,
+                                 "%s: a TIFF of one page; expected several, or a folder with a "
+                                 "picture for each slice",
+                                 path);
+}
+
+static relume_status turn_to(picture_reader *reader, int page, const char *path,
+                             const struct relume_volume_params *p)
+{
+    const relume_status status = picture_turn(reader, page, limits_of(p->limits, p->log));
+    return status && status != RELUME_ENOMEM ? log_fail(p->log, RELUME_EDAMAGED, "%s: page %d: %s",
+                                                        path, page + 1, picture_error(reader))
+                                             : status;
+}
+
+relume_status volume_read_pages(struct store *s, const char *path,
+                                const struct relume_volume_params *p)
+{
+    picture_reader *reader;
+    int count = 0;
+    relume_status status = count_pages(&count, path, s->log);
+    if (!status)
+        status = picture_open(&reader, path, NULL, p->limits, s->log);
+    if (status)
+        return status;
+    const struct picture_info *info = picture_info_of(reader);
+    for (int z = 0; z < count && !status; z++) {
+        status = turn_to(reader, z, path, p);
+        if (!status)
+            status = z ? check_like(s, info) : begin(s, info, count, p);
+        if (!status)
+            status = take_picture(s, reader);
+        if (!status && !log_progress(s->log, "reading", (z + 1.0) / count))
+            status = RELUME_ECANCEL;
+    }
+    picture_close(&reader);
     return status;
 }

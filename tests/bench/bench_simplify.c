@@ -157,8 +157,35 @@ static void shade(float *rgb, vec3 n, vec3 light)
     rgb[0] = rgb[1] = rgb[2] = (float)v;
 }
 
+// A picture, and the pixels in which one surface ends before another, or before nothing.
+struct view {
+    struct relume_image picture;
+    uint8_t *edge;  // [size][size]
+};
+
+static void view_free(struct view *v)
+{
+    relume_image_destroy(&v->picture);
+    free(v->edge);
+}
+
+// Of pictures of twice the size; neighbours of one surface differ by less than some pixels.
+static void find_edges(uint8_t *edge, const float *depth, int size)
+{
+    const float STEP = 6.0f;
+    for (int j = 0; j + 1 < size; j++)
+        for (int i = 0; i + 1 < size; i++) {
+            const float d = depth[j * size + i], right = depth[j * size + i + 1],
+                        down = depth[(j + 1) * size + i];
+            const bool nothing = isinf(d) && isinf(right) && isinf(down);
+            if (!nothing && !(fabsf(d - right) < STEP && fabsf(d - down) < STEP))
+                edge[j / 2 * (size / 2) + i / 2] = 1;
+        }
+}
+
 // Seen along z after turning about y, from afar.
-static struct relume_image draw_fine(const struct relume_mesh *m, int size, int picture)
+static struct relume_image draw_fine(const struct relume_mesh *m, int size, int picture,
+                                     uint8_t *edge)
 {
     const double phi = 2.0 * 3.14159265358979 * picture / PICTURES, c = cos(phi), s = sin(phi);
     const vec3 light = vec3_unit(vec3_of(picture % 2 ? 0.7 : -0.5, 0.6, 0.6));
@@ -202,34 +229,42 @@ static struct relume_image draw_fine(const struct relume_mesh *m, int size, int 
                     shade(out.data + 3 * (j * size + i), vec3_unit(normal), light);
             }
     }
+    find_edges(edge, depth, size);
     free(depth);
     return out;
 }
 
 // Four samples a pixel.
-static struct relume_image draw(const struct relume_mesh *m, int size, int picture)
+static struct view draw(const struct relume_mesh *m, int size, int picture)
 {
-    struct relume_image fine = draw_fine(m, 2 * size, picture), out;
-    must(!relume_image_scale(&out, &fine, size, size, NULL));
+    struct view out = {.edge = calloc((size_t)size * (size_t)size, 1)};
+    must(out.edge != NULL);
+    struct relume_image fine = draw_fine(m, 2 * size, picture, out.edge);
+    must(!relume_image_scale(&out.picture, &fine, size, size, NULL));
     relume_image_destroy(&fine);
     return out;
 }
 
-// Where the surface is seen, some pixels away from its outline: what is left of shading.
-static struct relume_image inside(const struct relume_image *a, const struct relume_image *b)
+// Where the surface is seen in both, some pixels away from all outlines: what is left of shading.
+// Elsewhere the first becomes the second: an outline that moves is so bright a step that its coarse
+// part is seen all over the surface.
+static struct relume_image inside(struct view *a, const struct view *b)
 {
     enum { AWAY = 3 };
     struct relume_image mask;
-    const int n = a->width;
+    const int n = a->picture.width;
     must(!relume_image_create(&mask, n, n, 1));
     for (int y = AWAY; y < n - AWAY; y++)
         for (int x = AWAY; x < n - AWAY; x++) {
-            bool all = true;
+            bool all = a->picture.data[3 * (y * n + x)] > 0.0f;
             for (int j = y - AWAY; j <= y + AWAY; j++)
                 for (int i = x - AWAY; i <= x + AWAY; i++)
-                    all &= a->data[3 * (j * n + i)] > 0.019f && b->data[3 * (j * n + i)] > 0.019f;
+                    all &= !a->edge[j * n + i] && !b->edge[j * n + i];
             mask.data[y * n + x] = all;
         }
+    for (int i = 0; i < n * n; i++)
+        if (!(mask.data[i] > 0.5f))
+            memcpy(a->picture.data + 3 * i, b->picture.data + 3 * i, 3 * sizeof(float));
     return mask;
 }
 
@@ -238,21 +273,21 @@ struct judged {
     double of[MEASURES];
 };
 
-static struct relume_image original[PICTURES];
+static struct view original[PICTURES];
 
 static void look(struct judged *j, const struct relume_mesh *m, double ppd)
 {
     j->of[LIKE] = j->of[NOWHERE] = 0.0;
     for (int i = 0; i < PICTURES; i++) {
-        struct relume_image picture = draw(m, original[i].width, i);
-        struct relume_image mask = inside(&picture, &original[i]);
+        struct view now = draw(m, original[i].picture.width, i);
+        struct relume_image mask = inside(&now, &original[i]);
         struct relume_jnd d;
-        must(!relume_image_jnd(&d, NULL, &picture, &original[i],
+        must(!relume_image_jnd(&d, NULL, &now.picture, &original[i].picture,
                                relume_jnd_params(.pixels_per_degree = ppd, .mask = &mask)));
         j->of[LIKE] += d.most / PICTURES;
         j->of[NOWHERE] += d.max / PICTURES;
         relume_image_destroy(&mask);
-        relume_image_destroy(&picture);
+        view_free(&now);
     }
 }
 
@@ -316,42 +351,53 @@ static size_t fewest(const struct relume_mesh *m, const struct grid *grid, doubl
     return (size_t)exp(high);
 }
 
+// How many of each the others need.
+static void others(const struct relume_mesh *small, const struct relume_mesh *m,
+                   const struct grid *grid, double ppd, const struct judged *own)
+{
+    for (int peer = 0; peer < 1 + (meshopt_simplify != NULL); peer++) {
+        size_t n[MEASURES];
+        for (int by = 0; by < MEASURES; by++)
+            n[by] = fewest(m, grid, ppd, own, (enum measure)by, peer);
+        printf("  %s: %zu as near, %zu for the 99%%, %zu for all: ratios %.2f, %.2f, %.2f\n",
+               peer ? "meshoptimizer" : "quadrics", n[NEAR], n[LIKE], n[NOWHERE],
+               (double)small->triangle_count / (double)n[NEAR],
+               (double)small->triangle_count / (double)n[LIKE],
+               (double)small->triangle_count / (double)n[NOWHERE]);
+        fflush(stdout);
+    }
+}
+
 static void compare(const char *name, const struct relume_mesh *m, double error)
 {
+    static const double jnd[] = {1.0, 4.0};
     const double seen_from = error / (2.0 * tan(3.14159265358979 / 180 / 60));
     const double width_deg = 2.0 * atan(0.5 / seen_from) * 180.0 / 3.14159265358979;
     const int size = (int)fmax(192.0, 20.0 * width_deg);
     const double ppd = size / width_deg;
     struct grid grid;
-    struct relume_mesh small;
     grid_create(&grid, m);
     for (int i = 0; i < PICTURES; i++)
         original[i] = draw(m, size, i);
-    const double start = now_s();
-    must(!relume_mesh_simplify(&small, NULL, m, relume_simplify_params(.error = error)));
-    const double time = now_s() - start;
-    struct judged own = {.of = {distance_of(&small, m, &grid)}};
-    look(&own, &small, ppd);
-    printf("%s %g%%: %zu triangles of %zu in %.2f s, distance %.3f%%, 99%% below %.2f JND, all "
-           "below %.2f\n",
-           name, 100 * error, small.triangle_count, m->triangle_count, time, 100 * own.of[NEAR],
-           own.of[LIKE], own.of[NOWHERE]);
-    fflush(stdout);
-    for (int peer = 0; peer < 1 + (meshopt_simplify != NULL); peer++) {
-        size_t n[MEASURES];
-        for (int by = 0; by < MEASURES; by++)
-            n[by] = fewest(m, &grid, ppd, &own, (enum measure)by, peer);
-        printf("  %s: %zu as near, %zu for the 99%%, %zu for all: ratios %.2f, %.2f, %.2f\n",
-               peer ? "meshoptimizer" : "quadrics", n[NEAR], n[LIKE], n[NOWHERE],
-               (double)small.triangle_count / (double)n[NEAR],
-               (double)small.triangle_count / (double)n[LIKE],
-               (double)small.triangle_count / (double)n[NOWHERE]);
+    for (size_t k = 0; k < sizeof jnd / sizeof *jnd; k++) {
+        struct relume_mesh small;
+        const double start = now_s();
+        must(!relume_mesh_simplify(&small, NULL, m,
+                                   relume_simplify_params(.error = error, .jnd = jnd[k])));
+        const double time = now_s() - start;
+        struct judged own = {.of = {distance_of(&small, m, &grid)}};
+        look(&own, &small, ppd);
+        printf("%s %g%% %g JND: %zu triangles of %zu in %.2f s, distance %.3f%%, 99%% below %.2f "
+               "JND, all below %.2f\n",
+               name, 100 * error, jnd[k], small.triangle_count, m->triangle_count, time,
+               100 * own.of[NEAR], own.of[LIKE], own.of[NOWHERE]);
         fflush(stdout);
+        others(&small, m, &grid, ppd, &own);
+        relume_mesh_free(&small);
     }
     grid_free(&grid);
-    relume_mesh_free(&small);
     for (int i = 0; i < PICTURES; i++)
-        relume_image_destroy(&original[i]);
+        view_free(&original[i]);
 }
 
 int main(int argc, char **argv)

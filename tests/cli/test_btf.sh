@@ -243,4 +243,17 @@ expect_fail 'levels in one file' 2 'expected --model gbrdf without --levels, or 
 expect_fail 'a picture is no g-BRDF' 1 "plain.exr: no g-BRDF; expected a part named 'depth'" - "$RELUME" btf info plain.exr
 head -c 3000 planted.exr >cut.exr
 expect_fail 'a cut g-BRDF' 1 'cut.exr' - "$RELUME" btf info cut.exr
+# an object that names no material shows what its mesh does: here colours of vertices
+printf 'v -1 -1 0 1 0 0\nv 1 -1 0 0 1 0\nv 1 1 0 0 0 1\nv -1 1 0 1 1 1\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\n' >colours.obj
+echo '{"format":"relume-objects","version":1,"objects":[{"mesh":"colours.obj"}]}' >colours.json
+expect_ok 'a mesh in its own colours' - "$RELUME" btf render colours.json -o cpu.exr --eye 0,0,4 --picture 48x48 -q
+expect_ok 'in relume-view' - "$VIEWER" colours.json --eye 0,0,4 --size 48x48 --offscreen gl.exr
+above 'as the reference' "$("$RELUME" compare cpu.exr gl.exr | sed -n 's/^psnr_db *//p')" 40
+sed '/^v /s/ [01] [01] [01]$/ 1 1 1/' colours.obj >white.obj
+sed 's/colours/white/' colours.json >white.json
+expect_ok 'a white one' - "$RELUME" btf render white.json -o white.exr --eye 0,0,4 --picture 48x48 -q
+check 'is another' sh -c "'$RELUME' compare cpu.exr white.exr | awk '/max_abs/ { exit !(\$2 > 0.5) }'"
+sed '/^v /s/ [01] [01] [01]$//' colours.obj >bare.obj
+sed 's/colours/bare/' colours.json >bare.json
+expect_fail 'a mesh of no colour' 1 "bare.obj: part 'all' has no material, here or in the description" x.png "$RELUME" btf render bare.json -o x.png
 finish

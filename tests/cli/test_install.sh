@@ -16,7 +16,9 @@ if ! make -s -C "$TOP" config=$config install PREFIX="$prefix" >install.txt 2>&1
 fi
 version=$(sed -n 's/^#define RELUME_VERSION "\(.*\)"/\1/p' "$TOP/include/relume/base.h")
 for file in bin/relume bin/relume-view lib/librelume.a lib/librelume.so lib/librelume.so.${version%%.*} \
-    lib/pkgconfig/relume.pc share/doc/relume/LICENSE share/bash-completion/completions/relume; do
+    lib/pkgconfig/relume.pc share/doc/relume/LICENSE share/bash-completion/completions/relume \
+    share/applications/relume-view.desktop share/mime/packages/relume.xml share/icons/hicolor/scalable/apps/relume.svg \
+    share/icons/hicolor/128x128/apps/relume.png share/metainfo/org.relume.View.metainfo.xml; do
     check "installs $file" test -s "$prefix/$file"
 done
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"

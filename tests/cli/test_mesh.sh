@@ -58,7 +58,7 @@ above 'a folder of slices' "$(field triangles floats.json)" 100
 "$RELUME" mesh bytes --threshold 116.732 -o bytes.ply --json -q >bytes.json
 below 'of 16 and of 8 bits, near to each other' "$(awk -v a="$(field triangles words.json)" -v b="$(field triangles bytes.json)" 'BEGIN { print (a / b - 1) ^ 2 }')" 0.01
 cp ball.raw one.tif && printf 'II*\0' | dd of=one.tif conv=notrunc 2>/dev/null
-expect_fail 'a TIFF of several pages' 1 'expected a folder' x.ply "$RELUME" mesh one.tif --threshold 100 -o x.ply
+expect_fail 'a broken TIFF' 1 'one.tif' x.ply "$RELUME" mesh one.tif --threshold 100 -o x.ply
 expect_ok 'depth becomes a mesh' - "$RELUME" mesh box.exr -o box.ply -q
 check 'with colours' grep -qa 'property uchar red' box.ply
 "$RELUME" mesh box.exr -o plain.ply --no-colours --json --threads 2 >json

@@ -5,8 +5,8 @@ site_relit="$BUILD/tests/tools/site_relit"
 publish() { "$RELUME" publish "$@" 2>err.txt || not_ok "publish $*" "$(cat err.txt)"; }
 
 "$sphere" planar --size 130 --lights 24 --hemisphere --format png || exit 1
-"$sphere" slab --size 40 --lights 16 --hemisphere --views 2 || exit 1
-"$sphere" wrap --size 48 --lights 20 --shade wrap --format png --mask || exit 1
+"$sphere" slab --size 32 --lights 12 --hemisphere --views 2 || exit 1
+"$sphere" wrap --size 32 --lights 16 --shade wrap --format png --mask || exit 1
 fresh wrap round
 sed 's/"planar"/"cylindrical"/; /"window"/d' wrap/capture.json >round/capture.json
 plain="--shadows no --highlights no"
@@ -100,7 +100,7 @@ bad_metadata '{"files": []}' 'with a member for each file'
 bad_metadata '{' 'JSON'
 
 # ---- whole or not at all
-"$RELUME" publish round.exr slab.exr -o one --threads 1 -q && "$RELUME" publish round.exr slab.exr -o three --threads 3 -q
+"$RELUME" publish wrap.exr slab.exr -o one --threads 1 -q && "$RELUME" publish wrap.exr slab.exr -o three --threads 3 -q
 check 'equal files for any threads' diff -r one three
 mkdir mine && echo x >mine/keep
 expect_fail 'a folder with files' 2 'mine: already exists.*--force' - "$RELUME" publish round.exr -o mine

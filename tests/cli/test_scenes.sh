@@ -15,6 +15,7 @@ scene() { # members besides format and captures
         "parts":[{"material":{"diffuse":0.7}}]}],"look_at":[0,-0.6,-1.6],"size":[48,32]'"$1}"
 }
 scene '' >scene.json
+scene ',"eye":[0.1,0.2,0]' >eyed.json
 scene ',"lights":["dir 0 1 0.3","dir 1 1 0 rgb 1 .5 .2"]' >lit.json
 
 expect_ok 'a picture' - "$RELUME" relight scene.json -o a.exr --light 'dir 0 1 0.3' -q
@@ -25,6 +26,11 @@ expect_ok 'under the lights of the file' - "$RELUME" relight lit.json -o c.exr -
 expect_ok 'under the same by hand' - "$RELUME" relight scene.json -o d.exr -q --light 'dir 0 1 0.3' --light 'dir 1 1 0 rgb 1 .5 .2'
 check 'is the same' cmp c.exr d.exr
 expect_ok 'from another eye' - "$RELUME" relight scene.json -o e.exr -q --eye 0.3,0.2,0.1 --look-at 0,-0.6,-1.6 --fov 60 --size 40x
+expect_ok 'with the eye of the file turned' - "$RELUME" relight eyed.json -o t.exr -q --look-at 0.3,-0.5,-1.6 --fov 60 --up 0.1,1,0
+check 'as if it were named' sh -c "'$RELUME' relight scene.json -o n.exr -q --eye 0.1,0.2,0 --look-at 0.3,-0.5,-1.6 --fov 60 --up 0.1,1,0 && cmp t.exr n.exr"
+expect_ok 'in the viewer, too' - "$VIEWER" eyed.json --offscreen t.exr --look-at 0.3,-0.5,-1.6 --fov 60 --up 0.1,1,0
+check 'byte for byte' cmp t.exr n.exr
+expect_fail 'a panorama, which has no eye to turn' 2 'turn the eye of slabs and scene files' x.exr "$RELUME" relight room.exr -o x.exr --look-at 0,0,-1
 expect_ok 'with light between' - "$RELUME" relight scene.json -o f.exr -q --light 'dir 0 1 0.3' --transport ssdo
 check 'which changes it' sh -c "'$RELUME' compare a.exr f.exr | awk '/max_abs/ { exit !(\$2 > 0.01) }'"
 expect_ok 'an environment' - "$RELUME" relight scene.json -o g.png -q --light 'area 0 1 -1 0.3 0 0 0 0 0.3' --samples 1

@@ -82,7 +82,9 @@ expect_ok 'sweep' - "$RELUME" sweep ring --basis sh --coefficients 1 --leave-out
 # ---- what does not go
 expect_fail 'an eye without a view' 1 'sees nothing of the slabs' x.exr "$RELUME" relight ring.exr -o x.exr --eye 0,9,0.1 --interpolate linear -q
 expect_fail 'a focus behind the eye' 2 'on or behind the eye; expected less than 3.16' y.exr "$RELUME" relight ring.exr -o y.exr --eye 1,0,3 --focus 4 -q
-expect_fail 'looking without an eye' 2 'need --eye' x.exr "$RELUME" relight ring.exr -o x.exr --look-at 0,0,0 -q
+expect_ok 'looking without an eye' - "$RELUME" relight ring.exr -o turned.exr --look-at 0.2,0,0 -q
+check 'turns the usual one' sh -c "'$RELUME' relight ring.exr -o usual.exr -q && ! cmp -s usual.exr turned.exr"
+expect_fail 'looking there from a captured view' 2 'turn an eye; leave out --view' x.exr "$RELUME" relight ring.exr -o x.exr --view 0 --look-at 0,0,0 -q
 expect_fail 'a ray beside all cameras' 1 'this ray is not in the file' - "$RELUME" query ring.exr --eye 9,0,0 --direction 0,0,1 -q
 expect_fail 'export' 1 'slabs around an object' x.ptm "$RELUME" export ring.exr --to ptm -o x.ptm -q
 synth one --views 2x1 --lights 1

@@ -41,4 +41,14 @@ expect_fail 'corners alone' 2 'corners needs --target' no "$RELUME" capture s/*.
 expect_fail 'seven numbers' 2 'eight numbers' no "$RELUME" capture s/*.png --target t.png --target-corners 1,1,2,2,3,3,4 -o no
 sed 's/"provenance": {/"provenance": [{/;s/^  "projection"/], "projection"/' cap/capture.json >cap/odd.json
 expect_fail 'provenance that is none' 1 'odd.json' no "$RELUME" encode cap/odd.json -o no
+
+# ---- a profile out, and in again: the same light
+for e in jpg tif; do
+    expect_ok "a profile in .$e" - "$RELUME" relight f.exr -o lit.$e --icc
+    check ".$e has it" grep -qa acsp lit.$e
+    expect_ok "without in .$e" - "$RELUME" relight f.exr -o bare.$e
+    check "bare .$e has none" test -z "$(grep -ca acsp bare.$e | grep -v '^0$')"
+done
+expect_ok 'again' - "$RELUME" relight f.exr -o again.jpg --icc
+same 'the profile has no date' lit.jpg again.jpg
 finish

@@ -24,6 +24,19 @@ expect_ok 'samples and bounces' - "$RELUME" relight room.exr --objects ball.json
 expect_ok 'at every pixel' - "$RELUME" relight room.exr --objects ball.json $look -o each.exr --light 'dir 0 1 0' --transport micro --spacing 1 --samples 100 -q
 check 'nearly the same as at every fourth' sh -c "'$RELUME' compare each.exr micro.exr | awk '/^rms/ { exit !(\$2 > 0 && \$2 < 0.02) }'"
 
+
+# small pictures do for matte objects; what shines, here by its own library, gets larger ones
+expect_ok 'pictures of 8 x 8' - "$RELUME" relight room.exr --objects ball.json $look -o small.exr --light 'dir 0 1 0' --transport micro --samples 64 -q
+check 'are the default' cmp small.exr micro.exr
+printf 'newmtl shiny\nKd 0.8 0.4 0.2\nPr 0.3\n' >shiny.mtl
+{ printf 'mtllib shiny.mtl\nusemtl shiny\n' && cat ball.obj; } >shiny.obj
+objects '0,-0.6,-1.4' 0 | sed 's/"ball.obj"/"shiny.obj"/; s/"parts":\[[^]]*\],//' >shiny.json
+for samples in '' '--samples 256'; do
+    expect_ok "gloss $samples" - "$RELUME" relight room.exr --objects shiny.json $look -o "shiny$samples.exr" --light 'dir 0 1 0' --transport micro $samples -q
+done
+check 'is drawn in 16 x 16' cmp shiny.exr 'shiny--samples 256.exr'
+check 'and shines' sh -c "'$RELUME' compare shiny.exr micro.exr | awk '/max_abs/ { exit !(\$2 > 0.02) }'"
+
 check 'by virtual lights' sh -c "'$RELUME' compare none.exr ism.exr | awk '/max_abs/ { exit !(\$2 > 0.02) }'"
 check 'as exact shadows have it' sh -c "'$RELUME' compare radiosity.exr ism.exr | awk '/rms/ { exit !(\$2 < 0.02) }'"
 expect_ok 'one light a pixel' - "$RELUME" relight room.exr --objects ball.json $look -o few.exr --transport ism --samples 1 --bounces 0 -q

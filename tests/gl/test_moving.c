@@ -209,14 +209,16 @@ static void check_lights(struct relighter *r, struct world *w, const char *name,
     relume_shadows_destroy(&shadows);
 }
 
-// Near lights stand about the eye.
-static void check_world(struct world *w, const char *name, struct relume_vec3 eye)
+// Near lights stand about the eye, one of them behind what hangs there, which shades nothing then.
+static void check_world(struct world *w, const char *name, struct relume_vec3 eye,
+                        struct relume_vec3 behind)
 {
     const struct code_source source = {fetch, NULL, w, find_surface, find_shadows};
     const struct relume_light lights[] = {
         {.kind = RELUME_LIGHT_POINT,
          .position = {eye.x + 0.3, eye.y + 0.2, eye.z - 0.1},
          .rgb = {1, 0.9f, 0.7f}},
+        {.kind = RELUME_LIGHT_POINT, .position = behind, .rgb = {0.1f, 0.1f, 0.2f}},
         {.kind = RELUME_LIGHT_SPOT,
          .position = {eye.x - 0.2, eye.y + 0.3, eye.z},
          .direction = {0.1, -0.1, -1},
@@ -240,11 +242,12 @@ static void check_world(struct world *w, const char *name, struct relume_vec3 ey
 }
 
 static void check(const char *name, const struct relume_geometry *g, double far,
-                  enum relume_domain domain, bool pole_y, struct relume_vec3 eye)
+                  enum relume_domain domain, bool pole_y, struct relume_vec3 eye,
+                  struct relume_vec3 behind)
 {
     struct world w;
     world_open(&w, g, far, domain, pole_y);
-    check_world(&w, name, eye);
+    check_world(&w, name, eye, behind);
     world_close(&w);
 }
 
@@ -254,7 +257,8 @@ static void parallel_rays(void **state)
 {
     (void)state;
     const struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, W, H);
-    check("planar", &g, g.camera_z, RELUME_DOMAIN_LINEAR, false, (struct relume_vec3){0, 0, 1.5});
+    check("planar", &g, g.camera_z, RELUME_DOMAIN_LINEAR, false, (struct relume_vec3){0, 0, 1.5},
+          (struct relume_vec3){0, 0.1, 0.4});
 }
 
 static void a_turned_slab(void **state)
@@ -265,23 +269,25 @@ static void a_turned_slab(void **state)
     g.pose =
         (struct relume_pose){.axis = {{c, s, 0}, {-s, c, 0}, {0, 0, 1}}, .origin = {0.2, 0.1, 0.3}};
     check("slab", &g, g.uv_z - g.st_z, RELUME_DOMAIN_DISPLAY, false,
-          (struct relume_vec3){0.2, 0.1, 1.8});
+          (struct relume_vec3){0.2, 0.1, 1.8}, (struct relume_vec3){0.2, 0.2, 0.5});
 }
 
 static void rooms(void **state)
 {
     (void)state;
     const struct relume_geometry cylinder = relume_geometry_default(RELUME_CYLINDRICAL, W, H);
+    const struct relume_vec3 behind = {0, 0.1, -1.35};
     const struct relume_geometry sphere = relume_geometry_default(RELUME_SPHERICAL, W, H);
-    check("cylinder", &cylinder, 1.5, RELUME_DOMAIN_LINEAR, true, cylinder.center);
-    check("sphere", &sphere, 1.5, RELUME_DOMAIN_LINEAR, true, sphere.center);
+    check("cylinder", &cylinder, 1.5, RELUME_DOMAIN_LINEAR, true, cylinder.center, behind);
+    check("sphere", &sphere, 1.5, RELUME_DOMAIN_LINEAR, true, sphere.center, behind);
 }
 
 static void highlights(void **state)
 {
     (void)state;
     const struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, W, H);
-    check("highlights", &g, 0.0, RELUME_DOMAIN_DISPLAY, false, (struct relume_vec3){0, 0, 1.5});
+    check("highlights", &g, 0.0, RELUME_DOMAIN_DISPLAY, false, (struct relume_vec3){0, 0, 1.5},
+          (struct relume_vec3){0, 0.1, 0.4});
 }
 
 // The library then has near lights.

@@ -264,7 +264,7 @@ static void what_is_broken_is_told(void **state)
     } list[] = {
         {"nowhere.png", "nowhere.png: "},
         {"../../secret.png", "/secret.png: "},
-        {"data:image/png;base64,iVBORw0KGgo=", "square.gltf ("},
+        {"data:image/png;base64,iVBORw0KGgo=", "square.gltf, picture 0: "},
         {"square.gltf", "square.gltf: "},
     };
     relume_objects *o;

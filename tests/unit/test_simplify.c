@@ -71,6 +71,13 @@ static vec3 tube(double s, double t)
     return vec3_of(n.x, n.y, 3 * t);
 }
 
+// A sheet whose rim is a comb.
+static vec3 comb(double s, double t)
+{
+    return vec3_of(s, t + (1 - t) * 0.3 * fabs(sin(5 * M_PI * s)), 0);
+}
+
+static const struct surface comb_of = {30, 30, false, false, false, comb, up};
 static const struct surface plane_of = {20, 20, false, false, false, sheet, up};
 static const struct surface torus_of = {48, 32, true, true, false, torus, torus_normal};
 static const struct surface tube_of = {40, 30, true, false, true, tube, tube_normal};
@@ -160,7 +167,8 @@ static void test_torus(void **state)
     struct relume_mesh m = make(&torus_of), small;
     struct relume_simplified r;
     const double diagonal = diagonal_of(&m);
-    CHECK_OK(relume_mesh_simplify(&small, &r, &m, relume_simplify_params(.error = 0.005)));
+    CHECK_OK(
+        relume_mesh_simplify(&small, &r, &m, relume_simplify_params(.error = 0.005, .jnd = 4)));
     assert_true(small.triangle_count < m.triangle_count / 3);
     // the wraps in t have vertices of their own, at the same places
     assert_true(is_closed(&small));
@@ -170,6 +178,36 @@ static void test_torus(void **state)
     assert_true(r.distance <= 0.005 * 1719.0);
     CHECK_NEAR(distance_of(&small, &m), 0.0, 1e-6);  // vertices are the original's
     free(r.step);
+    relume_mesh_free(&small);
+    relume_mesh_free(&m);
+}
+
+// Triangles across the gaps of a comb would have all vertices of the original near them, or on
+// them, and would not be near it themselves.
+static void test_both_ways(void **state)
+{
+    (void)state;
+    const double error = 0.02;
+    struct relume_mesh m = make(&comb_of), small;
+    const double diagonal = diagonal_of(&m);
+    CHECK_OK(
+        relume_mesh_simplify(&small, NULL, &m, relume_simplify_params(.error = error, .jnd = 100)));
+    assert_true(small.triangle_count < m.triangle_count / 2);
+    double worst = 0.0;
+    for (size_t t = 0; t < small.triangle_count; t++) {
+        const vec3 p[3] = {at(&small, small.triangle[t][0]), at(&small, small.triangle[t][1]),
+                           at(&small, small.triangle[t][2])};
+        for (int k = 0; k < 4; k++) {
+            const vec3 sum = vec3_add(vec3_add(p[0], p[1]), p[2]);
+            const vec3 q = k == 3 ? vec3_scale(sum, 1.0 / 3.0)
+                                  : vec3_scale(vec3_add(p[k], p[(k + 1) % 3]), 0.5);
+            double best = INFINITY;
+            for (size_t u = 0; u < m.triangle_count; u++)
+                best = fmin(best, to_triangle(&m, m.triangle[u], q));
+            worst = fmax(worst, best);
+        }
+    }
+    assert_true(worst <= error * diagonal * (1.0 + 1e-6));
     relume_mesh_free(&small);
     relume_mesh_free(&m);
 }
@@ -379,7 +417,7 @@ int main(void)
         cmocka_unit_test(test_what_counts), cmocka_unit_test(test_visible),
         cmocka_unit_test(test_steps),       cmocka_unit_test(test_texture),
         cmocka_unit_test(test_parts),       cmocka_unit_test(test_count),
-        cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_broken),      cmocka_unit_test(test_both_ways),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

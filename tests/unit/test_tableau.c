@@ -311,6 +311,66 @@ static void light_goes_between_them(void **state)
     relume_tableau_destroy(&t);
 }
 
+// What a ball shows on average of an even sky, below a lid of half side 0.5 at `lid`.
+static double below_lid(const char *lid, const char *way, int samples, relume_environment *even)
+{
+    const struct relume_camera aside = {.framing = RELUME_FRAME_EYE,
+                                        .eye = {0, -3, 0.9},
+                                        .look_at = {true, {0, 0, 0.3}, {0, 0, 1}, 20},
+                                        .width = 40,
+                                        .height = 30};
+    const struct relume_light sky = {
+        .kind = RELUME_LIGHT_ENVIRONMENT, .environment = even, .rgb = {1, 1, 1}};
+    char text[1024];
+    struct relume_image which, got;
+    double sum = 0.0;
+    int pixels = 0;
+    snprintf(
+        text, sizeof text,
+        HEAD
+        "\"captures\":[{\"file\":\"grey.exr\"},{\"file\":\"white.exr\",\"pose\":{\"scale\":"
+        "0.5,\"translate\":[%s]}}],\"objects\":[{\"mesh\":\"ball.obj\",\"pose\":{\"scale\":0.2,"
+        "\"translate\":[0,0,0.3]},\"parts\":[{\"material\":{\"diffuse\":0.8}}]}]}",
+        lid);
+    relume_tableau *t = open_scene(text);
+    CHECK_OK(relume_tableau_which(&which, t, &aside));
+    CHECK_OK(relume_tableau_frame(
+        &got, t, &aside, &sky, 1,
+        relume_render_params(.samples = samples, .transport = relume_transport_find(way))));
+    for (int i = 0; i < 40 * 30; i++)
+        if (which.data[i] == 2.0f) {
+            sum += (double)got.data[3 * i];
+            pixels++;
+        }
+    relume_image_destroy(&which);
+    relume_image_destroy(&got);
+    relume_tableau_destroy(&t);
+    assert_true(pixels > 100);
+    return sum / pixels;
+}
+
+// Also where the share of the sky is found once a pixel, for several rays.
+static void captures_hide_skies_from_objects(void **state)
+{
+    (void)state;
+    static const char *const ways[] = {"none", "ssdo"};
+    relume_environment *even;
+    struct relume_image map;
+    CHECK_OK(relume_image_create(&map, 16, 8, 3));
+    for (int i = 0; i < 16 * 8 * 3; i++)
+        map.data[i] = 1.0f;
+    CHECK_OK(relume_environment_create(&even, &map, NULL));
+    relume_image_destroy(&map);
+    for (int i = 0; i < 2; i++) {
+        const double open = below_lid("50,0,0", ways[i], 3, even);
+        const double once = below_lid("0,0,0.8", ways[i], 3, even);
+        const double each = below_lid("0,0,0.8", ways[i], 1, even);
+        assert_true(once < 0.8 * open);
+        CHECK_NEAR(once, each, 0.02);
+    }
+    relume_environment_destroy(&even);
+}
+
 // ---------------------------------------------------------------- bad input
 
 static void bad_scenes_are_refused(void **state)
@@ -385,6 +445,7 @@ int main(void)
         cmocka_unit_test(panoramas_are_seen_from_inside),
         cmocka_unit_test(meshes_give_way_to_captures),
         cmocka_unit_test(light_goes_between_them),
+        cmocka_unit_test(captures_hide_skies_from_objects),
         cmocka_unit_test(bad_scenes_are_refused),
         cmocka_unit_test(an_eye_must_look_somewhere),
     };

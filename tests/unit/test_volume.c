@@ -145,9 +145,6 @@ static void test_raw_that_does_not_fit(void **state)
     assert_int_equal(
         open_it(&v, name(".raw"), *relume_volume_params(.size = {2, 2, 2}, .type = "f32")),
         RELUME_EDAMAGED);
-    write_file(name(".raw"), "II*\0 of several pages", 22);
-    assert_int_equal(open_it(&v, name(".raw"), *relume_volume_params(.size = {3, 5, 2})),
-                     RELUME_EUNSUPPORTED);
     memset(file, 7, sizeof file);
     write_file(name(".raw"), file, sizeof file);
     assert_int_equal(open_it(&v, name(".raw"), *relume_volume_params(.size = {3, 5, 2})),
@@ -399,6 +396,62 @@ static void test_nifti(void **state)
     unlink(name(".hdr"));
 }
 
+// ---------------------------------------------------------------- TIFF
+
+// Pages of 4 x 3 samples of 8 or 16 bits, not packed (TIFF 6.0): samples, then the directory.
+static size_t make_tiff(uint8_t *file, int pages, int bytes)
+{
+    const int entries[9][3] = {{256, 4, 4}, {257, 4, 3}, {258, 3, 8 * bytes},
+                               {259, 3, 1}, {262, 3, 1}, {273, 4, 0},
+                               {277, 3, 1}, {278, 4, 3}, {279, 4, 12 * bytes}};
+    uint32_t at = 8, words[2] = {0x002a4949, 0};
+    memcpy(file, words, 8);
+    uint8_t *next = file + 4;
+    for (int p = 0; p < pages; p++) {
+        const uint32_t samples = at;
+        for (int i = 0; i < 12; i++, at += (uint32_t)bytes) {
+            file[at] = (uint8_t)(10 * p + i);
+            if (bytes == 2)
+                file[at + 1] = 1;
+        }
+        memcpy(next, &at, 4);
+        memcpy(file + at, (const uint16_t[]){9}, 2);
+        at += 2;
+        for (int e = 0; e < 9; e++, at += 12) {
+            const uint16_t head[2] = {(uint16_t)entries[e][0], (uint16_t)entries[e][1]};
+            const uint32_t rest[2] = {1, entries[e][0] == 273 ? samples : (uint32_t)entries[e][2]};
+            memcpy(file + at, head, 4);
+            memcpy(file + at + 4, rest, 8);
+        }
+        next = file + at;
+        memset(next, 0, 4);
+        at += 4;
+    }
+    return at;
+}
+
+static void test_pages_of_a_tiff(void **state)
+{
+    (void)state;
+    uint8_t file[2048];
+    relume_volume *v;
+    for (int bytes = 1; bytes <= 2; bytes++) {
+        write_file(name(".tif"), file, make_tiff(file, 5, bytes));
+        assert_int_equal(open_it(&v, name(".tif"), *relume_volume_params(.type = NULL)), RELUME_OK);
+        const double more = bytes == 2 ? 256.0 : 0.0;
+        expect_samples(v, (const int[3]){4, 3, 5}, more, more + 1.0, more + 51.0);
+        assert_string_equal(relume_volume_info(v).format, "slices");
+        relume_volume_destroy(&v);
+    }
+    write_file(name(".tif"), file, make_tiff(file, 1, 1));
+    assert_int_equal(open_it(&v, name(".tif"), *relume_volume_params(.type = NULL)), RELUME_EUNFIT);
+    const size_t size = make_tiff(file, 3, 1);
+    write_file(name(".tif"), file, size - 60);  // in the last directory
+    assert_true(
+        relume_status_is_input(open_it(&v, name(".tif"), *relume_volume_params(.type = NULL))));
+    unlink(name(".tif"));
+}
+
 // What a file only claims gets no room: where there is none the sentence is still about the file.
 static void test_claims_without_samples(void **state)
 {
@@ -433,6 +486,7 @@ int main(void)
         cmocka_unit_test(test_packed_in_members),
         cmocka_unit_test(test_nrrd),
         cmocka_unit_test(test_nifti),
+        cmocka_unit_test(test_pages_of_a_tiff),
         cmocka_unit_test(test_claims_without_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

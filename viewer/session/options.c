@@ -7,6 +7,7 @@
 #include "program/options.h"
 #include "program/say.h"
 
+#include <relume/tableau.h>
 #include <relume/tone.h>
 #include <relume/transport.h>
 
@@ -96,11 +97,12 @@ static const struct option options[] = {
     POINT("--eye", start.camera.eye, "x,y,z",
           "slab, scene file: look from there; default: the middle of the cameras, the file's eye"),
     POINT("--look-at", start.camera.look_at.at, "x,y,z",
-          "--eye: the point looked at; default: the middle of the object"),
+          "--eye, scene file: the point looked at; default: the middle of the object"),
     POINT("--up", start.camera.look_at.up, "x,y,z",
-          "--eye: the direction that is up in the picture; default: 0,1,0"),
+          "--eye, scene file: the direction that is up in the picture; default: 0,1,0"),
     NUMBER("--fov", start.camera.look_at.field_of_view_deg, "DEG",
-           "--eye: horizontal field of view; default: the slabs' windows, of objects alone all of "
+           "--eye, scene file: horizontal field of view; default: the slabs' windows, of objects "
+           "alone all of "
            "them",
            0.01, 179),
     NUMBER("--pan", start.camera.look.pan_deg, "DEG", "panorama: degrees to the right", -36000,
@@ -358,8 +360,9 @@ static relume_status choose_camera(struct options *o, const struct command_line 
     look->stereographic = o->projection != PERSPECTIVE;
     look->tilt_deg = o->projection == PLANET && !tilt ? -90.0 : look->tilt_deg;
     look->zoom = o->projection == PLANET && !zoom ? 0.5 : look->zoom;
-    if (relume_look_at_given(&camera->look_at) && !eye)
-        return say(log, RELUME_EINVAL, "--look-at, --up and --fov need --eye");
+    const bool scene = line->input[0] && !view && !looks && relume_tableau_is(line->input[0]);
+    if (relume_look_at_given(&camera->look_at) && !eye && !scene)
+        return say(log, RELUME_EINVAL, "--look-at, --up and --fov need --eye, or a scene file");
     return RELUME_OK;
 }
 

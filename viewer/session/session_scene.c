@@ -63,9 +63,8 @@ static void look(struct relume_camera *camera, const struct relume_camera *own)
     *camera = *own;
     camera->width = asked.width;
     camera->height = asked.height;
-    if (asked.framing != RELUME_FRAME_EYE)
-        return;
-    camera->eye = asked.eye;
+    if (asked.framing == RELUME_FRAME_EYE)
+        camera->eye = asked.eye;
     if (asked.look_at.aimed)
         camera->look_at.at = asked.look_at.at;
     if (vec3_length(asked.look_at.up) > 0.0)

@@ -15,7 +15,7 @@ struct export_options {
     bool force, allow_outside, keep_going;
 };
 #define OPTIONS struct export_options
-#define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h"
+#define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h", "olat"
 
 static const struct option options[] = {
     GROUP("output"),
@@ -24,7 +24,7 @@ static const struct option options[] = {
     GROUP("model"),
     NAME("--to", to, "FORMAT",
          "relight, ptm, lptm, rti, deepzoom, or bc1, bc7, bc6h: eigenimages as DDS textures with a "
-         "shader; "
+         "shader, or olat: one EXR with a layer for every light, for compositors; "
          "default: by OUT's ending (.ptm, .lptm, .rti), else relight",
          RELUME_EXCHANGE_RELIGHT, FORMATS),
     NAME("--type", type, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh",
@@ -64,7 +64,12 @@ static void say_result(const struct export_options *o, const struct relume_expor
     if (r->quality)
         snprintf(quality, sizeof quality, "quality %d%s, ", r->quality,
                  given(o, &o->quality) ? "" : " (chosen)");
-    if (r->exact)
+    if (r->layers)
+        announce(&o->args, RELUME_NOTE,
+                 "%s: %d layers, one for each light; weights for an environment: relume lights "
+                 "--environment sky.hdr %s",
+                 out, r->layers, out);
+    else if (r->exact)
         announce(&o->args, RELUME_NOTE, "%s: %d plane%s, copied unchanged: nothing is lost", out,
                  r->planes, relume_plural(r->planes));
     else
@@ -100,6 +105,11 @@ static relume_status choose_format(enum relume_exchange *to, const struct export
     const char *out = o->output, *ending = name_ending(out);
     const enum relume_exchange said = format_of_ending(ending);
     *to = given(o, &o->to) ? o->to : said;
+    if (*to == RELUME_EXCHANGE_OLAT) {
+        if (!strcasecmp(ending, ".exr"))
+            return RELUME_OK;
+        return usage_error("-o: %s: --to olat writes an .exr file; expected such a name", out);
+    }
     if (*ending && relume_image_can_save(out))
         return usage_error(
             "-o: %s: export writes no pictures; expected .ptm, .rti or the name of a "
@@ -123,6 +133,7 @@ static relume_status check(const struct export_options *o, enum relume_exchange 
 {
     const bool blocks = to >= RELUME_EXCHANGE_BC1 && to <= RELUME_EXCHANGE_BC6H;
     const bool folder = to == RELUME_EXCHANGE_RELIGHT || to == RELUME_EXCHANGE_DEEPZOOM;
+    const bool olat = to == RELUME_EXCHANGE_OLAT;
     const bool bytes = given(o, &o->bytes_per_pixel), psnr = given(o, &o->psnr);
     const char *only_folders = given(o, &o->type)         ? "--type"
                                : given(o, &o->colorspace) ? "--colorspace"
@@ -133,6 +144,9 @@ static relume_status check(const struct export_options *o, enum relume_exchange 
         return usage_error("--colorspace mycc: works only with --type bilinear and rbf");
     if (!folder && only_folders)
         return usage_error("%s: works only with --to relight and deepzoom", only_folders);
+    if (olat && (o->coefficients || o->quality || bytes || psnr))
+        return usage_error("%s: --to olat writes half floats under every light; leave it out",
+                           o->coefficients ? "--coefficients" : jpeg);
     if (blocks && (o->coefficients || o->quality || bytes || psnr))
         return usage_error("%s: textures have the size and the terms that they have; leave it out",
                            o->coefficients ? "--coefficients" : jpeg);

@@ -1,5 +1,5 @@
 // cmd_lights.c - relume lights: a pattern of directions and how even it is
-#include "cli.h"
+#include "lights_environment.h"
 
 #include <stdlib.h>
 
@@ -8,6 +8,8 @@ struct lights_options {
     int count, seed;
     enum { POLE_Z, POLE_Y } pole;
     bool hemisphere, json;
+    const char *environment, *csv;
+    enum recipe recipe;
     const struct relume_pattern *pattern;
 };
 #define OPTIONS struct lights_options
@@ -21,7 +23,16 @@ static const struct option options[] = {
     NAME("--pole", pole, "z|y", "the pole: z (planar, slab; default) or y (panoramas)", POLE_Z, "z",
          "y"),
     INT("--seed", seed, "S", "seed of the random patterns; default: 0", 0, 2147483647),
+    GROUP("an environment"),
+    TEXT("--environment", environment, "MAP",
+         "FILE's lights: the weight of each by which pictures under them add up to the light of "
+         "this HDR picture; degrees may follow it, as in --light \"env MAP 90\""),
     GROUP("output"),
+    TEXT_AS(OPTION_OUTPUT, "--csv", csv, "OUT", "--environment: write the weights to this file"),
+    NAME("--recipe", recipe, "PROGRAM",
+         "--environment: print what nuke, natron or blender needs to add up the layers of export "
+         "--to olat",
+         RECIPE_NUKE, "nuke", "natron", "blender"),
     FLAG("--json", json, "print one JSON object"),
     {0},
 };
@@ -38,9 +49,30 @@ static void print_json(const struct relume_pattern *pattern, bool hemisphere,
     puts("}");
 }
 
+static relume_status check(const struct lights_options *o)
+{
+    const char *needs = o->csv ? "--csv" : o->recipe ? "--recipe" : NULL;
+    if (!o->environment && (needs || o->args.inputs))
+        return usage_error("lights: %s needs --environment MAP", needs ? needs : "a FILE");
+    if (o->environment && !o->args.inputs)
+        return usage_error("lights: --environment needs a FILE whose lights are weighed");
+    if (o->environment && (o->pattern || given(o, &o->count)))
+        return usage_error("lights: expected one of --environment and a pattern");
+    if (o->json && o->recipe)
+        return usage_error("lights: expected one of --json and --recipe");
+    return RELUME_OK;
+}
+
 static relume_status run(const struct args *args)
 {
     const struct lights_options *o = (const void *)args;
+    const relume_status wrong = check(o);
+    if (wrong)
+        return wrong;
+    if (o->environment)
+        return lights_environment(args,
+                                  &(const struct environment_order){args->input[0], o->environment,
+                                                                    o->csv, o->recipe, o->json});
     struct relume_directions_params params = {
         .log = o->args.log,
         .seed = (uint64_t)o->seed,
@@ -66,8 +98,9 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_lights = {
-    COMMAND("lights", "[--pattern P] [-n N]",
-            "print a pattern of light directions and how evenly it covers the sphere",
-            "relume lights --pattern hammersley -n 100 --hemisphere", 0, 0),
+    COMMAND("lights", "[--pattern P] [-n N] | FILE --environment MAP",
+            "print a pattern of light directions and how evenly it covers the sphere, or what each "
+            "light of a file weighs in an environment",
+            "relume lights --pattern hammersley -n 100 --hemisphere", 0, 1),
     .defaults = &(const OPTIONS){.count = 100},
 };

@@ -57,7 +57,12 @@ static void say_result(const struct publish_options *o, const struct relume_publ
              o->output, r->name, r->views, relume_plural(r->views), r->planes,
              (double)r->bytes / 1e3, (double)r->first_bytes / 1e3, r->psnr_db,
              judgement(r->psnr_db));
-    if (r->psnr_db < SEEN_DB && !wished)
+    if (r->psnr_db < SEEN_DB && r->linear)
+        announce(&o->args, RELUME_NOTE,
+                 "%s/%s.html: dark places of linear files need more than its 8 bits; a file of "
+                 "'relume encode --domain display' comes nearer",
+                 o->output, r->name);
+    else if (r->psnr_db < SEEN_DB && !wished)
         announce(
             &o->args, RELUME_NOTE,
             "%s/%s.html: its hard shadows and highlights are softer than in the file, for they "

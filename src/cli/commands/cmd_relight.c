@@ -23,7 +23,7 @@ struct relight_options {
     unsigned pass;
     const struct relume_transport *transport;  // NULL: none
     int bounces, spacing;
-    bool nearest, alpha, allow_outside, keep_going;
+    bool nearest, alpha, allow_outside, keep_going, icc;
     struct light_options lighting;
     struct develop_options develop;
     struct eye_options glare;
@@ -63,11 +63,12 @@ static const struct option options[] = {
           "slab, scene file: look from this point; default: the middle of the cameras, the file's "
           "eye"),
     POINT("--look-at", look_at, "x,y,z",
-          "--eye, scene file: the point looked at; default: the middle of the object"),
-    POINT("--up", up, "x,y,z", "--eye: the direction that is up in the picture; default: 0,1,0"),
+          "slab, scene file: the point looked at; default: the middle of the object"),
+    POINT("--up", up, "x,y,z",
+          "slab, scene file: the direction that is up in the picture; default: 0,1,0"),
     NUMBER("--fov", fov, "DEG",
-           "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a "
-           "planar file",
+           "slab, scene file: horizontal field of view; default: the slabs' windows; --pass glare: "
+           "of a planar file",
            0.01, 179),
     NUMBER("--pan", pan, "A", "panorama: degrees to the right", 0, 0),
     NUMBER("--tilt", tilt, "A", "panorama: degrees up", 0, 0),
@@ -115,6 +116,7 @@ static const struct option options[] = {
             "--pass false-colour: linear luminance shown as dark blue and as yellow; default: from "
             "the picture",
             2),
+    FLAG("--icc", icc, "put an sRGB colour profile into the picture (.jpg, .tif)"),
     FLAG("--alpha", alpha,
          "captured view with a mask: make the background transparent (.png and .exr)"),
     TEXT("--capture", capture, "CAPTURE", "--pass difference: the capture to compare with"),
@@ -175,9 +177,12 @@ static relume_status parse_camera(const struct relight_options *o, struct relume
     if (given(o, o->crop) && (eye || look || o->alpha || o->objects || o->pass == GLARE_PASS))
         return usage_error("--crop: expected a captured view (--view N) without --alpha, "
                            "--objects and --pass glare");
-    if (!eye &&
-        (given(o, &o->look_at) || given(o, &o->up) || (given(o, &o->fov) && o->pass != GLARE_PASS)))
-        return usage_error("relight: --look-at, --up and --fov need --eye");
+    const bool aims =
+        given(o, &o->look_at) || given(o, &o->up) || (given(o, &o->fov) && o->pass != GLARE_PASS);
+    if (aims && (view || look || given(o, o->crop)))
+        return usage_error("relight: --look-at, --up and --fov turn an eye; leave out %s",
+                           view || look ? "--view, --pan, --tilt, --zoom and --projection"
+                                        : "--crop");
     *camera = (struct relume_camera){
         .framing = view   ? RELUME_FRAME_VIEW
                    : eye  ? RELUME_FRAME_EYE
@@ -188,7 +193,7 @@ static relume_status parse_camera(const struct relight_options *o, struct relume
         .width = o->size[0],
         .height = o->size[1],
     };
-    if (eye)
+    if (eye || aims)
         camera->look_at = (struct relume_look_at){given(o, &o->look_at), o->look_at, o->up, o->fov};
     if (look)
         camera->look = pan_tilt(o);
@@ -397,7 +402,25 @@ static relume_status draw(struct relume_image *out, relume_renderer *renderer,
     return relume_renderer_detail(out, renderer, camera->view, &rect, width, height);
 }
 
-static relume_status render(const struct relight_options *o, const struct relume_camera *camera,
+// An eye that is only turned stays where a slab is seen from when nobody says it.
+static relume_status place_eye(struct relume_camera *camera, relume_pack *pack,
+                               const struct relight_options *o)
+{
+    struct relume_viewport viewport;
+    if (camera->framing != RELUME_FRAME_DEFAULT || !relume_look_at_given(&camera->look_at))
+        return RELUME_OK;
+    if (relume_pack_info(pack)->geometry.projection != RELUME_SLAB)
+        return usage_error("%s: --look-at, --up and --fov turn the eye of slabs and scene files; "
+                           "panoramas turn by --pan and --tilt",
+                           o->args.input[0]);
+    const struct relume_camera usual = {.framing = RELUME_FRAME_DEFAULT};
+    const relume_status status = relume_frame_viewport(&viewport, pack, &usual, 1, 1);
+    camera->framing = RELUME_FRAME_EYE;
+    camera->eye = relume_viewport_eye(&viewport);
+    return status;
+}
+
+static relume_status render(const struct relight_options *o, struct relume_camera *camera,
                             struct relume_frame_params params, const struct relume_light *lights,
                             int count)
 {
@@ -429,6 +452,8 @@ static relume_status render(const struct relight_options *o, const struct relume
             relume_capture_params(.log = o->args.log, .allow_outside = o->allow_outside));
     params.capture = capture;
     if (!status)
+        status = place_eye(camera, pack, o);
+    if (!status)
         status = relume_renderer_create(&renderer, pack, &params);
     if (!status)
         status = relume_renderer_set_lights(renderer, lights, count);
@@ -447,7 +472,8 @@ static relume_status render(const struct relight_options *o, const struct relume
     if (!status && o->alpha)
         status = add_alpha(&frame, pack, camera);
     if (!status)
-        status = relume_image_save(&frame, o->output, relume_image_params(.log = o->args.log));
+        status = relume_image_save(&frame, o->output,
+                                   relume_image_params(.log = o->args.log, .profile = o->icc));
     relume_image_destroy(&frame);
     relume_renderer_destroy(&renderer);
     relume_objects_destroy(&objects);
@@ -503,10 +529,7 @@ static relume_status draw_scene(const struct relight_options *o, const struct re
                                 int count)
 {
     const struct relume_camera camera = {
-        .framing =
-            given(o, &o->eye) || given(o, &o->look_at) || given(o, &o->up) || given(o, &o->fov)
-                ? RELUME_FRAME_EYE
-                : RELUME_FRAME_DEFAULT,
+        .framing = given(o, &o->eye) ? RELUME_FRAME_EYE : RELUME_FRAME_DEFAULT,
         .eye = o->eye,
         .look_at = {given(o, &o->look_at), o->look_at, o->up, o->fov},
         .width = o->size[0],
@@ -527,7 +550,8 @@ static relume_status draw_scene(const struct relight_options *o, const struct re
     if (!status)
         status = develop(&frame, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(&frame, o->output, relume_image_params(.log = o->args.log));
+        status = relume_image_save(&frame, o->output,
+                                   relume_image_params(.log = o->args.log, .profile = o->icc));
     relume_image_destroy(&frame);
     relume_tableau_destroy(&tableau);
     return status;

@@ -63,7 +63,8 @@ static bool ends_in(const char *name, const char *const *endings)
 // What is a volume by its name, or by the options that only volumes have.
 static bool seems_volume(const struct mesh_options *o)
 {
-    static const char *const endings[] = {".raw", ".nrrd", ".nhdr", ".nii", ".gz", ".hdr", NULL};
+    static const char *const endings[] = {".raw", ".nrrd", ".nhdr", ".nii", ".gz",
+                                          ".hdr", ".tif",  ".tiff", NULL};
     return o->volume.size.side[0] || o->volume.type || ends_in(o->args.input[0], endings);
 }
 

@@ -22,7 +22,7 @@ static const struct option options[] = {
     NUMBER("--error", error, "E",
            "most distance from the original, in diagonals of its box: 0.001 is 0.1 %", 1e-9, 1),
     INT("--triangles", triangles, "N", "as many triangles, or a few less", 1, 2147483647),
-    NUMBER("--jnd", jnd, "J", "nothing of the shading changes by more than J noticeable steps",
+    NUMBER("--jnd", jnd, "J", "shading changes by about J noticeable steps at most; default: 4",
            0.01, 100),
     GROUP("what is seen"),
     NUMBER("--distance", distance, "D",

@@ -194,7 +194,7 @@ static void png_is_what_openimageio_sees(void **state)
             CHECK_OK(png_write(path_of("a.png"), NULL, width, height, channels, samples, NULL));
         else
             CHECK_OK(bridge->write_bytes(path_of("a.png"), NULL, width, height, channels, samples,
-                                         outfile_save_to, NULL));
+                                         NULL, 0, outfile_save_to, NULL));
         compare(path_of("a.png"));
         picture_reader *r;
         CHECK_OK(picture_open(&r, path_of("a.png"), NULL, NULL, NULL));
@@ -203,7 +203,7 @@ static void png_is_what_openimageio_sees(void **state)
         assert_memory_equal(back, samples, (size_t)(width * height * channels));
     }
     for (int channels = 2; channels <= 4; channels += 2) {  // alpha
-        CHECK_OK(bridge->write_bytes(path_of("a.png"), NULL, 9, 8, channels, samples,
+        CHECK_OK(bridge->write_bytes(path_of("a.png"), NULL, 9, 8, channels, samples, NULL, 0,
                                      outfile_save_to, NULL));
         compare(path_of("a.png"));
     }

@@ -55,7 +55,7 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            i->compression);
     printf("\"levels\": %d, \"tile\": %d, ", i->levels, i->tile);
     printf("\"check_sums\": %s, ", kind == RELUME_KIND_RELUME && i->has_sums ? "true" : "false");
-    printf("\"provenance\": %s, ", i->provenance ? i->provenance : "null");
+    printf("\"made_from\": %s, ", i->provenance ? i->provenance : "null");
     printf("\"books\": %d, \"codes\": %d, \"shared\": %s, ", i->books, i->codes,
            i->shared ? "true" : "false");
     printf("\"fit_rms\": ");
@@ -136,7 +136,7 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
             printf("%s%s", extras++ ? ", " : "", extra[k]);
     puts(extras ? "" : "none");
     if (i->provenance)
-        puts("provenance    camera, exposure and check sum of each photograph: --json lists them");
+        puts("made from     camera, exposure and check sum of each photograph: --json lists them");
     if (kind == RELUME_KIND_RELUME)
         printf("check sums    %s\n", yes_or_no(i->has_sums));
     if (isfinite(bytes))

@@ -163,7 +163,7 @@ bool jvalue_may_hold(const char *text)
 // JSON is UTF-8; a name that is not, as disks allow, is written as it is shown.
 char *jvalue_print(const jvalue *value)
 {
-    char *made = json_dumps(value, JSON_COMPACT | JSON_ENSURE_ASCII);
+    char *made = json_dumps(value, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_ENCODE_ANY);
     return mem_take(made);
 }
 
@@ -175,11 +175,6 @@ char *jvalue_quote(const char *text)
     json_decref(string);
     mem_free(copy);
     return mem_take(quoted);
-}
-
-char *jvalue_dump(const jvalue *value)
-{
-    return mem_take(json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17)));
 }
 
 struct jnumber jvalue_number_text(double number)

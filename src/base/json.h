@@ -50,8 +50,6 @@ char *jvalue_print(const jvalue *value);
 char *jvalue_quote(const char *text);
 // Whether it can: it is UTF-8.
 bool jvalue_may_hold(const char *text);
-// A value as JSON, to be freed; NULL: no memory.
-char *jvalue_dump(const jvalue *value);
 // A finite number, as short as gives the same one again.
 struct jnumber {
     char text[32];

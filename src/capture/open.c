@@ -29,21 +29,27 @@ static relume_status find_description(char **out, const char *folder, const stru
                     folder, folder);
 }
 
-static bool has_description(const char *folder, const struct relume_log *log)
+// Whether `path` is a folder without one.
+static relume_status lacks_description(bool *out, const char *path, const struct relume_log *log)
 {
-    char *path = NULL;
+    char *found = NULL;
     struct relume_log silent = log ? *log : (struct relume_log){0};
     silent.message = NULL;
-    const bool has =
-        input_kind(folder, log) != INPUT_FOLDER || !find_description(&path, folder, &silent);
-    mem_free(path);
-    return has;
+    const relume_status status =
+        input_kind(path, log) == INPUT_FOLDER ? find_description(&found, path, &silent) : RELUME_OK;
+    mem_free(found);
+    *out = status != RELUME_OK;
+    return status == RELUME_ENOMEM ? status : RELUME_OK;
 }
 
 static relume_status read_description(relume_capture *c, const char *path,
                                       const struct relume_capture_params *p)
 {
-    if (!has_description(path, p->log) && olat_is_folder(path, p->log))
+    bool lacks;
+    const relume_status known = lacks_description(&lacks, path, p->log);
+    if (known)
+        return known;
+    if (lacks && olat_is_folder(path, p->log))
         return olat_read_folder(&c->draft, &c->path, path, p->log);
     if (input_kind(path, p->log) == INPUT_FOLDER) {
         const relume_status status = find_description(&c->path, path, p->log);

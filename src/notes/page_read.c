@@ -99,7 +99,7 @@ static relume_status read_item(relume_notes *notes, const jvalue *item, size_t n
         .created = jvalue_text(jvalue_member(item, "created")),
         .id = jvalue_text(jvalue_member(item, "id")),
     };
-    char *raw = jvalue_dump(item);
+    char *raw = jvalue_print(item);
     status = raw ? notes_append(notes, &note, raw, at) : RELUME_ENOMEM;
     if (status)
         mem_free(raw);

@@ -20,9 +20,9 @@ static void add_triangle(relume_objects *o, const struct baked_corner corner[3],
     if (!(vec3_length(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]))) > 0.0))
         return;
     for (int k = 0; k < 3; k++)
-        made[k] = mesh_vertex(&o->mesh, frame_point(frame, p[k]),
-                              frame_normal(frame, vec3_floats(corner[k].normal)),
-                              vec3_of((double)corner[k].place[0], (double)corner[k].place[1], 0));
+        made[k] = objects_vertex(
+            o, frame_point(frame, p[k]), frame_normal(frame, vec3_floats(corner[k].normal)),
+            vec3_of((double)corner[k].place[0], (double)corner[k].place[1], 0), NULL);
     mesh_triangle(&o->mesh, made[0], made[1], made[2], (uint32_t)o->info.parts - 1);
 }
 

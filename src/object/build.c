@@ -169,15 +169,17 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
     return RELUME_OK;
 }
 
-// What the values of a vertex are multiplied by: the colours of a file are part of its own look.
-static void tint_vertex(relume_objects *o, uint32_t vertex, const uint8_t *colour)
+uint32_t objects_vertex(relume_objects *o, vec3 place, vec3 normal, vec3 texture,
+                        const uint8_t *colour)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const uint32_t vertex = mesh_vertex(&o->mesh, place, normal, texture);
     o->mesh.failed = o->mesh.failed || !mem_grow(&o->vertex_tint, vertex, sizeof *o->vertex_tint);
     for (int c = 0; c < 3 && !o->mesh.failed; c++)
         o->vertex_tint[vertex][c] =
             colour ? relume_transfer_decode(srgb, (float)colour[c] / 255.0f) : 1.0f;
     o->tinted |= colour != NULL;
+    return vertex;
 }
 
 // Texture coordinates in repeats, t down from the upper edge of the sample.
@@ -187,12 +189,11 @@ static uint32_t add_vertex(relume_objects *o, const struct mesh_file *file, uint
     const struct vertex *v = &file->mesh.vertices[number];
     const double s = (double)v->texture[0] * c->repeat[0] + c->offset[0];
     const double t = 1.0 - ((double)v->texture[1] * c->repeat[1] + c->offset[1]);
-    const uint32_t made = mesh_vertex(&o->mesh, frame_point(frame, vertex_position(v)),
-                                      frame_normal(frame, vertex_normal(v)), vec3_of(s, t, 0));
     const bool tinted =
         c->material < 0 && file->colour && !o->material[o->part[o->info.parts - 1].material].mirror;
-    tint_vertex(o, made, tinted ? file->colour[number] : NULL);
-    return made;
+    return objects_vertex(o, frame_point(frame, vertex_position(v)),
+                          frame_normal(frame, vertex_normal(v)), vec3_of(s, t, 0),
+                          tinted ? file->colour[number] : NULL);
 }
 
 // Wound as the normals say; a triangle without extent is left out.

@@ -43,6 +43,11 @@ struct relume_objects {
     relume_reflection **reflection;   // [objects]; NULL: as it is
 };
 
+// One more vertex of the mesh, in the world; `colour` (sRGB) is part of the file's own look, and
+// multiplies the values there; NULL: white.
+uint32_t objects_vertex(relume_objects *o, struct relume_vec3 place, struct relume_vec3 normal,
+                        struct relume_vec3 texture, const uint8_t *colour);
+
 // Whether a file is one by its name.
 bool objects_named_exr(const char *path);
 

@@ -187,9 +187,9 @@ cat >jot.txt <<'END'
 size 700 480
 light dir 0.6 0.3 0.7
 key ctrl+n
-shot none.png
+shot passing.png
 click 163 48
-shot none.png
+shot passing.png
 click 430 200
 click 560 200
 click 560 300
@@ -197,7 +197,7 @@ key enter
 shot lines.png
 light dir -0.6 0.3 0.7
 click 217 48
-shot none.png
+shot passing.png
 click 400 120
 key backspace
 click 400 100

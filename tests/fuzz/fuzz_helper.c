@@ -154,6 +154,7 @@ static struct bytes model_seed(void)
     say(&b, &read, sizeof read);
     say(&b, vertices, sizeof vertices);
     say(&b, &triangle, sizeof triangle);
+    say(&b, &mesh_look_none, sizeof mesh_look_none);
     say(&b, "part", 5);
     say(&b, &read, sizeof read);
     return b;

@@ -203,7 +203,7 @@ static void test_round_trip(void **state)
     char text[4096] = "";
     assert_true(fread(text, 1, sizeof text - 1, f) > 0);
     fclose(f);
-    assert_non_null(strstr(text, "\"kept\": {\"by\": 3.25}"));
+    assert_non_null(strstr(text, "\"kept\":{\"by\":3.25}"));
     relume_notes_destroy(&again);
     const struct relume_notes_file other = {"a.exr", 100, 81, 1};
     assert_int_equal(relume_notes_open(&again, path_of("a.exr"), &other, &log.log), RELUME_EUNFIT);

@@ -4,10 +4,10 @@
 #include "transfer.glsl"
 #include "texels.glsl"
 #include "cube.glsl"
-#include "light.glsl"
-#include "light_patches.glsl"
-#include "captured.glsl"
-#include "triangles.glsl"
+#include "light/light.glsl"
+#include "light/light_patches.glsl"
+#include "light/captured.glsl"
+#include "light/triangles.glsl"
 
 uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
 uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer

@@ -3,7 +3,7 @@
 // captured, and all, without the objects and with them. Twin: lamps_at.
 #include "texels.glsl"
 #include "cube.glsl"
-#include "light.glsl"
+#include "light/light.glsl"
 #include "light_sample.glsl"
 #include "shadow.glsl"
 uniform sampler2D scene, scene_facing;

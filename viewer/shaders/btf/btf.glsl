@@ -7,7 +7,7 @@
 // pass of its own, which adds its part of what lies between two levels.
 #include "texels.glsl"
 #include "cube.glsl"
-#include "light.glsl"
+#include "light/light.glsl"
 #include "light_sample.glsl"
 #include "shadow.glsl"
 #include "sky.glsl"

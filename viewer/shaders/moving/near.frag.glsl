@@ -5,10 +5,10 @@
 #include "moving/shown.glsl"
 #include "texels.glsl"
 #include "cube.glsl"
-#include "light.glsl"
-#include "light_patches.glsl"
-#include "captured.glsl"
-#include "triangles.glsl"
+#include "light/light.glsl"
+#include "light/light_patches.glsl"
+#include "light/captured.glsl"
+#include "light/triangles.glsl"
 
 uniform sampler2D colours;    // of the view; black: nothing is known
 uniform sampler2D matte;      // a, b

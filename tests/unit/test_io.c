@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <time.h>
 
 static char folder[64], pack_path[96];
 static unsigned char *file;  // of pack_path
@@ -268,8 +269,14 @@ static void test_images_in_memory(void **state)
         struct relume_buffer out = {0};
         const struct relume_writer writer = relume_buffer_writer(&out);
         size_t size;
-        CHECK_OK(relume_image_save(&image, path_of(names[i]), NULL));
-        CHECK_OK(relume_image_save(&image, names[i], relume_image_params(.writer = &writer)));
+        // some formats hold the second in which they were written: both in the same one
+        time_t before;
+        do {
+            relume_buffer_destroy(&out);
+            before = time(NULL);
+            CHECK_OK(relume_image_save(&image, path_of(names[i]), NULL));
+            CHECK_OK(relume_image_save(&image, names[i], relume_image_params(.writer = &writer)));
+        } while (time(NULL) != before);
         unsigned char *want = test_read(path_of(names[i]), &size);
         assert_int_equal(out.size, size);
         assert_memory_equal(out.data, want, size);

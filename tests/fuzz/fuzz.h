@@ -90,6 +90,14 @@ static inline void fuzz_add(struct fuzz *f, struct bytes b)
     f->seed[f->seeds++] = b;
 }
 
+static inline void fuzz_add_text(struct fuzz *f, const char *text)
+{
+    struct bytes b = {(uint8_t *)strdup(text), strlen(text)};
+    if (!b.data)
+        abort();
+    fuzz_add(f, b);
+}
+
 static inline void fuzz_store(const char *path, struct bytes b)
 {
     FILE *file = fopen(path, "wb");

@@ -67,24 +67,18 @@ static bool one(struct fuzz *f, struct bytes b)
     return !status;
 }
 
-static void add(struct fuzz *f, const char *text)
-{
-    struct bytes b = {(uint8_t *)strdup(text), strlen(text)};
-    if (!b.data)
-        abort();
-    fuzz_add(f, b);
-}
-
 int main(int argc, char **argv)
 {
     struct fuzz f = {.words = words};
     fuzz_begin(&f, "fuzz_notes", argc, argv);
-    add(&f, "{\"type\": \"AnnotationPage\", \"relume:file\": {\"width\": 64, \"height\": 64, "
+    fuzz_add_text(
+        &f, "{\"type\": \"AnnotationPage\", \"relume:file\": {\"width\": 64, \"height\": 64, "
             "\"views\": 1}, \"relume:mmPerPixel\": 0.5, \"items\": [{\"id\": \"n1\", \"creator\": "
             "{\"name\": \"Ann\"}, \"body\": [{\"value\": \"x\"}], \"target\": {\"selector\": "
             "{\"type\": \"PointSelector\", \"x\": 1, \"y\": 2}, \"state\": {\"type\": "
             "\"relume:State\", \"value\": \"light=dir,0,0,1\"}}}]}");
-    add(&f, "{\"type\": \"AnnotationPage\", \"items\": [{\"target\": {\"selector\": {\"type\": "
+    fuzz_add_text(
+        &f, "{\"type\": \"AnnotationPage\", \"items\": [{\"target\": {\"selector\": {\"type\": "
             "\"SvgSelector\", \"value\": \"<svg><path d='M1,2 l3,4 H5 v6 z'/></svg>\"}}}, "
             "{\"target\": \"c#xywh=1,2,3,4\"}, {\"target\": {\"selector\": {\"type\": "
             "\"SvgSelector\", \"value\": \"<svg><polygon points='1,2 3,4 5,6'/></svg>\"}}}]}");

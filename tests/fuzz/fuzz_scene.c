@@ -65,13 +65,6 @@ static void make(struct fuzz *f, const struct fixture *fixture, const char *name
     fixture_must(fixture_encode(f->folder, path, &relume_basis_table, 0, NULL), path);
 }
 
-static void add(struct fuzz *f, const char *text)
-{
-    struct bytes b = {malloc(strlen(text)), strlen(text)};
-    memcpy(b.data, text, b.size);
-    fuzz_add(f, b);
-}
-
 int main(int argc, char **argv)
 {
     static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 .5\nf 1 2 3\nf 2 4 3\n";
@@ -83,14 +76,17 @@ int main(int argc, char **argv)
          "slab.exr");
     snprintf(path, sizeof path, "%s/good.obj", f.folder);
     fuzz_store(path, (struct bytes){(uint8_t *)(uintptr_t)obj, sizeof obj - 1});
-    add(&f, "{\"format\":\"relume-scene\",\"version\":1,\"captures\":[{\"file\":\"flat.exr\"},"
+    fuzz_add_text(
+        &f, "{\"format\":\"relume-scene\",\"version\":1,\"captures\":[{\"file\":\"flat.exr\"},"
             "{\"file\":\"slab.exr\",\"name\":\"s\",\"instead_of\":\"o\",\"pose\":{\"translate\":"
             "[1,2,3],\"rotate\":[0,1,0,30],\"scale\":2}}],\"objects\":[{\"mesh\":\"good.obj\","
             "\"name\":\"o\",\"parts\":[{\"material\":{\"diffuse\":0.5}}]}],\"lights\":"
             "[\"dir 0 1 1\",\"point 0 0 2 rgb 1 1 1\"],\"eye\":[0,0,4],\"look_at\":[0,0,0],\"up\":"
             "[0,1,0],\"fov\":50,\"size\":[8,6]}");
-    add(&f, "{\"format\":\"relume-scene\",\"version\":1,\"captures\":[{\"file\":\"slab.exr\"}]}");
-    add(&f, "{\"format\":\"relume-scene\",\"version\":1,\"objects\":[{\"mesh\":\"good.obj\","
-            "\"parts\":[{\"material\":{\"mirror\":1}}]}]}");
+    fuzz_add_text(
+        &f, "{\"format\":\"relume-scene\",\"version\":1,\"captures\":[{\"file\":\"slab.exr\"}]}");
+    fuzz_add_text(&f,
+                  "{\"format\":\"relume-scene\",\"version\":1,\"objects\":[{\"mesh\":\"good.obj\","
+                  "\"parts\":[{\"material\":{\"mirror\":1}}]}]}");
     return fuzz_run(&f, argc, argv, one);
 }

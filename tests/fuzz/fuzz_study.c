@@ -42,21 +42,15 @@ static bool one(struct fuzz *f, struct bytes b)
     return !status;
 }
 
-static void add(struct fuzz *f, const char *text)
-{
-    struct bytes b = {(uint8_t *)strdup(text), strlen(text)};
-    if (!b.data)
-        abort();
-    fuzz_add(f, b);
-}
-
 int main(int argc, char **argv)
 {
     struct fuzz f = {.words = words};
     fuzz_begin(&f, "fuzz_study", argc, argv);
-    add(&f, "subject,trial,question,scene,left,right,chosen,seconds\n1,1,which?,a,none,static,"
+    fuzz_add_text(
+        &f, "subject,trial,question,scene,left,right,chosen,seconds\n1,1,which?,a,none,static,"
             "static,2.5\n1,2,which?,a,dynamic,static,dynamic,1\n2,1,which?,a,none,dynamic,none,3\n"
             "2,2,\"brighter, or \"\"not\"\"?\",a,none,dynamic,none,3\n");
-    add(&f, "subject,condition,score\r\n1,a,4\r\n1,b,2\r\n2,a,5\r\n2,b,3.5\r\n3,a,1\r\n3,b,-2\r\n");
+    fuzz_add_text(
+        &f, "subject,condition,score\r\n1,a,4\r\n1,b,2\r\n2,a,5\r\n2,b,3.5\r\n3,a,1\r\n3,b,-2\r\n");
     return fuzz_run(&f, argc, argv, one);
 }

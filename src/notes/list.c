@@ -80,8 +80,73 @@ void relume_notes_destroy(relume_notes **notes)
     for (int i = 0; i < n->count; i++)
         notes_forget(&n->note[i]);
     mem_free(n->note);
+    mem_free(n->slot);
     mem_free(n->name);
     mem_free(n);
+}
+
+// ---------------------------------------------------------------- ids
+
+// FNV-1a.
+static size_t slot_of(const relume_notes *n, const char *id)
+{
+    uint64_t hash = 14695981039346656037u;
+    for (; *id; id++)
+        hash = (hash ^ (uint8_t)*id) * 1099511628211u;
+    return (size_t)(hash ^ hash >> 32) & (n->slots - 1);
+}
+
+// N of "nN" below a thousand million, else 0.
+static int number_of(const char *id)
+{
+    const bool is = *id == 'n' && strspn(id + 1, "0123456789") == strlen(id + 1) && strlen(id) < 10;
+    return is ? (int)strtol(id + 1, NULL, 10) : 0;
+}
+
+static void enter(relume_notes *n, int i)
+{
+    const char *id = n->note[i].note.id;
+    size_t at = slot_of(n, id);
+    while (n->slot[at])
+        at = (at + 1) & (n->slots - 1);
+    n->slot[at] = i + 1;
+    if (number_of(id) > n->last)
+        n->last = number_of(id);
+}
+
+static void enter_all(relume_notes *n)
+{
+    n->last = 0;
+    memset(n->slot, 0, n->slots * sizeof *n->slot);
+    for (int i = 0; i < n->count; i++)
+        enter(n, i);
+}
+
+// Room for one more, at most half of the slots taken.
+static bool grow_slots(relume_notes *n)
+{
+    enum { LEAST = 64 };
+    if (2 * ((size_t)n->count + 1) <= n->slots)
+        return true;
+    const size_t slots = n->slots ? 2 * n->slots : LEAST;
+    int *slot = mem_array(slots, sizeof *slot);
+    if (!slot)
+        return false;
+    mem_free(n->slot);
+    n->slot = slot;
+    n->slots = slots;
+    enter_all(n);
+    return true;
+}
+
+int relume_notes_find(const relume_notes *notes, const char *id)
+{
+    if (!notes->slots)
+        return -1;
+    for (size_t at = slot_of(notes, id); notes->slot[at]; at = (at + 1) & (notes->slots - 1))
+        if (!strcmp(notes->note[notes->slot[at] - 1].note.id, id))
+            return notes->slot[at] - 1;
+    return -1;
 }
 
 // ---------------------------------------------------------------- adding
@@ -123,20 +188,14 @@ static relume_status check(const relume_notes *n, const struct relume_note *note
     return RELUME_OK;
 }
 
-// One more than the largest number of "n17".
-static char *next_id(const relume_notes *n)
+static char *new_id(const relume_notes *n)
 {
-    long most = 0;
-    for (int i = 0; i < n->count; i++) {
-        const char *id = n->note[i].note.id;
-        const long number =
-            *id == 'n' && strspn(id + 1, "0123456789") == strlen(id + 1) && strlen(id) < 10
-                ? strtol(id + 1, NULL, 10)
-                : 0;
-        if (number > most)
-            most = number;
+    for (int number = n->last + 1;; number++) {
+        char *id = mem_format("n%d", number);
+        if (!id || relume_notes_find(n, id) < 0)
+            return id;
+        mem_free(id);
     }
-    return mem_format("n%ld", most + 1);
 }
 
 static bool copy_text(const char **out, const char *text)
@@ -157,16 +216,17 @@ relume_status notes_append(relume_notes *n, const struct relume_note *note, char
     for (int i = 0; place && i < note->places; i++)
         memcpy(place[i], note->place[i], sizeof place[i]);
     own->place = (const double(*)[2])place;
-    own->id = note->id ? mem_text(note->id) : next_id(n);
+    own->id = note->id ? mem_text(note->id) : new_id(n);
     if (!own->place || !own->id || !copy_text(&own->text, note->text) ||
         !copy_text(&own->state, note->state) || !copy_text(&own->creator, note->creator) ||
         !copy_text(&own->created, note->created) ||
-        !mem_grow(&n->note, (size_t)n->count, sizeof *n->note)) {
+        !mem_grow(&n->note, (size_t)n->count, sizeof *n->note) || !grow_slots(n)) {
         notes_forget(&kept);
         return RELUME_ENOMEM;
     }
     kept.raw = raw;
     n->note[n->count++] = kept;
+    enter(n, n->count - 1);
     return RELUME_OK;
 }
 
@@ -200,6 +260,7 @@ void relume_notes_remove(relume_notes *notes, int i)
     notes_forget(&notes->note[i]);
     notes->count--;
     memmove(&notes->note[i], &notes->note[i + 1], (size_t)(notes->count - i) * sizeof *notes->note);
+    enter_all(notes);
 }
 
 int relume_notes_count(const relume_notes *notes)
@@ -210,14 +271,6 @@ int relume_notes_count(const relume_notes *notes)
 const struct relume_note *relume_notes_get(const relume_notes *notes, int i)
 {
     return &notes->note[i].note;
-}
-
-int relume_notes_find(const relume_notes *notes, const char *id)
-{
-    for (int i = 0; i < notes->count; i++)
-        if (!strcmp(notes->note[i].note.id, id))
-            return i;
-    return -1;
 }
 
 double relume_notes_scale(const relume_notes *notes)

@@ -17,6 +17,9 @@ struct relume_notes {
     double mm_per_pixel;
     int count;
     struct kept_note *note;  // [count]
+    int *slot;               // [slots]: by the hash of an id, 1 + the number of its note; 0: free
+    size_t slots;            // a power of two, more than count; 0 while there are no notes
+    int last;                // the largest N of an id "nN", 0 without one
 };
 
 void notes_forget(struct kept_note *kept);

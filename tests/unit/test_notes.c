@@ -84,7 +84,7 @@ static relume_status import(relume_notes *notes, const char *items, struct test_
 
 #define SVG(shape)                                                                                 \
     "{\"target\": {\"selector\": {\"type\": \"SvgSelector\", \"value\": \"<svg>" shape "</"        \
-                                                                                       "svg>\"}}}"
+    "svg>\"}}}"
 
 // What annotation programs write, each with its kind and its last place.
 static void test_selectors(void **state)
@@ -244,7 +244,13 @@ static void test_names(void **state)
         import(notes, "{\"id\": \"a\", \"target\": \"c\"}, {\"id\": \"a\", \"target\": \"c\"}",
                &log),
         RELUME_EFORMAT);
+    // behind the largest number that counts, names are looked for
+    note.id = "n99999999";
+    CHECK_OK(relume_notes_add(notes, &note, NULL));
     note.id = NULL;
+    for (int i = 0; i < 2; i++)
+        CHECK_OK(relume_notes_add(notes, &note, NULL));
+    assert_string_equal(relume_notes_get(notes, 6)->id, "n100000001");
     note.text = "\xff";
     assert_int_equal(relume_notes_add(notes, &note, &log.log), RELUME_EINVAL);
     note.text = NULL;

@@ -1,10 +1,12 @@
 // sphere.c - writes a small capture whose every pixel is known in closed form: a Lambertian sphere
 // with a Phong lobe over a floor on which it throws a hard shadow. Uses the public headers only.
 //
-//   sphere DIR [--size N] [--lights N] [--pattern P] [--seed S] [--hemisphere] [--views G]
+//   sphere DIR [--size N] [--rows N] [--lights N] [--pattern P] [--seed S] [--hemisphere] [--views
+//   G]
 //              [--format exr|png|jpg|tif] [--shade full|lambert|wrap] [--grey] [--mask]
 //              [--intensities] [--half]
 //
+// Pictures are --size pixels wide; --rows cuts a strip of that many rows from their middle.
 // Shades: `full` is Lambert + lobe + shadow; `lambert` is albedo max(0, n.l); `wrap` is
 // albedo (1 + n.l) / 2, which four spherical harmonics hold exactly.
 #define RELUME_VEC3_SHORT
@@ -21,7 +23,7 @@ enum shade { FULL, LAMBERT, WRAP };
 
 struct options {
     const char *folder, *format, *pattern;
-    int size, lights, views, seed;
+    int size, rows, lights, views, seed;
     bool hemisphere, grey, mask, intensities, half;
     enum shade shade;
 };
@@ -76,7 +78,7 @@ static void shade(const struct options *o, const struct hit *h, vec3 view, vec3 
 // The ray of pixel (x, y); orthographic without a grid of views.
 static void ray(const struct options *o, const double uv[2], int x, int y, vec3 *eye, vec3 *d)
 {
-    const double s = -1.0 + 2.0 * (x + 0.5) / o->size, t = 1.0 - 2.0 * (y + 0.5) / o->size;
+    const double s = -1.0 + 2.0 * (x + 0.5) / o->size, t = (o->rows - 2.0 * (y + 0.5)) / o->size;
     if (o->views) {
         *eye = (vec3){uv[0], uv[1], uv_z};
         *d = vec3_unit((vec3){s - uv[0], t - uv[1], -uv_z});
@@ -103,7 +105,7 @@ static void save(const struct options *o, const struct relume_image *image, cons
 static struct relume_image new_image(const struct options *o, int channels)
 {
     struct relume_image image;
-    if (relume_image_create(&image, o->size, o->size, channels))
+    if (relume_image_create(&image, o->size, o->rows, channels))
         fail("out of memory", o->folder);
     return image;
 }
@@ -126,7 +128,7 @@ static void render(const struct options *o, struct relume_manifest_view *v, int 
     if (!v->images)
         fail("out of memory", o->folder);
     for (int i = 0; i < m->lights; i++) {
-        for (int y = 0; y < o->size; y++)
+        for (int y = 0; y < o->rows; y++)
             for (int x = 0; x < o->size; x++) {
                 vec3 eye, d;
                 ray(o, v->uv, x, y, &eye, &d);
@@ -190,6 +192,8 @@ static void parse(struct options *o, int argc, char **argv)
                           is(name, "--intensities") || is(name, "--half");
         if (is(name, "--size"))
             o->size = atoi(value);
+        else if (is(name, "--rows"))
+            o->rows = atoi(value);
         else if (is(name, "--lights"))
             o->lights = atoi(value);
         else if (is(name, "--views"))
@@ -215,7 +219,9 @@ static void parse(struct options *o, int argc, char **argv)
         }
         i++;
     }
-    if (!o->folder || o->size < 1 || o->lights < 1 || o->views < 0 || o->views > 9)
+    if (!o->rows)
+        o->rows = o->size;
+    if (!o->folder || o->size < 1 || o->rows < 1 || o->lights < 1 || o->views < 0 || o->views > 9)
         fail("usage: sphere DIR [--size N] [--lights N] ...", "options");
 }
 
@@ -238,7 +244,7 @@ int main(int argc, char **argv)
             intensities[i][c] = 0.25f + 1.5f * (float)((i + c) % 3);
 
     struct relume_manifest m = {
-        .geometry = relume_geometry_default(o.views ? RELUME_SLAB : RELUME_PLANAR, o.size, o.size),
+        .geometry = relume_geometry_default(o.views ? RELUME_SLAB : RELUME_PLANAR, o.size, o.rows),
         .lights = o.lights,
         .directions = directions,
         .intensities = o.intensities ? (const float(*)[3])intensities : NULL,
@@ -247,6 +253,8 @@ int main(int argc, char **argv)
     };
     m.geometry.uv_z = uv_z;
     m.geometry.camera_z = camera_z;
+    m.geometry.st_max[1] = (double)o.rows / o.size;
+    m.geometry.st_min[1] = -m.geometry.st_max[1];
     make_folder("%s", o.folder, 0);
     for (int v = 0; v < views; v++) {
         if (o.views > 1) {

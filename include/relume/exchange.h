@@ -82,8 +82,8 @@ enum relume_exchange {
     RELUME_EXCHANGE_BC6H,         // the same as half floats
     RELUME_EXCHANGE_OLAT,         // one EXR with a layer for every light: one light at a time
 };
-// "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h", "olat". RELUME_EINVAL when `name` is
-// none of these.
+// "relight", "ptm", "lptm", "rti", "deepzoom", "bc1", "bc7", "bc6h", "olat". RELUME_EINVAL when
+// `name` is none of these.
 RELUME_RESULT relume_status relume_exchange_parse(enum relume_exchange *out, const char *name);
 
 // How the planes of RELIGHT and DEEPZOOM follow the light.
@@ -117,8 +117,8 @@ struct relume_export_params {
                              // seen; PTM, LPTM: default 0, raw planes; not for RTI
     bool force;              // replace an existing folder that is not empty
     int threads;             // default: all cores
-    const struct relume_writer *writer;  // PTM, LPTM, RTI, OLAT: write here in place of the file; `path`
-                                         // is only a name then, or NULL
+    const struct relume_writer *writer;  // PTM, LPTM, RTI, OLAT: write here in place of the file;
+                                         // `path` is only a name then, or NULL
     int level;  // of a view with reduced levels (relume_pack_info): 1 is half its size, of which no
                 // more is read; default: 0, the view itself
 };

@@ -225,7 +225,7 @@ struct relume_pack_part {
     char capture[RELUME_DIGEST];  // relume_capture_digest of what it was made from
     int tiles, all_tiles;  // coded: that it holds of its groups, of how many; views of a group are
                            // cut alike
-    bool has_sums;                // as relume_pack_info
+    bool has_sums;         // as relume_pack_info
 };
 // An input status with a sentence when `path` is no part. Of `params` log, limits and reader are
 // used.

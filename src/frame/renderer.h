@@ -37,7 +37,7 @@ struct relume_renderer {
     uint64_t lighting;  // counts: lights, or what else pictures depend on, have changed
     uint64_t frame;     // counts
     bool said;          // what there is to say of these lights
-    bool is_part;  // others are seen beside it: black does not mean that something is missing
+    bool is_part;       // others are seen beside it: black does not mean that something is missing
     char note[NOTES][200];
     enum shown shown;
     relume_relighter *relighter;

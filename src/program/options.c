@@ -92,7 +92,7 @@ static relume_status take_numbers(double *out, const struct command_line *l, con
                                   const char *text)
 {
     const char *at = text;
-    static const char *const counts[] = {"no", "one", "two", "three", "four",
+    static const char *const counts[] = {"no",   "one", "two",   "three", "four",
                                          "five", "six", "seven", "eight"};
     char what[80], *end;
     bool good = true;

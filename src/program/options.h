@@ -9,8 +9,8 @@
 #include <stddef.h>
 
 // OPTION_OUTPUT and those behind it are text that names what is written; OPTION_TEXT, OPTION_TEXTS
-// and inputs that name a file or folder are taken as read: no output replaces it. OPTION_PROSE names
-// none.
+// and inputs that name a file or folder are taken as read: no output replaces it. OPTION_PROSE
+// names none.
 enum option_kind {
     OPTION_GROUP,    // no option: the heading of the rows that follow
     OPTION_FLAG,     // bool
@@ -27,7 +27,7 @@ enum option_kind {
     OPTION_TEXT,
     OPTION_TEXTS,  // struct texts: may be repeated
     OPTION_PROSE,  // text for people
-    OPTION_STATE,    // a line of other options (state_line.h), before which those beside it count
+    OPTION_STATE,  // a line of other options (state_line.h), before which those beside it count
     OPTION_OUTPUT,
     OPTION_PICTURE,  // a picture of any format, by the ending of its name
     OPTION_FLOATS,   // a picture of values that are no light

@@ -47,7 +47,7 @@ if awk "BEGIN { exit !($(pooled small.exr) > $better - 0.1) }"; then ok 'the bet
 if "$RELUME" info room.exr | grep -q '^interpolant   chord$'; then ok 'pictures are seen between lights as components are'; else not_ok 'pictures are seen between lights as components are' "$("$RELUME" info room.exr)"; fi
 
 # of 96 lights the components look few, but for the shadows each is a picture
-"$RELUME" synth bust -o lamps --size 40 --lights 96 --samples 1 -q
+"$RELUME" synth bust -o lamps --size 32 --lights 96 --samples 1 -q
 relume encode lamps -o lamps.exr --psnr 36 --no-depth
 relume encode lamps -o lamps-pca.exr --psnr 36 --no-depth --basis pca
 below 'hard shadows of many lights are kept as pictures' "$(wc -c <lamps.exr)" $(($(wc -c <lamps-pca.exr) * 3 / 4))

@@ -122,9 +122,7 @@ int main(int argc, char **argv)
     fuzz_add(&f,
              text("2light dir 0 1 1\nadd point 0 0 1 rgb 1 2 3\npress right 5 5\nmove 9 9\n"
                   "release right 9 9\nhold l\ndrag left 0 0 100 0\nlet l\nkey tab\nkey h\nquit\n"));
-    fuzz_add(
-        &f,
-        text("3glare on\nglare squint 0.3\nwait 0.2\nglare pause\ndock left\nhint\n"
-             "open a.exr\nrig a.json\nedit undo\ntype abc\nkey right\nkey esc\n"));
+    fuzz_add(&f, text("3glare on\nglare squint 0.3\nwait 0.2\nglare pause\ndock left\nhint\n"
+                      "open a.exr\nrig a.json\nedit undo\ntype abc\nkey right\nkey esc\n"));
     return fuzz_run(&f, argc, argv, one);
 }

@@ -508,8 +508,8 @@ static void long_frames_are_refused(void **state)
     relume_objects *o = of("hanging.obj", "\"sample\"");
     relume_baked *b;
     CHECK_OK(relume_bake(&b, o,
-                         relume_bake_params(.width = 16, .coefficients = 4, .side = 3, .clusters = 2,
-                                            .components = 1, .rays = 4)));
+                         relume_bake_params(.width = 16, .coefficients = 4, .side = 3,
+                                            .clusters = 2, .components = 1, .rays = 4)));
     CHECK_OK(relume_baked_save(b, path_of("frames.exr"), NULL));
     for (int i = 0; i < b->info.width * b->info.height; i++)
         for (int k = 0; k < 6; k++)

@@ -225,9 +225,10 @@ static void a_furnace_lights_what_is_translucent(void **state)
     relume_pack *pack = open_furnace("glow", true);
     relume_objects *o =
         place_ball_of("{\"translucent\":{\"preset\":\"spectralon\",\"scale_mm\":100}}");
-    static const char *const ways[] = {"ssao", "ssdo", "ism", "radiosity", "path"};
-    for (int way = 0; way < 5; way += TEST_SANITIZED ? 4 : 1) {
-        struct relume_image got = with_ball(pack, o, ways[way], &light, way < 2 ? 16 : 64, 8);
+    static const char *const ways[] = {"path", "ssao", "ssdo", "ism"};  // radiosity enters as ism
+    for (int way = 0; way < (TEST_SANITIZED ? 1 : 4); way++) {
+        struct relume_image got =
+            with_ball(pack, o, ways[way], &light, way == 1 || way == 2 ? 16 : 64, 8);
         const struct relume_vec3 to = {ball[0], ball[1], ball[2]};
         float found = 0.0f;
         double nearest = 0.0;
@@ -239,7 +240,7 @@ static void a_furnace_lights_what_is_translucent(void **state)
                 nearest = vec3_dot(ray, to), found = got.data[3 * i];
         }
         printf("%s: %.3f\n", ways[way], (double)found);
-        CHECK_NEAR(found, passes, way == 4 ? 0.03 : 0.12);
+        CHECK_NEAR(found, passes, way ? 0.12 : 0.03);
         relume_image_destroy(&got);
     }
     relume_objects_destroy(&o);
@@ -437,6 +438,8 @@ static void far_panoramas_light_objects(void **state)
 {
     (void)state;
     check_far_panorama("path");
+    if (TEST_SANITIZED)  // distant light comes to the others as to objects in rooms
+        return;
     check_far_panorama("micro");
     check_far_panorama("ism");
     check_far_panorama("radiosity");

@@ -76,6 +76,8 @@ struct relume_synth_params {
     int eye_count;
     const struct relume_vec3 *lights;  // unit directions; light_count of them, at least 1
     int light_count;
+    bool near;    // `lights` are places of lamps, not the world's origin, where each is as strong
+                  // as a distant light; from there they fall off with the square of the distance
     int samples;  // camera rays per pixel (stratified); default 16
     int bounces;  // indirect bounces of light; default 0: direct light and mirrors only
     uint64_t seed;

@@ -213,8 +213,9 @@ bool trace_closest(const tracer *t, const float origin[3], const float direction
 
 enum { PACKET = 16 };
 
-static void packet_unblocked(const tracer *t, float (*origins)[3], int count,
-                             const float direction[3], bool *seen)
+// Rays along `end`, or to it: their length is 1 there.
+static void packet_unblocked(const tracer *t, float (*origins)[3], int count, const float end[3],
+                             bool is_place, bool *seen)
 {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -225,8 +226,10 @@ static void packet_unblocked(const tracer *t, float (*origins)[3], int count,
         const float *origin = origins[i < count ? i : 0];
         valid[i] = i < count ? -1 : 0;
         ray.org_x[i] = origin[0], ray.org_y[i] = origin[1], ray.org_z[i] = origin[2];
-        ray.dir_x[i] = direction[0], ray.dir_y[i] = direction[1], ray.dir_z[i] = direction[2];
-        ray.tnear[i] = 0.0f, ray.tfar[i] = INFINITY;
+        ray.dir_x[i] = is_place ? end[0] - origin[0] : end[0];
+        ray.dir_y[i] = is_place ? end[1] - origin[1] : end[1];
+        ray.dir_z[i] = is_place ? end[2] - origin[2] : end[2];
+        ray.tnear[i] = 0.0f, ray.tfar[i] = is_place ? 1.0f : INFINITY;
         ray.time[i] = 0.0f, ray.mask[i] = ~0u, ray.id[i] = 0, ray.flags[i] = 0;
     }
     rtcOccluded16(valid, t->scene, &context, &ray);
@@ -234,12 +237,23 @@ static void packet_unblocked(const tracer *t, float (*origins)[3], int count,
         seen[i] = ray.tfar[i] >= 0.0f;  // Embree marks a blocked ray by -inf
 }
 
+static void unblocked(const tracer *t, float (*origins)[3], int count, const float end[3],
+                      bool is_place, bool *seen)
+{
+    for (int i = 0; i < count; i += PACKET)
+        packet_unblocked(t, origins + i, count - i < PACKET ? count - i : PACKET, end, is_place,
+                         seen + i);
+}
+
 void trace_unblocked(const tracer *t, float (*origins)[3], int count, const float direction[3],
                      bool *seen)
 {
-    for (int i = 0; i < count; i += PACKET)
-        packet_unblocked(t, origins + i, count - i < PACKET ? count - i : PACKET, direction,
-                         seen + i);
+    unblocked(t, origins, count, direction, false, seen);
+}
+
+void trace_seen(const tracer *t, float (*origins)[3], int count, const float to[3], bool *seen)
+{
+    unblocked(t, origins, count, to, true, seen);
 }
 
 void trace_leave(const float p[3], const float normal[3], float out[3])

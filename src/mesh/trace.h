@@ -40,6 +40,8 @@ bool trace_closest(const tracer *t, const float origin[3], const float direction
 // Whether each of `count` origins sees infinitely far along `direction`.
 void trace_unblocked(const tracer *t, float (*origins)[3], int count, const float direction[3],
                      bool *seen);
+// Whether each sees the place `to`.
+void trace_seen(const tracer *t, float (*origins)[3], int count, const float to[3], bool *seen);
 
 // `p` on a surface moved just off it along `normal`, by steps of its own floating-point spacing
 // (Waechter and Binder 2019), so that thin plates keep their two sides at any distance.

@@ -154,34 +154,47 @@ struct batch {
     uint32_t pixel[BATCH];
 };
 
-static void flush(struct batch *b, const tracer *rays, const float light[3], float (*sum)[3])
+static void flush(struct batch *b, const tracer *rays, const float light[3], bool near,
+                  float (*sum)[3])
 {
     bool seen[BATCH];
-    trace_unblocked(rays, b->origin, b->count, light, seen);
+    (near ? trace_seen : trace_unblocked)(rays, b->origin, b->count, light, seen);
     for (int i = 0; i < b->count; i++)
         for (int c = 0; seen[i] && c < 3; c++)
             sum[b->pixel[i]][c] += b->value[i][c];
     b->count = 0;
 }
 
-static void light_tile(const tracer *rays, struct scratch *s, const float light[3])
+// Its direction from `place`, and how much stronger it is there than at the world's origin.
+static float towards(const float lamp[3], const float place[3], float out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = lamp[c] - place[c];
+    const float squared = fmaxf(dot3(out, out), 1e-12f), inverse = 1.0f / sqrtf(squared);
+    for (int c = 0; c < 3; c++)
+        out[c] *= inverse;
+    return dot3(lamp, lamp) / squared;
+}
+
+static void light_tile(const tracer *rays, struct scratch *s, const float light[3], bool near)
 {
     struct batch b = {.count = 0};
     memset(s->sum, 0, sizeof s->sum);
     for (size_t i = 0; i < s->places.count; i++) {
         const struct place *p = &s->places.at[s->keys[i].index];
-        float value[3];
-        if (!surface_lit(&p->surface, light, value))
+        float value[3], wi[3] = {light[0], light[1], light[2]};
+        const float strength = near ? towards(light, p->origin, wi) : 1.0f;
+        if (!surface_lit(&p->surface, wi, value))
             continue;
         for (int c = 0; c < 3; c++) {
-            b.value[b.count][c] = value[c] * p->weight[c];
+            b.value[b.count][c] = value[c] * strength * p->weight[c];
             b.origin[b.count][c] = p->origin[c];
         }
         b.pixel[b.count] = p->pixel;
         if (++b.count == BATCH)
-            flush(&b, rays, light, s->sum);
+            flush(&b, rays, light, near, s->sum);
     }
-    flush(&b, rays, light, s->sum);
+    flush(&b, rays, light, near, s->sum);
 }
 
 static void store_tile(const struct tile *t, float (*sum)[3], float scale, struct relume_image *out)
@@ -210,7 +223,7 @@ static void render_tile(void *context, size_t item, int worker)
     for (int l = 0; l < job->light_count && !s->places.failed; l++) {
         const vec3 d = job->lights[l];
         const float light[3] = {(float)d.x, (float)d.y, (float)d.z};
-        light_tile(job->scene->tracer, s, light);
+        light_tile(job->scene->tracer, s, light, job->near);
         store_tile(&t, s->sum, 1.0f / (float)job->samples, &r->out[l]);
     }
 }

@@ -1,4 +1,4 @@
-// render.h - one view of a scene under many directional lights
+// render.h - one view of a scene under many lights
 #ifndef SCENE_RENDER_H
 #define SCENE_RENDER_H
 
@@ -7,8 +7,9 @@
 struct render_job {
     const relume_scene *scene;
     struct camera camera;
-    const vec3 *lights;
+    const vec3 *lights;  // unit directions, or places where they are near
     int light_count;
+    bool near;  // a lamp is as strong at the world's origin as a distant light, and falls off
     int samples, bounces;
     uint64_t seed;
     int threads;

@@ -78,6 +78,12 @@ static relume_status check(const struct synth *s)
         return expected(s, "size", "1 or more, and an image of at most --max-pixels", p->size);
     if (p->light_count < 1 || p->light_count > limits.max_lights)
         return expected(s, "lights", "1 to 65536", p->light_count);
+    for (int i = 0; p->near && i < p->light_count; i++)
+        if (!(vec3_length(p->lights[i]) > 1e-6))
+            return log_fail(p->log, RELUME_EINVAL,
+                            "lamps: expected places apart from 0,0,0, where their strength is "
+                            "measured; found %g,%g,%g",
+                            p->lights[i].x, p->lights[i].y, p->lights[i].z);
     if (p->samples < 1 || p->samples > 65536)
         return expected(s, "samples", "1 to 65536", p->samples);
     if (p->bounces < 0 || p->bounces > 64)
@@ -333,6 +339,7 @@ static relume_status write_view(struct synth *s, struct relume_image *held, int 
         struct render_job job = job_of(s);
         job.lights = s->p.lights + first;
         job.light_count = left < held_count ? left : held_count;
+        job.near = s->p.near;
         s->lights_before = first;
         status = render_lights(&job, held, report, s);
         if (!status)
@@ -371,18 +378,24 @@ static relume_status write_views(struct synth *s)
     return status;
 }
 
-static relume_status write_manifest(const struct synth *s)
+static relume_status write_manifest(struct synth *s)
 {
     char *path = mem_format("%s/capture.json", s->folder);
-    if (!path)
+    vec3 *towards = arena_array(&s->arena, (size_t)s->p.light_count, sizeof *towards);
+    if (!path || !towards) {
+        mem_free(path);
         return RELUME_ENOMEM;
+    }
+    for (int i = 0; i < s->p.light_count; i++)
+        towards[i] = vec3_unit(s->p.lights[i]);
     const struct relume_manifest manifest = {
         .transfer = {.curve = RELUME_CURVE_LINEAR},
         .geometry = s->geometry,
         .slabs = s->slabs,
         .slab = s->slab,
         .lights = s->p.light_count,
-        .directions = s->p.lights,
+        .directions = s->p.near ? towards : s->p.lights,
+        .positions = s->p.near ? s->p.lights : NULL,
         .views = s->views,
         .view = s->view,
     };

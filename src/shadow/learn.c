@@ -187,22 +187,58 @@ static bool carve(struct looked *l, const struct relume_log *log)
 
 // ---------------------------------------------------------------- matte
 
-// a + b.L by least squares over the lights that arrive; where these leave it open it stays small.
-static void fit_pixel(const struct looked *l, size_t pixel, vec3 p, float matte[4])
+// The nearer of the two neighbours of a pixel along x or y, seen from it.
+static bool step(vec3 *out, const struct stage *s, vec3 p, double x, double y, double dx, double dy)
 {
-    double a[16] = {[0] = 0.01, [5] = 0.1, [10] = 0.1, [15] = 0.1}, x[4] = {0.0};
+    vec3 before, behind;
+    const bool has_before = stage_point(&before, s, x - dx, y - dy),
+               has_behind = stage_point(&behind, s, x + dx, y + dy);
+    if (!has_before && !has_behind)
+        return false;
+    before = vec3_sub(p, before);
+    behind = vec3_sub(behind, p);
+    *out = !has_before || (has_behind && vec3_dot(behind, behind) < vec3_dot(before, before))
+               ? behind
+               : before;
+    return true;
+}
+
+// Towards the eye, in the world; zero where there are no neighbours.
+static vec3 normal_at(const struct stage *s, vec3 p, double x, double y)
+{
+    vec3 across, down;
+    if (!step(&across, s, p, x, y, 1.0, 0.0) || !step(&down, s, p, x, y, 0.0, 1.0))
+        return (vec3){0.0, 0.0, 0.0};
+    vec3 n = vec3_cross(down, across);
+    const vec3 eye = s->kind == STAGE_FLAT ? (vec3){0.0, 0.0, -s->axis} : vec3_scale(p, -1.0);
+    if (vec3_dot(n, eye) < 0.0)
+        n = vec3_scale(n, -1.0);
+    return relume_pose_turn(&s->pose, vec3_unit(n));
+}
+
+// a + b.L by least squares over the lights that arrive; where these leave it open, in a room those
+// from the walls, it is what Lambert's surface shows that is as bright in their light.
+static void fit_pixel(const struct looked *l, size_t pixel, vec3 p, vec3 normal, float matte[4])
+{
+    const double trust = 3.0;  // in Lambert: as in so many lights
+    double a[16] = {[0] = 0.01, [5] = trust, [10] = trust, [15] = trust}, x[4] = {0.0};
+    double lambert = 0.0, cosines = 0.0;
     for (int i = 0; i < l->lights; i++) {
         const uint16_t grey = l->grey[(size_t)i * l->pixels + pixel];
         if (!(grey & FREE) && !stage_reaches(&l->stage, p, l->turned[i], INFINITY))
             continue;
         const double value = (double)float_from_half(grey & ~FREE);
         const double f[4] = {1.0, l->light[i].x, l->light[i].y, l->light[i].z};
+        const double cosine = fmax(vec3_dot(normal, l->light[i]), 0.0);
+        lambert += cosine * value, cosines += cosine * cosine;
         for (int r = 0; r < 4; r++) {
             x[r] += f[r] * value;
             for (int c = 0; c <= r; c++)
                 a[4 * r + c] += f[r] * f[c];
         }
     }
+    const vec3 b = vec3_scale(normal, cosines > 0.01 ? lambert / cosines : 0.0);
+    x[1] += trust * b.x, x[2] += trust * b.y, x[3] += trust * b.z;
     const bool solved = lsq_solve(a, 4, x, 1);
     for (int i = 0; solved && i < 4; i++)
         matte[i] = (float)x[i];
@@ -225,7 +261,8 @@ static void fit_row(void *context, size_t y, int worker)
             continue;
         for (int c = 0; c < 3; c++)
             model[RELUME_SHADOW_COLOUR + c] = colour[c] / grey;
-        fit_pixel(l, pixel, p, model + RELUME_SHADOW_MATTE);
+        fit_pixel(l, pixel, p, normal_at(&l->stage, p, (double)x + 0.5, (double)y + 0.5),
+                  model + RELUME_SHADOW_MATTE);
     }
 }
 

@@ -188,7 +188,8 @@ static const float SHARE = 1.0f / RELUME_SHADOW_REACHED;
 
 struct adding {
     const relume_shadows *s;
-    struct relume_image *more;  // what is added, of the rectangle
+    const struct relume_image *relit;  // what the codes show of the rectangle
+    struct relume_image *more;         // what is added there
     struct relume_rect rect;
     vec3 light;
     uint8_t *arrives;  // of the light, in the rectangle
@@ -201,20 +202,15 @@ struct adding {
     bool summed;                            // the light is one of an environment's
 };
 
-// `lit` and `known` are what the matte surface shows under the light and under those around it.
-static void add_pixel(float *more, const struct adding *a, const float *colour, float lit,
-                      const float known[AROUND])
+// What the captured lights around show of the matte surface, between them: `known` of each.
+static float between_of(const struct adding *a, float colour, const float known[AROUND])
 {
-    for (int c = 0; c < 3; c++) {
-        float between = 0.0f;
-        for (int i = 0; i < a->around; i++)
-            between += a->weight[i] *
-                       (a->display ? relume_transfer_encode(*a->display, colour[c] * known[i])
-                                   : colour[c] * known[i]);
-        if (a->display)
-            between = relume_transfer_decode(*a->display, between);
-        more[c] += a->rgb[c] * (colour[c] * lit - between);
-    }
+    float between = 0.0f;
+    for (int i = 0; i < a->around; i++)
+        between +=
+            a->weight[i] * (a->display ? relume_transfer_encode(*a->display, colour * known[i])
+                                       : colour * known[i]);
+    return a->display ? relume_transfer_decode(*a->display, between) : between;
 }
 
 static size_t pixel_at(const struct adding *a, size_t row, int column)
@@ -241,10 +237,10 @@ static void add_row(void *context, size_t row, int worker)
             continue;
         for (int k = 0; k < a->around; k++)
             known[k] = SHARE * (float)a->reached[k][pixel] * shadows_matte(matte, a->captured[k]);
-        add_pixel(more, a, matte,
-                  SHARE * (float)a->arrives[row * (size_t)a->rect.width + (size_t)i] *
-                      shadows_matte(matte, a->light),
-                  known);
+        const float lit = SHARE * (float)a->arrives[row * (size_t)a->rect.width + (size_t)i] *
+                          shadows_matte(matte, a->light);
+        for (int c = 0; c < 3; c++)
+            more[c] = a->rgb[c] * (matte[c] * lit - between_of(a, matte[c], known));
     }
 }
 
@@ -311,6 +307,7 @@ struct nearing {
     const relume_coder *coder;  // of the codes
     int lights;                 // that were captured
     float *room;                // [workers][4][lights]: weights of three colours, what is known
+    bool surround;              // surfaces are all around a lamp
 };
 
 // One pixel, and one direction that light comes from.
@@ -365,11 +362,14 @@ static float near_share(const struct nearing *n, const struct near_pixel *p, int
                : 0.0f;
 }
 
-static void add_near_pixel(float *more, struct adding *a, const struct nearing *n,
-                           struct near_pixel *p, float *room)
+// `relit` is what the codes show. Where less is between the captured lights than the surface would
+// show there, something out of sight darkened these; of a panorama, whose surfaces are all around a
+// lamp, it stands behind them, and not in the way of the lamp.
+static void add_near_pixel(float *more, const float *relit, struct adding *a,
+                           const struct nearing *n, struct near_pixel *p, float *room)
 {
     const float *matte = a->s->matte + MATTE * p->pixel;
-    float around[AROUND];
+    float around[AROUND], between[3] = {0.0f};
     for (int i = 0; i < n->lights; i++)
         room[3 * n->lights + i] = NAN;
     for (int k = 0; k < (n->patches ? n->patches : 1); k++) {
@@ -382,7 +382,15 @@ static void add_near_pixel(float *more, struct adding *a, const struct nearing *
         know_around(a, around, n, p, room);
         p->distance =
             vec3_length(vec3_sub(n->patches ? n->patch[k].position : n->light->position, p->point));
-        add_pixel(more, a, matte, near_share(n, p, k) * shadows_matte(matte, a->light), around);
+        const float lit = near_share(n, p, k) * shadows_matte(matte, a->light);
+        for (int c = 0; c < 3; c++) {
+            more[c] += a->rgb[c] * matte[c] * lit;
+            between[c] += a->rgb[c] * between_of(a, matte[c], around);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        const float rest = relit[c] - between[c];
+        more[c] += (n->surround ? fmaxf(rest, 0.0f) : rest) - relit[c];
     }
 }
 
@@ -392,14 +400,15 @@ static void add_near_row(void *context, size_t row, int worker)
     struct adding a = n->all;
     float *room = n->room + 4 * (size_t)worker * (size_t)n->lights;
     float *more = a.more->data + 3 * row * (size_t)a.more->width;
-    for (int i = 0; i < a.rect.width; i++, more += 3) {
+    const float *relit = a.relit->data + 3 * row * (size_t)a.more->width;
+    for (int i = 0; i < a.rect.width; i++, more += 3, relit += 3) {
         struct near_pixel p = {
             .x = a.rect.left + i, .y = a.rect.top + (int)row, .pixel = pixel_at(&a, row, i)};
         vec3 point;
         if (!is_seen(a.s, p.pixel) || !stage_point(&point, &a.s->stage, p.x + 0.5, p.y + 0.5))
             continue;
         p.point = stage_world(&a.s->stage, point);
-        add_near_pixel(more, &a, n, &p, room);
+        add_near_pixel(more, relit, &a, n, &p, room);
     }
 }
 
@@ -409,7 +418,9 @@ static relume_status add_near(const struct adding *a, const struct relume_light 
     struct nearing n = {.all = *a,
                         .light = light,
                         .coder = coder,
-                        .lights = relume_coder_info(a->s->between)->lights};
+                        .lights = relume_coder_info(a->s->between)->lights,
+                        .surround =
+                            a->s->stage.kind == STAGE_CYLINDER || a->s->stage.kind == STAGE_SPHERE};
     if (light->kind == RELUME_LIGHT_AREA) {
         relume_light_patches(n.patch, light, MOST_SIDE);
         n.patches = MOST_SIDE * MOST_SIDE;
@@ -502,6 +513,7 @@ static relume_status add(struct relume_image *picture, int left, int top, relume
     struct relume_image more;
     relume_status status = relume_image_create(&more, picture->width, picture->height, 3);
     struct adding a = {.s = shadows,
+                       .relit = picture,
                        .more = &more,
                        .rect = {left, top, picture->width, picture->height},
                        .display = display,

@@ -69,6 +69,7 @@ for p in cylindrical spherical; do
     "$RELUME" synth attic -o room --projection $p --size 32 --lights 16 --samples 1 -q
     "$RELUME" encode room -o room.exr --shadows yes -q
     passes "a room, $p" room.exr --pan 160 --size 60x40 --light "dir 0.2 0.8 0.5"
+    passes "a lamp in a room, $p" room.exr --pan 160 --size 60x40 --light "point 0.3 0.5 0.4"
     rm -r room
 done
 

@@ -216,6 +216,41 @@ static void a_white_plane_shows_the_cosine(void **state)
     relume_scene_destroy(&scene);
 }
 
+// As strong at the origin as a distant light, by the square of the distance, to the cosine.
+static void near_lamps_fall_off_and_throw_shadows(void **state)
+{
+    (void)state;
+    const vec3 lamp = {0.3, -0.2, 0.8}, below = {0.3, -0.2, -0.8};
+    relume_scene *scene = make_scene(&plane);
+    enum { SIDE = 32 };
+    struct render_job job = job_for(scene, RELUME_PLANAR, SIDE, SIDE);
+    job.samples = 64;  // the mean of a pixel is compared with its middle
+    job.near = true;
+    struct relume_image fine = render(job, lamp), behind = render(job, below);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double x = 2.0 * (i % SIDE + 0.5) / SIDE - 1.0,
+                     y = 1.0 - 2.0 * (i / SIDE + 0.5) / SIDE;
+        const vec3 to = vec3_sub(lamp, vec3_of(x, y, 0.0));
+        const double squared = vec3_dot(to, to);
+        check_near(fine.data[3 * i], vec3_dot(lamp, lamp) * to.z / (squared * sqrt(squared)), 2e-3);
+        check_near(behind.data[3 * i], 0.0, 0.0);
+    }
+    relume_image_destroy(&behind);
+    relume_image_destroy(&fine);
+    relume_scene_destroy(&scene);
+    // between the lamp and the ground the box, but not what is beyond the lamp
+    scene = make_scene(&white);
+    job = job_for(scene, RELUME_PLANAR, 16, 16);
+    job.near = true;
+    struct relume_image above = render(job, vec3_of(0.9, 0, 1.2)),
+                        beside = render(job, vec3_of(0.9, 0, 0.5));
+    check_near(*at(&above, 1, 8), 0.0, 0.0);
+    assert_true(*at(&beside, 15, 8) > 0.1f);
+    relume_image_destroy(&above);
+    relume_image_destroy(&beside);
+    relume_scene_destroy(&scene);
+}
+
 static void light_comes_from_its_own_side(void **state)
 {
     (void)state;
@@ -495,7 +530,7 @@ static void wrong_requests_are_refused(void **state)
     const vec3 beside = {1, 0, 4}, uneven[2] = {{0, 0, 3}, {0, 0, 2}};
     const struct relume_synth_params good = {
         .size = 4, .lights = two_lights, .light_count = 2, .samples = 1};
-    enum { WRONG = 10 };
+    enum { WRONG = 11 };
     struct relume_synth_params p[WRONG];
     for (int i = 0; i < WRONG; i++)
         p[i] = good;
@@ -511,6 +546,7 @@ static void wrong_requests_are_refused(void **state)
     p[8].ring = RELUME_RING_4;
     p[9].projection = RELUME_SLAB, p[9].projection_set = true;
     p[9].ring = RELUME_RING_4, p[9].eyes = &beside, p[9].eye_count = 1;
+    p[10].near = true, p[10].lights = &(const vec3){0, 0, 0}, p[10].light_count = 1;
     for (int i = 0; i < WRONG; i++)
         assert_int_equal(capture(scene, "wrong", &p[i]), RELUME_EINVAL);
     assert_false(exists("wrong") || exists("wrong.part"));
@@ -580,6 +616,7 @@ int main(void)
         cmocka_unit_test(slab_rays_pass_their_window_points),
         cmocka_unit_test(panorama_rays_follow_the_contract),
         cmocka_unit_test(a_white_plane_shows_the_cosine),
+        cmocka_unit_test(near_lamps_fall_off_and_throw_shadows),
         cmocka_unit_test(light_comes_from_its_own_side),
         cmocka_unit_test(the_shadow_of_the_box_ends_where_it_must),
         cmocka_unit_test(mirrors_show_what_is_behind_the_eye),

@@ -2,6 +2,7 @@
 #include "materials/btf_inputs.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 struct synth_options {
     struct args args;
@@ -12,7 +13,7 @@ struct synth_options {
     enum relume_ring ring;
     double spread, blur, noise, shift, flicker;
     bool hemisphere, discs, force;
-    struct points eye;
+    struct points eye, lamp;
 };
 #define OPTIONS struct synth_options
 
@@ -55,6 +56,8 @@ static const struct option options[] = {
          "lights on the viewer's (panoramas, --slabs: upper) side only"),
     TEXT("--lights-from", lights_from, "FILE",
          "take the directions of a capture.json, a .lp file or a text with lines x y z"),
+    POINTS("--lamp", lamp, "x,y,z",
+           "a near lamp there, in world units, in place of distant lights; may be repeated"),
     GROUP("rendering"),
     INT("--samples", samples, "N", "camera rays per pixel; default: 16", 1, 65536),
     INT("--bounces", bounces, "N", "bounces of indirect light; default: 0", 0, 64),
@@ -115,6 +118,14 @@ static relume_status choose_views(struct relume_synth_params *p, enum relume_pro
 static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
                                  const struct synth_options *o)
 {
+    if (o->lamp.count) {
+        *n = o->lamp.count;
+        *out = malloc((size_t)*n * sizeof **out);
+        if (!*out)
+            return RELUME_ENOMEM;
+        memcpy(*out, o->lamp.point, (size_t)*n * sizeof **out);
+        return RELUME_OK;
+    }
     if (o->lights_from)
         return relume_captured_lights_read(out, n, o->lights_from, o->args.log);
     *n = o->lights;
@@ -226,6 +237,7 @@ static relume_status run(const struct args *args)
         .eyes = o->eye.point,
         .eye_count = o->eye.count,
         .discs = o->discs,
+        .near = o->lamp.count > 0,
         .force = o->force,
     };
     const relume_status refused = relume_folder_check(o->output, p.force, p.log);
@@ -236,6 +248,9 @@ static relume_status run(const struct args *args)
                               : synth_btf(o);
     if (!o->args.inputs)
         return usage_error("synth: expected a scene, or --btf MATERIAL");
+    if (o->lamp.count && (o->lights_from || o->hemisphere || given(o, &o->lights) || o->pattern))
+        return usage_error("--lamp: these are all lights; expected no --lights, --lights-from, "
+                           "--pattern or --hemisphere");
     if (of_goniometer(o))
         return usage_error("synth: --extent, --directions, --blur, --noise, --shift and --flicker "
                            "are of --btf MATERIAL; found a scene");

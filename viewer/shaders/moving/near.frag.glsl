@@ -56,34 +56,37 @@ float near_share(vec3 towards, float distance, int index)
     return quarter_reached(at, quarter, mat3(turn_back) * towards, distance) ? 1.0 : 0.0;
 }
 
-vec3 more_of(vec3 colour, vec3 towards, float distance, int index)
+void add(inout vec3 lit, inout vec3 between, vec3 arriving, vec3 colour, vec3 towards,
+         float distance, int index)
 {
     float share;
-    vec3 from = captured(towards, share), weight, between = vec3(0.0);
+    vec3 from = captured(towards, share), weight, codes = vec3(0.0);
     ivec3 node;
     triangles_find(node, weight, pole_from_world(from));
     for (int i = 0; i < 3; i++)
         if (weight[i] > 0.0)
-            between += weight[i] * encoded(colour * know(node[i]));
-    float lit = near_share(towards, distance, index) * shadows_matte(from);
-    return share * (colour * lit - decoded(display, between));
+            codes += weight[i] * encoded(colour * know(node[i]));
+    lit += share * arriving * colour * near_share(towards, distance, index) * shadows_matte(from);
+    between += share * arriving * decoded(display, codes);
 }
 
 void main()
 {
     at = ivec2(gl_FragCoord.xy) + origin;
     vec4 point = texelFetch(positions, at, 0);
-    vec3 colour = texelFetch(colours, at, 0).rgb, more = vec3(0.0), towards, arriving;
+    vec3 colour = texelFetch(colours, at, 0).rgb, towards, arriving;
+    vec3 lit = vec3(0.0), between = vec3(0.0), relit = relit_here();
     model = texelFetch(matte, at, 0);
     remembered = 0;
     if (point.a > 0.0 && colour != vec3(0.0)) {
         if (patches == 0 && light_at(towards, arriving, point.xyz))
-            more = arriving * more_of(colour, towards, length(light.position - point.xyz), 0);
+            add(lit, between, arriving, colour, towards, length(light.position - point.xyz), 0);
         for (int i = 0; i < patches; i++)
             if (patch_at(towards, arriving, i, point.xyz)) {
                 vec3 from = texelFetch(picture, ivec2(i, 0), 0).xyz;
-                more += arriving * more_of(colour, towards, length(from - point.xyz), i);
+                add(lit, between, arriving, colour, towards, length(from - point.xyz), i);
             }
     }
-    show(more);
+    vec3 rest = relit - rgb * between;
+    show_in_place_of(relit, (RAYS >= CYLINDER ? max(rest, 0.0) : rest) + rgb * lit);
 }

@@ -25,14 +25,22 @@ vec3 decoded(Transfer curve, vec3 v)
                 transfer_decode(curve, v.b));
 }
 
+vec3 relit_here()
+{
+    vec3 relit = times * decoded(coding, texelFetch(coded, ivec2(gl_FragCoord.xy), 0).rgb);
+    return exchanges ? above_zero(relit) : relit;
+}
+
+void show_in_place_of(vec3 relit, vec3 shown)
+{
+    shown = max(shown, min(relit, 0.0));
+    if (exchanges)
+        shown = max(texelFetch(whole, ivec2(gl_FragCoord.xy), 0).rgb - relit + shown, 0.0);
+    color = vec4(shown, 1.0);
+}
+
 void show(vec3 more)
 {
-    ivec2 here = ivec2(gl_FragCoord.xy);
-    vec3 relit = times * decoded(coding, texelFetch(coded, here, 0).rgb);
-    if (exchanges)
-        relit = above_zero(relit);
-    vec3 shown = max(relit + rgb * more, min(relit, 0.0));
-    if (exchanges)
-        shown = max(texelFetch(whole, here, 0).rgb - relit + shown, 0.0);
-    color = vec4(shown, 1.0);
+    vec3 relit = relit_here();
+    show_in_place_of(relit, relit + rgb * more);
 }

@@ -1,7 +1,6 @@
 // paint.js - tiles of a view into a frame or a texture, the coarse ones that are there under the fine
 // ones that are still to come
-import { decodePicture } from './tiles.js';
-import { loadBytes } from './load.js';
+import { loadPicture } from './tiles.js';
 import { maskShader, tileShader } from './shaders.js';
 
 // The level whose texels are as large as pixels, or smaller; `scale` is pixels a texel of level 0.
@@ -68,14 +67,12 @@ export class Painter {
     mask(view) {
         if (!this.masks.has(view.name)) {
             this.masks.set(view.name, null);
-            loadBytes(`${this.scene.base}${view.name}/mask.png`)
-                .then((bytes) => decodePicture(bytes, 'image/png'))
-                .then((picture) => {
-                    const { gl } = this.device, texture = this.device.texture(gl.LINEAR);
-                    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
-                    this.masks.set(view.name, texture);
-                    this.changed();
-                }, this.tiles.failed);
+            loadPicture(this.scene, view, true).then((picture) => {
+                const { gl } = this.device, texture = this.device.texture(gl.LINEAR);
+                gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+                this.masks.set(view.name, texture);
+                this.changed();
+            }, this.tiles.failed);
         }
         return this.masks.get(view.name);
     }

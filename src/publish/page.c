@@ -153,7 +153,7 @@ static void put_chooser(FILE *f)
 {
     fputs("<p><label>Drop a relume file (.exr) of your own here, or choose it: "
           "<input type=\"file\" accept=\".exr\" data-relume-open></label><br>\n"
-          "<span class=\"quiet\">It is read by this browser and sent nowhere.</span></p>\n"
+          "It is read by this browser and sent nowhere.</p>\n"
           "<p role=\"status\" data-relume-said></p>\n",
           f);
 }

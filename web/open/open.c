@@ -16,6 +16,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -76,12 +77,18 @@ static bool fine(struct opened *o, relume_status status)
 
 // ---------------------------------------------------------------- views
 
+static uint64_t bytes_of_view(const struct opened *o)
+{
+    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
+    return (uint64_t)info->width * (uint64_t)info->height *
+           (info->books ? 2 * (uint64_t)info->books
+                        : (uint64_t)o->scene.levels.planes * relume_storage_bytes(info->storage));
+}
+
 // Views that were asked for last stay, as many as there is room for.
 static relume_status open_codes(const struct relume_codes **out, struct opened *o, int view)
 {
-    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
-    const uint64_t bytes = (uint64_t)info->width * (uint64_t)info->height *
-                           (uint64_t)o->scene.levels.planes * relume_storage_bytes(info->storage);
+    const uint64_t bytes = bytes_of_view(o);
     const int most = (int)(bytes * MOST_HELD > HELD_BYTES ? HELD_BYTES / (bytes + 1) : MOST_HELD);
     for (int i = 0; i < MOST_HELD; i++)
         if (o->held[i] == view)
@@ -95,28 +102,36 @@ static relume_status open_codes(const struct relume_codes **out, struct opened *
 
 // ---------------------------------------------------------------- what it is
 
-static bool refuse(struct opened *o, const char *what)
+__attribute__((format(printf, 2, 3))) static bool refuse(struct opened *o, const char *format, ...)
 {
-    snprintf(o->why, sizeof o->why, "%s: %s", o->scene.name, what);
+    va_list list;
+    const int n = snprintf(o->why, sizeof o->why, "%s: ", o->scene.name);
+    va_start(list, format);
+    if (n < (int)sizeof o->why)
+        vsnprintf(o->why + n, sizeof o->why - (size_t)n, format, list);
+    va_end(list);
     return false;
 }
 
 static bool can_be_shown(struct opened *o)
 {
     const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
+    const uint64_t bytes = bytes_of_view(o);
     if (info->slabs)
         return refuse(o, "slabs around an object are not shown in pages; expected a planar file, "
                          "one slab or a panorama");
     if (info->domain == RELUME_DOMAIN_DISPLAY && info->display.curve == RELUME_CURVE_LOG)
         return refuse(o, "its coefficients are logarithms, which pages do not know; relume "
                          "publish makes a page of it");
-    if (o->scene.levels.planes > MOST_PLANES) {
-        snprintf(o->why, sizeof o->why,
-                 "%s: %d planes are too many, expected at most %d; relume publish makes a page "
-                 "of it",
-                 o->scene.name, o->scene.levels.planes, MOST_PLANES);
-        return false;
-    }
+    if (o->scene.levels.planes > MOST_PLANES)
+        return refuse(
+            o, "%d planes are too many, expected at most %d; relume publish makes a page of it",
+            o->scene.levels.planes, MOST_PLANES);
+    if (!info->levels && bytes > MOST_BYTES)
+        return refuse(o,
+                      "a view of %d x %d pixels takes %.1f GB here, expected at most %.1f; relume "
+                      "publish makes a page of it",
+                      info->width, info->height, (double)bytes / 1e9, (double)MOST_BYTES / 1e9);
     return true;
 }
 

@@ -17,6 +17,7 @@ async function openFirst(file) {
     const input = document.querySelector('[data-relume-open]'), view = RelumeView.of(await openFile(file, RelumeView.home));
     (input ? input.closest('p') : document.body.lastChild).after(view);
     await view.ready;
+    saidReady();
     return view;
 }
 

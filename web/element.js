@@ -66,7 +66,7 @@ export class RelumeView extends HTMLElement {
     // Shows such a file in place of this one, which stays where that fails.
     async show(file) {
         this.say(`Opening ${file.name}.`);
-        const scene = await openFile(file, RelumeView.home), view = RelumeView.of(scene);
+        const scene = await openFile(file, RelumeView.home).finally(() => this.say('')), view = RelumeView.of(scene);
         view.className = this.className;
         view.style.cssText = this.style.cssText;
         this.replaceWith(view);
@@ -79,7 +79,9 @@ export class RelumeView extends HTMLElement {
     // What visitors should know of it.
     sayOpened() {
         const { title, leftOut } = this.opened;
-        this.say(`${title} was read by this browser and sent nowhere.${leftOut && ` Its ${leftOut} stay between the captured lights here; in relume they move.`}`);
+        if (this.trouble)
+            return this.say(`A part of the picture cannot be shown: ${this.trouble}.`);
+        return this.say(`${title} was read by this browser and sent nowhere.${leftOut && ` Its ${leftOut} stay between the captured lights here; in relume they move.`}`);
     }
 
     // A still picture and a sentence.
@@ -111,7 +113,10 @@ export class RelumeView extends HTMLElement {
     async open() {
         const viewer = new Viewer(this.canvas, RelumeView.home, {
             changed: () => this.controls && this.controls.show(),
-            failed: (error) => (viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error)),
+            failed: (error) => {
+                this.trouble = error.message;
+                return viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error);
+            },
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
             drawn: () => this.overlay && this.overlay.draw(),

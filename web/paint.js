@@ -41,10 +41,12 @@ export class Painter {
         let missing = true;
         for (let l = level; l <= last && missing; l++) {
             const all = this.touching(l, part);
-            const found = all.map(([x, y]) => (l === level && !waiting ? this.tiles.get(view, l, x, y)
-                : this.tiles.tiles.get(`${view}/${l}_${x}_${y}`))).filter((t) => t && t.state === 'ready');
+            const known = all.map(([x, y]) => (l === level && !waiting ? this.tiles.get(view, l, x, y)
+                : this.tiles.tiles.get(`${view}/${l}_${x}_${y}`)));
+            const found = known.filter((t) => t && t.state === 'ready');
             missing = found.length < all.length;
-            if (l === level && missing)
+            // what has failed does not come
+            if (l === level && known.some((t) => !t || !['ready', 'failed'].includes(t.state)))
                 this.complete = false;
             lists.unshift(found);
         }

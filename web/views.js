@@ -125,7 +125,11 @@ export class Views {
             return false;
         if (!this.depths.has(index)) {
             this.depths.set(index, {});
-            this.loadDepth(index, view).catch(this.painter.tiles.failed);
+            this.loadDepth(index, view).catch((error) => {
+                view.depth = false;  // it does not come: the view is shown as a flat one
+                this.painter.tiles.failed(error);
+                this.painter.changed();
+            });
         }
         const depth = this.depths.get(index);
         if (!depth.data)

@@ -99,6 +99,7 @@ VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 # What `relume publish` puts into every site; the core is compiled by make web
 WEB_JS   := $(wildcard web/*.js)
 WEB_CORE := $(wildcard web/core/relume-core.wasm)
+WEB_OPEN := $(wildcard web/open/relume-open.wasm web/open/licences.txt)
 WEB_CSS  := $(wildcard web/*.css)
 SHADERS  := $(wildcard viewer/shaders/*.glsl viewer/shaders/*/*.glsl)
 HEADERS  := $(wildcard include/relume/*.h)
@@ -159,14 +160,16 @@ deps-python:
 
 # ---------------------------------------------------------------- the page's core
 
-# What pages compute by the library itself (web/core/core.c), compiled for browsers. The result is kept in the tree: only
-# who changes these sources needs emscripten (Debian's 3.1.6; another one gives other bytes).
+# What pages compute by the library itself (web/core/core.c), and what opens files that are dropped onto them
+# (web/open/open.c), compiled for browsers. The results are kept in the tree: only who changes these sources needs
+# emscripten (Debian's 3.1.6; another one gives other bytes).
 CORE_C := $(wildcard web/core/*.c src/coder/interpolant_*.c) $(addprefix src/,$(addprefix coder/,coder.c basis_table.c \
           basis_ptm.c basis_hsh.c basis_sh.c basis_dct.c basis_dct_resampled.c harmonics.c disc.c zone.c mesh.c) \
           math/hull.c math/sh.c math/hsh.c $(addprefix relight/,environment.c directions.c cells.c triangles.c))
 web:
 	emcc -std=gnu11 -O3 -DNDEBUG -ffp-contract=off -Wall -Wextra -Iinclude -Isrc $(CORE_C) --no-entry -s STANDALONE_WASM=1 \
 	    -s ALLOW_MEMORY_GROWTH=1 -s INITIAL_MEMORY=4194304 -s TOTAL_STACK=1048576 -o web/core/relume-core.wasm
+	scripts/web-open.sh web/open/relume-open.wasm
 # The same natively, for tests.
 $B/tests/core.so: $(CORE_C) | $(DEPS)
 	@mkdir -p $(@D)
@@ -226,7 +229,7 @@ $B/web/core.js: $(WEB_CORE)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q){ printf 'relume.putCore("'; base64 -w0 $<; printf '");\n'; } > $@
-$B/obj/web/assets.c: scripts/embed-web.sh $B/web/relume.js $B/web/core.js $(WEB_CORE) $(WEB_CSS)
+$B/obj/web/assets.c: scripts/embed-web.sh $B/web/relume.js $B/web/core.js $(WEB_CORE) $(WEB_OPEN) $(WEB_CSS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q)scripts/embed-web.sh $(foreach f,$(filter-out scripts/%,$^),$(notdir $f)=$f) > $@

@@ -5,6 +5,7 @@ import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
 import { COMPARISONS } from './compare.js';
 import { readEnvironment } from './hdr.js';
+import { isRelume, openFile } from './drop.js';
 import { Failure, loadJson } from './load.js';
 import { Notes } from './notes.js';
 import { NotePanel } from './notepanel.js';
@@ -55,9 +56,41 @@ export class RelumeView extends HTMLElement {
 
     get source() { return new URL(this.getAttribute('src') || '', document.baseURI); }
 
+    // A view of a file from the visitor's disk.
+    static of(scene) {
+        const view = document.createElement('relume-view');
+        view.opened = scene;
+        return view;
+    }
+
+    // Shows such a file in place of this one, which stays where that fails.
+    async show(file) {
+        this.say(`Opening ${file.name}.`);
+        const scene = await openFile(file, RelumeView.home).finally(() => this.say('')), view = RelumeView.of(scene);
+        view.className = this.className;
+        view.style.cssText = this.style.cssText;
+        this.replaceWith(view);
+        if (this.opened)
+            this.opened.local.close();
+        await view.ready;
+        return view;
+    }
+
+    // What visitors should know of it.
+    sayOpened() {
+        const { title, leftOut } = this.opened;
+        if (this.trouble)
+            return this.say(`A part of the picture cannot be shown: ${this.trouble}.`);
+        return this.say(`${title} was read by this browser and sent nowhere.${leftOut && ` Its ${leftOut} stay between the captured lights here; in relume they move.`}`);
+    }
+
     // A still picture and a sentence.
     fail(error) {
         const poster = this.getAttribute('poster');
+        if (this.opened) {
+            this.say(`${error.message}.`);
+            return this.isReady();
+        }
         this.poster.src = poster ? new URL(poster, document.baseURI).href : new URL('poster.jpg', this.source).href;
         this.poster.alt = this.getAttribute('title') || 'A still picture';
         this.poster.hidden = false;
@@ -66,7 +99,7 @@ export class RelumeView extends HTMLElement {
             : 'Only a still picture can be shown: something went wrong in this browser.');
         if (!(error instanceof Failure))
             console.error(error);
-        this.isReady();
+        return this.isReady();
     }
 
     say(text) {
@@ -80,12 +113,15 @@ export class RelumeView extends HTMLElement {
     async open() {
         const viewer = new Viewer(this.canvas, RelumeView.home, {
             changed: () => this.controls && this.controls.show(),
-            failed: (error) => (viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error)),
+            failed: (error) => {
+                this.trouble = error.message;
+                return viewer.drawn ? this.say(`A part of the picture cannot be shown: ${error.message}.`) : this.fail(error);
+            },
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
             drawn: () => this.overlay && this.overlay.draw(),
         });
-        await viewer.open(this.source.href);
+        await viewer.open(this.source.href, this.opened);
         if (!this.isConnected || !this.root.contains(viewer.canvas))
             return viewer.close();
         this.viewer = viewer;
@@ -108,6 +144,8 @@ export class RelumeView extends HTMLElement {
         else if (this.getAttribute('state'))
             viewer.setState(this.getAttribute('state'));
         await viewer.ready;
+        if (this.opened)
+            this.sayOpened();
         return this.isReady();
     }
 
@@ -359,17 +397,20 @@ export class RelumeView extends HTMLElement {
         this.surface.addEventListener('dragover', (event) => event.preventDefault());
         this.surface.addEventListener('drop', (event) => {
             event.preventDefault();
+            event.stopPropagation();
             this.drop(event.dataTransfer.files[0]).catch((error) => this.say(`${error.message}.`));
         });
     }
 
     async drop(file) {
         if (!file)
-            return;
+            return undefined;
+        if (isRelume(file))
+            return this.show(file);
         const map = await readEnvironment(file);
         this.viewer.chosen = 0;
         this.viewer.setLights([{ kind: 'env', name: file.name, map, rotate: 0, rgb: [1, 1, 1] }]);
-        this.say(`${file.name} lights the picture; drag on the ball to turn it.`);
+        return this.say(`${file.name} lights the picture; drag on the ball to turn it.`);
     }
 
     moveLight(dx, dy) {

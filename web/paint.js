@@ -1,7 +1,6 @@
 // paint.js - tiles of a view into a frame or a texture, the coarse ones that are there under the fine
 // ones that are still to come
-import { decodePicture } from './tiles.js';
-import { loadBytes } from './load.js';
+import { loadPicture } from './tiles.js';
 import { maskShader, tileShader } from './shaders.js';
 
 // The level whose texels are as large as pixels, or smaller; `scale` is pixels a texel of level 0.
@@ -42,10 +41,12 @@ export class Painter {
         let missing = true;
         for (let l = level; l <= last && missing; l++) {
             const all = this.touching(l, part);
-            const found = all.map(([x, y]) => (l === level && !waiting ? this.tiles.get(view, l, x, y)
-                : this.tiles.tiles.get(`${view}/${l}_${x}_${y}`))).filter((t) => t && t.state === 'ready');
+            const known = all.map(([x, y]) => (l === level && !waiting ? this.tiles.get(view, l, x, y)
+                : this.tiles.tiles.get(`${view}/${l}_${x}_${y}`)));
+            const found = known.filter((t) => t && t.state === 'ready');
             missing = found.length < all.length;
-            if (l === level && missing)
+            // what has failed does not come
+            if (l === level && known.some((t) => !t || !['ready', 'failed'].includes(t.state)))
                 this.complete = false;
             lists.unshift(found);
         }
@@ -68,14 +69,12 @@ export class Painter {
     mask(view) {
         if (!this.masks.has(view.name)) {
             this.masks.set(view.name, null);
-            loadBytes(`${this.scene.base}${view.name}/mask.png`)
-                .then((bytes) => decodePicture(bytes, 'image/png'))
-                .then((picture) => {
-                    const { gl } = this.device, texture = this.device.texture(gl.LINEAR);
-                    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
-                    this.masks.set(view.name, texture);
-                    this.changed();
-                }, this.tiles.failed);
+            loadPicture(this.scene, view, true).then((picture) => {
+                const { gl } = this.device, texture = this.device.texture(gl.LINEAR);
+                gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+                this.masks.set(view.name, texture);
+                this.changed();
+            }, this.tiles.failed);
         }
         return this.masks.get(view.name);
     }

@@ -77,7 +77,10 @@ function checkGeometry(scene) {
 // A scene: what scene.json has, with `transform`, `mean`, `scale` and `offset` as floats, `base` (the
 // address that its other files are relative to), `curve` and `gamma`.
 export async function loadScene(address) {
-    const scene = await loadJson(address);
+    return checkScene(await loadJson(address), address);
+}
+
+export function checkScene(scene, address) {
     insist(scene && scene.format === 'relume-web', 'not a scene of relume publish');
     insist(isWhole(scene.version, 1, 1e6), 'no version');
     if (scene.version > NEWEST)

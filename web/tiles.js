@@ -28,6 +28,13 @@ export function decodePicture(bytes, type) {
     return createImageBitmap(new Blob([bytes], { type }), { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
 }
 
+// The depth or the mask of a view.
+export async function loadPicture(scene, view, mask) {
+    if (scene.local)
+        return scene.local.picture(view, mask);
+    return decodePicture(await loadBytes(`${scene.base}${view.name}/${mask ? 'mask' : 'depth'}.png`), 'image/png');
+}
+
 // All tiles of one file. `changed` is called when one has come, `failed` with a sentence.
 export class Tiles {
     constructor(device, scene, { changed, failed }) {
@@ -78,20 +85,28 @@ export class Tiles {
 
     get busy() { return this.loading + this.queue.length; }
 
+    // The pictures of its layers, decoded.
+    async pictures(tile) {
+        const address = `${this.scene.base}${tile.key}.bin`, bytes = await loadBytes(address);
+        this.received += bytes.length;
+        const pictures = await Promise.all(partsOf(bytes, this.scene.layers, address)
+            .map((part) => decodePicture(part, 'image/jpeg').catch(() => {
+                throw new Failure(`${tile.key}.bin is damaged`);
+            })));
+        if (pictures.some((p) => p.width !== tile.width || p.height !== tile.height))
+            throw new Failure(`${tile.key}.bin has another size than scene.json says`);
+        return pictures;
+    }
+
     async load(tile) {
-        const address = `${this.scene.base}${tile.key}.bin`;
+        const { local } = this.scene;
         tile.state = 'loading';
         this.loading++;
         try {
-            const bytes = await loadBytes(address);
-            this.received += bytes.length;
-            const pictures = await Promise.all(partsOf(bytes, this.scene.layers, address)
-                .map((part) => decodePicture(part, 'image/jpeg').catch(() => {
-                    throw new Failure(`${tile.key}.bin is damaged`);
-                })));
-            if (pictures.some((p) => p.width !== tile.width || p.height !== tile.height))
-                throw new Failure(`${tile.key}.bin has another size than scene.json says`);
-            this.upload(tile, pictures);
+            if (local)
+                this.uploadCodes(tile, await local.codes(tile));
+            else
+                this.upload(tile, await this.pictures(tile));
             tile.state = 'ready';
         } catch (error) {
             tile.state = 'failed';
@@ -100,6 +115,17 @@ export class Tiles {
         this.loading--;
         this.changed();
     }
+
+    uploadCodes(tile, codes) {
+        const { gl } = this.device, { layers, halves } = this.scene;
+        tile.codes = this.device.texture(gl.NEAREST, gl.TEXTURE_2D_ARRAY);
+        gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, halves ? gl.RGBA16F : gl.RGBA8, tile.width, tile.height, layers);
+        gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, tile.width, tile.height, layers, gl.RGBA,
+                         halves ? gl.HALF_FLOAT : gl.UNSIGNED_BYTE, codes);
+        this.bytes += this.bytesOf(tile);
+    }
+
+    bytesOf(tile) { return (this.scene.halves ? 8 : 4) * tile.width * tile.height * this.scene.layers; }
 
     upload(tile, pictures) {
         const { gl } = this.device;
@@ -112,7 +138,7 @@ export class Tiles {
                              picture);
             picture.close();
         });
-        this.bytes += 4 * tile.width * tile.height * pictures.length;
+        this.bytes += this.bytesOf(tile);
     }
 
     // The least recently used leave, but for the coarsest.
@@ -131,7 +157,7 @@ export class Tiles {
 
     drop(tile) {
         if (tile.codes)
-            this.bytes -= 4 * tile.width * tile.height * this.scene.layers;
+            this.bytes -= this.bytesOf(tile);
         this.device.gl.deleteTexture(tile.codes);
         tile.lit.forEach((lit) => this.device.drop(lit));
         if (tile.surface) {

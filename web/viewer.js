@@ -39,8 +39,9 @@ export class Viewer {
         this.ready = new Promise((resolve) => { this.isReady = resolve; });
     }
 
-    async open(address) {
-        const layer = await this.openLayer(address);
+    // What a page names, or a scene that is open already.
+    async open(address, scene) {
+        const layer = await this.openLayer(address, scene);
         Object.assign(this, layer);
         this.projection = layer.scene.projection;
         this.reset();
@@ -49,8 +50,8 @@ export class Viewer {
     }
 
     // All that an open file has.
-    async openLayer(address) {
-        const scene = await loadScene(address), basis = await Basis.open(scene, this.home);
+    async openLayer(address, opened) {
+        const scene = opened || await loadScene(address), basis = await Basis.open(scene, this.home);
         const tiles = new Tiles(this.device, scene, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
         return this.layerOf(scene, basis, tiles);
     }

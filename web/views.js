@@ -1,7 +1,6 @@
 // views.js - whole views as layers of a texture, where several are looked at together, and their
 // disparities
-import { decodePicture } from './tiles.js';
-import { loadBytes } from './load.js';
+import { loadPicture } from './tiles.js';
 
 const MOST_LAYERS = 24;
 
@@ -34,6 +33,8 @@ function disparitiesOf(picture, view, slab) {
 
 // The bytes of a decoded picture.
 function pixelsOf(picture) {
+    if (picture instanceof ImageData)
+        return picture;
     const canvas = Object.assign(document.createElement('canvas'), { width: picture.width, height: picture.height });
     const context = canvas.getContext('2d', { willReadFrequently: true, colorSpace: 'srgb' });
     context.drawImage(picture, 0, 0);
@@ -124,7 +125,11 @@ export class Views {
             return false;
         if (!this.depths.has(index)) {
             this.depths.set(index, {});
-            this.loadDepth(index, view).catch(this.painter.tiles.failed);
+            this.loadDepth(index, view).catch((error) => {
+                view.depth = false;  // it does not come: the view is shown as a flat one
+                this.painter.tiles.failed(error);
+                this.painter.changed();
+            });
         }
         const depth = this.depths.get(index);
         if (!depth.data)
@@ -133,8 +138,7 @@ export class Views {
     }
 
     async loadDepth(index, view) {
-        const bytes = await loadBytes(`${this.scene.base}${view.name}/depth.png`);
-        const picture = await decodePicture(bytes, 'image/png');
+        const picture = await loadPicture(this.scene, view, false);
         const depth = disparitiesOf(pixelsOf(picture), view, this.scene.slab);
         this.depths.set(index, depth);
         this.range = [Math.min(this.range[0], depth.low), Math.max(this.range[1], depth.high)];

@@ -20,13 +20,12 @@ static bool is_srgb(const struct relume_codes *codes)
            (codes->display.curve == RELUME_CURVE_SRGB || codes->display.curve == RELUME_CURVE_AUTO);
 }
 
-// The file's coding, where it is a curve that everybody knows; else sRGB.
-static struct relume_transfer coding_of(const struct relume_codes *codes)
+struct relume_transfer source_coding(enum relume_domain domain, struct relume_transfer display)
 {
-    if (codes->domain == RELUME_DOMAIN_LINEAR)
+    if (domain == RELUME_DOMAIN_LINEAR)
         return (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
-    return codes->display.curve == RELUME_CURVE_GAMMA
-               ? codes->display
+    return display.curve == RELUME_CURVE_GAMMA
+               ? display
                : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
 }
 
@@ -55,7 +54,7 @@ relume_status source_open(struct source *s, const struct relume_codes *codes, en
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     s->numbers = info->basis->joint ? info->coefficients : 3 * info->coefficients;
     const bool whole = kind != SOURCE_UPPER;
-    s->coding = kind == SOURCE_WHOLE ? coding_of(codes)
+    s->coding = kind == SOURCE_WHOLE ? source_coding(codes->domain, codes->display)
                                      : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
     const bool as_it_is = is_srgb(codes) || s->coding.curve != RELUME_CURVE_SRGB;
     const relume_status status = choose_lights(s, whole);

@@ -30,6 +30,10 @@ relume_status source_open(struct source *s, const struct relume_codes *codes, en
                           const struct relume_log *log);
 void source_close(struct source *s);
 
+// In what a whole source comes: the file's coding, where it is a curve that everybody knows; else
+// sRGB.
+struct relume_transfer source_coding(enum relume_domain domain, struct relume_transfer display);
+
 // x of `rows` rows from `row` on, out[P][rows][width]. Safe to call from several threads.
 relume_status source_rows(const struct source *s, int row, int rows, float *out);
 // weights[3][P + 1] at a unit direction; the last of each channel is its constant.

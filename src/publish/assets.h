@@ -10,6 +10,8 @@ struct asset {
     const unsigned char *bytes;
     size_t size;
 };
+// Which of them pages load as they load data, and only when a file is dropped onto one.
+#define ASSET_OPEN "relume-open.wasm"
 extern const struct asset site_assets[];  // NULL ends the list
 
 #endif

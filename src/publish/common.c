@@ -7,6 +7,7 @@
 #include "foreign/principal.h"
 #include "math/lsq.h"
 #include "math/vec.h"
+#include "publish/functions.h"
 
 #include <math.h>
 #include <string.h>
@@ -115,46 +116,6 @@ static relume_status look_at_views(struct common *c, struct statistics *all, rel
 
 // ---------------------------------------------------------------- functions
 
-// Row i of the file's own functions, [F]; NULL: raw function i itself.
-static const float *row_of(const struct relume_coder_info *info, int c, int i)
-{
-    const size_t f = (size_t)info->functions;
-    if (!info->transform)
-        return NULL;
-    return info->transform + (size_t)(info->basis->joint ? c * info->coefficients + i : i) * f;
-}
-
-// to[F] += sum over the numbers of what they show in channel c times x[number]
-static void add_numbers(double *to, const struct relume_coder_info *info, int c, const double *x)
-{
-    for (int i = 0; i < info->coefficients; i++) {
-        const double v = x[info->basis->joint ? i : 3 * i + c];
-        const float *row = row_of(info, c, i);
-        if (!row)
-            to[i] += v;
-        for (int f = 0; row && f < info->functions; f++)
-            to[f] += v * (double)row[f];
-    }
-}
-
-// The basis's own functions, or the weights of the pictures between which it interpolates.
-static relume_status make_raw(relume_coder **out, const struct relume_coder_info *info,
-                              const struct relume_log *log)
-{
-    struct relume_coder_params p = {.struct_size = sizeof p,
-                                    .log = log,
-                                    .hemispherical = info->hemispherical,
-                                    .pole_y = info->pole_y,
-                                    .interpolant = info->interpolant,
-                                    .force = true,
-                                    .decode = true};
-    if (!info->basis->interpolates)
-        p.coefficients = info->functions;
-    memcpy(p.parameter, info->parameter, sizeof p.parameter);
-    return relume_coder_create(out, info->basis->interpolates ? &relume_basis_table : info->basis,
-                               info->directions, info->lights, &p);
-}
-
 static relume_status make_functions(struct common *c, const struct principal *found,
                                     const double *mean)
 {
@@ -172,7 +133,7 @@ static relume_status make_functions(struct common *c, const struct principal *fo
             memset(sum, 0, f * sizeof *sum);
             for (size_t i = 0; is_mean && info->mean && i < f; i++)
                 sum[i] = (double)info->mean[ch * f + i];
-            add_numbers(sum, info, (int)ch, is_mean ? mean : found->back + row * p);
+            functions_add(sum, info, (int)ch, is_mean ? mean : found->back + row * p);
             for (size_t i = 0; i < f; i++)
                 (is_mean ? c->mean + ch * f : c->transform + (ch * k + row) * f)[i] = (float)sum[i];
         }
@@ -218,7 +179,7 @@ static relume_status find(struct common *c, struct statistics *all, int planes)
     if (!status)
         status = make_plan(&c->plan, &found, all->mean, n);
     if (!status)
-        status = make_raw(&c->raw, coder_of(&c->source), c->source.log);
+        status = functions_coder(&c->raw, coder_of(&c->source), c->source.log);
     if (!status)
         status = make_functions(c, &found, all->mean);
     principal_free(&found);

@@ -9,7 +9,7 @@
 enum { MOST_CODE = 65535 };
 
 // Equal steps of the inverse are equal steps of what the eye sees move.
-static void find_steps(struct layers *l, const struct relume_image *depth)
+void layers_find_steps(struct layers *l, const struct relume_image *depth)
 {
     const size_t pixels = (size_t)depth->width * (size_t)depth->height;
     double min = INFINITY, max = 0.0;
@@ -24,7 +24,7 @@ static void find_steps(struct layers *l, const struct relume_image *depth)
     l->depth_step = fmax((max - l->depth_min) / (MOST_CODE - 1), 1e-12);
 }
 
-static int code_of(const struct layers *l, float depth)
+int layers_code(const struct layers *l, float depth)
 {
     const double d = (double)depth;
     return d > 0.0 && isfinite(d)
@@ -39,9 +39,9 @@ static relume_status write_depth(struct layers *l, const struct site *site, cons
     uint8_t *rgb = mem_zeroed(pixels, 3);
     if (!rgb)
         return RELUME_ENOMEM;
-    find_steps(l, depth);
+    layers_find_steps(l, depth);
     for (size_t i = 0; i < pixels; i++) {
-        const int v = code_of(l, depth->data[i]);
+        const int v = layers_code(l, depth->data[i]);
         rgb[3 * i] = (uint8_t)(v >> 8);
         rgb[3 * i + 1] = (uint8_t)(v & 255);
     }

@@ -55,7 +55,7 @@ static void make(char *name, const char *stem)
 
 static bool is_taken(char (*names)[SITE_NAME], int count, const char *name)
 {
-    bool taken = !strcmp(name, "index") || !strcmp(name, "relume");
+    bool taken = !strcmp(name, "index") || !strcmp(name, "open") || !strcmp(name, "relume");
     for (int i = 0; !taken && i < count; i++)
         taken = !strcmp(names[i], name);
     return taken;

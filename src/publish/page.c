@@ -40,7 +40,7 @@ static void put_open_graph(FILE *f, const struct site *site, const char *page, c
 }
 
 static void put_head(FILE *f, const struct site *site, const char *page, const char *poster,
-                     const struct details *d, bool viewer)
+                     const struct details *d)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
@@ -49,12 +49,10 @@ static void put_head(FILE *f, const struct site *site, const char *page, const c
     fputs("</title>\n", f);
     put_open_graph(f, site, page, poster, d);
     fprintf(f, "<meta name=\"generator\" content=\"relume %s\">\n", RELUME_VERSION);
-    if (viewer)
-        fputs("<link rel=\"stylesheet\" href=\"relume/relume.css\">\n", f);
-    fputs("<link rel=\"stylesheet\" href=\"relume/site.css\">\n", f);
-    if (viewer)
-        fputs("<script src=\"relume/relume.js\" defer></script>\n", f);
-    fputs("</head>\n<body>\n", f);
+    fputs("<link rel=\"stylesheet\" href=\"relume/relume.css\">\n"
+          "<link rel=\"stylesheet\" href=\"relume/site.css\">\n"
+          "<script src=\"relume/relume.js\" defer></script>\n</head>\n<body>\n",
+          f);
 }
 
 static void put_row(FILE *f, const char *term, const char *value)
@@ -132,7 +130,7 @@ relume_status page_write(const struct site *site, const struct page *p, const ch
     if (status)
         return status;
     FILE *f = t.file;
-    put_head(f, site, name, poster, &p->details, true);
+    put_head(f, site, name, poster, &p->details);
     fputs("<nav><a href=\"index.html\">", f);
     text_html(f, site_title ? site_title : "All objects");
     fputs("</a></nav>\n<main>\n<h1>", f);
@@ -150,6 +148,33 @@ relume_status page_write(const struct site *site, const struct page *p, const ch
     return site_save_text(site, name, false, &t);
 }
 
+// Where visitors choose a file of their own, unless they drop it.
+static void put_chooser(FILE *f)
+{
+    fputs("<p><label>Drop a relume file (.exr) of your own here, or choose it: "
+          "<input type=\"file\" accept=\".exr\" data-relume-open></label><br>\n"
+          "It is read by this browser and sent nowhere.</p>\n"
+          "<p role=\"status\" data-relume-said></p>\n",
+          f);
+}
+
+relume_status page_write_open(const struct site *site)
+{
+    const struct details d = {.title = "Open a relume file"};
+    struct text t;
+    const relume_status status = text_open(&t);
+    if (status)
+        return status;
+    put_head(t.file, site, "open.html", NULL, &d);
+    fputs("<nav><a href=\"index.html\">All objects</a></nav>\n<main>\n<h1>Open a relume "
+          "file</h1>\n",
+          t.file);
+    put_chooser(t.file);
+    fputs("<noscript><p>This page needs JavaScript.</p></noscript>\n</main>\n</body>\n</html>\n",
+          t.file);
+    return site_save_text(site, "open.html", false, &t);
+}
+
 relume_status page_write_index(const struct site *site, const struct page *pages, int count,
                                const struct details *details)
 {
@@ -162,7 +187,7 @@ relume_status page_write_index(const struct site *site, const struct page *pages
     if (status)
         return status;
     FILE *f = t.file;
-    put_head(f, site, "index.html", poster, &d, false);
+    put_head(f, site, "index.html", poster, &d);
     fputs("<main>\n<h1>", f);
     text_html(f, d.title);
     fputs("</h1>\n", f);
@@ -179,6 +204,7 @@ relume_status page_write_index(const struct site *site, const struct page *pages
     }
     fputs("</ul>\n", f);
     put_details(f, &d);
+    put_chooser(f);
     fputs("</main>\n</body>\n</html>\n", f);
     return site_save_text(site, "index.html", false, &t);
 }

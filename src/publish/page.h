@@ -17,5 +17,7 @@ relume_status page_write(const struct site *site, const struct page *page, const
 // index.html, of all of them.
 relume_status page_write_index(const struct site *site, const struct page *pages, int count,
                                const struct details *details);
+// open.html, onto which people drop a file of their own.
+relume_status page_write_open(const struct site *site);
 
 #endif

@@ -161,7 +161,8 @@ static relume_status write_assets(const struct site *site)
     for (const struct asset *a = site_assets; !status && a->name; a++) {
         char name[128];
         snprintf(name, sizeof name, "relume/%s", a->name);
-        status = site_save(site, name, a->bytes, a->size);
+        status = strcmp(a->name, ASSET_OPEN) ? site_save(site, name, a->bytes, a->size)
+                                             : site_save_data(site, name, a->bytes, a->size);
     }
     return status;
 }
@@ -207,6 +208,8 @@ relume_status relume_publish(const char *const *files, int count, const char *pa
         status = write_assets(&site);
     if (!status)
         status = page_write_index(&site, w.pages, count, &details);
+    if (!status)
+        status = page_write_open(&site);
     work_end(&w);
     return outdir_end(&dir, status);
 }

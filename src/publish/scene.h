@@ -8,6 +8,8 @@
 #include "publish/levels.h"
 #include "publish/site.h"
 
+#include <stdio.h>
+
 // A file that is being published.
 struct scene {
     const struct site *site;
@@ -29,7 +31,8 @@ struct scene {
 relume_status scene_write(struct scene *s);
 void scene_free(struct scene *s);
 
-// scene.json alone, when all else is known.
+// scene.json alone, when all else is known: its text, and the file.
+void scene_print_json(FILE *f, const struct scene *s);
 relume_status scene_write_json(const struct scene *s);
 
 #endif

@@ -110,31 +110,37 @@ static void put_views(FILE *f, const struct scene *s)
     fputs("\n  ]\n", f);
 }
 
-relume_status scene_write_json(const struct scene *s)
+void scene_print_json(FILE *f, const struct scene *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const struct common *c = &s->common;
     const size_t functions = (size_t)c->functions;
-    char name[128], transfer[32];
+    char transfer[32];
+    fputs("{\n  \"format\": \"relume-web\", \"version\": 1,\n", f);
+    put_details(f, s);
+    fprintf(f, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
+    put_geometry(f, &info->geometry);
+    relume_transfer_text(c->source.coding, transfer, sizeof transfer);
+    fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
+    put_basis(f, c);
+    fprintf(f, "  \"functions\": %d, \"planes\": %d,\n", c->functions, s->levels.planes);
+    put_floats(f, "transform", c->transform, 3 * (size_t)s->levels.planes * functions);
+    put_floats(f, "mean", c->mean, 3 * functions);
+    put_numbers(f, "scale", s->levels.scale, s->levels.planes);
+    put_numbers(f, "offset", s->levels.offset, s->levels.planes);
+    put_levels(f, s);
+    put_views(f, s);
+    fputs("}\n", f);
+}
+
+relume_status scene_write_json(const struct scene *s)
+{
+    char name[128];
     struct text t;
     const relume_status status = text_open(&t);
     if (status)
         return status;
-    fputs("{\n  \"format\": \"relume-web\", \"version\": 1,\n", t.file);
-    put_details(t.file, s);
-    fprintf(t.file, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
-    put_geometry(t.file, &info->geometry);
-    relume_transfer_text(c->source.coding, transfer, sizeof transfer);
-    fprintf(t.file, "  \"transfer\": \"%s\",\n", transfer);
-    put_basis(t.file, c);
-    fprintf(t.file, "  \"functions\": %d, \"planes\": %d,\n", c->functions, s->levels.planes);
-    put_floats(t.file, "transform", c->transform, 3 * (size_t)s->levels.planes * functions);
-    put_floats(t.file, "mean", c->mean, 3 * functions);
-    put_numbers(t.file, "scale", s->levels.scale, s->levels.planes);
-    put_numbers(t.file, "offset", s->levels.offset, s->levels.planes);
-    put_levels(t.file, s);
-    put_views(t.file, s);
-    fputs("}\n", t.file);
+    scene_print_json(t.file, s);
     snprintf(name, sizeof name, "%s/scene.json", s->name);
     return site_save_text(s->site, name, true, &t);
 }

@@ -82,10 +82,10 @@ publish wrap.exr -o hostile --title "$hostile" --maker "$hostile" --licence 'htt
 check 'no script of a title' [ -z "$(grep -rl '<script>alert' hostile; grep -l '"onclick=' hostile/*.html)" ]
 check 'a title as it is' grep -q '<h1>&lt;/title&gt;&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt;&amp;amp; &#39;&quot;</h1>' hostile/wrap.html
 mkdir -p a b
-for name in 'a/Co in.exr' 'b/co-in.exr' index.exr '<script>.exr' 'é.exr'; do cp round.exr "$name"; done
+for name in 'a/Co in.exr' 'b/co-in.exr' index.exr open.exr '<script>.exr' 'é.exr'; do cp round.exr "$name"; done
 echo '{"maker": "A museum", "files": {"index": {"title": "Second", "object": "7"}, "nobody": {}}}' >museum.json
-publish 'a/Co in.exr' b/co-in.exr index.exr '<script>.exr' 'é.exr' -o names --metadata museum.json
-check 'names of pages' [ "$(cd names && LC_ALL=C ls -d -- *.html | tr '\n' ' ')" = 'co-in-2.html co-in.html index-2.html index.html object.html script.html ' ]
+publish 'a/Co in.exr' b/co-in.exr index.exr open.exr '<script>.exr' 'é.exr' -o names --metadata museum.json
+check 'names of pages' [ "$(cd names && LC_ALL=C ls -d -- *.html | tr '\n' ' ')" = 'co-in-2.html co-in.html index-2.html index.html object.html open-2.html open.html script.html ' ]
 check 'metadata of a file' grep -q '<h1>Second</h1>' names/index-2.html
 check 'metadata of all' grep -q '<dd>A museum</dd>' names/script.html
 check 'metadata of a file that is not there' grep -q 'museum.json: "files" has "nobody", which is none of the files' err.txt

@@ -2,7 +2,8 @@
 //
 // A page only decodes, in one thread: nothing here learns, fits a basis or reads files, so that
 // Eigen, threads and logs stay out of what is downloaded. Interpolants ask for one inverse, which
-// is plain C here.
+// is plain C here. What opens dropped files (web/open) has most of the library, and takes only
+// what is plain or missing here in place of Eigen: OPENS_FILES.
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
@@ -15,6 +16,7 @@
 #include <math.h>
 #include <string.h>
 
+#ifndef OPENS_FILES
 // ---------------------------------------------------------------- base
 
 void *mem_array(size_t count, size_t size)
@@ -112,6 +114,7 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     return RELUME_ENOTFOUND;
 }
 
+#endif
 // ---------------------------------------------------------------- algebra
 
 // Gauss and Jordan, rows exchanged for the largest pivot.
@@ -198,5 +201,7 @@ void robust_destroy(struct robust *robust)
     (void)robust;
 }
 
+#ifndef OPENS_FILES
 const struct relume_basis relume_basis_pca = {.name = "pca"};
 const struct relume_basis relume_basis_eigen = {.name = "eigen"};
+#endif

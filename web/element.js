@@ -233,18 +233,20 @@ export class RelumeView extends HTMLElement {
 
     // Compares with the kept look, or with the file that `compare` names.
     async compare(way) {
-        const { comparison } = this.viewer, address = this.getAttribute('compare');
-        if (way !== 'off' && !comparison.kept && address) {
-            try {
-                await comparison.open(new URL(address, document.baseURI).href);
-            } catch (error) {
-                this.say(`${error.message}.`);
-            }
+        const { comparison } = this.viewer, named = this.getAttribute('compare'), { kept } = comparison;
+        const address = named && new URL(named, document.baseURI).href;
+        try {
+            if (way !== 'off' && address && (!kept || (kept.follows && kept.follows !== address)))
+                await comparison.open(address);
+        } catch (error) {
+            comparison.setWay('off');
+            this.controls.show();
+            return this.say(`${error.message}.`);
         }
         comparison.setWay(way);
         this.controls.show();
-        if (way !== 'off')
-            this.say(way === 'lens' ? 'The lens shows the kept look.' : 'The kept look is compared with this one.');
+        const what = comparison.title || 'the kept look';
+        return way === 'off' ? this.say('') : this.say(way === 'lens' ? `The lens shows ${what}.` : `This is compared with ${what}.`);
     }
 
     keep() {

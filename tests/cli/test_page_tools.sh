@@ -1,0 +1,80 @@
+#!/bin/sh
+# What people do on published pages beside looking: comparing two files.
+. "$(dirname "$0")/lib.sh"
+. "$TOP/tests/cli/page.sh"
+if ! [ "$node" ] || ! [ "$browser" ]; then
+    skip 'tools of published pages' 'no chromium and node; make deps-web installs them'
+    finish
+    exit
+fi
+"$sphere" old --size 48 --lights 20 --hemisphere --shade wrap --format png || exit 1
+"$sphere" new --size 96 --lights 24 --hemisphere --shade full --format png || exit 1
+relume encode old -o old.exr --basis pca --coefficients 9 || exit 1
+relume encode new -o new.exr --basis pca --coefficients 12 || exit 1
+relume synth teapot -o pot --size 24 --views 2x2 --lights 9 --hemisphere --samples 1 || exit 1
+relume encode pot -o pot.exr --basis pca --coefficients 6 || exit 1
+relume publish old.exr new.exr pot.exr -o site --metadata /dev/stdin <<'END' || exit 1
+{"title": "Both", "files": {"new": {"title": "After the <b>cleaning</b>"}}}
+END
+# A page with the attribute. Its script has pixels() of what is seen, rows from the top.
+page() { # name, other file
+    cat >site/$1.html <<END
+<!DOCTYPE html><script src="relume/relume.js" defer></script><relume-view src="old/scene.json" compare="$2/scene.json"></relume-view>
+<script>
+const view = document.querySelector('relume-view');
+async function pixels() {
+    const picture = await createImageBitmap(await view.snapshot()), { width, height } = picture;
+    const context = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d');
+    context.drawImage(picture, 0, 0);
+    return context.getImageData(0, 0, width, height).data;
+}
+// The largest difference of what is seen from expected(own, other), pixel by pixel; null: no matter.
+async function worst(expected) {
+    await view.idle();
+    const seen = await pixels();
+    let most = 0;
+    for (let i = 0; i < seen.length; i++) {
+        const wanted = i % 4 < 3 ? expected(own[i], other[i], (i >> 2) % 96, Math.floor(i / 384)) : null;
+        most = wanted === null ? most : Math.max(most, Math.abs(seen[i] - wanted));
+    }
+    return most;
+}
+let own, other;
+</script>
+END
+}
+page both new
+page unlike pot
+page none lost
+light=0.3,0.4,0.8
+{
+    echo 'size 96 96'
+    show site/both.html
+    echo "state light=dir,$light"
+} >orders.txt
+ask "pixels().then(seen => { own = seen; return 0; })"
+ask "view.compare('blink').then(() => { clearInterval(view.viewer.comparison.timer); return view.idle(); }).then(() => ['blinks', view.viewer.comparison.second, view.status.textContent])"
+echo 'snap other.png' >>orders.txt
+ask "pixels().then(seen => { other = seen; return 0; })"
+ask "view.compare('slider').then(() => { view.divide(0.25); return worst((a, b, x) => (x < 23 ? a : x > 25 ? b : null)); }).then(most => 'slider ' + most)"
+ask "view.compare('difference').then(() => worst((a, b) => Math.min(2 * Math.abs(a - b), 255))).then(most => 'difference ' + most)"
+echo 'drag 60 30 60 30' >>orders.txt
+echo "state light=dir,$light" >>orders.txt
+ask "view.compare('lens').then(() => worst((a, b, x, y) => (away => away < 15 ? b : away > 20 ? a : null)(Math.hypot(x + 0.5 - 60, y + 0.5 - 30)))).then(most => ['lens', most, view.status.textContent])"
+ask "(view.keep(), view.compare('difference').then(() => worst(() => 0)).then(most => ['kept', most, view.status.textContent]))"
+for page in unlike none; do
+    echo "open file://$work/site/$page.html" >>orders.txt
+    ask "view.compare('slider').then(() => [view.status.textContent, view.viewer.comparison.way, view.viewer.comparison.kept])"
+done
+browse
+relume relight new.exr -o new.png --light "dir $(echo $light | tr , ' ')" || exit 1
+below 'the other file is shown in the light of this one, at its own resolution' "$("$mkimage" codediff other.png new.png)" 1
+says 'what is compared is said, as text' '^\["blinks",true,"This is compared with After the <b>cleaning</b>\."\]'
+# both are drawn once more: a code of rounding
+says 'a slider shows this file and the other one' '^"slider [01]"'
+says 'the difference is twice that of the codes' '^"difference [0-2]"'
+says 'a lens follows the pointer and shows the other file' '^\["lens",[01],"The lens shows After the <b>cleaning</b>\."\]'
+says 'a kept look takes its place' '^\["kept",0,"This is compared with the kept look\."\]'
+says 'a file of another kind is refused' '^\["pot cannot be compared with this one: it is slab, this one planar\.","off",null\]'
+says 'a missing file is said' '^\["site/lost/scene.json is missing\.","off",null\]'
+finish

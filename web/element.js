@@ -17,7 +17,7 @@ const KEYS = [
     ['Arrow keys', 'move the light (Shift: the other way of dragging)'], ['L', 'dragging and arrows: light, or moving'],
     ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['N  Delete', 'another light, remove it'],
     ['Tab in the strip', 'colour, softness and more'], ['[ ]', 'darker, brighter'], ['P', 'what is shown'],
-    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
+    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], [', .', 'the note before, the next one'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
 
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
@@ -46,6 +46,7 @@ export class RelumeView extends HTMLElement {
             this.observer.disconnect();
         document.removeEventListener('keydown', this.bodyKey);
         if (this.viewer) {
+            this.overlay.close();
             this.first = this.getState();  // for when it is put elsewhere in the page
             this.viewer.close();
         }
@@ -114,7 +115,7 @@ export class RelumeView extends HTMLElement {
     // Notes that were published with the picture, and those that are made here.
     async openNotes() {
         const { viewer } = this, notes = new Notes(viewer.scene);
-        this.overlay = new Overlay(this.over, viewer);
+        this.overlay = new Overlay(this.over, viewer, () => this.panel.rested());
         this.panel = new NotePanel(viewer, notes, this.overlay, {
             draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state),
             focus: () => this.surface.focus(),
@@ -407,6 +408,7 @@ export class RelumeView extends HTMLElement {
             ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
             p: () => this.set('pass', next(PASSES, viewer.pass)), t: () => this.set('tone', next(TONES_BY_NAME, viewer.tone)),
             f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), m: () => this.toggleNotes(),
+            ',': () => this.panel.step(-1), '.': () => this.panel.step(1),
             k: () => this.keep(), v: () => this.compare(next(COMPARISONS, viewer.comparison.way)), b: () => viewer.comparison.swap(), '?': () => this.help(),
         };
         if (way && this.lighting !== event.shiftKey)

@@ -40,15 +40,21 @@ export class NotePanel {
         this.show();
     }
 
+    // The notes that are searched for.
+    found() {
+        const wanted = this.filter.value.toLowerCase();
+        return this.notes.all.filter((note) => note.text.toLowerCase().includes(wanted));
+    }
+
+    // Of very many notes the list has those near the middle of the picture.
     show() {
-        const wanted = this.filter.value.toLowerCase(), { mm } = this.notes;
-        const found = this.notes.all.filter((note) => note.text.toLowerCase().includes(wanted));
+        const { mm } = this.notes, found = this.found(), many = found.length > SHOWN;
         const line = (note) => make('li', {}, make('button', { type: 'button', class: note === this.overlay.chosen ? 'note chosen' : 'note',
                                                               onclick: () => { this.choose(note); this.visit(); } },
             make('span', {}, note.text.slice(0, 200) || KINDS[note.kind]), make('small', {}, sayMeasures(note, mm))));
-        this.list.replaceChildren(...found.slice(0, SHOWN).map(line));
-        if (found.length > SHOWN)
-            this.list.append(make('li', { class: 'more' }, `and ${found.length - SHOWN} more`));
+        this.list.replaceChildren(...(many ? this.overlay.nearest(found, SHOWN) : found).map(line));
+        if (many)
+            this.list.append(make('li', { class: 'more' }, `and ${found.length - SHOWN} more, farther from the middle`));
         if (this.notes.unknown)
             this.list.append(make('li', { class: 'more' }, `${this.notes.unknown} of a kind that this page cannot show`));
     }
@@ -63,6 +69,23 @@ export class NotePanel {
         }
         this.show();
         this.to.draw();
+    }
+
+    // The picture has come to rest elsewhere.
+    rested() {
+        if (!this.node.hidden && this.notes.all.length > SHOWN && !this.list.contains(this.node.getRootNode().activeElement))
+            this.show();
+    }
+
+    // The note before or after the chosen one, of those that are searched for.
+    step(by) {
+        const found = this.found(), n = found.length, at = found.indexOf(this.overlay.chosen);
+        if (!n)
+            return this.to.say('There are no notes.');
+        const i = at < 0 ? (by > 0 ? 0 : n - 1) : (at + by + n) % n, note = found[i];
+        this.choose(note);
+        this.visit();
+        return this.to.say([`${i + 1} of ${n}: ${note.text.slice(0, 200) || KINDS[note.kind]}`, sayMeasures(note, this.notes.mm)].filter((t) => t).join(', '));
     }
 
     // The light, eye and framing that a note was made in.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What people do on published pages beside looking: comparing two files.
+# What people do on published pages beside looking: comparing two files, very many notes.
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/page.sh"
 if ! [ "$node" ] || ! [ "$browser" ]; then
@@ -58,14 +58,59 @@ echo 'snap other.png' >>orders.txt
 ask "pixels().then(seen => { other = seen; return 0; })"
 ask "view.compare('slider').then(() => { view.divide(0.25); return worst((a, b, x) => (x < 23 ? a : x > 25 ? b : null)); }).then(most => 'slider ' + most)"
 ask "view.compare('difference').then(() => worst((a, b) => Math.min(2 * Math.abs(a - b), 255))).then(most => 'difference ' + most)"
+ask 'view.toggleMode()'
 echo 'drag 60 30 60 30' >>orders.txt
-echo "state light=dir,$light" >>orders.txt
 ask "view.compare('lens').then(() => worst((a, b, x, y) => (away => away < 15 ? b : away > 20 ? a : null)(Math.hypot(x + 0.5 - 60, y + 0.5 - 30)))).then(most => ['lens', most, view.status.textContent])"
 ask "(view.keep(), view.compare('difference').then(() => worst(() => 0)).then(most => ['kept', most, view.status.textContent]))"
 for page in unlike none; do
     echo "open file://$work/site/$page.html" >>orders.txt
     ask "view.compare('slider').then(() => [view.status.textContent, view.viewer.comparison.way, view.viewer.comparison.kept])"
 done
+# ten thousand notes: all but the last at the left
+cat >site/many.html <<'END'
+<!DOCTYPE html><script src="relume/relume.js" defer></script><relume-view src="old/scene.json"></relume-view>
+<script>
+const view = document.querySelector('relume-view'), strokes = [];
+const frame = () => new Promise((done) => requestAnimationFrame(done));
+const { stroke } = CanvasRenderingContext2D.prototype;
+CanvasRenderingContext2D.prototype.stroke = function () { strokes[strokes.length - 1]++; stroke.call(this); };
+function begin() {
+    const { overlay, panel } = view, { draw } = overlay;
+    overlay.draw = () => { strokes.push(0); draw.call(overlay); };
+    const item = (n) => ({ id: `n${n}`, type: 'Annotation', body: { value: `note ${n}` }, target: { selector:
+        { type: 'PointSelector', x: n < 10000 ? n % 97 / 6 : 40, y: n < 10000 ? n % 101 / 3 : 20 } } });
+    panel.notes.read({ type: 'AnnotationPage', items: Array.from({ length: 10000 }, (_, i) => item(i + 1)) });
+    view.viewer.invalidate();
+}
+async function settled() {
+    do await frame(); while (view.overlay.marks.job || !view.overlay.marks.shown);
+}
+// What lies over the picture at a place of it, of the layer that moves.
+function over(place) {
+    const { canvas } = view.overlay.marks.shown, box = canvas.getBoundingClientRect(), [x, y] = view.viewer.toCanvas(place);
+    return [...canvas.context.getImageData((x - box.left) * canvas.width / box.width, (y - box.top) * canvas.height / box.height, 1, 1).data];
+}
+async function pan(steps) {
+    strokes.length = 0;
+    for (let i = 0; i < steps; i++) {
+        view.viewer.shift(-2, 1);
+        await frame();
+        await frame();
+    }
+    return [strokes.length >= steps, Math.max(...strokes)];
+}
+</script>
+END
+show site/many.html >>orders.txt
+ask '(begin(), settled().then(() => `slices ${Math.max(...strokes)}`))'
+ask 'pan(5).then(found => ["panned", ...found])'
+ask '["over", over([40, 20 + 5 / view.viewer.framing().scale]), over([40, 20])]'
+ask '(([x, y]) => ["found", view.overlay.find(x + 3, y).item.id, view.overlay.find(x - 15, y)])(view.viewer.toCanvas([40, 20]))'
+ask '(view.viewer.enlarge(1.5), settled().then(() => ["enlarged", over([40, 20 + 5 / view.viewer.framing().scale])]))'
+ask "(view.viewer.setFraming({ x: 40, y: 20, scale: 20 }), view.idle().then(() => [\"near\", Math.max(...strokes.slice(-1)), view.overlay.marks.shown]))"
+echo 'key . . ,' >>orders.txt
+ask '[view.status.textContent, view.overlay.chosen.item.id]'
+ask '(view.toggleNotes(), view.viewer.setFraming({ x: 40, y: 20, scale: 3 }), new Promise(done => setTimeout(done, 600)).then(() => [view.panel.list.children.length, view.panel.list.textContent.slice(0, 10)]))'
 browse
 relume relight new.exr -o new.png --light "dir $(echo $light | tr , ' ')" || exit 1
 below 'the other file is shown in the light of this one, at its own resolution' "$("$mkimage" codediff other.png new.png)" 1
@@ -77,4 +122,13 @@ says 'a lens follows the pointer and shows the other file' '^\["lens",[01],"The 
 says 'a kept look takes its place' '^\["kept",0,"This is compared with the kept look\."\]'
 says 'a file of another kind is refused' '^\["pot cannot be compared with this one: it is slab, this one planar\.","off",null\]'
 says 'a missing file is said' '^\["site/lost/scene.json is missing\.","off",null\]'
+# a mark has two strokes
+says 'ten thousand notes are drawn by and by' '^"slices 1600"'
+says 'none is drawn again while the picture moves' '^\["panned",true,0\]'
+says 'they lie where they belong' '^\["over",\[[12][0-9]{2},[12][0-9]{2},[0-9]+,[12][0-9]{2}\],\[0,0,0,0\]\]'
+says 'a click finds its note' '^\["found","n10000",null\]'
+says 'they lie where they belong when it is enlarged' '^\["enlarged",\[[12][0-9]{2},[12][0-9]{2},[0-9]+,[12][0-9]{2}\]\]'
+says 'few notes are drawn as ever' '^\["near",2,null\]'
+says 'keys go from note to note, which is said' '^\["1 of 10000: note 1","n1"\]'
+says 'a list has what is near' '^\[201,"note 10000"\]'
 finish

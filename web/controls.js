@@ -1,5 +1,5 @@
 // controls.js - the strip below a picture: lights, exposure, what is shown, and what can be done
-import { Ball } from './ball.js';
+import { Ball, shape } from './ball.js';
 import { COMPARISONS } from './compare.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
@@ -16,6 +16,13 @@ export function make(name, given = {}, ...content) {
     }
     node.append(...content);
     return node;
+}
+
+// A file for whoever looks: a text, or a Blob.
+export function handOut(content, type, name) {
+    const address = URL.createObjectURL(new Blob([content], { type }));
+    make('a', { href: address, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
 const hexOf = (rgb) => {
@@ -38,12 +45,8 @@ const ICONS = {
 };
 
 function icon(name) {
-    const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
-    const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-    svg.setAttribute('viewBox', '0 0 24 24');
-    svg.setAttribute('aria-hidden', 'true');
-    path.setAttribute('d', ICONS[name]);
-    svg.append(path);
+    const svg = shape('svg', { viewBox: '0 0 24 24', 'aria-hidden': 'true' });
+    svg.append(shape('path', { d: ICONS[name] }));
     return svg;
 }
 

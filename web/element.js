@@ -1,6 +1,6 @@
 // element.js - <relume-view src="…/scene.json">: a picture that can be relit, and its controls
 import { Viewer } from './viewer.js';
-import { Controls, make } from './controls.js';
+import { Controls, handOut, make } from './controls.js';
 import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
 import { COMPARISONS } from './compare.js';
@@ -295,9 +295,7 @@ export class RelumeView extends HTMLElement {
     }
 
     async save() {
-        const blob = await this.snapshot(), address = URL.createObjectURL(blob);
-        make('a', { href: address, download: `${this.viewer.scene.name || 'picture'}.png` }).click();
-        setTimeout(() => URL.revokeObjectURL(address), 10000);
+        handOut(await this.snapshot(), 'image/png', `${this.viewer.scene.name || 'picture'}.png`);
         this.say('The picture is saved.');
     }
 

@@ -1,6 +1,7 @@
 // notepanel.js - the list of notes beside the picture, and how they are made
-import { make } from './controls.js';
+import { handOut, make } from './controls.js';
 import { measureNote, sayMeasures } from './notes.js';
+import { profileGraph, profileOf, profileTable, shortNumber } from './profile.js';
 
 const SHOWN = 200;  // of the list at once
 const FEWEST = { point: 1, line: 2, polygon: 3 };
@@ -22,8 +23,10 @@ export class NotePanel {
         this.measures = make('p', { class: 'measures' });
         this.length = make('input', { type: 'number', min: 0, step: 'any', 'aria-label': 'Its true length in millimetres' });
         this.ruler = make('div', { class: 'row' }, this.length, make('button', { type: 'button', class: 'word', onclick: () => this.setScale() }, 'mm: set the scale'));
-        this.chosen = make('div', { class: 'chosen-note', hidden: true }, this.text, this.measures, this.ruler,
-            make('div', { class: 'row' },
+        this.profiled = make('div', { class: 'profile', hidden: true });
+        this.profiler = make('button', { type: 'button', class: 'word', onclick: () => this.profile() }, 'Profile');
+        this.chosen = make('div', { class: 'chosen-note', hidden: true }, this.text, this.measures, this.ruler, this.profiled,
+            make('div', { class: 'row' }, this.profiler,
                 make('button', { type: 'button', class: 'word', onclick: () => this.visit() }, 'Show its light'),
                 make('button', { type: 'button', class: 'word', onclick: () => this.remove() }, 'Remove')));
         this.shown = make('input', { type: 'checkbox', checked: true, onchange: () => { overlay.shown = this.shown.checked; to.draw(); } });
@@ -60,12 +63,14 @@ export class NotePanel {
     }
 
     choose(note) {
+        if (note !== this.overlay.chosen)
+            this.profiled.hidden = true;
         this.overlay.chosen = note;
         this.chosen.hidden = !note;
         if (note) {
             this.text.value = note.text;
             this.measures.textContent = sayMeasures(note, this.notes.mm);
-            this.ruler.hidden = note.kind !== 'line';
+            this.ruler.hidden = this.profiler.hidden = note.kind !== 'line';
         }
         this.show();
         this.to.draw();
@@ -117,6 +122,30 @@ export class NotePanel {
         return this.to.say(`A pixel is ${+mm.toPrecision(4)} mm wide.`);
     }
 
+    // Along the chosen line: a graph, and a table to keep.
+    async profile() {
+        const note = this.overlay.chosen, { mm } = this.notes;
+        try {
+            const found = await profileOf(this.viewer, note.places);
+            if (note === this.overlay.chosen)
+                this.showProfile(found, mm);
+        } catch (error) {
+            this.to.say(`${error.message}.`);
+        }
+    }
+
+    showProfile(found, mm) {
+        const note = this.overlay.chosen, name = `${this.notes.file.name.replace(/\.exr$/, '')}.${note.item.id || 'line'}.csv`;
+        const { svg, low, high } = profileGraph(found), unit = mm ? 'mm' : 'pixels', k = mm || 1;
+        const what = found.names.length > 1 ? `Light from ${shortNumber(low)} to ${shortNumber(high)}`
+            : `Height from ${+(low * k).toPrecision(3)} to ${+(high * k).toPrecision(3)} ${unit}`;
+        const text = low <= high ? `${what}.` : 'Nothing is known along this line.';
+        this.profiled.replaceChildren(...(low <= high ? [svg] : []), make('p', { class: 'measures' }, text),
+            make('button', { type: 'button', class: 'word', onclick: () => handOut(profileTable(found, mm), 'text/csv', name) }, 'Save the table'));
+        this.profiled.hidden = false;
+        this.to.say(text);
+    }
+
     // ------------------------------------------------------------ drawing
 
     begin(kind) {
@@ -157,9 +186,7 @@ export class NotePanel {
     // ------------------------------------------------------------ files
 
     save() {
-        const address = URL.createObjectURL(new Blob([this.notes.toText()], { type: 'application/json' }));
-        make('a', { href: address, download: this.notes.file.name.replace(/(\.exr)?$/, '.notes.json') }).click();
-        setTimeout(() => URL.revokeObjectURL(address), 10000);
+        handOut(this.notes.toText(), 'application/json', this.notes.file.name.replace(/(\.exr)?$/, '.notes.json'));
         this.notes.changed = false;
         this.to.say('The notes are saved as a file; lay it beside the picture\'s file.');
     }

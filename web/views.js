@@ -33,7 +33,7 @@ function disparitiesOf(picture, view, slab) {
 }
 
 // The bytes of a decoded picture.
-function pixelsOf(picture) {
+export function pixelsOf(picture) {
     const canvas = Object.assign(document.createElement('canvas'), { width: picture.width, height: picture.height });
     const context = canvas.getContext('2d', { willReadFrequently: true, colorSpace: 'srgb' });
     context.drawImage(picture, 0, 0);

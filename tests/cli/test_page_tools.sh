@@ -1,5 +1,5 @@
 #!/bin/sh
-# What people do on published pages beside looking: comparing two files, very many notes.
+# What people do on published pages beside looking: comparing two files, very many notes, profiles.
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/page.sh"
 if ! [ "$node" ] || ! [ "$browser" ]; then
@@ -8,11 +8,17 @@ if ! [ "$node" ] || ! [ "$browser" ]; then
     exit
 fi
 "$sphere" old --size 48 --lights 20 --hemisphere --shade wrap --format png || exit 1
-"$sphere" new --size 96 --lights 24 --hemisphere --shade full --format png || exit 1
+"$sphere" new --size 96 --lights 20 --hemisphere --shade full --format png || exit 1
 relume encode old -o old.exr --basis pca --coefficients 9 || exit 1
-relume encode new -o new.exr --basis pca --coefficients 12 || exit 1
+relume encode new -o new.exr --basis pca --coefficients 12 --no-depth || exit 1
 relume synth teapot -o pot --size 24 --views 2x2 --lights 9 --hemisphere --samples 1 || exit 1
 relume encode pot -o pot.exr --basis pca --coefficients 6 || exit 1
+"$RELUME" notes old.exr --add 'line 8.3,12 30.5,24 40,44.2' --scale 0.25 -q >/dev/null || exit 1
+"$RELUME" notes new.exr --add 'line 32.2,40.1 64,58.7' -q >/dev/null || exit 1
+"$RELUME" notes pot.exr --add 'line 10.625,12.625 14.625,12.625' -q >/dev/null || exit 1
+for file in old new; do
+    "$RELUME" notes $file.exr --profile n1 -o $file.csv -q || exit 1
+done
 relume publish old.exr new.exr pot.exr -o site --metadata /dev/stdin <<'END' || exit 1
 {"title": "Both", "files": {"new": {"title": "After the <b>cleaning</b>"}}}
 END
@@ -101,6 +107,13 @@ async function pan(steps) {
 }
 </script>
 END
+for file in old new pot; do # the table that is handed out
+    echo "open file://$work/site/$file.html" >>orders.txt
+    ask "(URL.createObjectURL = (blob) => { window.table = blob.text(); return '#'; }, 0)"
+    [ $file = pot ] && echo 'state light=dir,0,0,1' >>orders.txt
+    [ $file = pot ] && ask "(document.querySelector('relume-view').controls.node.remove(), document.querySelector('relume-view').style.cssText = 'position:fixed;inset:0;height:auto;min-height:0;z-index:9', new Promise(done => setTimeout(done, 200)).then(() => window.relume.idle()).then(() => 0))"
+    echo "write page_$file.csv (async (view, panel) => { panel.choose(panel.notes.all[0]); await panel.profile(); panel.profiled.querySelector('button').click(); return window.table; })(document.querySelector('relume-view'), document.querySelector('relume-view').panel)" >>orders.txt
+done
 show site/many.html >>orders.txt
 ask '(begin(), settled().then(() => `slices ${Math.max(...strokes)}`))'
 ask 'pan(5).then(found => ["panned", ...found])'
@@ -131,4 +144,23 @@ says 'they lie where they belong when it is enlarged' '^\["enlarged",\[[12][0-9]
 says 'few notes are drawn as ever' '^\["near",2,null\]'
 says 'keys go from note to note, which is said' '^\["1 of 10000: note 1","n1"\]'
 says 'a list has what is near' '^\[201,"note 10000"\]'
+# heights: of depth as it is published, 16 bits of its inverse; of normals as far as 8 bits, JPEG and a
+# highlight go
+profile() { # name, file, share of the range that heights may differ by
+    check "$1" awk -F, -v share="$3" '{ sub(/\r$/, "") }
+        NR == FNR { row[NR] = $1 FS $2 FS $3; height[NR] = $4; full[NR] = $0; n = NR; next }
+        FNR == 1 && $0 != full[1] { bad = "header " $0 }
+        FNR > 1 { if ($1 FS $2 FS $3 != row[FNR] || (NF > 4 && $4 * 0.25 - $6 > 1e-3)) bad = "row " $0
+            away = $4 > height[FNR] ? $4 - height[FNR] : height[FNR] - $4
+            most = away > most ? away : most; range = height[FNR] > range ? height[FNR] : range; lines = FNR }
+        END { print bad, lines, n, most, range; exit bad != "" || lines != n || !(most <= share * range) }' $2.csv page_$2.csv
+}
+profile 'a profile of depth is that of relume notes' old 0.001
+profile 'a profile of normals is that of relume notes' new 0.06
+relume relight pot.exr -o pot.png --size 96x96 --light 'dir 0 0 1' || exit 1
+check 'elsewhere a profile has the light that is seen' awk -F, -v want="$("$mkimage" read pot.png 42 50)" '{ sub(/\r$/, "") }
+    function code(x) { return x <= 0 ? 0 : x < 0.0031308 ? 12.92 * x : 1.055 * x ^ (1 / 2.4) - 0.055 }
+    NR == 1 && $0 != "along_px,x,y,red,green,blue" { bad = 1 }
+    NR == 2 { split(want, rgb, " "); for (c = 1; c <= 3; c++) { d = code($(3 + c)) - code(rgb[c]); if (d > 0.03 || d < -0.03) bad = 1; sum += rgb[c] } }
+    END { print want; exit bad || NR != 6 || !(sum > 0.05) }' page_pot.csv
 finish

@@ -5,6 +5,7 @@ import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
 import { COMPARISONS } from './compare.js';
 import { readEnvironment } from './hdr.js';
+import { moved, reshaped } from './lights.js';
 import { Failure, loadJson } from './load.js';
 import { Notes } from './notes.js';
 import { NotePanel } from './notepanel.js';
@@ -202,7 +203,7 @@ export class RelumeView extends HTMLElement {
     setDirection(direction) {
         this.dismissHint();
         this.replaceLight((light) => (light.kind === 'env'
-            ? { ...light, rotate: Math.atan2(direction[0], direction[2]) * 180 / Math.PI } : { ...light, direction }));
+            ? { ...light, rotate: Math.atan2(direction[0], direction[2]) * 180 / Math.PI } : moved(light, direction)));
         this.sayLight();
     }
 
@@ -212,9 +213,9 @@ export class RelumeView extends HTMLElement {
         this.saying = setTimeout(() => light && light.direction && this.say(sayDirection(light.direction, this.viewer.isPanorama)), 600);
     }
 
-    changeLight({ rgb, soft }) {
-        this.replaceLight((light) => (light.kind === 'env' ? { ...light, rgb }
-            : soft > 0 ? { ...light, kind: 'area', radius: soft * Math.PI / 180, rgb } : { kind: 'dir', direction: light.direction, rgb }));
+    // `rgb` as it is seen in the middle of the picture, `soft` in radians, `distance` from there.
+    changeLight({ rgb, soft, distance }) {
+        this.replaceLight((light) => (light.kind === 'env' ? { ...light, rgb } : reshaped(light, { seen: rgb, soft, distance })));
     }
 
     addLight() {

@@ -24,8 +24,8 @@ function partsOf(bytes, count, address) {
 }
 
 // A picture as it is coded: no colour management, no alpha.
-export function decodePicture(bytes, type) {
-    return createImageBitmap(new Blob([bytes], { type }), { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
+export function decodePicture(bytes, type, options = {}) {
+    return createImageBitmap(new Blob([bytes], { type }), { colorSpaceConversion: 'none', premultiplyAlpha: 'none', ...options });
 }
 
 // All tiles of one file. `changed` is called when one has come, `failed` with a sentence.
@@ -38,6 +38,7 @@ export class Tiles {
         this.bytes = 0;
         this.clock = 0;
         this.received = 0;
+        this.near = null;  // what lamps near this file need (near.js)
     }
 
     columns(level) { return Math.ceil(this.scene.levels[level].width / this.scene.tile); }
@@ -144,5 +145,7 @@ export class Tiles {
     close() {
         for (const tile of [...this.tiles.values()])
             this.drop(tile);
+        if (this.near)
+            this.near.close();
     }
 }

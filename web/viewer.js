@@ -11,6 +11,7 @@ import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
 import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
+import { NearLamps } from './near.js';
 import { readState, writeState } from './state.js';
 import { brightestExposure, measureRange, meterExposure } from './measure.js';
 import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
@@ -58,7 +59,8 @@ export class Viewer {
 
     // A file under lights of its own.
     layerOf(scene, basis, tiles) {
-        const relighter = new Relighter(this.device, scene, basis);
+        tiles.near = tiles.near || new NearLamps(this.device, scene, basis, () => this.invalidate());
+        const relighter = new Relighter(this.device, scene, basis, tiles.near);
         const painter = new Painter(this.device, scene, tiles, relighter, () => this.invalidate());
         const stage = scene.projection === 'planar' ? new Planar(scene, painter)
             : scene.projection === 'slab' ? new Slab(scene, painter, this.device) : new Panorama(scene, painter, this.device);
@@ -203,7 +205,7 @@ export class Viewer {
 
     // Shows what a line says; what it does not name is as the page opens.
     setState(line) {
-        const { values, lights, others, problem } = readState(line);
+        const { values, lights, others, problem } = readState(line, this.projection === 'planar');
         this.metering = false;
         this.reset();
         Object.assign(this, { others });

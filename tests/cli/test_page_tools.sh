@@ -1,5 +1,6 @@
 #!/bin/sh
-# What people do on published pages beside looking: comparing two files, very many notes, profiles.
+# What people do on published pages beside looking: comparing two files, very many notes, profiles, lamps
+# that stand near.
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/page.sh"
 if ! [ "$node" ] || ! [ "$browser" ]; then
@@ -114,6 +115,25 @@ for file in old new pot; do # the table that is handed out
     [ $file = pot ] && ask "(document.querySelector('relume-view').controls.node.remove(), document.querySelector('relume-view').style.cssText = 'position:fixed;inset:0;height:auto;min-height:0;z-index:9', new Promise(done => setTimeout(done, 200)).then(() => window.relume.idle()).then(() => 0))"
     echo "write page_$file.csv (async (view, panel) => { panel.choose(panel.notes.all[0]); await panel.profile(); panel.profiled.querySelector('button').click(); return window.table; })(document.querySelector('relume-view'), document.querySelector('relume-view').panel)" >>orders.txt
 done
+# lamps near a surface that has depth, and near z = 0
+lamps='point,0.4,0.3,0.8 spot,0.3,0.2,1.2,-0.2,-0.3,-1,25,rgb,2,2,2&light=dir,0,0.6,0.8,rgb,0.2,0.1,0.1 area,0.3,0.2,0.8,0,0.3,0,0.3,0,0,rgb,6,6,6'
+for file in old:48 new:96; do
+    echo "size ${file#*:} ${file#*:}" >>orders.txt
+    show site/${file%:*}.html >>orders.txt
+    n=0
+    for lamp in $lamps; do
+        n=$((n + 1))
+        echo "state light=$lamp&exposure=-0.5" >>orders.txt
+        echo "snap near_${file%:*}$n.png" >>orders.txt
+        relume relight ${file%:*}.exr -o lamp_${file%:*}$n.png --state "light=$lamp&exposure=-0.5" || exit 1
+    done
+done
+ask 'window.relume.getState()'
+ask "(view => { const { controls } = view, seen = []; window.relume.setState('light=dir,0,0.6,0.8'); for (const [name, value] of [['distance', -1], ['softness', 30], ['distance', 0], ['softness', 0], ['distance', 3]]) { controls[name].value = value; controls.setLight(); seen.push(window.relume.getState()); } return ['sliders', ...seen]; })(document.querySelector('relume-view'))"
+ask "window.relume.setState('light=spot,0,0,1,0,0,0,20&light=area,0,0,1,1,0,0,1,0,0&light=point,1,2&light=point,1,1,1,nofall,rgb,1,2,3') || ['nofall', window.relume.getState()]"
+show site/pot.html >>orders.txt
+ask "window.relume.setState('light=point,0,0,1') || ['slab', document.querySelector('relume-view').status.textContent]"
+echo 'size 96 96' >>orders.txt
 show site/many.html >>orders.txt
 ask '(begin(), settled().then(() => `slices ${Math.max(...strokes)}`))'
 ask 'pan(5).then(found => ["panned", ...found])'
@@ -163,4 +183,15 @@ check 'elsewhere a profile has the light that is seen' awk -F, -v want="$("$mkim
     NR == 1 && $0 != "along_px,x,y,red,green,blue" { bad = 1 }
     NR == 2 { split(want, rgb, " "); for (c = 1; c <= 3; c++) { d = code($(3 + c)) - code(rgb[c]); if (d > 0.03 || d < -0.03) bad = 1; sum += rgb[c] } }
     END { print want; exit bad || NR != 6 || !(sum > 0.05) }' page_pot.csv
+for file in old new; do
+    for n in 1 2 3; do
+        # codes are 8 bits and JPEG on the way: on the mean one step of 255
+        below "$file: lamp $n near it is that of relume relight" "$("$mkimage" codediff near_$file$n.png lamp_$file$n.png)" 1
+    done
+done
+says 'near lamps come back in the state' '^"exposure=-0.5&light=area,0.3,0.2,0.8,0,0.3,0,0.3,0,0,rgb,6,6,6"'
+# a point of 0.5 has a quarter of the value; half an angle of 30 degrees, pi / (4 tan^2 30) = 2.35619
+says 'sliders bring a light near, make it soft and take it away, as bright' '^\["sliders","light=point,0,0.3,0.4,rgb,0.25,0.25,0.25","light=area,0,0.3,0.4,[-0-9.,]*,rgb,2.35619,2.35619,2.35619","light=area,0,0.6,0.8,[-0-9.,]*,rgb,2.35619,2.35619,2.35619","light=point,0,0.6,0.8","light=dir,0,0.6,0.8"\]'
+says 'lamps that cannot be are left out' '^\["nofall","light=point,1,1,1,rgb,1,2,3,nofall"\]'
+says 'a slab has no near lamps, which is said' '^\["slab","This link asks for what cannot be shown \(light\); the rest of it is\."\]'
 finish

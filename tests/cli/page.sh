@@ -13,7 +13,7 @@ show() { # page: alone, as large as its window
 ask() { echo "eval $1" >>orders.txt; }
 browse() {
     mkdir -p home
-    HOME=$work/home timeout 100 node "$TOP/tests/tools/page.mjs" "$browser" "$work/home/profile" <orders.txt >said.txt 2>&1 ||
+    HOME=$work/home timeout 240 node "$TOP/tests/tools/page.mjs" "$browser" "$work/home/profile" <orders.txt >said.txt 2>&1 ||
         not_ok 'the browser does as it is told' "$(grep -E '^failed' said.txt)"
     check 'pages throw nothing' sh -c '! grep "^thrown" said.txt'
 }

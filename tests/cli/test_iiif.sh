@@ -46,7 +46,7 @@ for viewer in mirador universal; do
         echo "shot $viewer.png"
     } >>orders.txt
 done
-HOME=$work/home timeout 100 node "$TOP/tests/tools/page.mjs" "$browser" "$work/home/profile" <orders.txt >said.txt 2>&1 ||
+HOME=$work/home timeout 240 node "$TOP/tests/tools/page.mjs" "$browser" "$work/home/profile" <orders.txt >said.txt 2>&1 ||
     not_ok 'the browser does as it is told' "$(grep -E '^failed' said.txt)"
 for viewer in mirador universal; do
     sed -n "/^asked $viewer.html/,/^true/p" said.txt >$viewer.txt

@@ -108,18 +108,20 @@ async function pan(steps) {
 }
 </script>
 END
-for file in old new pot; do # the table that is handed out
-    echo "open file://$work/site/$file.html" >>orders.txt
-    ask "(URL.createObjectURL = (blob) => { window.table = blob.text(); return '#'; }, 0)"
-    [ $file = pot ] && echo 'state light=dir,0,0,1' >>orders.txt
-    [ $file = pot ] && ask "(document.querySelector('relume-view').controls.node.remove(), document.querySelector('relume-view').style.cssText = 'position:fixed;inset:0;height:auto;min-height:0;z-index:9', new Promise(done => setTimeout(done, 200)).then(() => window.relume.idle()).then(() => 0))"
-    echo "write page_$file.csv (async (view, panel) => { panel.choose(panel.notes.all[0]); await panel.profile(); panel.profiled.querySelector('button').click(); return window.table; })(document.querySelector('relume-view'), document.querySelector('relume-view').panel)" >>orders.txt
-done
-# lamps near a surface that has depth, and near z = 0
+# the table of a profile that is handed out; lamps near a surface that has depth, and near z = 0
 lamps='point,0.4,0.3,0.8 spot,0.3,0.2,1.2,-0.2,-0.3,-1,25,rgb,2,2,2&light=dir,0,0.6,0.8,rgb,0.2,0.1,0.1 area,0.3,0.2,0.8,0,0.3,0,0.3,0,0,rgb,6,6,6'
+table() { # file
+    ask "(URL.createObjectURL = (blob) => { window.table = blob.text(); return '#'; }, 0)"
+    echo "write page_$1.csv (async (view, panel) => { panel.choose(panel.notes.all[0]); await panel.profile(); panel.profiled.querySelector('button').click(); return window.table; })(document.querySelector('relume-view'), document.querySelector('relume-view').panel)" >>orders.txt
+}
+show site/pot.html >>orders.txt
+ask "window.relume.setState('light=point,0,0,1') || ['slab', document.querySelector('relume-view').status.textContent]"
+echo 'state light=dir,0,0,1' >>orders.txt
+table pot
 for file in old:48 new:96; do
     echo "size ${file#*:} ${file#*:}" >>orders.txt
     show site/${file%:*}.html >>orders.txt
+    table ${file%:*}
     n=0
     for lamp in $lamps; do
         n=$((n + 1))
@@ -131,9 +133,6 @@ done
 ask 'window.relume.getState()'
 ask "(view => { const { controls } = view, seen = []; window.relume.setState('light=dir,0,0.6,0.8'); for (const [name, value] of [['distance', -1], ['softness', 30], ['distance', 0], ['softness', 0], ['distance', 3]]) { controls[name].value = value; controls.setLight(); seen.push(window.relume.getState()); } return ['sliders', ...seen]; })(document.querySelector('relume-view'))"
 ask "window.relume.setState('light=spot,0,0,1,0,0,0,20&light=area,0,0,1,1,0,0,1,0,0&light=point,1,2&light=point,1,1,1,nofall,rgb,1,2,3') || ['nofall', window.relume.getState()]"
-show site/pot.html >>orders.txt
-ask "window.relume.setState('light=point,0,0,1') || ['slab', document.querySelector('relume-view').status.textContent]"
-echo 'size 96 96' >>orders.txt
 show site/many.html >>orders.txt
 ask '(begin(), settled().then(() => `slices ${Math.max(...strokes)}`))'
 ask 'pan(5).then(found => ["panned", ...found])'

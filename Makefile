@@ -149,6 +149,7 @@ $(DEPS): scripts/deps.sh
 deps-web:
 	@scripts/deps.sh web
 	@npm install --silent --no-save --prefix build/web gltf-validator@2.0.0-dev.3.10 three@0.187.0 axe-core@4.14.1
+	@scripts/iiif-viewers.sh build/web/iiif
 deps-stitch:
 	@scripts/deps.sh stitch
 deps-mpi:

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Make sure the packages that relume is built from are there; on Debian and Ubuntu install what is
 # missing. Usage: deps.sh [web | stitch | mpi | docs | python]   (web: the browser for the tests of exported
-# pages and models, and npm, by which make deps-web gets three.js and gltf-validator; stitch: OpenCV, for panoramas out of photographs; mpi: OpenMPI, for relume-mpi; docs: Doxygen, for the reference of the
+# pages and models, and npm, by which make deps-web gets three.js, gltf-validator, axe and two IIIF viewers; stitch: OpenCV, for panoramas out of photographs; mpi: OpenMPI, for relume-mpi; docs: Doxygen, for the reference of the
 # library; python: what the Python module needs)
 set -eu
 

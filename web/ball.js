@@ -36,7 +36,7 @@ export function sayDirection(direction, around) {
 }
 
 const SVG = 'http://www.w3.org/2000/svg';
-function shape(name, attributes) {
+export function shape(name, attributes) {
     const node = document.createElementNS(SVG, name);
     for (const [key, value] of Object.entries(attributes))
         node.setAttribute(key, value);

@@ -30,6 +30,22 @@ void main()
     colour = vec4(mix(rgb, vec3(1.0), 0.8 * line), 1.0);
 }`;
 
+// Why two files cannot lie on each other; nothing where they can.
+function unlikeness(own, other) {
+    const rows = Math.abs(own.height * other.width / own.width - other.height);
+    return other.projection !== own.projection ? `it is ${other.projection}, this one ${own.projection}`
+        : rows > 1 + 0.01 * other.height ? `it has ${other.width} x ${other.height} pixels, this one ${own.width} x ${own.height}` : '';
+}
+
+// What a look has of its own.
+function closeLook({ layer }, viewer) {
+    layer.stage.close();
+    if (layer.tiles !== viewer.tiles) {
+        layer.tiles.close();
+        layer.basis.close();
+    }
+}
+
 export class Comparison {
     constructor(viewer) {
         Object.assign(this, { viewer, way: 'off', kept: null, divide: 0.5, lens: [0.5, 0.5], radius: 0.18, second: false, timer: 0 });
@@ -47,12 +63,18 @@ export class Comparison {
 
     // Another file of the same kind, seen from the same place; its lights are this one's.
     async open(address) {
-        const layer = await this.viewer.openLayer(address);
-        if (layer.scene.projection !== this.viewer.projection)
-            throw new Failure(`${layer.scene.title || 'the other file'} is of another kind; only like files are compared`);
-        layer.relighter.setLights(this.viewer.lights);
-        this.replace({ ...this.viewer.seen(), layer, memo: {}, follows: true });
+        const { viewer } = this, layer = await viewer.openLayer(address), { title, name } = layer.scene;
+        const unlike = unlikeness(viewer.scene, layer.scene), look = { ...viewer.seen(), layer };
+        if (unlike) {
+            closeLook(look, viewer);
+            throw new Failure(`${title || name || 'The other file'} cannot be compared with this one: ${unlike}`);
+        }
+        layer.relighter.setLights(viewer.lights);
+        this.replace({ ...look, follows: address, title: title || name || 'the other file' });
     }
+
+    // The title of the other file that is compared with; nothing for a kept look.
+    get title() { return this.kept && this.kept.title; }
 
     replace(look) {
         this.drop();
@@ -67,7 +89,7 @@ export class Comparison {
             return;
         if (kept.lights !== viewer.lights)
             kept.layer.relighter.setLights(viewer.lights);
-        Object.assign(kept, viewer.seen(), { layer: kept.layer, memo: kept.memo });
+        Object.assign(kept, viewer.seen(), { layer: kept.layer });
     }
 
     setWay(way) {
@@ -98,14 +120,8 @@ export class Comparison {
     }
 
     drop() {
-        if (!this.kept)
-            return;
-        const { layer } = this.kept;
-        layer.stage.close();
-        if (layer.tiles !== this.viewer.tiles) {
-            layer.tiles.close();
-            layer.basis.close();
-        }
+        if (this.kept)
+            closeLook(this.kept, this.viewer);
         this.kept = null;
     }
 

@@ -1,10 +1,12 @@
 // controls.js - the strip below a picture: lights, exposure, what is shown, and what can be done
-import { Ball } from './ball.js';
+import { Ball, shape } from './ball.js';
 import { COMPARISONS } from './compare.js';
+import { RADIANS, distanceOf, gainOf, softnessOf } from './lights.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const PASS_NAMES = ['Colour', 'Normals', 'Shiny', 'Relief', 'Fine relief', 'Grey', 'False colour'];
 const WAY_NAMES = ['Nothing', 'Lens', 'Side by side', 'Blink', 'Difference'];
+const DISTANCES = [-2, 3];  // of a light, logarithms in units of the scene; the last: far
 const TONE_NAMES = ['Plain', 'Soft highlights', 'Film', 'Gamma 2.2'];
 
 // An element with attributes, listeners (on...) and content; text is never read as HTML.
@@ -16,6 +18,13 @@ export function make(name, given = {}, ...content) {
     }
     node.append(...content);
     return node;
+}
+
+// A file for whoever looks: a text, or a Blob.
+export function handOut(content, type, name) {
+    const address = URL.createObjectURL(new Blob([content], { type }));
+    make('a', { href: address, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
 const hexOf = (rgb) => {
@@ -38,12 +47,8 @@ const ICONS = {
 };
 
 function icon(name) {
-    const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
-    const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-    svg.setAttribute('viewBox', '0 0 24 24');
-    svg.setAttribute('aria-hidden', 'true');
-    path.setAttribute('d', ICONS[name]);
-    svg.append(path);
+    const svg = shape('svg', { viewBox: '0 0 24 24', 'aria-hidden': 'true' });
+    svg.append(shape('path', { d: ICONS[name] }));
     return svg;
 }
 
@@ -75,6 +80,7 @@ export class Controls {
         this.colour = make('input', { type: 'color', 'aria-label': 'Colour of the light', oninput: () => this.setLight() });
         this.strength = slider('Strength of the light', -4, 4, 0.1, () => this.setLight());
         this.softness = slider('Softness of the light', 0, 40, 1, () => this.setLight());
+        this.distance = slider('Distance of the light', ...DISTANCES, 0.1, () => this.setLight());
         this.exposure = slider('Exposure', -5, 5, 0.1, (value) => actions.set('exposure', value));
         this.pass = select('What is shown', PASSES, PASS_NAMES, (value) => actions.set('pass', value));
         this.tone = select('Highlights', TONES_BY_NAME, TONE_NAMES, (value) => actions.set('tone', value));
@@ -83,13 +89,14 @@ export class Controls {
         this.remove = button('remove', 'Remove this light (Delete)', () => actions.removeLight());
         this.counter = make('output', { 'aria-label': 'Light' });
         const lens = viewer.isSlab ? this.lens() : [];
+        const distance = viewer.projection === 'planar' ? [labelled('Distance', this.distance)] : [];
         const planet = viewer.isPanorama ? [this.planet()] : [];
         this.node = make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
             this.ball.node,
             make('div', { class: 'group' },
                 make('div', { class: 'row' }, this.mode, this.counter, button('add', 'Another light (N)', () => actions.addLight()),
                      this.remove, this.colour),
-                make('div', { class: 'row' }, labelled('Strength', this.strength), labelled('Soft', this.softness))),
+                make('div', { class: 'row' }, labelled('Strength', this.strength), labelled('Soft', this.softness), ...distance)),
             make('div', { class: 'group' },
                 make('div', { class: 'row' }, labelled('Show', this.pass), labelled('Highlights', this.tone)),
                 make('div', { class: 'row' }, labelled('Exposure', this.exposure), ...lens, ...planet)),
@@ -123,8 +130,9 @@ export class Controls {
     }
 
     setLight() {
-        const strength = 2 ** +this.strength.value;
-        this.actions.changeLight({ rgb: colourOf(this.colour.value).map((v) => v * strength), soft: +this.softness.value });
+        const strength = 2 ** +this.strength.value, distance = +this.distance.value;
+        this.actions.changeLight({ rgb: colourOf(this.colour.value).map((v) => v * strength), soft: +this.softness.value * RADIANS,
+                                   distance: distance < DISTANCES[1] ? 2 ** distance : Infinity });
     }
 
     // What the viewer has.
@@ -135,11 +143,14 @@ export class Controls {
         this.remove.disabled = !viewer.lights.length;
         for (const input of [this.colour, this.strength, this.softness])
             input.disabled = !light;
-        this.softness.disabled = !plain;
+        this.softness.disabled = !plain || light.kind === 'spot';
+        this.distance.disabled = !plain;
         if (light) {
-            this.colour.value = hexOf(light.rgb);
-            this.strength.value = Math.log2(Math.max(...light.rgb, 1e-4));
-            this.softness.value = light.kind === 'area' ? Math.round(light.radius * 180 / Math.PI) : 0;
+            const seen = light.rgb.map((v) => v / gainOf(light)), away = distanceOf(light);
+            this.colour.value = hexOf(seen);
+            this.strength.value = Math.log2(Math.max(...seen, 1e-4));
+            this.softness.value = Math.round(softnessOf(light) / RADIANS);
+            this.distance.value = Number.isFinite(away) ? Math.min(Math.log2(away), DISTANCES[1] - 0.1) : DISTANCES[1];
         }
         this.exposure.value = viewer.exposure;
         this.pass.value = viewer.pass;

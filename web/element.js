@@ -1,11 +1,12 @@
 // element.js - <relume-view src="…/scene.json">: a picture that can be relit, and its controls
 import { Viewer } from './viewer.js';
-import { Controls, make } from './controls.js';
+import { Controls, handOut, make } from './controls.js';
 import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
 import { COMPARISONS } from './compare.js';
 import { readEnvironment } from './hdr.js';
 import { isRelume, openFile } from './drop.js';
+import { moved, reshaped } from './lights.js';
 import { Failure, loadJson } from './load.js';
 import { Notes } from './notes.js';
 import { NotePanel } from './notepanel.js';
@@ -18,7 +19,7 @@ const KEYS = [
     ['Arrow keys', 'move the light (Shift: the other way of dragging)'], ['L', 'dragging and arrows: light, or moving'],
     ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['N  Delete', 'another light, remove it'],
     ['Tab in the strip', 'colour, softness and more'], ['[ ]', 'darker, brighter'], ['P', 'what is shown'],
-    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
+    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], [', .', 'the note before, the next one'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
 
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
@@ -47,6 +48,7 @@ export class RelumeView extends HTMLElement {
             this.observer.disconnect();
         document.removeEventListener('keydown', this.bodyKey);
         if (this.viewer) {
+            this.overlay.close();
             this.first = this.getState();  // for when it is put elsewhere in the page
             this.viewer.close();
         }
@@ -152,7 +154,7 @@ export class RelumeView extends HTMLElement {
     // Notes that were published with the picture, and those that are made here.
     async openNotes() {
         const { viewer } = this, notes = new Notes(viewer.scene);
-        this.overlay = new Overlay(this.over, viewer);
+        this.overlay = new Overlay(this.over, viewer, () => this.panel.rested());
         this.panel = new NotePanel(viewer, notes, this.overlay, {
             draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state),
             focus: () => this.surface.focus(),
@@ -239,7 +241,7 @@ export class RelumeView extends HTMLElement {
     setDirection(direction) {
         this.dismissHint();
         this.replaceLight((light) => (light.kind === 'env'
-            ? { ...light, rotate: Math.atan2(direction[0], direction[2]) * 180 / Math.PI } : { ...light, direction }));
+            ? { ...light, rotate: Math.atan2(direction[0], direction[2]) * 180 / Math.PI } : moved(light, direction)));
         this.sayLight();
     }
 
@@ -249,9 +251,9 @@ export class RelumeView extends HTMLElement {
         this.saying = setTimeout(() => light && light.direction && this.say(sayDirection(light.direction, this.viewer.isPanorama)), 600);
     }
 
-    changeLight({ rgb, soft }) {
-        this.replaceLight((light) => (light.kind === 'env' ? { ...light, rgb }
-            : soft > 0 ? { ...light, kind: 'area', radius: soft * Math.PI / 180, rgb } : { kind: 'dir', direction: light.direction, rgb }));
+    // `rgb` as it is seen in the middle of the picture, `soft` in radians, `distance` from there.
+    changeLight({ rgb, soft, distance }) {
+        this.replaceLight((light) => (light.kind === 'env' ? { ...light, rgb } : reshaped(light, { seen: rgb, soft, distance })));
     }
 
     addLight() {
@@ -271,18 +273,20 @@ export class RelumeView extends HTMLElement {
 
     // Compares with the kept look, or with the file that `compare` names.
     async compare(way) {
-        const { comparison } = this.viewer, address = this.getAttribute('compare');
-        if (way !== 'off' && !comparison.kept && address) {
-            try {
-                await comparison.open(new URL(address, document.baseURI).href);
-            } catch (error) {
-                this.say(`${error.message}.`);
-            }
+        const { comparison } = this.viewer, named = this.getAttribute('compare'), { kept } = comparison;
+        const address = named && new URL(named, document.baseURI).href;
+        try {
+            if (way !== 'off' && address && (!kept || (kept.follows && kept.follows !== address)))
+                await comparison.open(address);
+        } catch (error) {
+            comparison.setWay('off');
+            this.controls.show();
+            return this.say(`${error.message}.`);
         }
         comparison.setWay(way);
         this.controls.show();
-        if (way !== 'off')
-            this.say(way === 'lens' ? 'The lens shows the kept look.' : 'The kept look is compared with this one.');
+        const what = comparison.title || 'the kept look';
+        return way === 'off' ? this.say('') : this.say(way === 'lens' ? `The lens shows ${what}.` : `This is compared with ${what}.`);
     }
 
     keep() {
@@ -330,9 +334,7 @@ export class RelumeView extends HTMLElement {
     }
 
     async save() {
-        const blob = await this.snapshot(), address = URL.createObjectURL(blob);
-        make('a', { href: address, download: `${this.viewer.scene.name || 'picture'}.png` }).click();
-        setTimeout(() => URL.revokeObjectURL(address), 10000);
+        handOut(await this.snapshot(), 'image/png', `${this.viewer.scene.name || 'picture'}.png`);
         this.say('The picture is saved.');
     }
 
@@ -446,6 +448,7 @@ export class RelumeView extends HTMLElement {
             ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
             p: () => this.set('pass', next(PASSES, viewer.pass)), t: () => this.set('tone', next(TONES_BY_NAME, viewer.tone)),
             f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), m: () => this.toggleNotes(),
+            ',': () => this.panel.step(-1), '.': () => this.panel.step(1),
             k: () => this.keep(), v: () => this.compare(next(COMPARISONS, viewer.comparison.way)), b: () => viewer.comparison.swap(), '?': () => this.help(),
         };
         if (way && this.lighting !== event.shiftKey)

@@ -1,6 +1,7 @@
 // notepanel.js - the list of notes beside the picture, and how they are made
-import { make } from './controls.js';
+import { handOut, make } from './controls.js';
 import { measureNote, sayMeasures } from './notes.js';
+import { profileGraph, profileOf, profileTable, shortNumber } from './profile.js';
 
 const SHOWN = 200;  // of the list at once
 const FEWEST = { point: 1, line: 2, polygon: 3 };
@@ -22,8 +23,10 @@ export class NotePanel {
         this.measures = make('p', { class: 'measures' });
         this.length = make('input', { type: 'number', min: 0, step: 'any', 'aria-label': 'Its true length in millimetres' });
         this.ruler = make('div', { class: 'row' }, this.length, make('button', { type: 'button', class: 'word', onclick: () => this.setScale() }, 'mm: set the scale'));
-        this.chosen = make('div', { class: 'chosen-note', hidden: true }, this.text, this.measures, this.ruler,
-            make('div', { class: 'row' },
+        this.profiled = make('div', { class: 'profile', hidden: true });
+        this.profiler = make('button', { type: 'button', class: 'word', onclick: () => this.profile() }, 'Profile');
+        this.chosen = make('div', { class: 'chosen-note', hidden: true }, this.text, this.measures, this.ruler, this.profiled,
+            make('div', { class: 'row' }, this.profiler,
                 make('button', { type: 'button', class: 'word', onclick: () => this.visit() }, 'Show its light'),
                 make('button', { type: 'button', class: 'word', onclick: () => this.remove() }, 'Remove')));
         this.shown = make('input', { type: 'checkbox', checked: true, onchange: () => { overlay.shown = this.shown.checked; to.draw(); } });
@@ -40,29 +43,54 @@ export class NotePanel {
         this.show();
     }
 
+    // The notes that are searched for.
+    found() {
+        const wanted = this.filter.value.toLowerCase();
+        return this.notes.all.filter((note) => note.text.toLowerCase().includes(wanted));
+    }
+
+    // Of very many notes the list has those near the middle of the picture.
     show() {
-        const wanted = this.filter.value.toLowerCase(), { mm } = this.notes;
-        const found = this.notes.all.filter((note) => note.text.toLowerCase().includes(wanted));
+        const { mm } = this.notes, found = this.found(), many = found.length > SHOWN;
         const line = (note) => make('li', {}, make('button', { type: 'button', class: note === this.overlay.chosen ? 'note chosen' : 'note',
                                                               onclick: () => { this.choose(note); this.visit(); } },
             make('span', {}, note.text.slice(0, 200) || KINDS[note.kind]), make('small', {}, sayMeasures(note, mm))));
-        this.list.replaceChildren(...found.slice(0, SHOWN).map(line));
-        if (found.length > SHOWN)
-            this.list.append(make('li', { class: 'more' }, `and ${found.length - SHOWN} more`));
+        this.list.replaceChildren(...(many ? this.overlay.nearest(found, SHOWN) : found).map(line));
+        if (many)
+            this.list.append(make('li', { class: 'more' }, `and ${found.length - SHOWN} more, farther from the middle`));
         if (this.notes.unknown)
             this.list.append(make('li', { class: 'more' }, `${this.notes.unknown} of a kind that this page cannot show`));
     }
 
     choose(note) {
+        if (note !== this.overlay.chosen)
+            this.profiled.hidden = true;
         this.overlay.chosen = note;
         this.chosen.hidden = !note;
         if (note) {
             this.text.value = note.text;
             this.measures.textContent = sayMeasures(note, this.notes.mm);
-            this.ruler.hidden = note.kind !== 'line';
+            this.ruler.hidden = this.profiler.hidden = note.kind !== 'line';
         }
         this.show();
         this.to.draw();
+    }
+
+    // The picture has come to rest elsewhere.
+    rested() {
+        if (!this.node.hidden && this.notes.all.length > SHOWN && !this.list.contains(this.node.getRootNode().activeElement))
+            this.show();
+    }
+
+    // The note before or after the chosen one, of those that are searched for.
+    step(by) {
+        const found = this.found(), n = found.length, at = found.indexOf(this.overlay.chosen);
+        if (!n)
+            return this.to.say('There are no notes.');
+        const i = at < 0 ? (by > 0 ? 0 : n - 1) : (at + by + n) % n, note = found[i];
+        this.choose(note);
+        this.visit();
+        return this.to.say([`${i + 1} of ${n}: ${note.text.slice(0, 200) || KINDS[note.kind]}`, sayMeasures(note, this.notes.mm)].filter((t) => t).join(', '));
     }
 
     // The light, eye and framing that a note was made in.
@@ -92,6 +120,30 @@ export class NotePanel {
         this.notes.setScale(mm);
         this.choose(this.overlay.chosen);
         return this.to.say(`A pixel is ${+mm.toPrecision(4)} mm wide.`);
+    }
+
+    // Along the chosen line: a graph, and a table to keep.
+    async profile() {
+        const note = this.overlay.chosen, { mm } = this.notes;
+        try {
+            const found = await profileOf(this.viewer, note.places);
+            if (note === this.overlay.chosen)
+                this.showProfile(found, mm);
+        } catch (error) {
+            this.to.say(`${error.message}.`);
+        }
+    }
+
+    showProfile(found, mm) {
+        const note = this.overlay.chosen, name = `${this.notes.file.name.replace(/\.exr$/, '')}.${note.item.id || 'line'}.csv`;
+        const { svg, low, high } = profileGraph(found), unit = mm ? 'mm' : 'pixels', k = mm || 1;
+        const what = found.names.length > 1 ? `Light from ${shortNumber(low)} to ${shortNumber(high)}`
+            : `Height from ${+(low * k).toPrecision(3)} to ${+(high * k).toPrecision(3)} ${unit}`;
+        const text = low <= high ? `${what}.` : 'Nothing is known along this line.';
+        this.profiled.replaceChildren(...(low <= high ? [svg] : []), make('p', { class: 'measures' }, text),
+            make('button', { type: 'button', class: 'word', onclick: () => handOut(profileTable(found, mm), 'text/csv', name) }, 'Save the table'));
+        this.profiled.hidden = false;
+        this.to.say(text);
     }
 
     // ------------------------------------------------------------ drawing
@@ -134,9 +186,7 @@ export class NotePanel {
     // ------------------------------------------------------------ files
 
     save() {
-        const address = URL.createObjectURL(new Blob([this.notes.toText()], { type: 'application/json' }));
-        make('a', { href: address, download: this.notes.file.name.replace(/(\.exr)?$/, '.notes.json') }).click();
-        setTimeout(() => URL.revokeObjectURL(address), 10000);
+        handOut(this.notes.toText(), 'application/json', this.notes.file.name.replace(/(\.exr)?$/, '.notes.json'));
         this.notes.changed = false;
         this.to.say('The notes are saved as a file; lay it beside the picture\'s file.');
     }

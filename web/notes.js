@@ -77,6 +77,7 @@ export class Notes {
                       type: 'AnnotationPage', 'relume:file': this.file, items: [] };
         this.all = [];
         this.unknown = 0;  // notes that cannot be shown, which stay
+        this.version = 0;  // of the notes that are there
         this.changed = false;
     }
 
@@ -89,6 +90,7 @@ export class Notes {
             throw new Failure(`these notes are on a picture of ${own.width} x ${own.height} pixels, this one has ${width} x ${height}`);
         const found = page.items.map(noteOf);
         this.page = page;
+        this.version++;
         this.all = found.filter((note) => note);
         this.unknown = found.length - this.all.length;
         if (page['relume:mmPerPixel'] > 0 && Number.isFinite(page['relume:mmPerPixel']))
@@ -117,6 +119,7 @@ export class Notes {
         const note = { item, kind, places, text, state };
         this.page.items.push(item);
         this.all.push(note);
+        this.version++;
         this.changed = true;
         return note;
     }
@@ -134,6 +137,7 @@ export class Notes {
     remove(note) {
         this.page.items = this.page.items.filter((item) => item !== note.item);
         this.all = this.all.filter((other) => other !== note);
+        this.version++;
         this.changed = true;
     }
 

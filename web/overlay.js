@@ -1,10 +1,14 @@
 // overlay.js - notes, what is being drawn and the scale bar over the picture
+import { MOST_AT_ONCE, Marks } from './marks.js';
+import { NoteIndex } from './noteindex.js';
 import { sayLength } from './notes.js';
 
 const NEAR = 9;         // CSS pixels: what a click means
 const MARK = '#e8c46a', SHADE = 'rgba(0, 0, 0, .65)';
 const BAR = [80, 200];  // its length, CSS pixels
 const MOST_LABELS = 60;
+const BESIDE = 50;      // what of a note beside the screen is drawn, CSS pixels
+const REST = 300;       // milliseconds
 
 // Lengths of scale bars: 1, 2 and 5.
 function niceLength(least) {
@@ -19,10 +23,14 @@ function segmentDistance(p, a, b) {
 }
 
 export class Overlay {
-    // `canvas` lies over the viewer's.
-    constructor(canvas, viewer) {
-        Object.assign(this, { canvas, viewer, notes: null, shown: true, chosen: null, drawing: null });
+    // `canvas` lies over the viewer's. `rested` is called when the picture has been still for a while.
+    constructor(canvas, viewer, rested) {
+        Object.assign(this, { canvas, viewer, rested, notes: null, shown: true, chosen: null, drawing: null, ratio: 1 });
         this.context = canvas.getContext('2d');
+        this.marks = new Marks(canvas, {
+            again: () => requestAnimationFrame(() => this.draw()),
+            draw: (note, context, place) => this.drawNote(context, note, note.places.map(place), false),
+        });
     }
 
     // A place of the picture on the screen, CSS pixels; null behind the eye.
@@ -31,14 +39,33 @@ export class Overlay {
         return at && [at[0] / ratio, at[1] / ratio];
     }
 
-    get ratio() { return this.viewer.canvas.width / Math.max(this.viewer.canvas.clientWidth, 1); }
+    // Of the notes, as they are now.
+    index() {
+        const { notes } = this;
+        if (this.indexed !== notes || this.version !== notes.version)
+            this.notesByPlace = new NoteIndex(notes.all, notes.file.width, notes.file.height);
+        this.indexed = notes;
+        this.version = notes.version;
+        return this.notesByPlace;
+    }
+
+    // Notes that may be seen within some pixels of the canvas around a box of it; all in a panorama.
+    around(left, top, right, bottom, margin) {
+        const { viewer } = this;
+        if (!this.shown || !this.notes)
+            return [];
+        if (viewer.isPanorama)
+            return this.notes.all.filter((note) => note.places.length);
+        return this.index().within([...viewer.toPicture([left - margin, top - margin]), ...viewer.toPicture([right + margin, bottom + margin])]);
+    }
 
     // The note at a place of the screen.
     find(x, y) {
+        const { ratio } = this, near = NEAR * ratio;
         let best = null, least = NEAR;
-        for (const note of this.shown && this.notes ? this.notes.all : []) {
+        for (const note of this.around(x * ratio, y * ratio, x * ratio, y * ratio, near)) {
             const at = note.places.map((p) => this.screen(p));
-            if (!at.length || at.some((p) => !p))
+            if (at.some((p) => !p))
                 continue;
             const ends = note.kind === 'polygon' ? [...at.slice(1), at[0]] : at.slice(1);
             const away = at.length === 1 ? Math.hypot(at[0][0] - x, at[0][1] - y)
@@ -49,16 +76,24 @@ export class Overlay {
         return best;
     }
 
-    path(places, closed) {
-        const { context } = this;
+    // The `most` of `notes` that are nearest to the middle of the screen, those without a place first.
+    nearest(notes, most) {
+        const { width, height } = this.canvas, { ratio } = this;
+        const away = (note) => {
+            const at = note.places.length ? this.screen(note.places[0]) : [width / 2 / ratio, height / 2 / ratio];
+            return at ? Math.hypot(at[0] - width / 2 / ratio, at[1] - height / 2 / ratio) : Infinity;
+        };
+        return notes.map((note) => ({ note, away: away(note) })).sort((a, b) => a.away - b.away).slice(0, most).map(({ note }) => note);
+    }
+
+    path(context, places, closed) {
         context.beginPath();
         places.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
         if (closed)
             context.closePath();
     }
 
-    stroke(colour, wide) {
-        const { context } = this;
+    stroke(context, colour, wide) {
         for (const [style, width] of [[SHADE, wide + 2.5], [colour, wide]]) {
             context.strokeStyle = style;
             context.lineWidth = width;
@@ -66,8 +101,8 @@ export class Overlay {
         }
     }
 
-    label(text, x, y) {
-        const { context } = this, words = text.length > 48 ? `${text.slice(0, 47)}…` : text;
+    label(context, text, x, y) {
+        const words = text.length > 48 ? `${text.slice(0, 47)}…` : text;
         context.lineWidth = 3;
         context.strokeStyle = SHADE;
         context.fillStyle = '#fff';
@@ -75,55 +110,98 @@ export class Overlay {
         context.fillText(words, x + 9, y - 7);
     }
 
-    drawNote(note, at, labelled) {
+    drawNote(context, note, at, labelled) {
         const chosen = note === this.chosen, colour = chosen ? '#fff' : MARK;
         if (at.length === 1) {
-            this.context.beginPath();
-            this.context.arc(at[0][0], at[0][1], chosen ? 7 : 5, 0, 7);
+            context.beginPath();
+            context.arc(at[0][0], at[0][1], chosen ? 7 : 5, 0, 7);
         } else {
-            this.path(at, note.kind === 'polygon');
+            this.path(context, at, note.kind === 'polygon');
         }
-        this.stroke(colour, chosen ? 2.5 : 1.6);
+        this.stroke(context, colour, chosen ? 2.5 : 1.6);
         if (labelled && note.text)
-            this.label(note.text, ...at[0]);
+            this.label(context, note.text, ...at[0]);
     }
 
     drawBar(width, height) {
         const { viewer, context } = this, mm = this.notes ? this.notes.mm : 0, pixels = viewer.scale() / this.ratio;
         if (!mm || !pixels)
-            return;
+            return false;
         const length = niceLength(BAR[0] * mm / pixels), wide = length / mm * pixels, y = height - 16;
         if (wide > BAR[1] * 2 || wide > width - 40)
+            return false;
+        this.path(context, [[18, y - 5], [18, y], [18 + wide, y], [18 + wide, y - 5]], false);
+        this.stroke(context, '#fff', 1.6);
+        this.label(context, length >= 10 ? `${length / 10} cm` : length >= 1 ? `${length} mm` : `${+(1000 * length).toPrecision(3)} µm`, 9 + wide / 2 - 14, y);
+        return true;
+    }
+
+    drawDrawing() {
+        const { context, drawing } = this;
+        if (!drawing)
+            return false;
+        const at = drawing.places.map((p) => this.screen(p)).filter((p) => p);
+        this.path(context, at, drawing.kind === 'polygon');
+        this.stroke(context, '#fff', 2);
+        at.forEach(([x, y]) => { context.beginPath(); context.arc(x, y, 3.5, 0, 7); this.stroke(context, '#fff', 1.5); });
+        if (at.length > 1)
+            this.label(context, sayLength(drawing.length(), this.notes.mm), ...at[at.length - 1]);
+        return true;
+    }
+
+    // The notes one by one, as long as there are not too many of them.
+    drawNotes(seen, width, height) {
+        const inside = ([x, y]) => x > -BESIDE && y > -BESIDE && x < width + BESIDE && y < height + BESIDE;
+        const there = seen.map((note) => [note, note.places.map((p) => this.screen(p))])
+            .filter(([, at]) => at.every((p) => p) && (!this.viewer.isPanorama || at.some(inside)));
+        const moving = there.length > MOST_AT_ONCE && performance.now() - this.moved < REST;
+        for (const [note, at] of moving ? there.slice(0, MOST_AT_ONCE) : there)
+            this.drawNote(this.context, note, at, there.length <= MOST_LABELS || note === this.chosen);
+        return there.length > 0;
+    }
+
+    // Tells when the picture has come to rest.
+    follow(framing) {
+        const now = JSON.stringify(framing);
+        if (now === this.before)
             return;
-        this.path([[18, y - 5], [18, y], [18 + wide, y], [18 + wide, y - 5]], false);
-        this.stroke('#fff', 1.6);
-        this.label(length >= 10 ? `${length / 10} cm` : length >= 1 ? `${length} mm` : `${+(1000 * length).toPrecision(3)} µm`, 9 + wide / 2 - 14, y);
-        context.globalAlpha = 1;
+        this.before = now;
+        this.moved = performance.now();
+        clearTimeout(this.resting);
+        this.resting = setTimeout(() => { this.rested(); this.draw(); }, REST);
     }
 
     draw() {
-        const { canvas, viewer, context, ratio } = this, { width, height } = viewer.canvas;
+        const { canvas, viewer, context, notes } = this, { width, height } = viewer.canvas;
+        const ratio = this.ratio = width / Math.max(viewer.canvas.clientWidth, 1), { at } = viewer.camera();
         if (canvas.width !== width || canvas.height !== height)
             Object.assign(canvas, { width, height });
+        this.follow([at, viewer.pan, viewer.tilt, viewer.zoom]);
         context.setTransform(ratio, 0, 0, ratio, 0, 0);
         context.clearRect(0, 0, width, height);
         context.font = '13px system-ui, sans-serif';
         context.lineJoin = 'round';
-        const [w, h] = [width / ratio, height / ratio], seen = [];
-        for (const note of this.shown && this.notes ? this.notes.all : []) {
-            const at = note.places.map((p) => this.screen(p));
-            if (at.length && at.every((p) => p) && at.some(([x, y]) => x > -50 && y > -50 && x < w + 50 && y < h + 50))
-                seen.push([note, at]);
+        // Chromium goes on showing a canvas that is cleared and no more
+        const marked = [this.drawAll({ at, width, height, ratio, version: notes ? notes.version : 0 }), this.drawDrawing(),
+                        this.drawBar(width / ratio, height / ratio)];
+        canvas.style.visibility = marked.some((is) => is) ? '' : 'hidden';
+    }
+
+    // All notes; true: some of them on this canvas. Very many move with the picture (marks.js).
+    drawAll(view) {
+        const { width, height, ratio } = view, { chosen, context } = this, still = this.shown && this.marks.serves(view);
+        const seen = still ? [] : this.around(0, 0, width, height, BESIDE * ratio);
+        if (!still && (!view.at || seen.length <= MOST_AT_ONCE)) {
+            this.marks.hide();
+            return this.drawNotes(seen, width / ratio, height / ratio);
         }
-        seen.forEach(([note, at]) => this.drawNote(note, at, seen.length <= MOST_LABELS || note === this.chosen));
-        if (this.drawing) {
-            const at = this.drawing.places.map((p) => this.screen(p)).filter((p) => p);
-            this.path(at, this.drawing.kind === 'polygon');
-            this.stroke('#fff', 2);
-            at.forEach(([x, y]) => { context.beginPath(); context.arc(x, y, 3.5, 0, 7); this.stroke('#fff', 1.5); });
-            if (at.length > 1)
-                this.label(sayLength(this.drawing.length(), this.notes.mm), ...at[at.length - 1]);
-        }
-        this.drawBar(w, h);
+        this.marks.show(view, this.index());
+        if (chosen && chosen.places.length)
+            this.drawNote(context, chosen, chosen.places.map((p) => this.screen(p)), true);
+        return !!chosen;
+    }
+
+    close() {
+        clearTimeout(this.resting);
     }
 }

@@ -56,7 +56,7 @@ export class Painter {
     // What a tile shows; null when that would take too long in this frame. Old light is better than none.
     textureOf(tile, kind) {
         const done = kind === 'light' ? this.relighter.isLit(tile) : tile.surface;
-        if (!done && this.allowed <= 0) {
+        if (!done && (this.allowed <= 0 || (kind === 'light' && !this.relighter.ready(this.tiles.failed)))) {
             const older = kind === 'light' && this.relighter.older(tile);
             this.complete = false;
             return older ? older.texture : null;

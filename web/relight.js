@@ -1,13 +1,15 @@
 // relight.js - tiles under the present lights; after src/relight/relight.c
 import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader } from './shaders.js';
-import { spread } from './lights.js';
+import { isNear, spread } from './lights.js';
 
 const SIZES = [1, 2, 4, 8, MOST_LIGHTS];  // lights of a batch: few shaders
 let relighters = 0;
 
 export class Relighter {
-    constructor(device, scene, basis) {
-        Object.assign(this, { device, scene, basis });
+    // `near`: for lamps that stand near (near.js).
+    constructor(device, scene, basis, near) {
+        Object.assign(this, { device, scene, basis, near });
+        this.lamps = [];
         this.key = relighters++;  // of its pictures of tiles
         this.version = 0;
         this.batches = [];
@@ -52,7 +54,8 @@ export class Relighter {
     }
 
     setLights(lights) {
-        const plain = spread(lights, this.basis).map((light) => {
+        this.lamps = this.near.lampsOf(lights.filter(isNear));
+        const plain = spread(lights.filter((light) => !isNear(light)), this.basis).map((light) => {
             const { share, weights } = this.basis.weights(light.direction);
             return { weights, colour: light.rgb.map((v) => share * v) };
         });
@@ -77,6 +80,9 @@ export class Relighter {
         program.draw([0, 0, 1, 1]);
     }
 
+    // Whether tiles can be lit now.
+    ready(failed) { return !this.lamps.length || this.near.ready(failed); }
+
     // The tile's light, up to date.
     lit(tile) {
         if (this.isLit(tile))
@@ -90,6 +96,7 @@ export class Relighter {
         });
         if (!this.batches.length)
             this.device.begin(lit);
+        this.lamps.forEach((lamp) => this.near.add(lit, tile, lamp));
         lit.version = this.version;
         return lit;
     }

@@ -65,6 +65,9 @@ function checkViews(scene) {
 }
 
 function checkGeometry(scene) {
+    const flat = scene.window;
+    insist(scene.projection !== 'planar' ||
+           (flat && areNumbers(flat.min, 2) && areNumbers(flat.max, 2) && flat.max[0] > flat.min[0] && Number.isFinite(flat.camera_z)), 'no window');
     const slab = scene.slab;
     insist(scene.projection !== 'slab' ||
            (slab && areNumbers([slab.uv_plane_z, slab.st_plane_z]) && areNumbers(slab.st_min, 2) &&

@@ -2,7 +2,7 @@
 //
 // Rows of textures run down the picture, those of frames up.
 
-const HEAD = `#version 300 es
+export const HEAD = `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -12,7 +12,7 @@ precision highp sampler2DArray;
 const LUMINANCE = 'const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);\n';
 
 // Codes to linear light; odd, as relume_transfer_decode.
-const DECODE = `
+export const DECODE = `
 uniform int curve;
 uniform float gamma;
 vec3 decode(vec3 v)

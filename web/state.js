@@ -1,6 +1,6 @@
 // state.js - what is seen as one line: name=value&name=value, with the names and values of the options
 // of `relume relight`, blanks written as commas
-import { MOST_LIGHTS_OF_A_STATE, cross, unit } from './lights.js';
+import { MOST_LIGHTS_OF_A_STATE, RADIANS, cross, edgesFacing, placed, unit } from './lights.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const MOST_LETTERS = 65536;
@@ -23,44 +23,65 @@ const hasLength = (v) => Math.hypot(...v) > 1e-9;
 // Soft lights are written as far discs that send what a directional one does; from here.
 const FAR = 1000;
 
-function areaOf(words) {
-    const v = numbers(words.slice(0, 9).join(','), 9, 1e9);
+const NEAREST = 100;  // areas that are nearer stand near, where something can
+
+function areaOf(words, near) {
+    const v = numbers(words.join(','), 9, 1e9);
     if (!v || ![0, 3, 6].every((i) => hasLength(v.slice(i, i + 3))))
         return null;
-    const position = v.slice(0, 3), away = Math.hypot(...position), half = Math.hypot(...v.slice(3, 6));
+    const position = v.slice(0, 3), away = Math.hypot(...position), u = v.slice(3, 6), half = Math.hypot(...u);
+    if (near && away < NEAREST)
+        return hasLength(cross(u, v.slice(6))) ? { ...placed({ kind: 'panel' }, position), u, v: v.slice(6) } : null;
     const value = 4 * half * half / (Math.PI * away * away);
     return { kind: 'area', direction: unit(position), radius: Math.min(Math.atan(half / away), 1), value };
 }
 
 function textOfArea(light) {
-    const d = light.direction, half = FAR * Math.tan(light.radius);
-    const beside = unit(cross(d, Math.abs(d[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0])), above = cross(d, beside);
+    const d = light.direction, half = FAR * Math.tan(light.radius), [above, beside] = edgesFacing(d);
     const value = Math.PI * FAR * FAR / (4 * half * half);
     // it sends light along u x v, which must point back at the scene
     return `area,${list(d.map((x) => FAR * x))},${list(above.map((x) => half * x))},${list(beside.map((x) => half * x))}` +
         `,rgb,${list(light.rgb.map((x) => x * value))}`;
 }
 
-// A light of the page, or null.
-function lightOf(text) {
-    const words = text.split(','), kind = words.shift(), colourAt = words.indexOf('rgb');
-    const rgb = colourAt < 0 ? [1, 1, 1] : numbers(words.slice(colourAt + 1).join(','), 3, 1e12);
-    const rest = colourAt < 0 ? words : words.slice(0, colourAt);
-    if (!rgb || rgb.some((x) => x < 0))
+function spotOf(words) {
+    const v = numbers(words.join(','), 7, 1e9);
+    return v && hasLength(v.slice(3, 6)) && v[6] > 0 && v[6] < 90
+        ? { ...placed({ kind: 'spot' }, v.slice(0, 3)), axis: unit(v.slice(3, 6)), half: v[6] * RADIANS } : null;
+}
+
+function pointOf(words) {
+    const position = numbers(words.join(','), 3, 1e9);
+    return position && placed({ kind: 'point' }, position);
+}
+
+function dirOf(words) {
+    const direction = numbers(words.join(','), 3, 1e12);
+    return direction && hasLength(direction) ? { kind: 'dir', direction: unit(direction) } : null;
+}
+
+// A light of the page, or null; `near`: lights may stand near.
+function lightOf(text, near) {
+    const words = text.split(','), kind = words.shift(), nofall = words.indexOf('nofall');
+    if (nofall >= 0)
+        words.splice(nofall, 1);
+    const colourAt = words.indexOf('rgb'), rgb = colourAt < 0 ? [1, 1, 1] : numbers(words.splice(colourAt).slice(1).join(','), 3, 1e12);
+    const falls = near && (kind === 'point' || kind === 'spot');
+    if (!rgb || rgb.some((x) => x < 0) || (nofall >= 0 && !falls))
         return null;
-    if (kind === 'dir') {
-        const direction = numbers(rest.join(','), 3, 1e12);
-        return direction && hasLength(direction) ? { kind, direction: unit(direction), rgb } : null;
-    }
-    const area = kind === 'area' && rest.length === 9 ? areaOf(rest) : null;
-    return area && { kind, direction: area.direction, radius: area.radius, rgb: rgb.map((x) => x * area.value) };
+    const light = kind === 'dir' ? dirOf(words) : kind === 'area' ? areaOf(words, near)
+        : falls && kind === 'point' ? pointOf(words) : falls ? spotOf(words) : null;
+    return light && { ...light, rgb: rgb.map((x) => x * (light.value || 1)), ...(nofall >= 0 ? { nofall: true } : {}) };
 }
 
 function textOfLight(light) {
     if (light.kind === 'area')
         return textOfArea(light);
-    const rgb = light.rgb.every((x) => x === 1) ? '' : `,rgb,${list(light.rgb)}`;
-    return `dir,${list(light.direction)}${rgb}`;
+    const rgb = light.rgb.every((x) => x === 1) ? '' : `,rgb,${list(light.rgb)}`, nofall = light.nofall ? ',nofall' : '';
+    const where = light.kind === 'point' ? `point,${list(light.position)}`
+        : light.kind === 'spot' ? `spot,${list([...light.position, ...light.axis, light.half / RADIANS])}`
+        : light.kind === 'panel' ? `area,${list([...light.position, ...light.u, ...light.v])}` : `dir,${list(light.direction)}`;
+    return where + rgb + nofall;
 }
 
 // ---------------------------------------------------------------- names
@@ -99,8 +120,9 @@ function decodeOf(text) {
 }
 
 // { values, lights, others, problem }: what a line says that can be shown; `lights` is null where it
-// names none, `others` are entries of other names, `problem` a sentence about what was left out.
-export function readState(line) {
+// names none, `others` are entries of other names, `problem` a sentence about what was left out. `near`:
+// whether lights may stand near.
+export function readState(line, near) {
     const state = { values: {}, lights: null, others: [], problem: '' }, bad = [];
     if (line.length > MOST_LETTERS)
         return { ...state, problem: 'This link is too long; nothing of it is shown.' };
@@ -108,7 +130,7 @@ export function readState(line) {
         const cut = entry.indexOf('='), name = cut < 0 ? entry : entry.slice(0, cut);
         const value = cut < 0 ? null : decodeOf(entry.slice(cut + 1));
         if (name === 'light') {
-            const light = value === null ? null : lightOf(value);
+            const light = value === null ? null : lightOf(value, near);
             state.lights = state.lights || [];
             if (light && state.lights.length < MOST_LIGHTS_OF_A_STATE)
                 state.lights.push(light);

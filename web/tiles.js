@@ -24,8 +24,8 @@ function partsOf(bytes, count, address) {
 }
 
 // A picture as it is coded: no colour management, no alpha.
-export function decodePicture(bytes, type) {
-    return createImageBitmap(new Blob([bytes], { type }), { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
+export function decodePicture(bytes, type, options = {}) {
+    return createImageBitmap(new Blob([bytes], { type }), { colorSpaceConversion: 'none', premultiplyAlpha: 'none', ...options });
 }
 
 // The depth or the mask of a view.
@@ -45,6 +45,7 @@ export class Tiles {
         this.bytes = 0;
         this.clock = 0;
         this.received = 0;
+        this.near = null;  // what lamps near this file need (near.js)
     }
 
     columns(level) { return Math.ceil(this.scene.levels[level].width / this.scene.tile); }
@@ -170,5 +171,7 @@ export class Tiles {
     close() {
         for (const tile of [...this.tiles.values()])
             this.drop(tile);
+        if (this.near)
+            this.near.close();
     }
 }

@@ -1,6 +1,7 @@
 // viewer.js - an open file: its camera, lights and picture, drawn when something has changed
 import { Device } from './gl.js';
 import { Basis } from './wasm.js';
+import { Failure } from './load.js';
 import { loadScene } from './scene.js';
 import { Tiles } from './tiles.js';
 import { Relighter } from './relight.js';
@@ -10,6 +11,7 @@ import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
 import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
+import { NearLamps } from './near.js';
 import { readState, writeState } from './state.js';
 import { brightestExposure, measureRange, meterExposure } from './measure.js';
 import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
@@ -58,7 +60,8 @@ export class Viewer {
 
     // A file under lights of its own.
     layerOf(scene, basis, tiles) {
-        const relighter = new Relighter(this.device, scene, basis);
+        tiles.near = tiles.near || new NearLamps(this.device, scene, basis, () => this.invalidate());
+        const relighter = new Relighter(this.device, scene, basis, tiles.near);
         const painter = new Painter(this.device, scene, tiles, relighter, () => this.invalidate());
         const stage = scene.projection === 'planar' ? new Planar(scene, painter)
             : scene.projection === 'slab' ? new Slab(scene, painter, this.device) : new Panorama(scene, painter, this.device);
@@ -203,7 +206,7 @@ export class Viewer {
 
     // Shows what a line says; what it does not name is as the page opens.
     setState(line) {
-        const { values, lights, others, problem } = readState(line);
+        const { values, lights, others, problem } = readState(line, this.projection === 'planar');
         this.metering = false;
         this.reset();
         Object.assign(this, { others });
@@ -358,6 +361,35 @@ export class Viewer {
         front.stage.close();
         this.exposure = Math.round(10 * Math.max(exposure - 0.05, 0)) / 10;
         this.changed();
+    }
+
+    // A square of the first view at full size, as floats of a kind, row 0 at its bottom; waits for its tiles.
+    async patch(kind, x, y, side) {
+        const { painter, tiles, scene } = this, part = [Math.max(x, 0), Math.max(y, 0), Math.min(x + side, scene.width), Math.min(y + side, scene.height)];
+        const target = this.device.target(side, side);
+        try {
+            for (;;) {
+                painter.complete = true;
+                painter.allowed = Infinity;
+                painter.paint(target, scene.views[0], kind, 0, { scale: 1, left: -x, top: -y }, part);
+                tiles.end();
+                if (painter.complete)
+                    return this.device.read(target);
+                if (painter.touching(0, part).some(([i, j]) => tiles.get(scene.views[0].name, 0, i, j).state === 'failed'))
+                    throw new Failure('a part of the picture is missing');
+                await new Promise((resolve) => setTimeout(resolve, 20));
+                if (this.closed)
+                    throw new Failure('the picture is closed');
+            }
+        } finally {
+            this.device.drop(target);
+        }
+    }
+
+    // The light that the canvas shows, before exposure: floats, row 0 at its bottom.
+    lightSeen() {
+        const target = this.target('light0');
+        return { width: target.width, height: target.height, data: this.device.read(target) };
     }
 
     findRange(look) {

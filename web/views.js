@@ -32,7 +32,7 @@ function disparitiesOf(picture, view, slab) {
 }
 
 // The bytes of a decoded picture.
-function pixelsOf(picture) {
+export function pixelsOf(picture) {
     if (picture instanceof ImageData)
         return picture;
     const canvas = Object.assign(document.createElement('canvas'), { width: picture.width, height: picture.height });

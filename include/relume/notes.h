@@ -3,7 +3,8 @@
 // profiles of them
 //
 // A list is kept beside its file, coin.exr has coin.notes.json, as a page of annotations (Web
-// Annotation Data Model, W3C recommendation 2017), so that other programs read it (docs/notes.md).
+// Annotation Data Model, W3C recommendation 2017), so that other programs read it (docs/notes.md),
+// or inside it (relume_pack_keep_notes).
 // Places are counted in pixels of a view at its full size, (0, 0) being the upper left corner of
 // the upper left pixel, x to the right and y down; of a slab they lie on the window that all its
 // cameras see, of a panorama on the view unfolded.
@@ -51,12 +52,14 @@ struct relume_notes_file {
     const char *name;   // of the file, without its folder
     int width, height;  // of each of its views
     int views;
+    const char *inside;  // the page that the file itself holds (relume_pack_info.notes); NULL: none
 };
 
 // An empty list. RELUME_EINVAL for sizes below 1, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_notes_create(relume_notes **out,
                                                 const struct relume_notes_file *file);
-// The list kept beside the file `path`, an empty one where there is none. RELUME_EUNFIT for notes
+// The list kept beside the file `path`; where there is none that inside it, or an empty one.
+// RELUME_EUNFIT for notes
 // on a file of another size, RELUME_EFORMAT for what is no list, an input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_notes_open(relume_notes **out, const char *path,
                                               const struct relume_notes_file *file,
@@ -68,10 +71,15 @@ RELUME_RESULT relume_status relume_notes_open(relume_notes **out, const char *pa
 RELUME_RESULT relume_status relume_notes_import(relume_notes *notes, const char *path, int *added,
                                                 const struct relume_log *log);
 // Keep it beside the file `path`, in place of the list that is there; without notes and scale the
-// list disappears. Notes that were read and not changed keep whatever other programs wrote of them.
-// RELUME_EIO, RELUME_ENOMEM.
+// list disappears, unless it hides one inside the file. Notes that were read and not changed keep
+// whatever other programs wrote of them. RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_notes_save(const relume_notes *notes, const char *path,
                                               const struct relume_log *log);
+// The same as text, for relume_pack_keep_notes; NULL without notes and scale. Free `*out` with
+// relume_free(). RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_notes_text(char **out, const relume_notes *notes);
+// The list beside the file `path` is removed, if there is one. RELUME_EIO, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_notes_unlink(const char *path, const struct relume_log *log);
 RELUME_API void relume_notes_destroy(relume_notes **notes);
 
 // Append a copy. RELUME_EINVAL with a sentence for a number of places that its kind has not, places

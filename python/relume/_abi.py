@@ -80,7 +80,7 @@ struct relume_pack_info { int version; void *coder; int domain; struct relume_tr
     int width, height; int levels; int tile; int views; void *uv; void *slab_of; bool has_depth, has_mask;
     int coefficients, planes; int books; int codes; bool shared;
     struct relume_encode_report report; uint64_t file_bytes; bool has_shadow; bool has_gloss; bool has_sums;
-    char *provenance; };
+    char *provenance; char *notes; };
 struct relume_codes { void *coder; int domain; struct relume_transfer display;
     int width, height, planes; int storage; void *plane; void *scale, *offset; int books;
     void *index; void *vectors; void *book_codes; };

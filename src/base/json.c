@@ -31,6 +31,18 @@ relume_status jvalue_load(jvalue **root, const char *path, const struct relume_l
                     error.line, error.column, error.text);
 }
 
+relume_status jvalue_parse(jvalue **root, const char *text, const struct relume_log *log)
+{
+    json_error_t error;
+    *root = json_loads(text, JSON_REJECT_DUPLICATES, &error);
+    if (*root)
+        return RELUME_OK;
+    return json_error_code(&error) == json_error_out_of_memory
+               ? RELUME_ENOMEM
+               : log_fail(log, RELUME_EFORMAT, "line %d, column %d; expected JSON, %s", error.line,
+                          error.column, error.text);
+}
+
 void jvalue_free(jvalue **root)
 {
     json_decref(*root);

@@ -9,6 +9,8 @@ typedef struct json_t jvalue;
 
 // The whole file; members that come twice are an error. RELUME_EFORMAT with a sentence.
 relume_status jvalue_load(jvalue **root, const char *path, const struct relume_log *log);
+// The same of a text; sentences begin as `log` has them begin.
+relume_status jvalue_parse(jvalue **root, const char *text, const struct relume_log *log);
 void jvalue_free(jvalue **root);
 // Whether members "format" and "version" of the file's root are these; RELUME_EFORMAT with a
 // sentence.

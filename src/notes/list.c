@@ -51,6 +51,7 @@ relume_status relume_notes_create(relume_notes **out, const struct relume_notes_
     n->width = file->width;
     n->height = file->height;
     n->views = file->views;
+    n->inside = file->inside != NULL;
     n->name = mem_text(file->name ? file->name : "");
     if (!n->name)
         relume_notes_destroy(&n);

@@ -14,6 +14,7 @@ struct kept_note {
 struct relume_notes {
     char *name;  // of the file
     int width, height, views;
+    bool inside;  // the file holds a list itself, which one beside it hides
     double mm_per_pixel;
     int count;
     struct kept_note *note;  // [count]

@@ -181,6 +181,19 @@ static relume_status read_named(relume_notes *notes, const char *name, bool repl
     return status;
 }
 
+static relume_status read_inside(relume_notes *notes, const char *text, const char *path,
+                                 const struct relume_log *log)
+{
+    jvalue *root = NULL;
+    struct log_place place;
+    const struct relume_log *at = log_at(&place, log, "%s: the notes inside: ", path);
+    relume_status status = jvalue_parse(&root, text, at);
+    if (!status)
+        status = read_page(notes, root, at);
+    jvalue_free(&root);
+    return status;
+}
+
 relume_status relume_notes_open(relume_notes **out, const char *path,
                                 const struct relume_notes_file *file, const struct relume_log *log)
 {
@@ -188,9 +201,10 @@ relume_status relume_notes_open(relume_notes **out, const char *path,
     if (status)
         return status;
     char *name = notes_name(path);
-    status = !name                      ? RELUME_ENOMEM
-             : !input_exists(name, log) ? RELUME_OK
-                                        : read_named(*out, name, true, log);
+    status = !name                     ? RELUME_ENOMEM
+             : input_exists(name, log) ? read_named(*out, name, true, log)
+             : file->inside            ? read_inside(*out, file->inside, path, log)
+                                       : RELUME_OK;
     mem_free(name);
     if (status)
         relume_notes_destroy(out);
@@ -215,7 +229,7 @@ relume_status relume_notes_import(relume_notes *notes, const char *path, int *ad
     relume_notes *other = NULL;
     relume_status status =
         relume_notes_create(&other, &(struct relume_notes_file){notes->name, notes->width,
-                                                                notes->height, notes->views});
+                                                                notes->height, notes->views, NULL});
     *added = 0;
     if (!status)
         status = read_named(other, path, false, log);

@@ -79,22 +79,55 @@ static bool print_page(FILE *f, const relume_notes *notes)
     return good;
 }
 
+static bool is_empty(const relume_notes *notes)
+{
+    return !notes->count && notes->mm_per_pixel == 0.0;
+}
+
+// What print_page says, *size bytes, to be freed by mem_free_libc.
+static relume_status print_text(char **text, size_t *size, const relume_notes *notes)
+{
+    *text = NULL;
+    FILE *f = open_memstream(text, size);
+    const bool good = f && print_page(f, notes);
+    return f && !fclose(f) && good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+relume_status relume_notes_text(char **out, const relume_notes *notes)
+{
+    char *text = NULL;
+    size_t size = 0;
+    *out = NULL;
+    if (is_empty(notes))
+        return RELUME_OK;
+    const relume_status status = print_text(&text, &size, notes);
+    if (!status)
+        *out = mem_text(text);
+    mem_free_libc(text);
+    return status || *out ? status : RELUME_ENOMEM;
+}
+
+relume_status relume_notes_unlink(const char *path, const struct relume_log *log)
+{
+    char *name = notes_name(path);
+    relume_status status = name ? RELUME_OK : RELUME_ENOMEM;
+    if (name && unlink(name) && errno != ENOENT)
+        status = log_fail(log, RELUME_EIO, "%s: cannot be removed; %s", name, strerror(errno));
+    mem_free(name);
+    return status;
+}
+
 relume_status relume_notes_save(const relume_notes *notes, const char *path,
                                 const struct relume_log *log)
 {
-    char *name = notes_name(path), *text = NULL;
+    char *text = NULL;
     size_t size = 0;
-    relume_status status = RELUME_OK;
-    const bool empty = !notes->count && notes->mm_per_pixel == 0.0;
-    FILE *f = name && !empty ? open_memstream(&text, &size) : NULL;
-    if (name && empty && unlink(name) && errno != ENOENT)
-        status = log_fail(log, RELUME_EIO, "%s: cannot be removed; %s", name, strerror(errno));
-    if (!name || (!empty && !f))
-        status = RELUME_ENOMEM;
-    if (f) {
-        const bool good = print_page(f, notes);
-        status = !fclose(f) && good ? outfile_save(name, text, size, log) : RELUME_ENOMEM;
-    }
+    if (is_empty(notes) && !notes->inside)
+        return relume_notes_unlink(path, log);
+    char *name = notes_name(path);
+    relume_status status = name ? print_text(&text, &size, notes) : RELUME_ENOMEM;
+    if (!status)
+        status = outfile_save(name, text, size, log);
     mem_free_libc(text);
     mem_free(name);
     return status;

@@ -50,6 +50,7 @@ enum { FORMAT_TILE = 128 };
 #define ATTR_STEPPED       "relume.functions.stepped"
 #define ATTR_SUMS          "relume.sums"
 #define ATTR_PROVENANCE    "relume.provenance"
+#define ATTR_NOTES         "relume.notes"
 
 // A part of the work (docs/format.md, "Parts"): format and attributes of the first part beside
 // those of the whole, and of a view's

@@ -276,5 +276,6 @@ relume_status reader_read_header(relume_pack *p)
         status = read_geometry(p);
     read_report(p);
     p->info.provenance = exr_get_text(p->file, 0, ATTR_PROVENANCE);
+    p->info.notes = exr_get_text(p->file, 0, ATTR_NOTES);
     return status ? status : read_coder(p);
 }

@@ -1,4 +1,4 @@
-// annotations.c - notes that lie beside a file go into the site
+// annotations.c - notes that lie beside a file, or inside it, go into the site
 #include "publish/annotations.h"
 
 #include "base/infile.h"
@@ -17,12 +17,14 @@ relume_status annotations_open(relume_notes **out, const struct site *site, cons
     const struct relume_notes_file file = {.name = slash ? slash + 1 : path,
                                            .width = info->width,
                                            .height = info->height,
-                                           .views = info->views};
+                                           .views = info->views,
+                                           .inside = info->notes};
     return relume_notes_open(out, path, &file, site->params->log);
 }
 
-// The list as its program wrote it, which the page reads.
-static relume_status copy(const struct site *site, const char *path, const char *name)
+// The list as its program wrote it, which the page reads; `inside`: the file's own, or NULL.
+static relume_status copy(const struct site *site, const char *path, const char *inside,
+                          const char *name)
 {
     const size_t n = strlen(path);
     const bool exr = n > 4 && !strcmp(path + n - 4, ".exr");
@@ -36,7 +38,9 @@ static relume_status copy(const struct site *site, const char *path, const char 
         return RELUME_ENOMEM;
     }
     relume_status status = RELUME_OK;
-    if (infile_open(&file, from, NULL, site->params->log)) {
+    if (inside && !input_exists(from, site->params->log)) {
+        status = site_save_data(site, to, inside, strlen(inside));
+    } else if (infile_open(&file, from, NULL, site->params->log)) {
         bytes = mem_array(file.size + 1, 1);
         const ssize_t got = bytes ? infile_read(&file, bytes, file.size, 0) : 0;
         status = !bytes ? RELUME_ENOMEM
@@ -54,11 +58,11 @@ static relume_status copy(const struct site *site, const char *path, const char 
 }
 
 relume_status annotations_write(const struct site *site, const relume_notes *notes,
-                                const char *path, const char *name)
+                                const char *path, const char *inside, const char *name)
 {
     char *canvas = iiif_canvas(site, name);
     char *list = mem_format("%s/%s/iiif/notes.json", site->path, name);
-    relume_status status = canvas && list ? copy(site, path, name) : RELUME_ENOMEM;
+    relume_status status = canvas && list ? copy(site, path, inside, name) : RELUME_ENOMEM;
     if (!status)
         status = relume_notes_write(notes, list, RELUME_NOTES_IIIF, canvas, site->log);
     mem_free(canvas);

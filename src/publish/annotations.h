@@ -1,4 +1,4 @@
-// annotations.h - notes that lie beside a file go into the site
+// annotations.h - notes that lie beside a file, or inside it, go into the site
 #ifndef PUBLISH_ANNOTATIONS_H
 #define PUBLISH_ANNOTATIONS_H
 
@@ -10,9 +10,9 @@
 // What the list of `path` says; empty where there is none. As relume_notes_open.
 relume_status annotations_open(relume_notes **out, const struct site *site, const char *path,
                                relume_pack *pack);
-// As NAME/notes.json, and for IIIF as NAME/iiif/notes.json. RELUME_EIO, RELUME_ENOMEM, and where
-// the list cannot be read again an input status.
+// As NAME/notes.json, and for IIIF as NAME/iiif/notes.json; `inside`: relume_pack_info.notes.
+// RELUME_EIO, RELUME_ENOMEM, and where the list cannot be read again an input status.
 relume_status annotations_write(const struct site *site, const relume_notes *notes,
-                                const char *path, const char *name);
+                                const char *path, const char *inside, const char *name);
 
 #endif

@@ -121,7 +121,7 @@ static relume_status write_all(struct scene *s, struct page *page, const char *p
     if (!status)
         status = iiif_write(s->site, page, s->pack, s->notes);
     if (!status && s->notes)
-        status = annotations_write(s->site, notes, path, s->name);
+        status = annotations_write(s->site, notes, path, relume_pack_info(s->pack)->notes, s->name);
     if (!status)
         status = page_write(s->site, page, site_title);
     relume_notes_destroy(&notes);

@@ -62,4 +62,46 @@ check 'is not replaced' test "$(wc -c <dome.notes.json)" = 300
 cp kept.json dome.notes.json
 expect_ok 'without notes and scale' - ./notes --remove n1 --remove n2 --remove n4
 check 'the scale stays' grep -q '"relume:mmPerPixel": 0.5,' dome.notes.json
+
+# ---- inside the file: it holds its notes and is else the same, byte by byte
+cp dome.exr alone.exr
+printf '{"@context": "http://www.w3.org/ns/anno.jsonld", "type": "AnnotationPage", "items": [{"id": "n1", "type": "Annotation",
+"body": {"type": "TextualBody", "value": "für <später>", "language": "de"}, "target": {"selector": {"type": "PointSelector", "x": 3, "y": 4}}}]}' >foreign.json
+rm dome.notes.json
+expect_ok 'notes of another program' - ./notes --import foreign.json --add 'line 1,1 40,30' --text long --state 'light=dir,0,0,1' --scale 0.5
+"$RELUME" notes dome.exr --json >before.json
+expect_ok 'notes go into the file' - ./notes --embed
+check 'and not beside it' test ! -e dome.notes.json
+differ 'the file has them' dome.exr alone.exr
+expect_ok 'it is whole' - "$RELUME" check dome.exr
+"$RELUME" notes dome.exr --json >inside.json
+same 'the tool finds them there' before.json inside.json
+expect_ok 'publish too' - "$RELUME" publish dome.exr -o site
+check 'with what others wrote' grep -q '"language": *"de"' site/dome/notes.json
+printf 'size 500 300\nkey ctrl+n\nshot seen.png\n' >look.txt
+"$VIEWER" dome.exr --script look.txt && mv seen.png inside.png
+expect_ok 'notes come out' - ./notes --extract
+same 'the file is what it was' dome.exr alone.exr
+"$RELUME" notes dome.exr --json >after.json
+same 'nothing is lost' before.json after.json
+check 'nor what others wrote' grep -q '"language": *"de"' dome.notes.json
+"$VIEWER" dome.exr --script look.txt
+same 'the viewer finds them there too' seen.png inside.png
+mv dome.notes.json lost.json
+"$VIEWER" dome.exr --script look.txt
+differ 'and shows them' seen.png inside.png
+mv lost.json dome.notes.json
+expect_ok 'a list beside a file' - ./notes --embed --add 'point 1,1'
+expect_ok 'hides that inside' - ./notes --remove n1 --remove n2 --remove n3
+check 'even an empty one' sh -c "./notes --json | grep -q '\"notes\": \[\]'"
+rm dome.notes.json
+check 'which is there still' sh -c '[ $(./notes | wc -l) = 3 ]'
+cp dome.exr held.exr
+fail 'in and out at once' 2 'choose one of them' --embed --extract
+expect_fail 'nothing to take out' 1 'it holds no notes; --embed puts them there' - "$RELUME" notes alone.exr --extract
+cp dome/view00/depth.exr other.exr
+expect_fail 'an EXR that is none of ours' 1 'notes go into relume files' - "$RELUME" notes other.exr --embed
+# a byte of the text, so that it is no JSON
+sed 's/"AnnotationPage"/"AnnotationPage!/' held.exr >dome.exr
+fail 'broken notes inside' 1 'dome.exr: the notes inside: line .*; expected JSON'
 finish

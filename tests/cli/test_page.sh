@@ -2,11 +2,7 @@
 # Published pages: the core of the page beside the library, and pages in a browser, from a disk,
 # without network: what they show is what relume relight shows.
 . "$(dirname "$0")/lib.sh"
-node=$(command -v node || true)
-browser=
-for b in chromium chromium-browser google-chrome; do
-    [ "$browser" ] || browser=$(command -v $b || true)
-done
+. "$TOP/tests/cli/page.sh"
 
 # ---- the WebAssembly in the tree beside the same sources compiled natively
 if [ "$node" ]; then
@@ -48,10 +44,6 @@ sed -i 's/"version": 1/"version": 9/' bad/pot/scene.json
 rm -r bad/room/v0
 { printf 'relume.put("dome/v0/0_0_0.bin", "'; head -c 3000 bad/dome/v0/0_0_0.bin | base64 -w0; printf '");\n'; } >bad/dome/v0/0_0_0.bin.js
 
-show() { # page: alone, as large as its window
-    echo "open file://$work/$1"
-    echo "eval (document.querySelector('relume-view').controls.node.remove(), document.querySelector('relume-view').style.cssText = 'position:fixed;inset:0;height:auto;min-height:0;z-index:9', new Promise(done => setTimeout(done, 200)))"
-}
 n=0
 shots= # number:file:options, one a line
 snap() { # file, state, options of relume relight
@@ -62,7 +54,6 @@ snap() { # file, state, options of relume relight
     shots="$shots $1:$n"
 }
 lone() { snap "$1" "light=dir,$(echo "$2" | tr ' ' ,)$3" "$4" --light "dir $2"; }
-ask() { echo "eval $1" >>orders.txt; }
 {
     echo 'size 96 96'
     show site/dome.html
@@ -126,13 +117,7 @@ done
 echo 'before HTMLCanvasElement.prototype.getContext = () => null' >>orders.txt
 echo "open file://$work/site/dome.html" >>orders.txt
 ask "[document.querySelector('relume-view').status.textContent, !document.querySelector('relume-view').poster.hidden, document.querySelector('relume-view').poster.alt]"
-mkdir home
-HOME=$work/home timeout 100 node "$TOP/tests/tools/page.mjs" "$browser" "$work/home/profile" <orders.txt >said.txt 2>&1 ||
-    not_ok 'the browser does as it is told' "$(grep -E '^failed' said.txt)"
-check 'pages throw nothing' sh -c '! grep "^thrown" said.txt'
-says() { # name, pattern
-    if grep -qE "$2" said.txt; then ok "$1"; else not_ok "$1" "expected /$2/, found: $(cat said.txt)"; fi
-}
+browse
 for shot in $shots; do
     # codes are 8 bits and JPEG on the way: on the mean one step of 255
     below "${shot%:*}: the page shows relume relight (${shot#*:})" "$("$mkimage" codediff page${shot#*:}.png tool${shot#*:}.png)" 1

@@ -5,7 +5,10 @@
 //   snap FILE.png     the picture as saved     shot FILE.png      the window
 //   eval SCRIPT       prints what it gives     key NAME...        press keys
 //   drag X Y X Y      the mouse                drop FILE          onto the picture
-//   write FILE SCRIPT the text that it givesbefore SCRIPT      runs first in pages from now on
+//   write FILE SCRIPT the text that it gives
+//   before SCRIPT     runs first in pages from now on
+//   serve ADDRESS FOLDER   answers what begins with ADDRESS from there, and prints what is asked for
+//   until SCRIPT      waits until it gives something, half a minute
 //
 // It speaks the DevTools protocol over a pipe; no package is needed. What a page throws is printed
 // behind "thrown".
@@ -64,6 +67,21 @@ async function visit(address) {
 const BLOB = `blob => new Promise(done => { const reader = new FileReader();
     reader.onload = () => done(reader.result.split(',')[1]); reader.readAsDataURL(blob); })`;
 
+const TYPES = { html: 'text/html', js: 'text/javascript', css: 'text/css', json: 'application/json', jpg: 'image/jpeg', png: 'image/png', svg: 'image/svg+xml' };
+
+// An answer to a request of the page, of a file of `folder`.
+async function answer({ requestId, request }, address, folder) {
+    const path = decodeURIComponent(new URL(request.url).pathname.slice(new URL(address).pathname.length));
+    const type = TYPES[path.split('.').pop()] || 'application/octet-stream';
+    let body = null;
+    try {
+        body = readFileSync(`${folder}/${path}`).toString('base64');
+    } catch { /* it is not there */ }
+    console.log(`asked ${path}${body === null ? ' missing' : ''}`);
+    await send('Fetch.fulfillRequest', { requestId, responseCode: body === null ? 404 : 200, body: body || '',
+                                         responseHeaders: [{ name: 'Content-Type', value: type }, { name: 'Access-Control-Allow-Origin', value: '*' }] });
+}
+
 const orders = {
     size: (w, h) => send('Emulation.setDeviceMetricsOverride', { width: +w, height: +h, deviceScaleFactor: 1, mobile: false }),
     visit,
@@ -86,6 +104,17 @@ const orders = {
     async write(line) {
         const cut = line.indexOf(' ');
         writeFileSync(line.slice(0, cut), await evaluate(line.slice(cut + 1)));
+    },
+    async serve(address, folder) {
+        heard.push((message) => {
+            if (message.method === 'Fetch.requestPaused')
+                answer(message.params, address, folder).catch((error) => console.log(`thrown ${error.message}`));
+        });
+        await send('Fetch.enable', { patterns: [{ urlPattern: `${address}*` }] });
+    },
+    async until(script) {
+        for (let i = 0; i < 150 && !await evaluate(script).catch(() => false); i++)
+            await new Promise((resolve) => setTimeout(resolve, 200));
     },
     before: (source) => send('Page.addScriptToEvaluateOnNewDocument', { source }),
     async key(...names) {
@@ -125,7 +154,7 @@ async function run() {
     });
     for (const line of readFileSync(0, 'utf8').split('\n').filter((l) => l.trim() && !l.startsWith('#'))) {
         const cut = line.indexOf(' '), name = cut < 0 ? line : line.slice(0, cut), given = cut < 0 ? '' : line.slice(cut + 1);
-        const whole = ['eval', 'state', 'open', 'visit', 'write', 'before'].includes(name);
+        const whole = ['eval', 'state', 'open', 'visit', 'write', 'before', 'until'].includes(name);
         await orders[name](...(whole ? [given] : given.split(' ')));
     }
 }

@@ -4,7 +4,7 @@
 
 #include "in_folder.h"
 
-static const struct relume_notes_file file = {"a.exr", 100, 80, 1};
+static const struct relume_notes_file file = {"a.exr", 100, 80, 1, NULL};
 
 static struct relume_note line(const double (*place)[2], int places)
 {
@@ -167,6 +167,13 @@ static void test_bad_selectors(void **state)
     relume_notes_destroy(&notes);
 }
 
+static void empty(relume_notes *notes)
+{
+    while (relume_notes_count(notes))
+        relume_notes_remove(notes, 0);
+    CHECK_OK(relume_notes_set_scale(notes, 0.0));
+}
+
 static void test_round_trip(void **state)
 {
     (void)state;
@@ -205,15 +212,27 @@ static void test_round_trip(void **state)
     fclose(f);
     assert_non_null(strstr(text, "\"kept\":{\"by\":3.25}"));
     relume_notes_destroy(&again);
-    const struct relume_notes_file other = {"a.exr", 100, 81, 1};
+    const struct relume_notes_file other = {"a.exr", 100, 81, 1, NULL};
     assert_int_equal(relume_notes_open(&again, path_of("a.exr"), &other, &log.log), RELUME_EUNFIT);
     assert_null(again);
-    while (relume_notes_count(notes))
-        relume_notes_remove(notes, 0);
-    CHECK_OK(relume_notes_set_scale(notes, 0.0));
+    char *inside;
+    CHECK_OK(relume_notes_text(&inside, notes));
+    empty(notes);
     CHECK_OK(relume_notes_save(notes, path_of("a.exr"), NULL));
     assert_int_equal(access(path_of("a.notes.json"), F_OK), -1);
     relume_notes_destroy(&notes);
+    // a list inside the file, which an empty one beside it hides
+    const struct relume_notes_file holder = {"a.exr", 100, 80, 1, inside};
+    CHECK_OK(relume_notes_open(&again, path_of("a.exr"), &holder, NULL));
+    assert_int_equal(relume_notes_count(again), 3);
+    empty(again);
+    CHECK_OK(relume_notes_save(again, path_of("a.exr"), NULL));
+    relume_notes_destroy(&again);
+    CHECK_OK(relume_notes_open(&again, path_of("a.exr"), &holder, NULL));
+    assert_int_equal(relume_notes_count(again), 0);
+    relume_notes_destroy(&again);
+    CHECK_OK(relume_notes_unlink(path_of("a.exr"), NULL));
+    relume_free(inside);
 }
 
 static void test_names(void **state)

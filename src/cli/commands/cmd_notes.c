@@ -14,7 +14,7 @@ struct notes_options {
     const char *ruler, *profile, *output, *canvas;
     int view;
     enum { TO_NOTHING, TO_CSV, TO_SVG, TO_IIIF } to;
-    bool json;
+    bool embed, extract, json;
 };
 #define OPTIONS struct notes_options
 
@@ -32,6 +32,8 @@ static const struct option options[] = {
     TEXT("--rewrite", rewrite, "ID", "give this note the new --text"),
     TEXTS("--import", import, "FILE.json",
           "add the notes of this file, as pages save them; repeatable"),
+    FLAG("--embed", embed, "keep the list inside the relume file, no longer beside it"),
+    FLAG("--extract", extract, "keep the list beside the file, no longer inside it"),
     NUMBER("--scale", scale, "MM", "one pixel is so many millimetres wide", 1e-9, 1e9),
     TEXT("--ruler", ruler, "ID", "this line is --length long: sets the scale"),
     NUMBER("--length", length, "MM", "the length of --ruler in millimetres", 1e-9, 1e12),
@@ -314,6 +316,8 @@ static relume_status check(const struct notes_options *o)
         return usage_error("--ruler and --length need each other");
     if (o->ruler && o->scale > 0.0)
         return usage_error("--scale and --ruler: choose one of them");
+    if (o->embed && o->extract)
+        return usage_error("--embed and --extract: choose one of them");
     if (o->to && o->profile)
         return usage_error("--to and --profile: choose one of them");
     if ((o->to || o->profile) && !o->output)
@@ -323,11 +327,44 @@ static relume_status check(const struct notes_options *o)
     return o->output ? relume_file_check(o->output, o->args.log) : RELUME_OK;
 }
 
+// Into the file, which the context knows as an input: here it is meant to be replaced.
+static relume_status keep_inside(const char *path, const char *text, const struct relume_log *log)
+{
+    struct relume_log own = *log;
+    own.context = NULL;
+    return relume_pack_keep_notes(path, text, &own);
+}
+
+static relume_status embed(const relume_notes *notes, const char *path,
+                           const struct relume_log *log)
+{
+    char *text = NULL;
+    relume_status status = relume_notes_text(&text, notes);
+    if (!status)
+        status = keep_inside(path, text, log);
+    relume_free(text);
+    return status ? status : relume_notes_unlink(path, log);
+}
+
+// The list, where it shall be; `inside`: where the file has one.
+static relume_status keep(const relume_notes *notes, const char *inside,
+                          const struct notes_options *o)
+{
+    const char *path = o->args.input[0];
+    if (o->embed)
+        return embed(notes, path, o->args.log);
+    if (o->extract && !inside)
+        return data_error("%s: it holds no notes; --embed puts them there", path);
+    const relume_status status = relume_notes_save(notes, path, o->args.log);
+    return status || !o->extract ? status : keep_inside(path, NULL, o->args.log);
+}
+
 static relume_status work(relume_pack *pack, const struct notes_options *o)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     const char *path = o->args.input[0];
-    const struct relume_notes_file file = {base_name(path), info->width, info->height, info->views};
+    const struct relume_notes_file file = {base_name(path), info->width, info->height, info->views,
+                                           info->notes};
     relume_notes *notes = NULL;
     if (o->view >= info->views)
         return usage_error("--view %d: %s has %d view%s, counted from 0", o->view, path,
@@ -340,8 +377,8 @@ static relume_status work(relume_pack *pack, const struct notes_options *o)
                                     o->canvas, o->args.log);
     if (!status && o->profile)
         status = write_profile(notes, pack, o);
-    if (!status && changes(o))
-        status = relume_notes_save(notes, path, o->args.log);
+    if (!status && (changes(o) || o->embed || o->extract))
+        status = keep(notes, info->notes, o);
     if (!status && o->json)
         print_json(notes);
     else if (!status && !o->output)

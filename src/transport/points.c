@@ -118,13 +118,28 @@ static void find_sides(void *context, size_t item, int worker)
     }
 }
 
+// Those that are there.
+static void leave_out_holes(struct points *p, const tracer *objects)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        float direction[3];
+        vec3_store(direction, p->at[i].normal);
+        if (!trace_passes(objects, p->at[i].triangle, p->at[i].u, p->at[i].v, direction))
+            p->at[kept++] = p->at[i];
+    }
+    p->count = kept;
+}
+
 relume_status points_of_objects(struct points *out, const struct mesh *mesh, const tracer *objects,
                                 size_t count, int threads)
 {
     const relume_status status = spread(out, mesh, count);
     struct sides sides = {out, objects};
-    if (!status)
+    if (!status) {
+        leave_out_holes(out, objects);
         thread_for(threads, (out->count + AT_ONCE - 1) / AT_ONCE, find_sides, &sides);
+    }
     return status;
 }
 

@@ -22,9 +22,9 @@ struct points {
     size_t count;
 };
 
-// `count` points of the objects, none where they have no area. The side that light gets to is the
-// one from which a ray leaves the objects, whichever way their triangles are turned. RELUME_ENOMEM;
-// `out` is none then. points_forget frees them.
+// `count` points of the objects, fewer where they have holes, none where they have no area. The
+// side that light gets to is the one from which a ray leaves the objects, whichever way their
+// triangles are turned. RELUME_ENOMEM; `out` is none then. points_forget frees them.
 relume_status points_of_objects(struct points *out, const struct mesh *mesh, const tracer *objects,
                                 size_t count, int threads);
 // The same of a captured scene; the side is that of the captured eye.

@@ -4,12 +4,12 @@ uniform sampler2D skin;  // what it sends; opacity. OpenGL filters it
 uniform int cover;       // enum relume_object_cover
 uniform float cutoff;
 
-// Numbers from 0 to 1, each once in 4 x 4 pixels (Bayer 1973), others for other surfaces.
+// Numbers from 0 to 1, spread evenly over small blocks of pixels ("interleaved gradient noise":
+// Jimenez 2014), others for other surfaces.
 float threshold_of(ivec2 at, float surface)
 {
-    int x = at.x ^ at.y, y = at.y;
-    int order = (x & 1) << 3 | (y & 1) << 2 | (x & 2) | (y & 2) >> 1;
-    return fract((float(order) + 0.5) / 16.0 + 0.618034 * surface);
+    float pixel = fract(dot(vec2(at), vec2(0.06711056, 0.00583715)));
+    return fract(52.9829189 * pixel + 0.618034 * surface);
 }
 
 bool is_there(vec2 texture_at, float surface)

@@ -11,7 +11,7 @@
 struct point {
     vec3 place, normal;  // unit, on the side that light gets to
     double area;         // of the piece; those of all points add up to the mesh's
-    bool both;           // light gets to the other side, too
+    bool open, both;     // light gets there, and to the other side, too
     uint32_t triangle;
     float u, v;  // where on it: weights of its second and third corner
 };

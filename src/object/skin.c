@@ -20,10 +20,17 @@ static const struct relume_object_skin *skin_of(const relume_objects *o, int par
     return o->material[o->part[part].material].skin;
 }
 
+// What is left of a whole number of repeats; of what is too large for that, 0.
+static double within(double x)
+{
+    const double left = x - floor(x);
+    return left < 1.0 ? left : 0.0;
+}
+
 // A channel between its texels, which repeat; (s, t) in repeats, t down. Twin: skin.glsl.
 static float texel_at(const struct relume_image *level, double s, double t, int channel)
 {
-    const double x = (s - floor(s)) * level->width - 0.5, y = (t - floor(t)) * level->height - 0.5;
+    const double x = within(s) * level->width - 0.5, y = within(t) * level->height - 0.5;
     const double left = floor(x), top = floor(y);
     float row[2];
     for (int j = 0; j < 2; j++) {

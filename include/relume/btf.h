@@ -276,11 +276,15 @@ struct relume_btf_paint_params {
     float factor[3];                     // times the colour, [0, 1]
     float roughness, metallic;           // times what the picture says, [0, 1]
     int threads;                         // default: all cores
+    // Normals as glTF paints them: (n + 1) / 2, x to the right, y up, z off the surface. NULL: none
+    const struct relume_image *normals;
+    float bump;  // times x and y of these; default 1
 };
 #define relume_btf_paint_params(...)                                                               \
     (&(const struct relume_btf_paint_params){RELUME_SIZED(relume_btf_paint_params), __VA_ARGS__})
-// The model `lit` where nothing shines, else `laf` with one lobe, with all levels of detail. The
-// caller destroys `*out`. RELUME_EINVAL for another number of channels, RELUME_ENOMEM.
+// The model `lit` where nothing shines and there are no normals, else `painted`, glTF's
+// microfacets, which is for drawing alone: it is neither fitted nor saved. With all levels of
+// detail. The caller destroys `*out`. RELUME_EINVAL for another number of channels, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_paint(relume_btf_fitted **out,
                                              const struct relume_btf_paint_params *params);
 

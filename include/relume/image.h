@@ -61,7 +61,8 @@ struct relume_image_params {
     const struct relume_log *log;
     struct relume_transfer transfer;  // loading: overrides what the file's type implies
     const struct relume_limits *limits;
-    int channels;  // loading: 1 or 3, converted to; default 3. Alpha is dropped, grey is spread
+    int channels;  // loading: 1, 3 or 4, converted to; default 3. Grey is spread; alpha is
+                   // dropped but with 4, where it is 1 in pictures that have none
     bool half;     // saving EXR: half instead of float samples
     int threads;   // saving EXR: worker threads; default: one
     const struct relume_reader *reader;  // loading: read this in place of the file; `path` is only

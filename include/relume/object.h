@@ -75,6 +75,23 @@ struct relume_object_vertex {
     float texture[2];  // (s, t) in repeats of the sample, t down from the upper edge
 };
 
+// What is there of a surface, and what it sends of its own.
+enum relume_object_cover {
+    RELUME_COVER_WHOLE,    // all of it
+    RELUME_COVER_CUT,      // where its opacity is `cutoff` or more
+    RELUME_COVER_BLENDED,  // by its opacity: the rest of the light passes
+};
+struct relume_object_skin {
+    enum relume_object_cover cover;
+    float cutoff;  // [0, 1]
+    bool sends;    // not everywhere 0
+    // Of four channels, each half as wide and high as the one before, to 1 x 1: what it sends,
+    // linear; the opacity, [0, 1]. They repeat like the material; the first alone says what is
+    // there.
+    const struct relume_image *texels;  // [levels]
+    int levels;
+};
+
 // One material of the objects; pointers belong to them.
 struct relume_object_material {
     const char *name;                   // of its folder
@@ -95,6 +112,7 @@ struct relume_object_material {
     float reflectance[3];       // F, of a mirror, or of a matte surface; in [0, 1]
     const relume_baked *baked;  // then it has nothing of the above but name, size and bytes; of
                                 // all others NULL
+    const struct relume_object_skin *skin;  // NULL: whole, and sends nothing
 };
 
 // Triangles of one mesh that show one material.

@@ -94,7 +94,7 @@ struct relume_btf_model {
 
 extern const struct relume_btf_model model_lit, model_bump, model_laf, model_slaf, model_rfp,
     model_rfnl, model_rfnlc, model_cmf, model_vpca, model_lpca, model_fmf, model_qmf, model_gbrdf,
-    model_table;
+    model_painted, model_table;
 
 // An array of up to five sizes; unused ones are 0.
 void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,

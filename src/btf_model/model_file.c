@@ -84,6 +84,8 @@ relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *pat
     if (m->table)
         return log_fail(log, RELUME_EINVAL,
                         "%s: measured values cannot be saved as a model; fit one first", path);
+    if (!m->model->fit)
+        return log_fail(log, RELUME_EINVAL, "%s: a painted material is for drawing alone", path);
     relume_status status = outdir_open(&dir, path, params && params->force, log);
     if (status)
         return status;

@@ -1,11 +1,10 @@
 // painted.c - materials of pictures in place of measurements, in the terms of glTF 2.0 (Khronos
-// 2021, appendix B): a colour, how much of a metal it is, and how rough
+// 2021, appendix B): a colour, how much of a metal it is, how rough, and normals
 //
-// They become models that there are already: a lit texture where nothing shines, else one Lafortune
-// lobe for each texel (model_laf.c) about the mirrored eye. Its exponent is a quarter of the one
-// that gives Blinn's lobe the peak of GGX's distribution, 2 / a^2 - 2 (Walter et al. 2007), since
-// the half vector turns by half; its height sends back F0 of even light. That the reflectance grows
-// towards grazing angles is left out.
+// Where nothing shines and there are no normals they become a lit texture, else model_painted.c. On
+// coarser levels of detail normals are means, and what a mean is shorter than 1 by widens the
+// highlight: 1 - |n| is half the variance of slopes, and GGX's alpha^2 is like that variance
+// (Toksvig 2005).
 #include "base/memory.h"
 #include "base/params.h"
 #include "btf/btf.h"
@@ -19,9 +18,9 @@ static const float MATTE = 0.9f;        // as rough as this it is a matte surfac
 static const float LEAST_ROUGHNESS = 0.1f;
 enum { MOST_SIDE = 2048 };
 
-// One level: what is diffuse, F0, and one channel of roughness.
+// One level: what is diffuse, F0, one channel of roughness, and normals.
 struct layers {
-    struct relume_image diffuse, specular, roughness;
+    struct relume_image diffuse, specular, roughness, normals;
 };
 
 static void layers_destroy(struct layers *l)
@@ -29,11 +28,33 @@ static void layers_destroy(struct layers *l)
     relume_image_destroy(&l->diffuse);
     relume_image_destroy(&l->specular);
     relume_image_destroy(&l->roughness);
+    relume_image_destroy(&l->normals);
 }
 
 static float within(float x)
 {
     return fminf(fmaxf(x, 0.0f), 1.0f);  // NaN: 0
+}
+
+// Of a picture of normals, in the frame of the surface.
+static vec3 normal_of(const float *rgb, double bump)
+{
+    const vec3 n = vec3_of(bump * (2.0 * (double)rgb[0] - 1.0), bump * (2.0 * (double)rgb[1] - 1.0),
+                           2.0 * (double)rgb[2] - 1.0);
+    const double LOWEST = 0.05;
+    const double length = vec3_length(n);
+    return length > 1e-6 ? vec3_unit(vec3_of(n.x, n.y, fmax(n.z, LOWEST * length)))
+                         : vec3_of(0, 0, 1);
+}
+
+enum { COLOUR_PICTURE, SURFACE_PICTURE, NORMAL_PICTURE, PICTURES };
+
+static void fill_normals(struct layers *l, const struct relume_image *picture, double bump)
+{
+    const size_t texels = (size_t)l->normals.width * (size_t)l->normals.height;
+    for (size_t i = 0; i < texels; i++)
+        vec3_store(l->normals.data + 3 * i,
+                   picture->data ? normal_of(picture->data + 3 * i, bump) : vec3_of(0, 0, 1));
 }
 
 static void fill_layers(struct layers *l, const struct relume_image *colour,
@@ -54,13 +75,13 @@ static void fill_layers(struct layers *l, const struct relume_image *colour,
     }
 }
 
-// Both pictures of one size; what there is none of stays empty.
+// All pictures of one size; what there is none of stays empty.
 static relume_status make_layers(struct layers *l, const struct relume_btf_paint_params *p)
 {
-    const struct relume_image none = {0}, *const given[2] = {p->colour, p->surface};
-    struct relume_image scaled[2] = {none, none};
+    const struct relume_image *const given[PICTURES] = {p->colour, p->surface, p->normals};
+    struct relume_image scaled[PICTURES] = {{0}};
     int side[2] = {1, 1};
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < PICTURES; i++) {
         side[0] = given[i] && given[i]->width > side[0] ? given[i]->width : side[0];
         side[1] = given[i] && given[i]->height > side[1] ? given[i]->height : side[1];
     }
@@ -71,14 +92,18 @@ static relume_status make_layers(struct layers *l, const struct relume_btf_paint
         status = relume_image_create(&l->specular, side[0], side[1], 3);
     if (!status)
         status = relume_image_create(&l->roughness, side[0], side[1], 1);
-    for (int i = 0; i < 2 && !status; i++)
+    if (!status)
+        status = relume_image_create(&l->normals, side[0], side[1], 3);
+    for (int i = 0; i < PICTURES && !status; i++)
         if (given[i])
             status = relume_image_scale(&scaled[i], given[i], side[0], side[1],
                                         relume_scale_params(.threads = p->threads));
-    if (!status)
-        fill_layers(l, &scaled[0], &scaled[1], p);
-    relume_image_destroy(&scaled[0]);
-    relume_image_destroy(&scaled[1]);
+    if (!status) {
+        fill_layers(l, &scaled[COLOUR_PICTURE], &scaled[SURFACE_PICTURE], p);
+        fill_normals(l, &scaled[NORMAL_PICTURE], (double)p->bump);
+    }
+    for (int i = 0; i < PICTURES; i++)
+        relume_image_destroy(&scaled[i]);
     return status;
 }
 
@@ -88,7 +113,7 @@ static bool is_matte(const struct layers *l, const struct relume_btf_paint_param
     for (size_t i = 0; i < texels; i++)
         if (l->roughness.data[i] < MATTE)
             return false;
-    return p->metallic == 0.0f;
+    return p->metallic == 0.0f && !p->normals;
 }
 
 static relume_status halve(struct relume_image *image, int width, int height, int threads)
@@ -109,30 +134,44 @@ static relume_status halve_all(struct layers *l, int threads)
     relume_status status = halve(&l->diffuse, width, height, threads);
     if (!status)
         status = halve(&l->specular, width, height, threads);
-    return status ? status : halve(&l->roughness, width, height, threads);
+    if (!status)
+        status = halve(&l->roughness, width, height, threads);
+    return status ? status : halve(&l->normals, width, height, threads);
 }
 
 // ---------------------------------------------------------------- models
 
-// Those of a coarse set: they bound what is known, and nothing is interpolated between them.
+// They bound what is known, and nothing is interpolated between them: the pole, and rings down to
+// all but the horizon, where reflectances grow.
+enum { RING = 12, DIRECTIONS = 1 + 2 * RING };
+
+static void fill_directions(vec3 out[DIRECTIONS])
+{
+    static const double height[2] = {0.7, 0.01};
+    out[0] = vec3_of(0, 0, 1);
+    for (int i = 1; i < DIRECTIONS; i++) {
+        const double z = height[(i - 1) / RING], r = sqrt(1.0 - z * z);
+        const double phi = 2.0 * M_PI * ((i - 1) % RING + 0.5 * ((i - 1) / RING)) / RING;
+        out[i] = vec3_of(r * cos(phi), r * sin(phi), z);
+    }
+}
+
 static relume_status set_directions(relume_btf_fitted *m, const struct relume_log *log)
 {
-    const struct relume_btf_set *set = relume_btf_set_find("coarse");
-    const size_t n = (size_t)set->count;
-    m->views = m->lights = set->count;
-    m->view = mem_array(n, sizeof *m->view);
-    m->light = mem_array(n, sizeof *m->light);
+    m->views = m->lights = DIRECTIONS;
+    m->view = mem_array(DIRECTIONS, sizeof *m->view);
+    m->light = mem_array(DIRECTIONS, sizeof *m->light);
     if (!m->view || !m->light)
         return RELUME_ENOMEM;
-    relume_btf_set_directions(set, m->view);
-    relume_btf_set_directions(set, m->light);
+    fill_directions(m->view);
+    fill_directions(m->light);
     const relume_status status =
         relume_direction_mesh_create(&m->view_mesh, m->view, m->views, log);
     return status ? status : relume_direction_mesh_create(&m->light_mesh, m->light, m->lights, log);
 }
 
-// As the layouts of model_lit.c and model_laf.c have it.
-enum { COLOUR, HIGHLIGHT, LOBE };
+// As the layouts of model_lit.c and model_painted.c have it.
+enum { COLOUR, HIGHLIGHT, SHAPE };
 
 static void fill_matte(relume_btf_fitted *m, const struct layers *l)
 {
@@ -142,18 +181,17 @@ static void fill_matte(relume_btf_fitted *m, const struct layers *l)
 
 static void fill_glossy(relume_btf_fitted *m, const struct layers *l)
 {
+    fill_matte(m, l);
+    for (size_t i = 0; i < 3 * m->texels; i++)
+        model_halfs(m, HIGHLIGHT)[i] = half_from_float(l->specular.data[i]);
     for (size_t i = 0; i < m->texels; i++) {
-        const float a = l->roughness.data[i] * l->roughness.data[i];
-        const float n = fmaxf((2.0f / (a * a) - 2.0f) / 4.0f, 1.0f);
-        const float lobe[4] = {-1.0f, -1.0f, 1.0f, n};
-        for (size_t c = 0; c < 3; c++) {
-            const float f0 = l->specular.data[3 * i + c];
-            model_halfs(m, COLOUR)[3 * i + c] =
-                half_from_float(l->diffuse.data[3 * i + c] * (1.0f - DIELECTRIC));
-            model_halfs(m, HIGHLIGHT)[3 * i + c] = half_from_float(f0 * 0.5f * (n + 2.0f));
-        }
+        const vec3 mean = vec3_floats(l->normals.data + 3 * i);
+        const double length = vec3_length(mean), r = (double)l->roughness.data[i];
+        const double wide = r * r * r * r + 2.0 * fmax(1.0 - length, 0.0);
+        const vec3 n = length > 1e-6 ? vec3_unit(mean) : vec3_of(0, 0, 1);
+        const double shape[4] = {n.x, n.y, n.z, sqrt(fmin(wide, 1.0))};
         for (size_t k = 0; k < 4; k++)
-            model_halfs(m, LOBE)[4 * i + k] = half_from_float(lobe[k]);
+            model_halfs(m, SHAPE)[4 * i + k] = half_from_float((float)shape[k]);
     }
 }
 
@@ -163,10 +201,9 @@ static relume_status make_level(relume_btf_fitted **out, const struct layers *l,
     relume_btf_fitted *m = *out = mem_zeroed(1, sizeof *m);
     if (!m)
         return RELUME_ENOMEM;
-    m->model = matte ? &model_lit : &model_laf;
+    m->model = matte ? &model_lit : &model_painted;
     m->width = l->diffuse.width, m->height = l->diffuse.height;
     m->texels = (size_t)m->width * (size_t)m->height;
-    m->lobes = !matte;
     relume_status status = set_directions(m, log);
     if (!status)
         status = model_make_arrays(m);
@@ -193,10 +230,12 @@ static relume_status make_levels(relume_btf_fitted **out, struct layers *l,
 relume_status relume_btf_paint(relume_btf_fitted **out,
                                const struct relume_btf_paint_params *params)
 {
-    const struct relume_btf_paint_params p = PARAMS_WORK(relume_btf_paint_params, params);
+    struct relume_btf_paint_params p = PARAMS_WORK(relume_btf_paint_params, params);
+    p.bump = p.bump != 0.0f ? p.bump : 1.0f;
     struct layers l = {.diffuse = {0}};
     *out = NULL;
-    if ((p.colour && p.colour->channels != 3) || (p.surface && p.surface->channels != 3))
+    if ((p.colour && p.colour->channels != 3) || (p.surface && p.surface->channels != 3) ||
+        (p.normals && p.normals->channels != 3))
         return RELUME_EINVAL;
     relume_status status = make_layers(&l, &p);
     if (!status)

@@ -140,9 +140,17 @@ void image_stream_close(struct image_stream *stream)
     stream->scratch = NULL;
 }
 
+// Which channel is alpha: of two or four the one that is no colour; -1: none.
+static int alpha_of(const struct picture_info *info)
+{
+    const int n = info->channels;
+    return n == 2 ? 1 - info->rgb[0] : n == 4 ? 6 - info->rgb[0] - info->rgb[1] - info->rgb[2] : -1;
+}
+
 static void convert_bytes(const struct image_stream *s, const struct picture_info *info,
                           const uint8_t *in, size_t pixels, float *out)
 {
+    const int alpha = alpha_of(info);
     if (s->channels == 3 && info->channels == 3)
         for (size_t x = 0; x < pixels; x++, in += 3, out += 3)
             for (int c = 0; c < 3; c++)
@@ -150,7 +158,9 @@ static void convert_bytes(const struct image_stream *s, const struct picture_inf
     else
         for (size_t x = 0; x < pixels; x++, in += info->channels)
             for (int c = 0; c < s->channels; c++)
-                *out++ = s->table[c][in[info->rgb[c]]];
+                *out++ = c < 3       ? s->table[c][in[info->rgb[c]]]
+                         : alpha < 0 ? 1.0f
+                                     : (float)in[alpha] / 255.0f;
 }
 
 // False when a sample is NaN or infinite, or becomes so: 1e30 is, as a code value.
@@ -158,10 +168,12 @@ static bool convert_floats(const struct image_stream *s, const struct picture_in
                            size_t pixels, float *out)
 {
     const float *in = s->scratch;
+    const int alpha = alpha_of(info);
     float sum = 0.0f;  // 0 x finite is 0, 0 x anything else is NaN
     for (size_t x = 0; x < pixels; x++, in += info->channels)
         for (int c = 0; c < s->channels; c++) {
-            const float v = in[info->rgb[c]], recoded = recode(s, c, v);
+            const float v = c < 3 ? in[info->rgb[c]] : alpha < 0 ? 1.0f : in[alpha];
+            const float recoded = c < 3 ? recode(s, c, v) : v;
             sum += 0.0f * v + 0.0f * recoded;
             *out++ = recoded;
         }
@@ -288,7 +300,7 @@ static relume_status load(struct relume_image *out, const char *path,
                           const struct relume_image_params *params, bool large, const char *near)
 {
     const struct relume_image_params p = PARAMS_WORK(relume_image_params, params);
-    const int channels = p.channels == 1 ? 1 : 3;
+    const int channels = p.channels == 1 || p.channels == 4 ? p.channels : 3;
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     *out = (struct relume_image){0};
     if (!path && !p.reader)
@@ -299,7 +311,7 @@ static relume_status load(struct relume_image *out, const char *path,
     relume_status status = picture_open(&reader, path, p.reader, p.limits, p.log);
     if (status)
         return status;
-    if (channels == 3)
+    if (channels >= 3)
         status = picture_need_colour(reader, path, p.log);
     if (status) {
         picture_close(&reader);

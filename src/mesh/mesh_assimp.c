@@ -5,6 +5,7 @@
 
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
+#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -58,26 +59,63 @@ static float within(float x)
     return fminf(fmaxf(x, 0.0f), 1.0f);  // NaN: 0
 }
 
-static void read_factor(float *to, const struct aiMaterial *material, const char *key)
+static bool read_float(float *to, const struct aiMaterial *material, const char *key, unsigned type)
 {
     ai_real value = 0;
     unsigned most = 1;
-    if (aiGetMaterialFloatArray(material, key, 0, 0, &value, &most) == aiReturn_SUCCESS)
-        *to = within((float)value);
+    const bool is =
+        aiGetMaterialFloatArray(material, key, type, 0, &value, &most) == aiReturn_SUCCESS;
+    if (is)
+        *to = (float)value;
+    return is;
+}
+
+static void read_factor(float *to, const struct aiMaterial *material, const char *key)
+{
+    if (read_float(to, material, key, 0))
+        *to = within(*to);
+}
+
+// What shines through. Of glTF the mode says so, of others the opacity.
+static void read_cover(struct mesh_look *look, const struct aiMaterial *material)
+{
+    struct aiString mode = {.length = 0};
+    read_factor(&look->opacity, material, "$mat.opacity");
+    if (aiGetMaterialString(material, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS)
+        look->cover = !strcmp(mode.data, "MASK")    ? MESH_CUT
+                      : !strcmp(mode.data, "BLEND") ? MESH_BLENDED
+                                                    : MESH_WHOLE;
+    else
+        look->cover = look->opacity > 0.0f && look->opacity < 1.0f ? MESH_BLENDED : MESH_WHOLE;
+    read_factor(&look->cutoff, material, "$mat.gltf.alphaCutoff");
+}
+
+static void read_emission(struct mesh_look *look, const struct aiMaterial *material)
+{
+    const float MOST = 65504.0f;
+    float strength = 1.0f;
+    struct aiColor4D c;
+    if (aiGetMaterialColor(material, AI_MATKEY_COLOR_EMISSIVE, &c) != aiReturn_SUCCESS)
+        return;
+    (void)read_float(&strength, material, "$mat.emissiveIntensity", 0);
+    const float rgb[3] = {c.r, c.g, c.b};
+    for (int i = 0; i < 3; i++)
+        look->emission[i] = fminf(fmaxf(strength * rgb[i], 0.0f), MOST);
 }
 
 // Where the file is no glTF it may say only what is diffuse.
 static struct mesh_look look_of(struct mesh_file *out, const struct aiScene *scene,
                                 const struct aiMaterial *material)
 {
-    struct mesh_look look = {
-        .given = true, .colour = {1, 1, 1}, .roughness = 1, .picture = -1, .surface = -1};
+    const float STEEPEST = 16.0f;
+    struct mesh_look look = mesh_look_white();
     struct aiColor4D c;
     if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &c) == aiReturn_SUCCESS ||
         aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &c) == aiReturn_SUCCESS) {
         look.colour[0] = within(c.r);
         look.colour[1] = within(c.g);
         look.colour[2] = within(c.b);
+        look.opacity = within(c.a);
     }
     read_factor(&look.metallic, material, "$mat.metallicFactor");
     read_factor(&look.roughness, material, "$mat.roughnessFactor");
@@ -85,6 +123,12 @@ static struct mesh_look look_of(struct mesh_file *out, const struct aiScene *sce
     if (look.picture < 0)
         look.picture = picture_of(out, scene, material, aiTextureType_DIFFUSE);
     look.surface = picture_of(out, scene, material, aiTextureType_UNKNOWN);
+    look.normal = picture_of(out, scene, material, aiTextureType_NORMALS);
+    if (read_float(&look.bump, material, "$tex.scale", aiTextureType_NORMALS))
+        look.bump = fminf(fmaxf(look.bump, -STEEPEST), STEEPEST);
+    look.emitted = picture_of(out, scene, material, aiTextureType_EMISSIVE);
+    read_cover(&look, material);
+    read_emission(&look, material);
     return look;
 }
 

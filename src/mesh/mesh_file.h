@@ -18,8 +18,36 @@ struct mesh_look {
     float colour[3], metallic, roughness;
     int picture;  // that multiplies the colour, of `pictures`; -1: none
     int surface;  // its green multiplies the roughness, its blue the metal; -1: none
+    enum mesh_cover {
+        MESH_WHOLE,    // nothing shines through
+        MESH_CUT,      // what is less opaque than `cutoff` is not there
+        MESH_BLENDED,  // the opacity is the part that is there
+    } cover;
+    float opacity, cutoff;  // in [0, 1]; the alpha of `picture` multiplies the opacity
+    int normal;             // tangent space, times `bump` along the surface; -1: none
+    float bump;             // in [-16, 16]
+    float emission[3];      // linear, in [0, 65504]
+    int emitted;            // that multiplies it; -1: none
 };
-static const struct mesh_look mesh_look_none = {.picture = -1, .surface = -1};
+static const struct mesh_look mesh_look_none = {.picture = -1,
+                                                .surface = -1,
+                                                .opacity = 1,
+                                                .cutoff = 0.5f,
+                                                .normal = -1,
+                                                .bump = 1,
+                                                .emitted = -1};
+// One that is said: white and rough.
+static inline struct mesh_look mesh_look_white(void)
+{
+    struct mesh_look look = mesh_look_none;
+    look.given = true;
+    look.roughness = look.colour[0] = look.colour[1] = look.colour[2] = 1.0f;
+    return look;
+}
+static inline bool mesh_look_has_picture(const struct mesh_look *l)
+{
+    return l->picture >= 0 || l->surface >= 0 || l->normal >= 0 || l->emitted >= 0;
+}
 
 struct mesh_file {
     struct mesh mesh;

@@ -1,5 +1,6 @@
-// mesh_mtl.c - material libraries of Wavefront OBJ: newmtl, Kd, map_Kd, and of the physically based
-// extension Pr and Pm (roughness, metal); every other keyword is passed over
+// mesh_mtl.c - material libraries of Wavefront OBJ: newmtl, Kd, map_Kd, d (opacity), and of the
+// physically based extension Pr and Pm (roughness, metal), Ke and map_Ke (emission) and norm (a
+// picture of normals); every other keyword is passed over
 #include "base/infile.h"
 #include "base/memory.h"
 #include "math/scalar.h"
@@ -31,11 +32,7 @@ static relume_status begin(struct mesh_library *library, const char *name)
     if (!mem_grow(&library->material, library->count, sizeof *library->material))
         return RELUME_ENOMEM;
     struct mesh_library_look *m = &library->material[library->count];
-    *m = (struct mesh_library_look){mem_text(name), mesh_look_none};
-    m->look.given = true;
-    m->look.roughness = 1.0f;
-    for (int c = 0; c < 3; c++)
-        m->look.colour[c] = 1.0f;
+    *m = (struct mesh_library_look){mem_text(name), mesh_look_white()};
     library->count += m->name != NULL;
     return m->name ? RELUME_OK : RELUME_ENOMEM;
 }
@@ -53,6 +50,13 @@ static void read_numbers(float *out, int n, const char *text)
     }
 }
 
+// Files that say 0 mean nothing by it. (Tr is the same or its contrary, by who wrote the file.)
+static void read_opacity(struct mesh_look *look, const char *text)
+{
+    read_numbers(&look->opacity, 1, text);
+    look->cover = look->opacity > 0.0f && look->opacity < 1.0f ? MESH_BLENDED : MESH_WHOLE;
+}
+
 // Behind options the last word is the name.
 static const char *name_in(const char *text)
 {
@@ -60,8 +64,9 @@ static const char *name_in(const char *text)
     return space ? space + 1 : text;
 }
 
-static relume_status read_picture(struct mesh_look *look, struct mesh_file *out, const char *text,
-                                  const char *path)
+// `to` NULL: it is nobody's.
+static relume_status read_picture(int *to, struct mesh_file *out, const char *text,
+                                  const char *path, bool colour)
 {
     if (!*name_in(text))
         return RELUME_OK;
@@ -71,9 +76,9 @@ static relume_status read_picture(struct mesh_look *look, struct mesh_file *out,
         mem_free(name);
         return RELUME_ENOMEM;
     }
-    if (look)
-        look->picture = number;
-    if (out->picture)
+    if (to)
+        *to = number;
+    if (out->picture || !colour)
         mem_free(name);
     else
         out->picture = name;
@@ -95,8 +100,16 @@ static relume_status read_line(struct mesh_library *library, struct mesh_file *o
     if (!strcmp(word, "newmtl"))
         return begin(library, rest);
     if (!strcmp(word, "map_Kd"))
-        return read_picture(look, out, rest, path);
-    if (look && !strcmp(word, "Kd"))
+        return read_picture(look ? &look->picture : NULL, out, rest, path, true);
+    if (look && !strcmp(word, "norm"))
+        return read_picture(&look->normal, out, rest, path, false);
+    if (look && !strcmp(word, "map_Ke"))
+        return read_picture(&look->emitted, out, rest, path, false);
+    if (look && !strcmp(word, "d"))
+        read_opacity(look, rest);
+    else if (look && !strcmp(word, "Ke"))
+        read_numbers(look->emission, 3, rest);
+    else if (look && !strcmp(word, "Kd"))
         read_numbers(look->colour, 3, rest);
     else if (look && !strcmp(word, "Pr"))
         read_numbers(&look->roughness, 1, rest);
@@ -111,6 +124,9 @@ static void mend(struct mesh_look *look)
     const float *c = look->colour;
     if (look->picture >= 0 && c[0] + c[1] + c[2] == 0.0f)
         look->colour[0] = look->colour[1] = look->colour[2] = 1.0f;
+    const float *e = look->emission;
+    if (look->emitted >= 0 && e[0] + e[1] + e[2] == 0.0f)
+        look->emission[0] = look->emission[1] = look->emission[2] = 1.0f;
 }
 
 relume_status mesh_read_mtl(struct mesh_library *library, struct mesh_file *out, const char *path,

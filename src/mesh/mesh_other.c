@@ -109,11 +109,20 @@ static bool in_range(float x)
     return x >= 0.0f && x <= 1.0f;
 }
 
+static bool is_light(float x)
+{
+    return x >= 0.0f && x <= 65504.0f;
+}
+
 static bool look_is_sound(const struct mesh_look *l, int pictures)
 {
     return in_range(l->colour[0]) && in_range(l->colour[1]) && in_range(l->colour[2]) &&
            in_range(l->metallic) && in_range(l->roughness) && l->picture >= -1 &&
-           l->picture < pictures && l->surface >= -1 && l->surface < pictures;
+           l->picture < pictures && l->surface >= -1 && l->surface < pictures &&
+           in_range(l->opacity) && in_range(l->cutoff) && l->cover >= MESH_WHOLE &&
+           l->cover <= MESH_BLENDED && l->normal >= -1 && l->normal < pictures &&
+           fabsf(l->bump) <= 16.0f && l->emitted >= -1 && l->emitted < pictures &&
+           is_light(l->emission[0]) && is_light(l->emission[1]) && is_light(l->emission[2]);
 }
 
 // %20 and the like, which URIs have in place of a letter.

@@ -12,6 +12,7 @@
 struct base {
     size_t first;                     // triangle of the mesh
     const struct trace_cloud *cloud;  // NULL: triangles
+    const struct trace_holes *holes;  // NULL: none
 };
 
 struct tracer {
@@ -19,7 +20,21 @@ struct tracer {
     RTCScene scene;
     struct trace_cloud *cloud;
     struct base *base;
+    struct trace_holes holes;  // zeroed: none
 };
+
+// Embree hands it to filters.
+struct query {
+    struct RTCIntersectContext context;  // first
+    bool layers;
+};
+
+static struct query begin(bool layers)
+{
+    struct query q = {.layers = layers};
+    rtcInitIntersectContext(&q.context);
+    return q;
+}
 
 // `stride` * `count` bytes of ours, shared with Embree, which reads 16 bytes at each position: the
 // last one has its normal behind it.
@@ -27,6 +42,23 @@ static void share(RTCGeometry g, enum RTCBufferType type, enum RTCFormat format,
                   size_t stride, size_t count)
 {
     rtcSetSharedGeometryBuffer(g, type, 0, format, data, 0, stride, count);
+}
+
+// As `pass` below has it; directions are in rows 4 to 6 of the ray.
+static void pass_holes(const struct RTCFilterFunctionNArguments *args)
+{
+    const struct base *const b = args->geometryUserPtr;
+    const struct query *const q = (const struct query *)args->context;
+    const float *const ray = (const void *)args->ray, *const hit = (const void *)args->hit;
+    const unsigned *const numbers = (const void *)args->hit;
+    const size_t n = args->N;
+    for (size_t i = 0; i < n; i++) {
+        const float direction[3] = {ray[4 * n + i], ray[5 * n + i], ray[6 * n + i]};
+        if (args->valid[i] &&
+            b->holes->pass(b->holes->context, (uint32_t)b->first + numbers[5 * n + i],
+                           hit[3 * n + i], hit[4 * n + i], direction, q->layers))
+            args->valid[i] = 0;
+    }
 }
 
 // Triangles `first` to `first + count` of the mesh.
@@ -39,8 +71,14 @@ static void add_triangles(tracer *t, const struct mesh *mesh, size_t first, size
           mesh->vertex_count);
     share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh->triangles + first,
           sizeof *mesh->triangles, count);
+    struct base *base = &t->base[rtcAttachGeometry(t->scene, g)];
+    *base = (struct base){first, NULL, t->holes.pass ? &t->holes : NULL};
+    if (base->holes) {
+        rtcSetGeometryUserData(g, base);
+        rtcSetGeometryIntersectFilterFunction(g, pass_holes);
+        rtcSetGeometryOccludedFilterFunction(g, pass_holes);
+    }
     rtcCommitGeometry(g);
-    t->base[rtcAttachGeometry(t->scene, g)] = (struct base){first, NULL};
     rtcReleaseGeometry(g);
 }
 
@@ -97,7 +135,7 @@ static bool add_cloud(tracer *t, const struct trace_cloud *c)
     rtcSetGeometryIntersectFilterFunction(g, pass);
     rtcSetGeometryOccludedFilterFunction(g, pass);
     rtcCommitGeometry(g);
-    t->base[rtcAttachGeometry(t->scene, g)] = (struct base){c->first, c};
+    t->base[rtcAttachGeometry(t->scene, g)] = (struct base){c->first, c, NULL};
     rtcReleaseGeometry(g);
     return corner && number;
 }
@@ -121,7 +159,7 @@ static bool build(tracer *t, const struct mesh *mesh, int clouds)
 
 relume_status trace_create_clouds(tracer **out, const struct mesh *mesh,
                                   const struct trace_cloud *cloud, int n,
-                                  const struct relume_log *log)
+                                  const struct trace_holes *holes, const struct relume_log *log)
 {
     *out = NULL;
     tracer *t = mem_zeroed(1, sizeof *t);
@@ -135,6 +173,8 @@ relume_status trace_create_clouds(tracer **out, const struct mesh *mesh,
     }
     for (int i = 0; i < n; i++)
         t->cloud[i] = cloud[i];
+    if (holes)
+        t->holes = *holes;
     // One thread builds: the tree, and with it every tie between equal hits, is always the same.
     t->device = rtcNewDevice("threads=1");
     if (!t->device) {
@@ -155,7 +195,7 @@ relume_status trace_create_clouds(tracer **out, const struct mesh *mesh,
 
 relume_status trace_create(tracer **out, const struct mesh *mesh, const struct relume_log *log)
 {
-    return trace_create_clouds(out, mesh, NULL, 0, log);
+    return trace_create_clouds(out, mesh, NULL, 0, NULL, log);
 }
 
 void trace_destroy(tracer **t)
@@ -188,11 +228,10 @@ static struct trace_hit hit_of(const tracer *t, const struct RTCRayHit *r)
                               texel->weight[1], r->ray.tfar, before ? 1 : -1};
 }
 
-bool trace_closest(const tracer *t, const float origin[3], const float direction[3],
-                   struct trace_hit *hit)
+static bool closest(const tracer *t, const float origin[3], const float direction[3], bool layers,
+                    struct trace_hit *hit)
 {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    struct query query = begin(layers);
     struct RTCRayHit r = {
         .ray = {.org_x = origin[0],
                 .org_y = origin[1],
@@ -204,11 +243,28 @@ bool trace_closest(const tracer *t, const float origin[3], const float direction
                 .mask = ~0u},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID},
     };
-    rtcIntersect1(t->scene, &context, &r);
+    rtcIntersect1(t->scene, &query.context, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
     *hit = hit_of(t, &r);
     return true;
+}
+
+bool trace_closest(const tracer *t, const float origin[3], const float direction[3],
+                   struct trace_hit *hit)
+{
+    return closest(t, origin, direction, false, hit);
+}
+
+bool trace_layer(const tracer *t, const float origin[3], const float direction[3],
+                 struct trace_hit *hit)
+{
+    return closest(t, origin, direction, true, hit);
+}
+
+bool trace_passes(const tracer *t, uint32_t triangle, float u, float v, const float direction[3])
+{
+    return t->holes.pass && t->holes.pass(t->holes.context, triangle, u, v, direction, false);
 }
 
 enum { PACKET = 16 };
@@ -217,9 +273,8 @@ enum { PACKET = 16 };
 static void packet_unblocked(const tracer *t, float (*origins)[3], int count, const float end[3],
                              bool is_place, bool *seen)
 {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    struct query query = begin(false);
+    query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     struct RTCRay16 ray;
     _Alignas(64) int valid[PACKET];
     for (int i = 0; i < PACKET; i++) {
@@ -232,7 +287,7 @@ static void packet_unblocked(const tracer *t, float (*origins)[3], int count, co
         ray.tnear[i] = 0.0f, ray.tfar[i] = is_place ? 1.0f : INFINITY;
         ray.time[i] = 0.0f, ray.mask[i] = ~0u, ray.id[i] = 0, ray.flags[i] = 0;
     }
-    rtcOccluded16(valid, t->scene, &context, &ray);
+    rtcOccluded16(valid, t->scene, &query.context, &ray);
     for (int i = 0; i < count; i++)
         seen[i] = ray.tfar[i] >= 0.0f;  // Embree marks a blocked ray by -inf
 }

@@ -21,11 +21,15 @@ struct trace_cloud {
 // Borrows `mesh`, which must outlive the tracer and stay as it is. Returns RELUME_ENOMEM,
 // RELUME_ESYSTEM when Embree cannot run here.
 relume_status trace_create(tracer **out, const struct mesh *mesh, const struct relume_log *log);
-// The same with `n` clouds, in order of their triangles, which are borrowed too.
-relume_status trace_create_clouds(tracer **out, const struct mesh *mesh,
-                                  const struct trace_cloud *cloud, int n,
-                                  const struct relume_log *log);
 void trace_destroy(tracer **t);
+
+// Places that rays pass through: of triangle (u, v), for a ray in `direction` (unit); `layers`: for
+// trace_layer.
+struct trace_holes {
+    bool (*pass)(const void *context, uint32_t triangle, float u, float v, const float direction[3],
+                 bool layers);
+    const void *context;
+};
 
 struct trace_hit {
     uint32_t triangle;
@@ -33,9 +37,20 @@ struct trace_hit {
     float distance;
     signed char side;  // 0, or of a billboard: 1 seen from where its normal points, -1 from behind
 };
+// trace_create with `n` clouds, in order of their triangles, which are borrowed too, and holes
+// (NULL: none).
+relume_status trace_create_clouds(tracer **out, const struct mesh *mesh,
+                                  const struct trace_cloud *cloud, int n,
+                                  const struct trace_holes *holes, const struct relume_log *log);
 // The nearest triangle along `direction` (unit) from `origin`; false when there is none.
 bool trace_closest(const tracer *t, const float origin[3], const float direction[3],
                    struct trace_hit *hit);
+
+// The same of all that is there in part, for who puts layers one over the other.
+bool trace_layer(const tracer *t, const float origin[3], const float direction[3],
+                 struct trace_hit *hit);
+// Whether a ray passes there.
+bool trace_passes(const tracer *t, uint32_t triangle, float u, float v, const float direction[3]);
 
 // Whether each of `count` origins sees infinitely far along `direction`.
 void trace_unblocked(const tracer *t, float (*origins)[3], int count, const float direction[3],

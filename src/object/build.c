@@ -4,6 +4,7 @@
 #include "mesh/mesh_read.h"
 #include "mesh/tangents.h"
 #include "object/object.h"
+#include "object/skin.h"
 
 #include <string.h>
 
@@ -113,7 +114,7 @@ static bool needs_uv(const struct mesh_file *file, struct standing *s)
 {
     for (int i = 0; i < file->parts; i++) {
         const struct covering *c = covering_of(s, file->part[i]);
-        if ((c && c->material >= 0) || file->look[i].picture >= 0 || file->look[i].surface >= 0)
+        if ((c && c->material >= 0) || mesh_look_has_picture(&file->look[i]))
             return true;
     }
     return false;
@@ -323,5 +324,8 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     o->info.tint = (const float(*)[3])o->tint;
     o->info.part = o->part, o->info.material = o->material;
     o->info.min = b.min, o->info.max = b.max;
-    return trace_create_clouds(&o->tracer, &o->mesh, o->cloud, o->clouds, log);
+    struct trace_holes holes;
+    const bool has_holes = skin_holes(&holes, o);
+    return trace_create_clouds(&o->tracer, &o->mesh, o->cloud, o->clouds, has_holes ? &holes : NULL,
+                               log);
 }

@@ -130,7 +130,7 @@ static int spacing_of(const struct relume_render_params *params)
     return own && params->transport_spacing ? params->transport_spacing : own > 1 ? own : 1;
 }
 
-relume_status exchange_create(struct exchange **out, const relume_objects *o,
+relume_status exchange_create(struct exchange **out, const relume_objects *o, int lights,
                               const struct bodies *bodies, const struct scenery *scenery,
                               const struct relume_viewport *viewport,
                               const struct relume_image *places,
@@ -151,6 +151,7 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o,
                            .viewport = viewport,
                            .transport = params->transport,
                            .params = *params,
+                           .sends = 1.0f / (float)lights,
                            .spacing = spacing_of(params),
                            .eye = relume_viewport_eye(viewport)};
     status = make_layer(&e->scene, width, height);
@@ -393,6 +394,7 @@ relume_status exchange_light(struct exchange *e, struct relume_image *scene,
     enum { IMAGES = sizeof gathered / sizeof *gathered };
     e->lone = lone, e->lit = scene, e->reflected = reflected, e->share = share;
     relume_status status = lighting_create(&e->lighting, e->o, light, 1, &e->params);
+    e->lighting.sends = e->sends;
     e->lighting.scenery = &e->scenery, e->lighting.sceneries = 1;
     e->lighting.surround.scenery = scenery_is_around(e->scenery) ? e->scenery : NULL;
     if (!status)

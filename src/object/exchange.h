@@ -22,6 +22,7 @@ struct exchange {
     const struct relume_viewport *viewport;
     const struct relume_transport *transport;
     struct relume_render_params params;
+    float sends;  // of what objects send of their own, under each light
     int spacing;  // pixels from one that gathers to the next
     const struct bodies *bodies;
     const struct scenery *const *before;  // [befores]: all that stands before lamps, for `share`

@@ -7,6 +7,7 @@
 #include "mesh/places.h"
 #include "object/coarse.h"
 #include "object/object.h"
+#include "object/skin.h"
 
 #include <relume/viewport.h>
 #include <string.h>
@@ -60,18 +61,23 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
     const struct ray ray = ray_of(l->viewport, x, y), right = ray_of(l->viewport, x + step, y),
                      below = ray_of(l->viewport, x, y + step);
     const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), ray.origin);
-    memcpy(rgb, l->scene->data + pixel, 3 * sizeof *rgb);
-    if (!objects_hit(&point, l->o, ray.origin, ray.direction) ||
-        !(isnan(p[0]) || point.distance < vec3_dot(to, ray.direction)))
-        return;
-    objects_spread(&point, l->o, &ray, &right, &below);
+    const double behind = isnan(p[0]) ? INFINITY : vec3_dot(to, ray.direction);
     struct lighting lighting = *l->lighting;
+    struct skin_layers layers = {.left = 1.0f};
     lighting.shares = l->shares;
     lighting.pixel = pixel;
-    if (!seen_shade(rgb, both->seen, &point, ray.origin, x, y))
-        objects_shade(rgb, l->o, &point, ray.origin, &lighting);
-    for (size_t c = 0; c < 3 && l->reflected->data; c++)
-        rgb[c] += l->reflected->data[pixel + c];
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    while (skin_layer(&point, &layers, l->o, &ray, behind)) {
+        float value[3];
+        objects_spread(&point, l->o, &ray, &right, &below);
+        if (!seen_shade(value, both->seen, &point, ray.origin, x, y))
+            objects_shade(value, l->o, &point, ray.origin, &lighting);
+        for (size_t c = 0; c < 3; c++)
+            rgb[c] += layers.part *
+                      (value[c] + (l->reflected->data ? l->reflected->data[pixel + c] : 0.0f));
+    }
+    for (size_t c = 0; c < 3; c++)
+        rgb[c] += layers.left * l->scene->data[pixel + c];
 }
 
 // Shares of environments hardly differ within a pixel: they are looked for once, through its
@@ -319,7 +325,7 @@ static relume_status exchange_all(struct relume_image *scene, struct relume_imag
     if (!status && reflected)
         status = relume_image_create(reflected, places->width, places->height, 3);
     if (!status)
-        status = exchange_create(&e, in->objects, in->bodies, in->scenery, viewport, places,
+        status = exchange_create(&e, in->objects, n, in->bodies, in->scenery, viewport, places,
                                  &in->params);
     for (int i = 0; i < n && !status; i++) {
         struct relume_image *share =

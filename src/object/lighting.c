@@ -67,7 +67,8 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
                               const struct relume_light *lights, int n,
                               const struct relume_render_params *params)
 {
-    *out = (struct lighting){.surround = {.light = lights, .lights = n},
+    *out = (struct lighting){.sends = 1.0f,
+                             .surround = {.light = lights, .lights = n},
                              .materials = o->info.materials,
                              .no_shadows = params && params->no_shadows};
     relume_status status =

@@ -211,6 +211,7 @@ struct lighting {
     size_t pixel;
     const struct bodies *bodies;   // NULL: what is translucent is shown matte
     struct glow *glow, *gathered;  // [bodies]: by lamps, and by arrivals; NULL: not
+    float sends;                   // which part of what objects send of their own counts
     baked_lit **baked;             // [lights][materials]; NULL: it is near, or not baked
     size_t baked_count;
 };
@@ -363,8 +364,9 @@ void scene_add(const struct scene_in_shadow *s, int threads);
 
 // Light between a scene and the objects in it at the pixels of a frame.
 struct exchange;
-// `captured` and what else is handed over is borrowed. RELUME_ENOMEM.
-relume_status exchange_create(struct exchange **out, const relume_objects *o,
+// `captured` and what else is handed over is borrowed. Each of `lights` that will come brings its
+// part of what objects send of their own. RELUME_ENOMEM.
+relume_status exchange_create(struct exchange **out, const relume_objects *o, int lights,
                               const struct bodies *bodies, const struct scenery *scenery,
                               const struct relume_viewport *viewport,
                               const struct relume_image *places,

@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "object/object.h"
+#include "object/skin.h"
 #include "transport/dipole.h"
 
 #include <string.h>
@@ -19,6 +20,7 @@ static void close_material(struct relume_object_material *m)
     relume_btf_surface_destroy((relume_btf_surface **)&m->surface);
     relume_btf_fitted_destroy(&model);
     relume_btf_destroy((relume_btf **)&m->btf);
+    skin_destroy(&m->skin);
     mem_free((void *)m->name);
 }
 

@@ -3,7 +3,7 @@
 #include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "object/object.h"
+#include "object/skin.h"
 
 #include <string.h>
 
@@ -364,6 +364,7 @@ void objects_shade(float rgb[3], const relume_objects *o, const struct surface_p
             add_sample(rgb, o, p, view, &lighting->light_sample[i], lighting);
     for (int i = 0; i < lighting->skies; i++)
         add_sky(rgb, o, p, view, lighting, i);
+    skin_add_emission(rgb, o, p, lighting->sends);
 }
 
 // ---------------------------------------------------------------- pictures
@@ -445,13 +446,17 @@ static void view_value(float rgb[3], const void *context, double x, double y, do
     const struct view *v = context;
     const struct ray ray = ray_at(v, x, y), right = ray_at(v, x + step, y),
                      below = ray_at(v, x, y + step);
+    struct skin_layers layers = {.left = 1.0f};
     struct surface_point p;
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    if (!objects_hit(&p, v->o, ray.origin, ray.direction))
-        return;
-    objects_spread(&p, v->o, &ray, &right, &below);
-    if (!seen_shade(rgb, v->seen, &p, ray.origin, x, y))
-        objects_shade(rgb, v->o, &p, ray.origin, &v->lighting);
+    while (skin_layer(&p, &layers, v->o, &ray, INFINITY)) {
+        float value[3];
+        objects_spread(&p, v->o, &ray, &right, &below);
+        if (!seen_shade(value, v->seen, &p, ray.origin, x, y))
+            objects_shade(value, v->o, &p, ray.origin, &v->lighting);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += layers.part * value[c];
+    }
 }
 
 relume_status relume_objects_render(struct relume_image *out, const relume_objects *objects,

@@ -321,7 +321,7 @@ static relume_status begin_exchange(struct drawing *d, int lights)
     if (!status && !d->shares)
         status = RELUME_ENOMEM;
     if (!status)
-        status = exchange_create(&d->exchange, t->objects, t->bodies, t->capture[0].scenery,
+        status = exchange_create(&d->exchange, t->objects, lights, t->bodies, t->capture[0].scenery,
                                  &d->viewport, &d->places, &d->params);
     if (!status)
         exchange_stand_before(d->exchange, d->scenery, d->sceneries);

@@ -92,12 +92,15 @@ static void splat(float *depth, int size, const struct map_look *l, const struct
 {
     const double LEAST = 0.2;  // of a surface that is seen from its edge
     const double IN_TEXEL = 1.4;
+    const double SHEET = 1.6;  // there is no other side that covers holes: of a box without a lid
+                               // they let 30 % of the light through, so 9 %
     struct in_map at;
     int left, right, top, bottom;
     if (!find(&at, l, p->place))
         return;
     const double facing = fmax(fabs(vec3_dot(p->normal, way_to(l, p->place))), LEAST);
-    const double side = 0.5 * size * at.scale * sqrt(area * facing);
+    const double wider = p->both ? SHEET : 1.0;
+    const double side = wider * 0.5 * size * at.scale * sqrt(area * facing);
     if (chance > IN_TEXEL * side * side)
         return;
     find_texels(&left, &right, 0.5 * size * (at.x + 1.0), side, size);

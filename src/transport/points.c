@@ -79,14 +79,14 @@ static bool leaves(const tracer *objects, const struct point *p, vec3 normal, ve
     return !trace_closest(objects, from, along, &hit);
 }
 
-// Whether one of some rays around a normal leaves the objects: the first goes straight away.
-static bool is_open(const tracer *objects, const struct point *p, vec3 normal, uint64_t key)
+// Whether one of some rays around a normal leaves the objects: number 0 goes straight away.
+static bool is_open(const tracer *objects, const struct point *p, vec3 normal, uint64_t key,
+                    int first, int end)
 {
-    enum { RAYS = 6 };
-    struct random r = random_stream(3, key, normal.z < 0.0);
-    if (leaves(objects, p, normal, normal))
+    if (!first && leaves(objects, p, normal, normal))
         return true;
-    for (int i = 1; i < RAYS; i++) {
+    for (int i = first > 1 ? first : 1; i < end; i++) {
+        struct random r = random_stream(3, key, 2 * (uint64_t)i + (normal.z < 0.0));
         const double z = random_range(&r, -1.0, 1.0), turn = random_range(&r, 0.0, 2.0 * M_PI);
         const double across = sqrt(1.0 - z * z);
         const vec3 ball = vec3_of(across * cos(turn), across * sin(turn), z);  // about its end
@@ -98,10 +98,14 @@ static bool is_open(const tracer *objects, const struct point *p, vec3 normal, u
 }
 
 enum { AT_ONCE = 256 };
+// Rays for each side; where some point is open on both sides the objects are no closed bodies, and
+// more are looked for: of a box without a lid few rays find the way out.
+enum { FEW = 6, MANY = 40 };
 
 struct sides {
     struct points *points;
     const tracer *objects;
+    int first, end;  // rays
 };
 
 static void find_sides(void *context, size_t item, int worker)
@@ -111,20 +115,51 @@ static void find_sides(void *context, size_t item, int worker)
     for (size_t i = item * AT_ONCE; i < (item + 1) * AT_ONCE && i < s->points->count; i++) {
         struct point *p = &s->points->at[i];
         const vec3 back = vec3_scale(p->normal, -1.0);
-        const bool before = is_open(s->objects, p, p->normal, i);
-        const bool behind = is_open(s->objects, p, back, i);
+        if (p->both)
+            continue;
+        // what has been found open before is on the side of the normal
+        const bool known = s->first && p->open;
+        const bool before = known || is_open(s->objects, p, p->normal, i, s->first, s->end);
+        const bool behind = is_open(s->objects, p, back, i, s->first, s->end);
+        p->open = before || behind;
         p->both = before && behind;
         p->normal = behind && !before ? back : p->normal;
     }
+}
+
+static void find_all_sides(struct points *p, const tracer *objects, int threads)
+{
+    struct sides sides = {p, objects, 0, FEW};
+    bool is_sheet = false;
+    thread_for(threads, (p->count + AT_ONCE - 1) / AT_ONCE, find_sides, &sides);
+    for (size_t i = 0; i < p->count; i++)
+        is_sheet |= p->at[i].both;
+    sides.first = FEW, sides.end = MANY;
+    if (is_sheet)
+        thread_for(threads, (p->count + AT_ONCE - 1) / AT_ONCE, find_sides, &sides);
+}
+
+// Those that are there.
+static void leave_out_holes(struct points *p, const tracer *objects)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        float direction[3];
+        vec3_store(direction, p->at[i].normal);
+        if (!trace_passes(objects, p->at[i].triangle, p->at[i].u, p->at[i].v, direction))
+            p->at[kept++] = p->at[i];
+    }
+    p->count = kept;
 }
 
 relume_status points_of_objects(struct points *out, const struct mesh *mesh, const tracer *objects,
                                 size_t count, int threads)
 {
     const relume_status status = spread(out, mesh, count);
-    struct sides sides = {out, objects};
-    if (!status)
-        thread_for(threads, (out->count + AT_ONCE - 1) / AT_ONCE, find_sides, &sides);
+    if (!status) {
+        leave_out_holes(out, objects);
+        find_all_sides(out, objects, threads);
+    }
     return status;
 }
 

@@ -11,7 +11,7 @@
 struct point {
     vec3 place, normal;  // unit, on the side that light gets to
     double area;         // of the piece; those of all points add up to the mesh's
-    bool both;           // light gets to the other side, too
+    bool open, both;     // light gets there, and to the other side, too
     uint32_t triangle;
     float u, v;  // where on it: weights of its second and third corner
 };
@@ -22,9 +22,9 @@ struct points {
     size_t count;
 };
 
-// `count` points of the objects, none where they have no area. The side that light gets to is the
-// one from which a ray leaves the objects, whichever way their triangles are turned. RELUME_ENOMEM;
-// `out` is none then. points_forget frees them.
+// `count` points of the objects, fewer where they have holes, none where they have no area. The
+// side that light gets to is the one from which a ray leaves the objects, whichever way their
+// triangles are turned. RELUME_ENOMEM; `out` is none then. points_forget frees them.
 relume_status points_of_objects(struct points *out, const struct mesh *mesh, const tracer *objects,
                                 size_t count, int threads);
 // The same of a captured scene; the side is that of the captured eye.

@@ -463,6 +463,126 @@ static void write_description(const char *name, const char *object)
     fclose(file);
 }
 
+// ---------------------------------------------------------------- in the look of their own file
+
+// A square of side 2 on z = 0, of a material.
+static void write_square(const char *name, const char *material)
+{
+    FILE *file = fopen(path_of(name), "w");
+    assert_non_null(file);
+    fprintf(file,
+            "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+            "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"name\":\"own\",%s}],\"meshes\":"
+            "[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},\"indices\":2,"
+            "\"material\":0}]}],\"textures\":[{\"source\":0}],\"images\":[{\"uri\":"
+            "\"alpha.png\"}],\"buffers\":[{\"byteLength\":92,\"uri\":"
+            "\"data:application/octet-stream;base64,"
+            "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAAAAAAAAAA"
+            "gD8AAIA/AACAPwAAgD8AAAAAAAAAAAAAAAAAAAEAAgAAAAIAAwA=\"}],\"bufferViews\":["
+            "{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,"
+            "\"byteLength\":32},{\"buffer\":0,\"byteOffset\":80,\"byteLength\":12}],\"accessors\":["
+            "{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
+            "\"min\":[-1,-1,0],\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,"
+            "\"count\":4,\"type\":\"VEC2\"},{\"bufferView\":2,\"componentType\":5123,\"count\":6,"
+            "\"type\":\"SCALAR\"}]}",
+            material);
+    fclose(file);
+}
+
+static void write_pictures(void)
+{
+    static const float alpha[16] = {1, .8f, .6f, 0, 1, 1, .9f, 1, .7f, 1, 1, 1, 1, .5f, 1, 1};
+    struct relume_image image;
+    assert_int_equal(relume_image_create(&image, 2, 2, 4), RELUME_OK);
+    memcpy(image.data, alpha, sizeof alpha);
+    assert_int_equal(relume_image_save(&image, path_of("alpha.png"), NULL), RELUME_OK);
+    relume_image_destroy(&image);
+    assert_int_equal(relume_image_create(&image, 4, 4, 3), RELUME_OK);
+    for (int i = 0; i < 16; i++) {
+        image.data[3 * i] = relume_transfer_decode(
+            (struct relume_transfer){.curve = RELUME_CURVE_SRGB}, 0.35f + 0.1f * (float)(i % 4));
+        image.data[3 * i + 1] = relume_transfer_decode(
+            (struct relume_transfer){.curve = RELUME_CURVE_SRGB}, 0.4f + 0.07f * (float)(i / 4));
+        image.data[3 * i + 2] = 0.8f;
+    }
+    assert_int_equal(relume_image_save(&image, path_of("normals.png"), NULL), RELUME_OK);
+    relume_image_destroy(&image);
+}
+
+static void write_own(void)
+{
+    char command[512];
+    snprintf(command, sizeof command, "(echo mtllib own.mtl; cat %s) > %s", path_of("mesh.obj"),
+             path_of("own.obj"));
+    assert_int_equal(system(command), 0);
+    FILE *file = fopen(path_of("own.mtl"), "w");
+    assert_non_null(file);
+    fputs("newmtl bowl0\nKd .8 .2 .1\nPr .3\nnorm normals.png\nnewmtl bowl3\nKd 1 .8 .3\nPr .5\n"
+          "Pm 1\nnewmtl bowl6\nKd .5 .5 .5\nPr 1\nKe .4 .2 .1\nmap_Ke normals.png\nnewmtl bowl9\n"
+          "Kd .2 .3 .9\nPr 1\nnorm normals.png\nnewmtl ball0\nKd .3 .3 .3\nPr .3\nnewmtl ball4\n"
+          "Kd .9 .9 .9\nPr .4\nPm .5\nnewmtl ball8\nKd .5 .1 .1\nKe 1.5 0 0\n",
+          file);
+    fclose(file);
+}
+
+static void open_own(struct objects_drawer *t, const char *square)
+{
+    char text[512];
+    relume_objects *o;
+    snprintf(text, sizeof text,
+             "\"mesh\": \"own.obj\"}, {\"mesh\": \"%s\", \"pose\": {\"scale\": 0.6, "
+             "\"translate\": [-0.3, -0.3, 0.8]}",
+             square);
+    write_description("own.json", text);
+    assert_int_equal(
+        relume_objects_open(&o, path_of("own.json"), relume_objects_params(.log = &fixture_log)),
+        RELUME_OK);
+    assert_int_equal(objects_drawer_create(t, &fixture_gl, o, &fixture_log), RELUME_OK);
+}
+
+static double mean_of(const struct relume_image *image)
+{
+    double sum = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        sum += (double)image->data[i] / (3 * SIDE * SIDE);
+    return sum;
+}
+
+// Normals, gloss, emission, and a square with a corner cut out or blended, by lamp and sky, with
+// shadows. The border of what is cut is as long as the outline.
+static void own_looks_agree(void **state)
+{
+    (void)state;
+    const char *const lights[] = {sunlight, "env sky.exr 30"};
+    write_pictures();
+    write_own();
+    write_square("cut.gltf", "\"alphaMode\":\"MASK\",\"alphaCutoff\":0.6,"
+                             "\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":"
+                             "0.5,\"baseColorTexture\":{\"index\":0}}");
+    write_square("pane.gltf", "\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{"
+                              "\"metallicFactor\":0,\"baseColorFactor\":[1,0.5,0.2,0.4]}");
+    for (int k = 0; k < 3; k++) {
+        const struct relume_light *list;
+        double brightest;
+        int n;
+        struct objects_drawer t;
+        open_own(&t, k < 2 ? "cut.gltf" : "pane.gltf");
+        relume_rig *rig = rig_of((const char *const[]){lights[k % 2], NULL});
+        assert_int_equal(relume_rig_lights(&list, &n, rig), RELUME_OK);
+        struct picture p = both(&t, list, n, k % 2);
+        const int apart = count_apart(&p.cpu, &p.gl, 4e-3, &brightest);
+        if (k < 2 && apart > 48)
+            fail_msg("cut, %s: %d of %d pixels differ", lights[k % 2], apart, SIDE * SIDE);
+        // a pattern of pixels in place of layers: as much light on the whole
+        const double cpu = mean_of(&p.cpu), gl = mean_of(&p.gl);
+        if (fabs(cpu - gl) > 0.01 * cpu)
+            fail_msg("%d, %s: a mean of %g, expected %g", k, lights[k % 2], gl, cpu);
+        destroy(&p);
+        relume_rig_destroy(&rig);
+        finish(&t);
+    }
+}
+
 // Baked, turned, with views of their own and without, under a lamp and a sky.
 static void baked_objects_agree(void **state)
 {
@@ -547,6 +667,7 @@ int main(void)
         cmocka_unit_test(lights_agree),
         cmocka_unit_test(shadows_agree),
         cmocka_unit_test(baked_objects_agree),
+        cmocka_unit_test(own_looks_agree),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

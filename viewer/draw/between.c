@@ -46,11 +46,13 @@ enum {
     LET_WITH,
     MEAN,
     SHOWN_GRID,
+    SHOWN_EMITTED,
+    SHOWN_SENDS,
     SHOWN_COUNT
 };
 static const char *const shown_uniforms[] = {"rectangle", "frame_size", "front",       "objects",
                                              "shaded",    "lone",       "let_without", "let_with",
-                                             "mean",      "grid"};
+                                             "mean",      "grid",       "emitted",     "sends"};
 enum {
     G_PLACES = MEAN_COUNT,
     G_CENTRE,
@@ -454,7 +456,8 @@ static void find_mean(const struct between *b, const struct between_view *v,
     draw_whole(b, &b->mean, &b->even);
 }
 
-static void show(const struct between *b, const struct objects_drawer *t, const struct target *lone)
+static void show(const struct between *b, const struct objects_drawer *t,
+                 const struct between_view *v, const struct target *lone)
 {
     const GLint *at = b->shown.at;
     target_begin(&b->show, b->gl);
@@ -467,6 +470,8 @@ static void show(const struct between *b, const struct objects_drawer *t, const 
     use(b, at[LET_WITH], 5, &b->by_lamps.target[1]);
     use(b, at[MEAN], 6, &b->even);
     b->gl->Uniform1i(at[SHOWN_GRID], t->grid);
+    use(b, at[SHOWN_EMITTED], 7, &t->emitted);
+    b->gl->Uniform1f(at[SHOWN_SENDS], t->sends ? v->sends : 0.0f);
     draw_whole(b, &b->shown, &b->show);
 }
 
@@ -582,7 +587,7 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
     if (status)
         return status;
     find_mean(b, v, panorama);
-    show(b, t, lone);
+    show(b, t, v, lone);
     gather(b, t, v, panorama, lone, true);
     smooth(b, v, true);
     throw_back(b, t, &b->thrown);

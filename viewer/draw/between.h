@@ -52,6 +52,7 @@ struct between_view {
     int width, height;
     bool directional, bounces, on;  // with light off objects, and on from there
     int samples, pattern;
+    float sends;  // of what objects send of their own, under each light
 };
 
 // RELUME_ESYSTEM, RELUME_ENOMEM.

@@ -14,6 +14,7 @@ const struct btf_shader btf_shaders[] = {
     {"lit", "btf_lit.frag", {3}, true, false},
     {"bump", "btf_bump.frag", {3, 3, 3}, false, false},
     {"laf", "btf_laf.frag", {3, 3, 4}, true, false},
+    {"painted", "btf_painted.frag", {3, 3, 4}, true, false},
     {"slaf", "btf_slaf.frag", {3, 3, 4, 1}, true, false},
     {"rfp", "btf_rfp.frag", {3}, false, false},
     {"rfnl", "btf_rfnl.frag", {3, 3, 4}, true, false},

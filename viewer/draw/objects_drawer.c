@@ -49,8 +49,8 @@ static const char *const btf_uniforms[] = {
     LIGHT_NAMES,
     SHADOW_NAMES,
 };
-enum { SURFACE_CLIP, SURFACE_PART, SURFACE_FIRST, SURFACE_COUNT };
-static const char *const surface_uniforms[] = {"clip", "part", "first"};
+static const char *const surface_uniforms[] = {"clip",  "part",   "first", "skin",
+                                               "cover", "cutoff", "sends"};
 enum {
     OVER_PLACE = DRAW_OWN,
     OVER_SHADED,
@@ -65,11 +65,14 @@ enum {
     GRID,
     OVER_EYE,
     EXPOSURE,
+    EMITTED,
+    OVER_SENDS,
     OVER_COUNT
 };
 static const char *const over_uniforms[] = {
-    "rectangle", "frame_size", "place",    "shaded",       "other", "tint", "tinted",  "difference",
-    "scene",     "in_scene",   "returned", "has_returned", "grid",  "eye",  "exposure"};
+    "rectangle", "frame_size", "place",    "shaded",   "other",    "tint",
+    "tinted",    "difference", "scene",    "in_scene", "returned", "has_returned",
+    "grid",      "eye",        "exposure", "emitted",  "sends"};
 enum {
     CAST_SCENE = DRAW_OWN,
     CAST_LONE,
@@ -160,6 +163,7 @@ relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *g
                                  .maps = {.gl = gl, .log = log},
                                  .mirrors = {.gl = gl, .log = log},
                                  .baked = {.gl = gl, .log = log},
+                                 .only = -1,
                                  .grid = gl->software ? 1 : FINER};
     const struct relume_vec3 extent = vec3_sub(info->max, info->min);
     t->radius = 0.5 * vec3_length(extent);
@@ -171,6 +175,9 @@ relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *g
                                    gl->software ? SHADOW_SIDE_SOFTWARE : SHADOW_SIDE, log);
     if (!status) {
         upload_mesh(t, info);
+        status = objects_drawer_upload_skins(t);
+    }
+    if (!status) {
         status = gl_check(gl, "uploading objects", log);
     }
     if (status)
@@ -178,15 +185,16 @@ relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *g
     return status;
 }
 
-// The last ones are what the surface is drawn into; the very last only where it is tinted.
-enum { SURFACES = 5, TARGETS = 10 };
+// The last ones are what the surface is drawn into; the very last two only where it is tinted or
+// sends something.
+enum { SURFACES = 6, TARGETS = 11, FEWER = 2 };
 static int find_targets(struct target *out[TARGETS], struct objects_drawer *t)
 {
     struct target *const all[TARGETS] = {&t->shaded,    &t->other, &t->shown,  &t->sent,
                                          &t->arrived,   &t->place, &t->normal, &t->tangent,
-                                         &t->footprint, &t->tint};
+                                         &t->footprint, &t->tint,  &t->emitted};
     memcpy(out, all, sizeof all);
-    return t->tints ? TARGETS : TARGETS - 1;
+    return t->tints || t->sends ? TARGETS : TARGETS - FEWER;
 }
 
 static void destroy_targets(struct objects_drawer *t)
@@ -220,6 +228,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
     sky_maps_forget(&t->maps);
     mirrors_forget(&t->mirrors);
     baked_forget(&t->baked);
+    objects_drawer_forget_skins(t);
     t->gl->DeleteVertexArrays(1, &t->array);
     t->gl->DeleteBuffers(1, &t->vertices);
     t->gl->DeleteBuffers(1, &t->indices);
@@ -330,13 +339,23 @@ relume_status objects_drawer_light(struct objects_drawer *t, const struct relume
 
 // ---------------------------------------------------------------- passes
 
+static void draw_triangles(const struct objects_drawer *t, size_t first, size_t count)
+{
+    t->gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * count), GL_UNSIGNED_INT,
+                        (const void *)(3 * first * sizeof(uint32_t)));
+}
+
 static void draw_all(void *context, const float clip[16])
 {
     const struct objects_drawer *t = context;
+    const struct relume_objects_info *info = relume_objects_info(t->objects);
     t->gl->UniformMatrix4fv(t->depth.at[SURFACE_CLIP], 1, GL_FALSE, clip);
-    t->gl->DrawElements(GL_TRIANGLES,
-                        (GLsizei)(3 * relume_objects_info(t->objects)->triangle_count),
-                        GL_UNSIGNED_INT, NULL);
+    if (!t->holes)
+        draw_triangles(t, 0, info->triangle_count);
+    for (int i = 0; i < info->parts && t->holes; i++) {
+        objects_drawer_use_skin(t, &t->depth, i);
+        draw_triangles(t, info->part[i].first, info->part[i].count);
+    }
     if (!t->captured)
         return;
     captured_mesh_draw(t->captured, clip);
@@ -376,10 +395,9 @@ static void draw_surface(struct objects_drawer *t, const struct frame_projection
     for (int i = 0; i < info->parts; i++) {
         const struct relume_object_part *part = &info->part[i];
         const bool mirror = info->material[only >= 0 ? only : part->material].mirror;
-        gl->Uniform1i(t->surface.at[SURFACE_PART], i);
+        objects_drawer_use_skin(t, &t->surface, i);
         gl->Uniform1i(t->surface.at[SURFACE_FIRST], mirror ? (GLint)part->first : -1);
-        gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * part->count), GL_UNSIGNED_INT,
-                         (const void *)(3 * part->first * sizeof(uint32_t)));
+        draw_triangles(t, part->first, part->count);
     }
     gl->Disable(GL_DEPTH_TEST);
     gl->BindVertexArray((GLuint)before);
@@ -593,6 +611,7 @@ relume_status objects_drawer_shade(struct objects_drawer *t,
     if (status)
         return status;
     t->projection = *projection;
+    t->only = only;
     draw_surface(t, projection, only);
     target_begin(&t->shaded, gl);
     for (int i = 0; i < t->light_samples && !status; i++)
@@ -636,6 +655,9 @@ void objects_drawer_over(const struct objects_drawer *t, const struct place *pla
     gl->Uniform1i(at[TINT], 5);
     gl->Uniform1i(at[TINTED], t->tints != 0);
     gl->Uniform1i(at[DIFFERENCE], difference);
+    texture_use(gl, 6, GL_TEXTURE_2D, t->emitted.texture);
+    gl->Uniform1i(at[EMITTED], 6);
+    gl->Uniform1i(at[OVER_SENDS], t->sends);
     gl->Uniform1i(at[OVER_PLACE], 0);
     gl->Uniform1i(at[OVER_SHADED], 1);
     gl->Uniform1i(at[OVER_SCENE], 2);

@@ -37,6 +37,25 @@ enum {
     BTF_COUNT = SHADOW + SHADOW_UNIFORMS
 };
 
+// Of the programs that draw the surface.
+enum {
+    SURFACE_CLIP,
+    SURFACE_PART,
+    SURFACE_FIRST,
+    SURFACE_SKIN,
+    SURFACE_COVER,
+    SURFACE_CUTOFF,
+    SURFACE_SENDS,
+    SURFACE_COUNT
+};
+
+// skins.c: RELUME_ENOMEM, RELUME_ESYSTEM.
+relume_status objects_drawer_upload_skins(struct objects_drawer *t);
+void objects_drawer_forget_skins(struct objects_drawer *t);
+// For the program in use.
+void objects_drawer_use_skin(const struct objects_drawer *t, const struct program *program,
+                             int part);
+
 // The shadow map of a light sample; it takes over the target.
 void objects_drawer_draw_shadow(struct objects_drawer *t, int light_sample);
 void objects_drawer_draw_whole(const struct gl *gl, const struct program *program,

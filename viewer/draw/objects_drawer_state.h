@@ -33,10 +33,13 @@ struct objects_drawer {
     struct mirror_panorama panorama;  // that they show, of the present frame
     struct shadow_map shadow;
     // Of the frame, `grid` times finer; `other` is in another material, to compare with.
-    struct target place, normal, tangent, footprint, tint, shaded, other;
+    struct target place, normal, tangent, footprint, tint, emitted, shaded, other;
     struct target shown, sent, arrived;  // of an environment
     GLuint surface_buffer, depth_texture, share_buffer;
     int grid;
+    GLuint *skin;       // [materials]: opacity and emission, 0 where there is none
+    bool sends, holes;  // some material does; has some
+    int only;           // material of all parts in the present frame; -1: their own
     bool no_shadows;
     const struct captured_mesh *captured;  // that throws shadows on objects as well; NULL: none
     GLuint returned;  // light of the scene that objects show, a texture of the frame; 0: none

@@ -93,6 +93,7 @@ relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struc
                                       .bounces = bounces > 0,
                                       .on = bounces > 1,
                                       .samples = q->way_samples ? q->way_samples : SAMPLES,
-                                      .pattern = PATTERN};
+                                      .pattern = PATTERN,
+                                      .sends = count ? 1.0f / (float)count : 0.0f};
     return draw(r, q, place, &view, lights, count);
 }

@@ -5,6 +5,8 @@ uniform sampler2D objects, shaded;         // `grid` times finer
 uniform sampler2D lone;                    // the scene
 uniform sampler2D let_without, let_with;   // lamps.frag
 uniform sampler2D mean;                    // one texel
+uniform sampler2D emitted;                 // what objects send of their own
+uniform float sends;                       // the part of it that counts
 uniform int grid;
 out vec4 color;
 
@@ -21,7 +23,8 @@ void main()
         for (int i = 0; i < grid * grid; i++) {
             ivec2 at = pixel * grid + ivec2(i % grid, i / grid);
             if (texelFetch(objects, at, 0).w != 0.0)
-                sum += vec4(texelFetch(shaded, at, 0).rgb, 1.0);
+                sum += vec4(texelFetch(shaded, at, 0).rgb +
+                            (sends > 0.0 ? sends * texelFetch(emitted, at, 0).rgb : vec3(0.0)), 1.0);
         }
         color = vec4(sum.rgb / max(sum.a, 1.0), 1.0);
         return;

@@ -4,6 +4,8 @@ uniform sampler2D place, shaded;  // `grid` times finer than the frame
 uniform sampler2D other;          // the same in another material
 uniform sampler2D tint;           // what they are multiplied by
 uniform bool tinted;
+uniform sampler2D emitted;        // what they send of their own
+uniform bool sends;
 uniform bool difference;          // show how far it is from that
 uniform sampler2D scene;          // positions of the frame's own size; alpha 0: nothing is there
 uniform bool in_scene;
@@ -35,6 +37,8 @@ void main()
             value = abs(value - texelFetch(other, at, 0).rgb);
         if (tinted)
             value *= texelFetch(tint, at, 0).rgb;
+        if (sends && !difference)
+            value += texelFetch(emitted, at, 0).rgb;
         if (has_returned)
             value += texelFetch(returned, pixel, 0).rgb;
         sum += vec4(exposure * value, 1.0);

@@ -50,7 +50,7 @@ surface:base math synthesis btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base io image object mesh jnd simplify billboards
 volume:base image:base image photograph volume
 isosurface:base volume:base mesh volume
-fusion:base math geometry volume:base image light relight pack frame view slab_set renderer capture mesh volume fusion
+fusion:base math geometry volume mesh baked:base image light relight pack frame view slab_set renderer capture mesh volume fusion
 distance:base math:base image mesh billboards
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene

@@ -39,7 +39,7 @@ relight:base math kernel image:base image capture coder light relight rig religh
 analysis:base math stereo:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture
 post:base math kernel image:base image tone eye psf glare
-frame:base math image:base image capture coder pack light relight shadow view slab_set frame viewport evaluate normals enhance renderer relighter rig
+frame:base math image:base image capture coder pack light relight shadow view slab_set frame viewport evaluate jnd normals enhance renderer relighter rig
 btf:base math image:base image directions capture btf
 gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps

@@ -242,7 +242,7 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
     }
     const struct relume_target target = {
         .data = e->relit.data, .width = e->relit.width, .height = e->relit.height};
-    struct relume_difference difference;
+    struct relume_difference difference = {.pixels = 0};
     relume_status status = relume_renderer_set_lights(e->renderer, &lamp, 1);
     if (!status)
         status = relume_renderer_draw(e->renderer, camera, &target);
@@ -252,11 +252,11 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
                                                             .threads = e->params.threads,
                                                             .no_ssim = e->params.no_ssim,
                                                             .no_delta_e = e->params.no_delta_e));
-    if (!status) {
-        add(&e->light[light], &difference);
-        add(&e->total, &difference);
-    }
-    return !status && e->params.jnd && difference.pixels ? see(e, captured, mask) : status;
+    if (status)
+        return status;
+    add(&e->light[light], &difference);
+    add(&e->total, &difference);
+    return e->params.jnd && difference.pixels ? see(e, captured, mask) : RELUME_OK;
 }
 
 static relume_status evaluate_some(struct evaluator *e, const struct relume_camera *camera,

@@ -66,7 +66,8 @@ relume_status mesh_of_depth(const struct args *args, const struct depth_options 
     if (!status)
         status = fuse(&mesh, &report, args, o, block, lights, count);
     if (!status)
-        status = png ? mesh_write_both(&mesh, output, &report.picture, png, args->log)
+        status = report.picture.data
+                     ? mesh_write_both(&mesh, output, &report.picture, png, args->log)
                      : relume_mesh_write(&mesh, output, p);
     if (!status)
         print(args,

@@ -39,7 +39,7 @@ relight:base math kernel image:base image capture coder light relight rig religh
 analysis:base math stereo:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture
 post:base math kernel image:base image tone eye psf glare
-frame:base math image:base image capture coder pack light relight shadow view slab_set frame viewport evaluate normals enhance renderer relighter rig
+frame:base math image:base image capture coder pack light relight shadow view slab_set frame viewport evaluate jnd normals enhance renderer relighter rig
 btf:base math image:base image directions capture btf
 gbrdf:base math image btf:base image directions btf
 edit:base math image gbrdf:base image edit maps
@@ -50,7 +50,7 @@ surface:base math synthesis btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base io image object mesh jnd simplify billboards
 volume:base image:base image photograph volume
 isosurface:base volume:base mesh volume
-fusion:base math geometry volume:base image light relight pack frame view slab_set renderer capture mesh volume fusion
+fusion:base math geometry volume mesh baked:base image light relight pack frame view slab_set renderer capture mesh volume fusion
 distance:base math:base image mesh billboards
 reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene

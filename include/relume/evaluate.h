@@ -25,6 +25,9 @@ struct relume_evaluation {
     double psnr_db;                         // mean over images of the PSNR of 8-bit display values
     double psnr_pooled_db;                  // of the unrounded error over all images; at most 200
     double ssim, delta_e;                   // means over images
+    double jnd, jnd_worst;                  // what 1 % of the pixels of an image exceed
+                                            // (relume_jnd.most): mean over images, and most; NaN
+                                            // without relume_evaluate_params.jnd
     double file_bytes, raw_bytes, ratio;    // raw: three floats a pixel, light and view
     double bits_per_pixel;                  // of the file, per pixel and view
     struct relume_evaluation_light *light;  // [lights], from malloc
@@ -38,6 +41,8 @@ struct relume_evaluate_params {
     const char *file, *capture;  // how sentences call the two; default: "the file", "the capture"
     int threads;                 // default: all cores
     bool no_ssim, no_delta_e;    // leave these out (NaN), they take most of the time
+    bool jnd;                    // what people see of it, on a desktop screen (jnd.h)
+    int every;                   // compare one of so many images, evenly spread; default: all
 };
 #define relume_evaluate_params(...)                                                                \
     (&(const struct relume_evaluate_params){RELUME_SIZED(relume_evaluate_params), __VA_ARGS__})

@@ -51,9 +51,10 @@ RELUME_RESULT relume_status relume_mesh_read(struct relume_mesh *out, const char
 // By the extension: .obj (parts as materials, colours behind the positions), .ply (binary, little
 // endian) or .glb (with the picture, where that is PNG or JPEG and can be read). The file appears
 // whole or not at all; what is written needs 1 MiB of memory whatever the mesh. An empty mesh is
-// written too, which glTF has no word for: a file without meshes. Of `picture` OBJ and PLY hold the
-// name as it is. RELUME_EINVAL with a sentence (another extension, triangles of vertices that are
-// not there, counts that are too large, .glb beyond 4 GiB), RELUME_EIO, RELUME_ENOMEM.
+// written too, which glTF has no word for: a file without meshes. PLY says the name of `picture`;
+// of an OBJ without parts a second file says it, "cow.mtl" of "cow.obj". RELUME_EINVAL with a
+// sentence (another extension, triangles of vertices that are not there, counts that are too large,
+// .glb beyond 4 GiB), RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_mesh_write(const struct relume_mesh *mesh, const char *path,
                                               const struct relume_mesh_params *params);
 // What relume_mesh_write would say of the name alone.

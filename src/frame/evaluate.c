@@ -1,5 +1,6 @@
 // evaluate.c - a file relit with every light of a capture and compared with every image
 #include <relume/evaluate.h>
+#include <relume/jnd.h>
 #include <relume/renderer.h>
 
 #include "base/context.h"
@@ -16,7 +17,7 @@
 // Sums over the images of one light, or of all.
 struct sums {
     double square, mse;  // x pixels
-    double psnr, ssim, delta_e;
+    double psnr, ssim, delta_e, jnd, jnd_worst;
     size_t pixels, images, structured;
 };
 
@@ -161,8 +162,8 @@ static void load_image(void *context, size_t item, int worker)
 {
     (void)worker;
     struct evaluator *e = context;
-    e->status[item] =
-        relume_capture_image(&e->image[item], e->capture, e->view, e->first + (int)item, NULL);
+    e->status[item] = relume_capture_image(&e->image[item], e->capture, e->view,
+                                           e->first + (int)item * e->params.every, NULL);
 }
 
 // A broken image is read again by the caller's thread, which may say why.
@@ -172,8 +173,8 @@ static relume_status load_ahead(struct evaluator *e, int count)
     for (int i = 0; i < count; i++) {
         relume_status status = e->status[i];
         if (relume_status_is_input(status))
-            status = relume_capture_image(&e->image[i], e->capture, e->view, e->first + i,
-                                          e->params.log);
+            status = relume_capture_image(&e->image[i], e->capture, e->view,
+                                          e->first + i * e->params.every, e->params.log);
         if (status)
             return status;
     }
@@ -213,6 +214,21 @@ static void warn_beyond(const struct evaluator *e)
             beyond == 1 ? "lies" : "lie", most);
 }
 
+// Mean and worst of the images that have something to compare.
+static relume_status see(struct evaluator *e, const struct relume_image *captured,
+                         const struct relume_image *mask)
+{
+    struct relume_jnd seen;
+    const relume_status status = relume_image_jnd(
+        &seen, NULL, &e->relit, captured,
+        relume_jnd_params(.threads = e->params.threads, .mask = mask->data ? mask : NULL));
+    if (!status) {
+        e->total.jnd += seen.most;
+        e->total.jnd_worst = fmax(e->total.jnd_worst, seen.most);
+    }
+    return status;
+}
+
 static relume_status compare_light(struct evaluator *e, const struct relume_image *captured,
                                    int light, const struct relume_camera *camera,
                                    const struct relume_image *mask)
@@ -226,7 +242,7 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
     }
     const struct relume_target target = {
         .data = e->relit.data, .width = e->relit.width, .height = e->relit.height};
-    struct relume_difference difference;
+    struct relume_difference difference = {.pixels = 0};
     relume_status status = relume_renderer_set_lights(e->renderer, &lamp, 1);
     if (!status)
         status = relume_renderer_draw(e->renderer, camera, &target);
@@ -236,20 +252,21 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
                                                             .threads = e->params.threads,
                                                             .no_ssim = e->params.no_ssim,
                                                             .no_delta_e = e->params.no_delta_e));
-    if (!status) {
-        add(&e->light[light], &difference);
-        add(&e->total, &difference);
-    }
-    return status;
+    if (status)
+        return status;
+    add(&e->light[light], &difference);
+    add(&e->total, &difference);
+    return e->params.jnd && difference.pixels ? see(e, captured, mask) : RELUME_OK;
 }
 
 static relume_status evaluate_some(struct evaluator *e, const struct relume_camera *camera,
                                    const struct relume_image *mask)
 {
-    const int left = e->manifest->lights - e->first, count = left < e->ahead ? left : e->ahead;
+    const int every = e->params.every, left = (e->manifest->lights - e->first + every - 1) / every,
+              count = left < e->ahead ? left : e->ahead;
     relume_status status = load_ahead(e, count);
     for (int i = 0; !status && i < count; i++) {
-        const int light = e->first + i;
+        const int light = e->first + i * every;
         status = compare_light(e, &e->image[i], light, camera, mask);
         const double done = (e->view + (light + 1.0) / e->manifest->lights) / e->manifest->views;
         if (!status && !log_progress(e->params.log, "evaluating", done))
@@ -257,7 +274,7 @@ static relume_status evaluate_some(struct evaluator *e, const struct relume_came
     }
     for (int i = 0; i < e->ahead; i++)
         relume_image_destroy(&e->image[i]);
-    e->first += count;
+    e->first += count * every;
     return status;
 }
 
@@ -267,7 +284,9 @@ static relume_status evaluate_view(struct evaluator *e, int view)
     struct relume_image mask;
     relume_status status = relume_capture_mask(&mask, e->capture, view, e->params.log);
     e->view = view;
-    e->first = 0;
+    // one image of so many goes on from view to view
+    const long long before = (long long)view * e->manifest->lights;
+    e->first = (int)((e->params.every - before % e->params.every) % e->params.every);
     while (!status && e->first < e->manifest->lights)
         status = evaluate_some(e, &camera, &mask);
     if (camera.framing == RELUME_FRAME_VIEW)
@@ -321,6 +340,8 @@ static void collect(const struct evaluator *e, struct relume_evaluation *out)
     out->psnr_pooled_db = decibel(ratio(t->mse, (double)t->pixels));
     out->ssim = ratio(t->ssim, (double)t->structured);
     out->delta_e = ratio(t->delta_e, (double)t->images);
+    out->jnd = e->params.jnd ? ratio(t->jnd, (double)t->images) : (double)NAN;
+    out->jnd_worst = e->params.jnd && t->images ? t->jnd_worst : (double)NAN;
     out->file_bytes = (double)e->info->file_bytes;
     out->raw_bytes = (double)out->views * out->lights * pixels * 12.0;
     out->ratio = out->raw_bytes / out->file_bytes;
@@ -371,6 +392,7 @@ relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
     *out = (struct relume_evaluation){0};
     e.params.file = e.params.file ? e.params.file : "the file";
     e.params.capture = e.params.capture ? e.params.capture : "the capture";
+    e.params.every = e.params.every > 1 ? e.params.every : 1;
     relume_status status = check_fit(&e);
     if (status)
         return status;

@@ -6,6 +6,7 @@
 #include "base/thread.h"
 #include "fusion/field.h"
 #include "fusion/seen.h"
+#include "fusion/texture.h"
 
 #include <relume/fusion.h>
 
@@ -21,6 +22,8 @@ static const struct relume_light around[] = {DISTANT(1, 0, 0, 0.5f), DISTANT(-1,
 
 // What surfaces may be off by and still be what a view sees, in voxels.
 static const double NEAR = 1.5;
+
+enum { MOST_SIDE = 16384 };
 
 static relume_status open_witness(struct witness *out, relume_pack *pack, int view,
                                   const struct relume_fusion_params *p)
@@ -93,11 +96,24 @@ static relume_status fuse(struct relume_mesh *out, struct relume_fusion_report *
     return seen_keep(out, &report->unseen, witness, witnesses, NEAR * f.voxel, f.threads);
 }
 
-static relume_status colour(struct relume_mesh *mesh, relume_pack *pack,
-                            const struct witness *witness, double voxel,
+static relume_status paint(struct relume_mesh *mesh, struct relume_fusion_report *report,
+                           const struct texture *t, const struct relume_fusion_params *p)
+{
+    relume_status status = RELUME_OK;
+    if (p->texture)
+        status = texture_make(mesh, &report->picture, t);
+    if (!status && p->judge)
+        status = texture_judge(&report->psnr_db, &report->shown, mesh,
+                               p->texture ? &report->picture : NULL, t);
+    return status;
+}
+
+static relume_status colour(struct relume_mesh *mesh, struct relume_fusion_report *report,
+                            relume_pack *pack, const struct witness *witness,
                             const struct relume_fusion_params *p)
 {
     relume_renderer *renderer;
+    const int views = relume_pack_info(pack)->views;
     relume_status status = relume_renderer_create(
         &renderer, pack, relume_frame_params(.log = p->log, .threads = p->threads));
     const bool panorama = relume_pack_info(pack)->geometry.projection >= RELUME_CYLINDRICAL;
@@ -106,9 +122,19 @@ static relume_status colour(struct relume_mesh *mesh, relume_pack *pack,
     else if (!status)
         status =
             relume_renderer_set_lights(renderer, panorama ? around : frontal, panorama ? 6 : 1);
-    if (!status)
-        status = seen_colour(mesh, renderer, witness, relume_pack_info(pack)->views, NEAR * voxel,
+    if (!status && !p->texture)
+        status = seen_colour(mesh, renderer, witness, views, NEAR * report->voxel,
                              thread_count(p->threads));
+    if (!status)
+        status = paint(mesh, report,
+                       &(const struct texture){.renderer = renderer,
+                                               .witness = witness,
+                                               .witnesses = views,
+                                               .near = NEAR * report->voxel,
+                                               .side = p->texture,
+                                               .threads = thread_count(p->threads),
+                                               .log = p->log},
+                       p);
     relume_renderer_destroy(&renderer);
     return status;
 }
@@ -123,7 +149,7 @@ static relume_status work(struct relume_mesh *out, struct relume_fusion_report *
         status = fuse(out, report, witness, relume_pack_info(pack)->views, p);
     report->seconds = now_s() - start;
     if (!status && !p->no_colours && out->vertex_count)
-        status = colour(out, pack, witness, report->voxel, p);
+        status = colour(out, report, pack, witness, p);
     return status;
 }
 
@@ -139,13 +165,20 @@ relume_status relume_fusion(struct relume_mesh *out, struct relume_fusion_report
                         "no depth; expected a file of a capture with depth maps");
     if (!(p.voxel >= 0.0 && p.farthest >= 0.0) || isinf(p.voxel))
         return log_fail(p.log, RELUME_EINVAL, "voxels of %g; expected a size above 0", p.voxel);
+    if (p.texture < 0 || p.texture > MOST_SIDE || (p.texture && p.no_colours) ||
+        ((p.texture || p.judge) && !report))
+        return log_fail(p.log, RELUME_EINVAL,
+                        "a texture of %d texels a side; expected 1 to %d, colours and a report",
+                        p.texture, MOST_SIDE);
     struct witness *witness = mem_zeroed((size_t)info->views, sizeof *witness);
     relume_status status = witness ? work(out, &own, pack, witness, &p) : RELUME_ENOMEM;
     for (int i = 0; witness && i < info->views; i++)
         witness_destroy(&witness[i]);
     mem_free(witness);
-    if (status)
+    if (status) {
         relume_mesh_free(out);
+        relume_image_destroy(&own.picture);
+    }
     if (report)
         *report = own;
     return status;

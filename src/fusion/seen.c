@@ -20,22 +20,25 @@ struct looking {
     float (*sum)[4];  // of red, green, blue, each times its weight, and of the weights
 };
 
-// How well a view sees a vertex: the cosine at its normal, squared; 0: not at all.
-static double weight_of(struct sighting *at, const struct looking *k, const struct witness *s,
-                        size_t vertex)
+double seen_weight(struct sighting *at, const struct witness *s, vec3 place, vec3 normal,
+                   double near)
 {
     // from the side nobody sees much, and walls beside what is seen begin
     const double LEAST = 0.1;
     const double SLANTED = 2.0;  // where depth ends nobody knows how slanted it is
-    const float *p = k->mesh->position[vertex], *n = k->mesh->normal[vertex];
-    const vec3 place = vec3_of((double)p[0], (double)p[1], (double)p[2]);
-    if (!witness_ask(at, s, place, k->near) || !(fabs(at->distance) <= k->near) ||
-        !(fabs(at->along) <= SLANTED * k->near))
+    if (!witness_ask(at, s, place, near) || !(fabs(at->distance) <= near) ||
+        !(fabs(at->along) <= SLANTED * near))
         return 0.0;
     const struct camera_ray ray = camera_ray_at(&s->camera, at->xy[0], at->xy[1]);
-    const double facing =
-        -vec3_dot(ray.direction, vec3_of((double)n[0], (double)n[1], (double)n[2]));
+    const double facing = -vec3_dot(ray.direction, normal);
     return facing > LEAST ? facing * facing : 0.0;
+}
+
+static double weight_of(struct sighting *at, const struct looking *k, const struct witness *s,
+                        size_t vertex)
+{
+    return seen_weight(at, s, vec3_floats(k->mesh->position[vertex]),
+                       vec3_floats(k->mesh->normal[vertex]), k->near);
 }
 
 static void look_chunk(void *context, size_t chunk, int worker)
@@ -137,8 +140,8 @@ static void sum_chunk(void *context, size_t chunk, int worker)
         const float weight = (float)weight_of(&at, k, k->witness, i);
         if (!(weight > 0.0f))
             continue;
-        const size_t x = (size_t)at.xy[0], y = (size_t)at.xy[1];
-        const float *rgb = relit->data + 3 * (y * (size_t)relit->width + x);
+        float rgb[3];
+        witness_light(rgb, k->witness, relit, at.xy, k->near / at.cosine);
         for (int c = 0; c < 3; c++)
             k->sum[i][c] += weight * rgb[c];
         k->sum[i][3] += weight;

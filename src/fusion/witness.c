@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 
 static float depth_at(const struct witness *s, int x, int y)
 {
@@ -124,4 +125,24 @@ bool witness_ask(struct sighting *out, const struct witness *s, vec3 place, doub
         nothing ? (double)-INFINITY : distance - surface_at(s, out->xy, x, y, step / out->cosine);
     out->distance = out->along * out->cosine;
     return true;
+}
+
+void witness_light(float rgb[3], const struct witness *s, const struct relume_image *relit,
+                   const double xy[2], double step)
+{
+    const int x = relume_whole(floor(xy[0])), y = relume_whole(floor(xy[1]));
+    const double near = (double)depth_at(s, x, y);
+    const struct bilinear b =
+        bilinear_at(xy[0] - 0.5, xy[1] - 0.5, relit->width, relit->height, EDGE_CLAMPED);
+    double sum[3] = {0}, all = 0.0;
+    for (int i = 0; i < 4; i++) {
+        const double d = (double)s->depth.data[b.at[i]];
+        const double weight = fabs(d - near) <= step ? bilinear_share(&b, i, 1.0) : 0.0;
+        for (size_t c = 0; weight > 0.0 && c < 3; c++)
+            sum[c] += weight * (double)relit->data[3 * b.at[i] + c];
+        all += weight;
+    }
+    for (size_t c = 0; c < 3; c++)
+        rgb[c] = all > 0.0 ? (float)(sum[c] / all)
+                           : relit->data[3 * ((size_t)y * (size_t)relit->width + (size_t)x) + c];
 }

@@ -33,4 +33,9 @@ struct sighting {
 // by more than that where one surface ends and another begins.
 bool witness_ask(struct sighting *out, const struct witness *s, vec3 place, double step);
 
+// What a relit view of the witness's size shows at a pixel position within it: the mean of the four
+// pixels around, without those whose depth differs by more than `step` from that of the pixel.
+void witness_light(float rgb[3], const struct witness *s, const struct relume_image *relit,
+                   const double xy[2], double step);
+
 #endif

@@ -44,6 +44,13 @@ void sink_print(struct sink *s, const char *format, ...)
     sink_put(s, line, (size_t)length < sizeof line ? (size_t)length : sizeof line - 1);
 }
 
+const char *mesh_write_picture(const struct relume_mesh *mesh, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
+    return strncmp(mesh->picture, path, folder) ? mesh->picture : mesh->picture + folder;
+}
+
 // Names may be longer than sink_print takes.
 static void put_name(struct sink *to, const char *before, const char *name)
 {
@@ -71,10 +78,20 @@ static void put_vertices(struct sink *to, const struct relume_mesh *m)
                    (double)m->normal[i][2]);
 }
 
+// Of a mesh of parts nobody knows which of them the picture is of.
+static bool has_library(const struct relume_mesh *m)
+{
+    return m->picture && m->texture && !(m->part && m->part_name);
+}
+
 relume_status mesh_write_obj(struct sink *to, const struct relume_mesh *m, const char *path,
                              const struct relume_log *log)
 {
-    (void)path, (void)log;
+    (void)log;
+    if (has_library(m)) {
+        const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+        sink_print(to, "mtllib %.*s.mtl\nusemtl picture\n", (int)(strrchr(name, '.') - name), name);
+    }
     put_vertices(to, m);
     for (size_t i = 0; i < m->triangle_count; i++) {
         if (m->part && m->part_name && (i == 0 || m->part[i] != m->part[i - 1]))
@@ -93,13 +110,24 @@ relume_status mesh_write_obj(struct sink *to, const struct relume_mesh *m, const
     return RELUME_OK;
 }
 
+// Its materials, which are one.
+static relume_status write_library(struct sink *to, const struct relume_mesh *m, const char *path,
+                                   const struct relume_log *log)
+{
+    (void)log;
+    put_name(to, "newmtl picture\nKd 1 1 1\nmap_Kd ", mesh_write_picture(m, path));
+    if (m->cut_out)
+        put_name(to, "map_d ", mesh_write_picture(m, path));
+    return RELUME_OK;
+}
+
 // ---------------------------------------------------------------- PLY
 
-static void put_ply_header(struct sink *to, const struct relume_mesh *m)
+static void put_ply_header(struct sink *to, const struct relume_mesh *m, const char *path)
 {
     sink_print(to, "ply\nformat binary_little_endian 1.0\n");
     if (m->picture)
-        put_name(to, "comment TextureFile ", m->picture);
+        put_name(to, "comment TextureFile ", mesh_write_picture(m, path));
     sink_print(to, "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n",
                m->vertex_count);
     if (m->normal)
@@ -118,8 +146,8 @@ static void put_ply_header(struct sink *to, const struct relume_mesh *m)
 relume_status mesh_write_ply(struct sink *to, const struct relume_mesh *m, const char *path,
                              const struct relume_log *log)
 {
-    (void)path, (void)log;
-    put_ply_header(to, m);
+    (void)log;
+    put_ply_header(to, m, path);
     for (size_t i = 0; i < m->vertex_count; i++) {
         sink_put(to, m->position[i], sizeof m->position[i]);
         if (m->normal)
@@ -185,21 +213,18 @@ relume_status relume_mesh_check(const char *path, const struct relume_mesh_param
     return status ? status : relume_file_check(path, p.log);
 }
 
-relume_status relume_mesh_write(const struct relume_mesh *mesh, const char *path,
-                                const struct relume_mesh_params *params)
+typedef relume_status writer(struct sink *to, const struct relume_mesh *mesh, const char *path,
+                             const struct relume_log *log);
+
+static relume_status write_file(writer *write, const struct relume_mesh *mesh, const char *path,
+                                const struct relume_log *log)
 {
-    const struct relume_mesh_params p = PARAMS(relume_mesh_params, params);
-    const struct format *format = NULL;
     struct sink to = {.buffer = NULL};
-    relume_status status = find(&format, path, p.log);
-    if (!status)
-        status = check_mesh(mesh, path, p.log);
-    if (!status)
-        status = outfile_open(&to.file, path, NULL, p.log);
+    relume_status status = outfile_open(&to.file, path, NULL, log);
     if (!status && !(to.buffer = mem_array(SINK_BYTES, 1)))
         status = RELUME_ENOMEM;
     if (!status)
-        status = format->write(&to, mesh, path, p.log);
+        status = write(&to, mesh, path, log);
     if (!status)
         flush(&to);
     if (!status)
@@ -209,4 +234,32 @@ relume_status relume_mesh_write(const struct relume_mesh *mesh, const char *path
     outfile_abort(&to.file);
     mem_free(to.buffer);
     return status;
+}
+
+// "cow.obj": "cow.mtl".
+static relume_status write_beside(const struct relume_mesh *mesh, const char *path,
+                                  const struct relume_log *log)
+{
+    const size_t stem = (size_t)(strrchr(path, '.') - path);
+    char *name = mem_array(stem + sizeof ".mtl", 1);
+    if (!name)
+        return RELUME_ENOMEM;
+    memcpy(name, path, stem);
+    memcpy(name + stem, ".mtl", sizeof ".mtl");
+    const relume_status status = write_file(write_library, mesh, name, log);
+    mem_free(name);
+    return status;
+}
+
+relume_status relume_mesh_write(const struct relume_mesh *mesh, const char *path,
+                                const struct relume_mesh_params *params)
+{
+    const struct relume_mesh_params p = PARAMS(relume_mesh_params, params);
+    const struct format *format = NULL;
+    relume_status status = find(&format, path, p.log);
+    if (!status)
+        status = check_mesh(mesh, path, p.log);
+    if (!status && format->write == mesh_write_obj && has_library(mesh))
+        status = write_beside(mesh, path, p.log);
+    return status ? status : write_file(format->write, mesh, path, p.log);
 }

@@ -19,6 +19,10 @@ struct sink {
 void sink_put(struct sink *s, const void *bytes, size_t size);
 __attribute__((format(printf, 2, 3))) void sink_print(struct sink *s, const char *format, ...);
 
+// The name of the mesh's picture as its file `path` says it: without the folder, where that is the
+// same.
+const char *mesh_write_picture(const struct relume_mesh *mesh, const char *path);
+
 // The three formats. Failure is the sink's, but for what cannot be written at all.
 relume_status mesh_write_obj(struct sink *to, const struct relume_mesh *mesh, const char *path,
                              const struct relume_log *log);

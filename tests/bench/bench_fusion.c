@@ -113,6 +113,22 @@ static void to_mesh(const struct relume_mesh *m, relume_pack *pack, double voxel
     print("what pixels see to mesh", &d, voxel);
 }
 
+// What the relit views lose in colours of vertices, and in a picture.
+static void colours(relume_pack *pack, int block, double voxel)
+{
+    for (int side = 0; side <= 2048; side = side ? 4 * side : 512) {
+        struct relume_mesh mesh;
+        struct relume_fusion_report r;
+        bench_check(relume_fusion(
+            &mesh, &r, pack,
+            relume_fusion_params(.block = block, .judge = true, .voxel = voxel, .texture = side)));
+        printf("  colours, texture of %d: %.2f dB over %.2f %%\n", side, r.psnr_db,
+               100.0 * r.shown);
+        relume_image_destroy(&r.picture);
+        relume_mesh_free(&mesh);
+    }
+}
+
 int main(int argc, char **argv)
 {
     if (argc < 3)
@@ -131,6 +147,7 @@ int main(int argc, char **argv)
                mesh.triangle_count, r.voxel, r.size[0], r.size[1], r.size[2], r.seconds);
         to_scene(&mesh, scene->tracer, r.voxel);
         to_mesh(&mesh, pack, r.voxel);
+        colours(pack, block, r.voxel);
         relume_mesh_free(&mesh);
     }
     relume_pack_destroy(&pack);

@@ -96,4 +96,14 @@ if [ $? = 1 ] && [ "$(head -n 1 out.txt)" = "bad.exr: part 'group0000', rows 0 t
 if "$RELUME" check bad.exr --json 2>err.txt | grep -q '"column": 1, "row": 0, "x": 512, "y": 0, "width": 16, "height": 8}'; then ok 'and as JSON'; else not_ok 'and as JSON' "$(cat err.txt)"; fi
 check 'info reads no tiles' "$RELUME" info bad.exr
 check 'whole files have no lost tiles' "$RELUME" check two.exr
+
+# ---- as coarse as is not seen
+"$sphere" tiny --size 16 --lights 4 >/dev/null
+expect_ok 'the smallest file by what is seen' 'differ by less than .* JND' "$RELUME" encode tiny -o seen.exr --basis pca --jnd 20
+"$RELUME" eval seen.exr tiny --jnd --json >eval.json
+below 'its worst photograph differs by no more' "$(field jnd_99_worst eval.json)" 20
+above 'and hardly less' "$(field jnd_99_worst eval.json)" 12
+relume encode tiny -o fine.exr --basis pca --psnr 50
+check 'it is smaller than a fine one' test "$(wc -c <seen.exr)" -lt "$(wc -c <fine.exr)"
+expect_fail 'a PSNR besides' 2 'expected without --psnr' none.exr "$RELUME" encode tiny -o none.exr --jnd 20 --psnr 40
 finish

@@ -66,6 +66,27 @@ above 'of some triangles' "$(field triangles json)" 100
 "$RELUME" mesh box.exr -o coarse.ply --voxel 0.2 --json -q >json2
 below '--voxel makes it coarser' "$(field triangles json2)" "$(field triangles json)"
 expect_ok 'which is an object' - "$RELUME" mesh box.ply -o box.obj -q
+# ---- its colours as a picture, held against the relit views; and the mesh in the way of light
+mkdir painted
+"$RELUME" mesh box.exr -o painted/box.obj --texture 256 --json >json 2>err || not_ok 'a texture of the relit colours' "$(cat err)"
+above 'it shows the views, dB' "$(field psnr_db json)" 24
+above 'nearly all of them' "$(field shown json)" 0.95
+check 'materials name the picture' grep -qx 'map_Kd box.png' painted/box.mtl
+"$RELUME" mesh box.exr -o painted/dark.obj --texture 256 --light 'dir 0 0 1 rgb .1 .1 .1' -q
+below 'in the light that is asked for' "$(psnr painted/box.png painted/dark.png)" 20
+"$RELUME" mesh painted/box.obj -o painted/box.glb -q
+check 'glTF holds it' grep -qa 'image/png' painted/box.glb
+expect_fail 'too few texels for all charts' 1 'too small for [0-9]+ charts' x.obj "$RELUME" mesh box.exr -o x.obj --texture 16
+check 'and nothing beside it' test ! -e x.png -a ! -e x.mtl
+expect_fail 'a texture without colours' 2 'expected one of them' x.obj "$RELUME" mesh box.exr -o x.obj --texture 64 --no-colours
+printf 'v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\n' >card.obj
+card='{"mesh": "card.obj", "parts": [{"material": {"diffuse": 0.8}}]}'
+printf '{"format": "relume-objects", "version": 1, "objects": [%s]}' "$card" >open.json
+printf '{"format": "relume-objects", "version": 1, "objects": [%s, {"mesh": "painted/box.obj"}]}' "$card" >shut.json
+behind='--eye 0,0,-0.1 --look-at 0,0,-1 --fov 40 --picture 16x16 -q'
+for f in open shut; do "$RELUME" btf render $f.json -o $f.exr $behind --light 'dir 0 0 1'; done
+"$RELUME" compare open.exr shut.exr --json >json
+below 'a card behind it is in its shadow' "$(awk -v r="$(field rms json)" 'BEGIN { print (r - 0.8) ^ 2 }')" 1e-3
 expect_fail 'nothing is near enough' 1 'none of the depth is finite' x.ply "$RELUME" mesh box.exr -o x.ply --farthest 0.1
 "$sphere" flat --size 16 --lights 4 >/dev/null 2>&1 && "$RELUME" encode flat -o flat.exr --no-depth -q &&
     expect_fail 'a file without depth' 1 'no depth' x.ply "$RELUME" mesh flat.exr -o x.ply

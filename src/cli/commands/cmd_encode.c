@@ -2,6 +2,7 @@
 #include "book_options.h"
 #include "cli.h"
 #include "encode_parts.h"
+#include "encode_seen.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +22,7 @@ struct encode_options {
     enum relume_pyramid pyramid;
     enum wander { WANDER_DEFAULT, WANDER_AUTO, WANDER_YES, WANDER_NO } shadows, highlights;
     struct relume_transfer transfer;
-    double quality, psnr, bytes_per_pixel, ridge, assume_depth;
+    double quality, psnr, jnd, bytes_per_pixel, ridge, assume_depth;
     unsigned luminance;
     bool robust, force, no_depth, skip_missing, repair, allow_outside;
     struct book_options books;
@@ -52,6 +53,10 @@ static const struct option options[] = {
     NUMBER("--psnr", psnr, "DB",
            "compress with loss: the smallest file that reproduces the photographs at this PSNR", 10,
            60),
+    NUMBER("--jnd", jnd, "J",
+           "compress with loss: the smallest file in which 99 % of the pixels of every photograph "
+           "differ by less than J just noticeable differences; encodes several times",
+           0.05, 100),
     NUMBER("--bytes-per-pixel", bytes_per_pixel, "B",
            "compress with loss: the best quality within this many bytes per pixel of each view",
            1e-3, 100),
@@ -134,6 +139,7 @@ struct request {
     struct options_text options;
     const char *learnt;  // a folder, or NULL
     bool learn_only;
+    bool silent;  // a trial, of which others speak
 };
 
 static bool is_coded(const struct request *r)
@@ -688,7 +694,7 @@ static relume_status encode_team(const struct args *args, struct request *r,
     if (!status && (!r->learn_only || has_steps(r, capture)))
         status = (args->team ? write_together(args, capture, coder, r, &report)
                              : write_file(capture, coder, r, &report));
-    if (!status && !r->learn_only && !(args->team && args->team->member)) {
+    if (!status && !r->learn_only && !r->silent && !(args->team && args->team->member)) {
         say_census(args, r, &report.census, relume_capture_hemispherical(capture));
         say_result(args, capture, coder, &report, r);
         if ((r->bits || r->pack.parts) && !is_coded(r) && relume_encode_is_coarse(&report))
@@ -798,6 +804,18 @@ static relume_status check_parts(const struct encode_options *o, const struct re
     return RELUME_OK;
 }
 
+// A trial of --jnd: the same request at a PSNR.
+static relume_status encode_at(void *context, const struct args *args, double psnr_db,
+                               const char *output)
+{
+    struct request r = *(const struct request *)context;
+    r.output = output;
+    r.pack.psnr_db = psnr_db;
+    r.pack.log = r.open.log = args->log;
+    r.silent = true;
+    return encode(args, &r);
+}
+
 static relume_status run(const struct args *args)
 {
     static const char *const not_kept[] = {"-o",       "--part",       "--commands",
@@ -836,7 +854,7 @@ static relume_status run(const struct args *args)
                  .compression = o->compression,
                  .pyramid = o->pyramid,
                  .no_depth = o->no_depth,
-                 .psnr_db = o->psnr,
+                 .psnr_db = o->jnd > 0.0 ? RELUME_USUAL_DB : o->psnr,
                  .bytes_per_pixel = o->bytes_per_pixel,
                  .share = o->books.share,
                  .part = o->part.part,
@@ -869,6 +887,10 @@ static relume_status run(const struct args *args)
             "--psnr and --bytes-per-pixel choose bits, step and compression; expected "
             "one of the two, without --bits, --step, --compression, --quality and "
             "--codebook");
+    if (o->jnd > 0.0 && (o->psnr > 0.0 || o->bytes_per_pixel > 0.0 || o->part.parts ||
+                         o->commands || o->learnt || args->team))
+        return usage_error("--jnd encodes several times and compares; expected without --psnr, "
+                           "--bytes-per-pixel, and of one process");
     if (is_coded(&r) && o->domain.display.curve == RELUME_CURVE_LOG)
         return usage_error("--psnr and --bytes-per-pixel are about what a screen shows; expected "
                            "them without --domain log");
@@ -881,6 +903,13 @@ static relume_status run(const struct args *args)
         status = check_parts(o, &r);
     if (!status && o->commands)
         print_commands_of_parts(args, o->output, o->commands, !o->learnt);
+    if (!status && o->jnd > 0.0)
+        return encode_seen(args, &(const struct encode_seen){.jnd = o->jnd,
+                                                             .input = r.input,
+                                                             .output = r.output,
+                                                             .open = r.open,
+                                                             .trial = encode_at,
+                                                             .context = &r});
     return status || o->commands ? status : encode(args, &r);
 }
 

@@ -2,12 +2,13 @@
 #include "cli.h"
 
 #include <math.h>
+#include <string.h>
 
 struct eval_options {
     struct args args;
     struct relume_transfer transfer;
     double assume_depth;
-    bool skip_missing, json, allow_outside;
+    bool skip_missing, json, allow_outside, jnd;
 };
 #define OPTIONS struct eval_options
 
@@ -22,6 +23,7 @@ static const struct option options[] = {
            1e9),
     GROUP("output"),
     FLAG("--json", json, "one JSON object"),
+    FLAG("--jnd", jnd, "also what people see of the differences, in just noticeable ones"),
     {0},
 };
 
@@ -36,6 +38,8 @@ static void print_json(const struct relume_evaluation *e)
         {"psnr_pooled_db", e->psnr_pooled_db},
         {"ssim", e->ssim},
         {"delta_e", e->delta_e},
+        {"jnd_99", e->jnd},
+        {"jnd_99_worst", e->jnd_worst},
         {"file_bytes", e->file_bytes},
         {"bits_per_pixel", e->bits_per_pixel},
         {"raw_bytes", e->raw_bytes},
@@ -44,6 +48,8 @@ static void print_json(const struct relume_evaluation *e)
     printf("{\"views\": %d, \"lights\": %d, \"width\": %d, \"height\": %d", e->views, e->lights,
            e->width, e->height);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (!strncmp(rows[i].name, "jnd", 3) && !isfinite(rows[i].value))
+            continue;
         printf(", \"%s\": ", rows[i].name);
         if (rows[i].value == floor(rows[i].value))  // bytes as they are
             printf("%.0f", rows[i].value);
@@ -76,6 +82,9 @@ static void print_text(const struct relume_evaluation *e)
     if (isfinite(e->ssim))
         printf("SSIM      %.4f\n", e->ssim);
     printf("deltaE    %.3f (CIEDE2000)\n", e->delta_e);
+    if (isfinite(e->jnd))
+        printf("JND       %.2f (1 %% of the pixels exceed it; mean over images), worst %.2f\n",
+               e->jnd, e->jnd_worst);
     printf("RMS       %.5f (linear)\n", e->rms);
     printf("file      %.0f bytes, %.3f bits per pixel and view\n", e->file_bytes,
            e->bits_per_pixel);
@@ -98,10 +107,11 @@ static relume_status run(const struct args *args)
                                                       .allow_outside = o->allow_outside,
                                                       .assume_depth = o->assume_depth));
     if (!status)
-        status = relume_evaluate(
-            &evaluation, pack, capture,
-            relume_evaluate_params(.log = o->args.log, .file = o->args.input[0],
-                                   .capture = o->args.input[1], .threads = o->args.threads));
+        status =
+            relume_evaluate(&evaluation, pack, capture,
+                            relume_evaluate_params(.log = o->args.log, .file = o->args.input[0],
+                                                   .capture = o->args.input[1],
+                                                   .threads = o->args.threads, .jnd = o->jnd));
     if (!status)
         (o->json ? print_json : print_text)(&evaluation);
     relume_evaluation_destroy(&evaluation);

@@ -81,6 +81,8 @@ static relume_status run(const struct args *args)
         return convert(o);
     if (o->blocks.count > 1)
         return usage_error("--block: expected one number for depth");
+    if (o->depth.texture && o->depth.no_colours)
+        return usage_error("--texture: not with --no-colours; expected one of them");
     return mesh_of_depth(args, &o->depth, block, o->output, o->json);
 }
 

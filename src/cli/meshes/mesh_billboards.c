@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct billboards_options {
     struct args args;
@@ -36,17 +35,6 @@ static const struct option options[] = {
            1.0),
     {0},
 };
-
-// "cow.obj": "cow.png".
-static char *sheet_name(const char *output)
-{
-    const char *dot = strrchr(output, '.');
-    const size_t base = dot ? (size_t)(dot - output) : strlen(output);
-    char *name = malloc(base + 5);
-    if (name)
-        snprintf(name, base + 5, "%.*s.png", (int)base, output);
-    return name;
-}
 
 static void print(const struct billboards_options *o, const struct relume_billboards *cloud,
                   const struct relume_image *picture, double longest, double seconds)
@@ -88,19 +76,6 @@ static relume_status load_colour(struct relume_image *colour, const struct relum
     return relume_image_load(colour, mesh->picture, relume_image_params(.log = log));
 }
 
-// The quads appear last: they need the picture.
-static relume_status write(const struct billboards_options *o, const struct relume_mesh *quads,
-                           const struct relume_image *picture, const char *png)
-{
-    relume_status status = relume_image_save(picture, png, relume_image_params(.log = o->args.log));
-    if (status)
-        return status;
-    status = relume_mesh_write(quads, o->output, relume_mesh_params(.log = o->args.log));
-    if (status)
-        remove(png);
-    return status;
-}
-
 static relume_status make(const struct billboards_options *o, char *png)
 {
     const struct relume_log *log = o->args.log;
@@ -122,13 +97,11 @@ static relume_status make(const struct billboards_options *o, char *png)
         status = relume_billboards_sheet(&quads, &picture, &cloud, &mesh,
                                          colour.data ? &colour : NULL, log);
     const double seconds = mesh_clock() - start;
-    quads.picture = png;
     quads.cut_out = true;
     if (!status)
-        status = write(o, &quads, &picture, png);
+        status = mesh_write_both(&quads, o->output, &picture, png, log);
     if (!status)
         print(o, &cloud, &picture, longest_side(&mesh), seconds);
-    quads.picture = NULL;
     relume_mesh_free(&mesh);
     relume_mesh_free(&quads);
     relume_billboards_free(&cloud);
@@ -144,7 +117,7 @@ static relume_status run(const struct args *args)
         return usage_error("--billboards: not with --error; expected one of them");
     if (o->count && o->method == RELUME_BILLBOARDS_GREEDY)
         return usage_error("--billboards: of clusters only; expected --error with greedy");
-    char *png = sheet_name(o->output);
+    char *png = mesh_picture_name(o->output);
     relume_status status = relume_mesh_check(o->output, relume_mesh_params(.log = args->log));
     if (!status && !png)
         status = RELUME_ENOMEM;

@@ -1,6 +1,8 @@
 // mesh_depth.c - relume mesh FILE.exr: the depth of all views as one surface
 #include "meshes/mesh_depth.h"
 
+#include <stdlib.h>
+
 static void print(const struct args *args, const struct mesh_made *made,
                   const struct relume_fusion_report *r, bool json)
 {
@@ -8,14 +10,21 @@ static void print(const struct args *args, const struct mesh_made *made,
         mesh_say(args, made);
         announce(args, RELUME_NOTE, "voxels of %.4g, %d x %d x %d", r->voxel, r->size[0],
                  r->size[1], r->size[2]);
+        if (r->picture.data)
+            announce(args, RELUME_NOTE,
+                     "shows the relit views at %.1f dB PSNR, over %.1f %% of their surface",
+                     r->psnr_db, 100.0 * r->shown);
         return;
     }
     putchar('{');
     mesh_print_json(made);
     printf(", \"voxel\": ");
     json_number(stdout, r->voxel);
-    printf(", \"volume\": [%d, %d, %d], \"unseen\": %zu}\n", r->size[0], r->size[1], r->size[2],
+    printf(", \"volume\": [%d, %d, %d], \"unseen\": %zu", r->size[0], r->size[1], r->size[2],
            r->unseen);
+    if (r->picture.data)
+        printf(", \"psnr_db\": %.4f, \"shown\": %.6f", r->psnr_db, r->shown);
+    puts("}");
 }
 
 static relume_status fuse(struct relume_mesh *mesh, struct relume_fusion_report *report,
@@ -33,6 +42,7 @@ static relume_status fuse(struct relume_mesh *mesh, struct relume_fusion_report 
                                                .threads = args->threads, .voxel = o->voxel,
                                                .farthest = o->farthest, .block = block,
                                                .no_colours = o->no_colours, .lights = lights,
+                                               .texture = o->texture, .judge = o->texture > 0,
                                                .light_count = count));
     relume_pack_destroy(&pack);
     return status;
@@ -47,13 +57,18 @@ relume_status mesh_of_depth(const struct args *args, const struct depth_options 
     relume_rig *rig = NULL;
     const struct relume_light *lights = NULL;
     int count = 0;
+    char *png = o->texture ? mesh_picture_name(output) : NULL;
     relume_status status = relume_mesh_check(output, p);
+    if (!status && o->texture)
+        status = png ? relume_file_check(png, args->log) : RELUME_ENOMEM;
     if (!status && (o->lighting.light.count || o->lighting.rig))
         status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)
         status = fuse(&mesh, &report, args, o, block, lights, count);
     if (!status)
-        status = relume_mesh_write(&mesh, output, p);
+        status = report.picture.data
+                     ? mesh_write_both(&mesh, output, &report.picture, png, args->log)
+                     : relume_mesh_write(&mesh, output, p);
     if (!status)
         print(args,
               &(const struct mesh_made){.output = output,
@@ -64,5 +79,7 @@ relume_status mesh_of_depth(const struct args *args, const struct depth_options 
               &report, json);
     relume_rig_destroy(&rig);
     relume_mesh_free(&mesh);
+    relume_image_destroy(&report.picture);
+    free(png);
     return status;
 }

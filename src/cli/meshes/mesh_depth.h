@@ -9,6 +9,7 @@ struct depth_options {
     struct light_options lighting;
     double voxel, farthest;
     bool no_colours;
+    int texture;
 };
 // Rows of a table of options.
 #define DEPTH_ROWS                                                                                 \
@@ -20,6 +21,9 @@ struct depth_options {
         NUMBER("--farthest", depth.farthest, "D",                                                  \
                "leave out what is farther from the eye, as a sky with depth", 1e-9, 1e9),          \
         FLAG("--no-colours", depth.no_colours, "without the colours of the photographs"),          \
+        INT("--texture", depth.texture, "N",                                                       \
+            "colours as a picture of N x N texels, OUT.png, in place of colours of vertices", 16,  \
+            16384),                                                                                \
         TEXTS("--light", depth.lighting.light, "SPEC",                                             \
               "relight the photographs by it (docs/lights.md); repeats; default: a frontal one, "  \
               "in panoramas from all sides"),                                                      \

@@ -15,6 +15,14 @@ struct mesh_made {
     const struct relume_isosurface_report *report;  // of an isosurface, or NULL
     int block;
 };
+// The name of the picture that belongs to a mesh: "cow.obj": "cow.png". The caller frees it; NULL
+// when memory is short.
+char *mesh_picture_name(const char *output);
+// The picture first, then the mesh, which needs it and says its name; of both or neither. `mesh` is
+// left as it was.
+relume_status mesh_write_both(struct relume_mesh *mesh, const char *output,
+                              const struct relume_image *picture, char *png,
+                              const struct relume_log *log);
 void mesh_print_json(const struct mesh_made *m);
 void mesh_say(const struct args *args, const struct mesh_made *m);
 

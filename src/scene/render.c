@@ -158,7 +158,10 @@ static void flush(struct batch *b, const tracer *rays, const float light[3], boo
                   float (*sum)[3])
 {
     bool seen[BATCH];
-    (near ? trace_seen : trace_unblocked)(rays, b->origin, b->count, light, seen);
+    if (near)
+        trace_seen(rays, b->origin, b->count, light, seen);
+    else
+        trace_unblocked(rays, b->origin, b->count, light, seen);
     for (int i = 0; i < b->count; i++)
         for (int c = 0; seen[i] && c < 3; c++)
             sum[b->pixel[i]][c] += b->value[i][c];

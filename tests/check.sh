@@ -1,6 +1,6 @@
 #!/bin/sh
-# Run every test of one build: check.sh BUILD_FOLDER. Each on its own, under a time limit, as many at
-# once as there are cores: most of a script's time is the tool's start. Prints what failed, what each
+# Run every test of one build: check.sh BUILD_FOLDER. Each on its own, under a time limit, one more at
+# once than there are cores: some wait for what hangs. Prints what failed, what each
 # test counted and took, and, last, "N passed, N failed, N skipped". Test scripts print one line a case:
 # "ok NAME", "not ok NAME: why" or "skipped: why".
 set -u
@@ -56,7 +56,7 @@ report() { # test
 
 tests >"$logs/list"
 while read -r t; do printf '%s\n%s\n' "$t" "$(log_of "$t")"; done <"$logs/list" |
-    xargs -n 2 -P "$(nproc)" sh -c \
+    xargs -n 2 -P "$(($(nproc) + 1))" sh -c \
         'a=$(date +%s); timeout "${TEST_LIMIT_S:-300}" "$0" >"$1" 2>&1; echo $? >"$1.status"; echo $(($(date +%s) - a)) >"$1.seconds"'
 while read -r t; do report "$t"; done <"$logs/list"
 echo "$passed passed, $failed failed, $skipped skipped"

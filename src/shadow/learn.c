@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/lsq.h"
 #include "math/luminance.h"
 
@@ -187,12 +188,21 @@ static bool carve(struct looked *l, const struct relume_log *log)
 
 // ---------------------------------------------------------------- matte
 
-// The nearer of the two neighbours of a pixel along x or y, seen from it.
-static bool step(vec3 *out, const struct stage *s, vec3 p, double x, double y, double dx, double dy)
+// The surface at the middle of a pixel; false outside, and for background. Panoramas go around.
+static bool middle(vec3 *out, const struct stage *s, int x, int y)
+{
+    if (s->kind == STAGE_CYLINDER || s->kind == STAGE_SPHERE)
+        x = index_wrapped(x, s->width);
+    return x >= 0 && x < s->width && y >= 0 && y < s->height &&
+           stage_point(out, s, x + 0.5, y + 0.5);
+}
+
+// Between a pixel and the nearer of its two neighbours along x or y, in that direction.
+static bool step(vec3 *out, const struct stage *s, vec3 p, int x, int y, int dx, int dy)
 {
     vec3 before, behind;
-    const bool has_before = stage_point(&before, s, x - dx, y - dy),
-               has_behind = stage_point(&behind, s, x + dx, y + dy);
+    const bool has_before = middle(&before, s, x - dx, y - dy),
+               has_behind = middle(&behind, s, x + dx, y + dy);
     if (!has_before && !has_behind)
         return false;
     before = vec3_sub(p, before);
@@ -203,14 +213,16 @@ static bool step(vec3 *out, const struct stage *s, vec3 p, double x, double y, d
     return true;
 }
 
-// Towards the eye, in the world; zero where there are no neighbours.
-static vec3 normal_at(const struct stage *s, vec3 p, double x, double y)
+// Towards the eye, in the world; zero where neighbours do not tell.
+static vec3 normal_at(const struct stage *s, vec3 p, int x, int y)
 {
     vec3 across, down;
-    if (!step(&across, s, p, x, y, 1.0, 0.0) || !step(&down, s, p, x, y, 0.0, 1.0))
+    if (!step(&across, s, p, x, y, 1, 0) || !step(&down, s, p, x, y, 0, 1))
         return (vec3){0.0, 0.0, 0.0};
     vec3 n = vec3_cross(down, across);
     const vec3 eye = s->kind == STAGE_FLAT ? (vec3){0.0, 0.0, -s->axis} : vec3_scale(p, -1.0);
+    if (!(vec3_dot(n, n) > 0.0))
+        return (vec3){0.0, 0.0, 0.0};
     if (vec3_dot(n, eye) < 0.0)
         n = vec3_scale(n, -1.0);
     return relume_pose_turn(&s->pose, vec3_unit(n));
@@ -261,7 +273,7 @@ static void fit_row(void *context, size_t y, int worker)
             continue;
         for (int c = 0; c < 3; c++)
             model[RELUME_SHADOW_COLOUR + c] = colour[c] / grey;
-        fit_pixel(l, pixel, p, normal_at(&l->stage, p, (double)x + 0.5, (double)y + 0.5),
+        fit_pixel(l, pixel, p, normal_at(&l->stage, p, (int)x, (int)y),
                   model + RELUME_SHADOW_MATTE);
     }
 }

@@ -11,6 +11,19 @@ function demand(good, what) {
 const whole = (value, least, most) => Number.isInteger(value) && value >= least && value <= most;
 const three = (list) => Array.isArray(list) && list.length === 3 && list.every(Number.isFinite);
 
+// [coefficients][functions]; where there is none they are the same.
+function transformOf(basis, n) {
+    const count = n * basis.functions;
+    if (basis.transform === undefined)
+        return Float32Array.from({ length: count }, (_, i) => (i % (basis.functions + 1) === 0 ? 1 : 0));
+    let text = '';
+    try {
+        text = atob(basis.transform);
+    } catch { /* it is damaged */ }
+    demand(text.length === 4 * count, 'its transform is damaged');
+    return new Float32Array(Uint8Array.from(text, (c) => c.charCodeAt(0)).buffer);
+}
+
 function checkObject(o) {
     demand(o && o.format === 'relume-web-object', 'not an object of relume publish');
     demand(whole(o.version, 1, 1e6), 'no version');
@@ -23,9 +36,11 @@ function checkObject(o) {
     o.views = o.side * o.side;
     o.vectors = o.clusters * (1 + o.components) * o.views;
     demand(o.vectors <= MOST_VECTORS, 'views, clusters or components');
-    const b = o.basis;
+    const { basis: b } = o;
     demand(o.fixed === true || (b && typeof b.name === 'string' && b.coefficients === o.coefficients && Array.isArray(b.lights) &&
-        b.lights.length % 3 === 0 && whole(b.lights.length / 3, 1, 4096) && b.lights.every(Number.isFinite)), 'no basis');
+        b.lights.length % 3 === 0 && whole(b.lights.length / 3, 1, 4096) && b.lights.every(Number.isFinite) && whole(b.functions, 1, 4096)), 'no basis');
+    if (!o.fixed)
+        b.transform = transformOf(b, o.coefficients);
 }
 
 // What half floats mean.

@@ -34,13 +34,12 @@ export class ObjectViewer {
         this.resize();
     }
 
-    // The basis that the object was baked in, by functions of its own.
+    // The basis that the object was baked in, in all three colours the same.
     openBasis({ basis, coefficients: n }) {
-        const transform = new Float32Array(3 * n * n);
+        const { functions, transform: own } = basis, transform = new Float32Array(3 * n * functions);
         for (let c = 0; c < 3; c++)
-            for (let k = 0; k < n; k++)
-                transform[(c * n + k) * n + k] = 1;
-        return Basis.open({ basis: { ...basis, parameter: [] }, functions: n, planes: n, transform, mean: new Float32Array(3 * n) }, this.home);
+            transform.set(own, c * n * functions);
+        return Basis.open({ basis: { ...basis, parameter: [] }, functions, planes: n, transform, mean: new Float32Array(3 * functions) }, this.home);
     }
 
     reset() {

@@ -10,13 +10,14 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/exr.h"
+#include "math/base64.h"
 #include "publish/picture.h"
 
 #include <math.h>
 #include <relume/object.h>
 #include <string.h>
 
-enum { POSTER_WIDTH = 800, POSTER_HEIGHT = 600, MOST_CODE = 65535 };
+enum { POSTER_WIDTH = 640, POSTER_HEIGHT = 480, MOST_CODE = 65535 };
 // What browsers take: a texture's side, colours under a light, all numbers.
 enum { MOST_SIDE = 4096, MOST_VECTORS = 1 << 22, MOST_BYTES = 1 << 28 };
 
@@ -251,16 +252,24 @@ static void put_text(FILE *f, const char *key, const char *value)
     fputs(",\n", f);
 }
 
-static void put_basis(FILE *f, const struct baked_basis *b, const struct relume_basis *basis)
+// Functions of the light by name and lights; the basis is `transform` times these, where it has
+// one.
+static void put_basis(FILE *f, const struct baked_basis *b)
 {
-    fprintf(
-        f,
-        "  \"basis\": {\"name\": \"%s\", \"coefficients\": %d, \"pole\": \"y\",\n    \"lights\": [",
-        basis->name, b->count);
+    const struct relume_coder_info *info = relume_coder_info(b->coder);
+    const size_t n = (size_t)b->count * (size_t)info->functions;
+    fprintf(f, "  \"basis\": {\"name\": \"%s\", \"coefficients\": %d, \"pole\": \"y\",",
+            info->basis->name, b->count);
+    if (info->transform) {
+        fputs("\n    \"transform\": \"", f);
+        base64_print(f, (const uint8_t *)info->transform, n * sizeof *info->transform);
+        fputs("\",", f);
+    }
+    fputs("\n    \"lights\": [", f);
     for (int i = 0; i < b->directions; i++)
         fprintf(f, "%s%.9g, %.9g, %.9g", i ? ", " : "", b->direction[i].x, b->direction[i].y,
                 b->direction[i].z);
-    fputs("]},\n", f);
+    fprintf(f, "], \"functions\": %d},\n", info->functions);
 }
 
 static relume_status write_json(const struct site *site, const struct page *page,
@@ -281,7 +290,7 @@ static relume_status write_json(const struct site *site, const struct page *page
     put_text(f, "object", page->details.object);
     put_text(f, "description", page->details.description);
     if (!i->fixed)
-        put_basis(f, &b->basis, i->basis);
+        put_basis(f, &b->basis);
     fprintf(f, "  \"fixed\": %s, \"coefficients\": %d,\n", i->fixed ? "true" : "false", b->kept);
     fprintf(
         f, "  \"width\": %d, \"height\": %d, \"side\": %d, \"clusters\": %d, \"components\": %d,\n",

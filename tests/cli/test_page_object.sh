@@ -80,8 +80,8 @@ for page in any shiny fixed; do
 done
 browse
 for shot in $shots; do
-    # weights are 8 bits and components halves: on the mean less than one step of 255
-    below "${shot%:*}: the page shows relume btf render (${shot#*:})" "$("$mkimage" codediff page${shot#*:}.png tool${shot#*:}.png)" 1
+    # weights are 8 bits and components halves; here 0.01 to 0.02, and 7 between two lights
+    below "${shot%:*}: the page shows relume btf render (${shot#*:})" "$("$mkimage" codediff page${shot#*:}.png tool${shot#*:}.png)" 0.25
 done
 says 'the state comes back' '^"eye=0,0,9&light=dir,0,0.6,0.8&later=1"'
 says 'what cannot be shown is said' '^"This link asks for what cannot be shown \(light, eye, at\)'

@@ -97,7 +97,10 @@ CLI_C    := $(wildcard src/program/*.c src/cli/*.c src/cli/*/*.c)
 VIEWER_C := $(wildcard src/program/*.c viewer/*/*.c)
 VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 # What `relume publish` puts into every site; the core is compiled by make web
-WEB_JS   := $(wildcard web/*.js)
+WEB_OBJECT := $(wildcard web/object*.js)
+WEB_JS   := $(filter-out $(WEB_OBJECT),$(wildcard web/*.js))
+# ... of which pages of objects have these, and nothing else
+WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js pointer.js shaders.js state.js wasm.js)
 WEB_CORE := $(wildcard web/core/relume-core.wasm)
 WEB_OPEN := $(wildcard web/open/relume-open.wasm web/open/licences.txt)
 WEB_CSS  := $(wildcard web/*.css)
@@ -226,11 +229,15 @@ $B/web/relume.js: scripts/join-web.sh $(WEB_JS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q)scripts/join-web.sh $(WEB_JS) > $@
+$B/web/relume-object.js: scripts/join-web.sh $(WEB_OBJECT) $(WEB_SHARED)
+	@mkdir -p $(@D)
+	$(call say,GEN)
+	$(Q)scripts/join-web.sh $(WEB_OBJECT) $(WEB_SHARED) > $@
 $B/web/core.js: $(WEB_CORE)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q){ printf 'relume.putCore("'; base64 -w0 $<; printf '");\n'; } > $@
-$B/obj/web/assets.c: scripts/embed-web.sh $B/web/relume.js $B/web/core.js $(WEB_CORE) $(WEB_OPEN) $(WEB_CSS)
+$B/obj/web/assets.c: scripts/embed-web.sh $B/web/relume.js $B/web/relume-object.js $B/web/core.js $(WEB_CORE) $(WEB_OPEN) $(WEB_CSS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q)scripts/embed-web.sh $(foreach f,$(filter-out scripts/%,$^),$(notdir $f)=$f) > $@

@@ -27,11 +27,11 @@ export function handOut(content, type, name) {
     setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
-const hexOf = (rgb) => {
+export const hexOf = (rgb) => {
     const most = Math.max(...rgb, 1e-9);
     return `#${rgb.map((v) => Math.round(255 * (v / most) ** (1 / 2.2)).toString(16).padStart(2, '0')).join('')}`;
 };
-const colourOf = (hex) => [1, 3, 5].map((i) => (parseInt(hex.slice(i, i + 2), 16) / 255) ** 2.2);
+export const colourOf = (hex) => [1, 3, 5].map((i) => (parseInt(hex.slice(i, i + 2), 16) / 255) ** 2.2);
 
 const ICONS = {
     add: 'M12 5v14M5 12h14',
@@ -46,21 +46,21 @@ const ICONS = {
     move: 'M12 3v18M3 12h18M12 3l-2 3M12 3l2 3M12 21l-2-3M12 21l2-3M3 12l3-2M3 12l3 2M21 12l-3-2M21 12l-3 2',
 };
 
-function icon(name) {
+export function icon(name) {
     const svg = shape('svg', { viewBox: '0 0 24 24', 'aria-hidden': 'true' });
     svg.append(shape('path', { d: ICONS[name] }));
     return svg;
 }
 
-function button(name, title, act) {
+export function button(name, title, act) {
     return make('button', { type: 'button', title, 'aria-label': title, onclick: act }, icon(name));
 }
 
-function labelled(text, control) {
+export function labelled(text, control) {
     return make('label', {}, make('span', {}, text), control);
 }
 
-function slider(text, low, high, step, act) {
+export function slider(text, low, high, step, act) {
     const input = make('input', { type: 'range', min: low, max: high, step, 'aria-label': text, oninput: () => act(+input.value) });
     return input;
 }

@@ -20,12 +20,12 @@ function compileShader(gl, kind, text) {
     return shader;
 }
 
-// A program that draws rectangles with `fragment`; uniforms are set by name.
+// A program that draws rectangles with `fragment`, unless `vertex` is another shader; uniforms are set by name.
 class Program {
-    constructor(gl, fragment) {
+    constructor(gl, fragment, vertex = CORNERS) {
         this.gl = gl;
         this.id = gl.createProgram();
-        for (const [kind, text] of [[gl.VERTEX_SHADER, CORNERS], [gl.FRAGMENT_SHADER, fragment]])
+        for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])
             gl.attachShader(this.id, compileShader(gl, kind, text));
         gl.linkProgram(this.id);
         this.places = new Map();
@@ -79,9 +79,9 @@ export class Device {
         gl.disable(gl.DITHER);
     }
 
-    program(key, fragment) {
+    program(key, fragment, vertex) {
         if (!this.programs.has(key))
-            this.programs.set(key, new Program(this.gl, fragment()));
+            this.programs.set(key, new Program(this.gl, fragment(), vertex));
         return this.programs.get(key);
     }
 

@@ -9,7 +9,7 @@ precision highp sampler2D;
 precision highp sampler2DArray;
 `;
 
-const LUMINANCE = 'const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);\n';
+export const LUMINANCE = 'const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);\n';
 
 // Codes to linear light; odd, as relume_transfer_decode.
 export const DECODE = `
@@ -581,7 +581,7 @@ void main()
 
 // ---------------------------------------------------------------- presenting
 
-const TONES = `
+export const TONES = `
 uniform int tone;
 vec3 tone_apply(vec3 rgb)
 {

@@ -53,20 +53,21 @@ struct relume_publish_params {
 // What became of one file. Plain data.
 struct relume_publish_report {
     char name[64];         // of its page, without ".html", and of its folder
-    int views, planes;     // that its folder holds
+    int views, planes;     // that its folder holds; 0 of a baked object
     int quality;           // asked for or chosen; 0: by size or PSNR
     uint64_t bytes;        // of its folder, twins not counted
     uint64_t first_bytes;  // of these, what a page loads before it shows something
-    double psnr_db;        // of one view, mean over at most 16 lights, 8-bit sRGB, against the
-                           // file's own pictures
-    bool linear;           // its planes hold linear light
+    double psnr_db;  // of pictures: of one view, mean over at most 16 lights, 8-bit sRGB, against
+                     // the file's own pictures
+    bool linear;  // its planes hold linear light
 };
 
-// Publish `files`, `count` of them, whatever relume_open opens, as the folder `site`: whole or not
-// at all. `reports` (may be NULL) has room for `count`. RELUME_EINVAL (no file, no name; a folder
-// that is not empty, without `force` or that relume did not make), an input status, RELUME_EUNFIT
-// (a size or PSNR that cannot be reached), RELUME_EUNSUPPORTED (slabs around an object),
-// RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. Output bytes do not depend on `threads`.
+// Publish `files`, `count` of them, whatever relume_open or relume_baked_open opens, as the folder
+// `site`: whole or not at all. `reports` (may be NULL) has room for `count`. RELUME_EINVAL (no
+// file, no name; a folder that is not empty, without `force` or that relume did not make), an input
+// status, RELUME_EUNFIT (a size or PSNR that cannot be reached), RELUME_EUNSUPPORTED (slabs around
+// an object; baked objects of wavelets, of views apart or too large for a page), RELUME_EIO,
+// RELUME_ENOMEM, RELUME_ECANCEL. Output bytes do not depend on `threads`.
 RELUME_RESULT relume_status relume_publish(const char *const *files, int count, const char *site,
                                            struct relume_publish_report *reports,
                                            const struct relume_publish_params *params);

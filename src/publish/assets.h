@@ -12,6 +12,8 @@ struct asset {
 };
 // Which of them pages load as they load data, and only when a file is dropped onto one.
 #define ASSET_OPEN "relume-open.wasm"
+// What sites with objects have for their pages.
+#define ASSET_OBJECT "relume-object.js"
 extern const struct asset site_assets[];  // NULL ends the list
 
 #endif

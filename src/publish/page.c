@@ -5,6 +5,7 @@
 #include "publish/page.h"
 
 #include "base/memory.h"
+#include "publish/assets.h"
 
 #include <string.h>
 
@@ -40,7 +41,7 @@ static void put_open_graph(FILE *f, const struct site *site, const char *page, c
 }
 
 static void put_head(FILE *f, const struct site *site, const char *page, const char *poster,
-                     const struct details *d)
+                     const struct details *d, const char *script)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
@@ -49,10 +50,11 @@ static void put_head(FILE *f, const struct site *site, const char *page, const c
     fputs("</title>\n", f);
     put_open_graph(f, site, page, poster, d);
     fprintf(f, "<meta name=\"generator\" content=\"relume %s\">\n", RELUME_VERSION);
-    fputs("<link rel=\"stylesheet\" href=\"relume/relume.css\">\n"
-          "<link rel=\"stylesheet\" href=\"relume/site.css\">\n"
-          "<script src=\"relume/relume.js\" defer></script>\n</head>\n<body>\n",
-          f);
+    fprintf(f,
+            "<link rel=\"stylesheet\" href=\"relume/relume.css\">\n"
+            "<link rel=\"stylesheet\" href=\"relume/site.css\">\n"
+            "<script src=\"relume/%s\" defer></script>\n</head>\n<body>\n",
+            script);
 }
 
 static void put_row(FILE *f, const char *term, const char *value)
@@ -108,16 +110,31 @@ static void put_poster(FILE *f, const struct page *p, const char *more)
     fputs(", in one light\">", f);
 }
 
+// The element that shows a file, and what it reads.
+static const struct shown {
+    const char *script, *element, *source;
+} view = {"relume.js", "relume-view", "scene.json"},
+  object = {ASSET_OBJECT, "relume-object", "object.json"};
+
+static const struct shown *shown_by(const struct page *p)
+{
+    return p->object ? &object : &view;
+}
+
 // What another page needs to show the same: two lines of HTML.
 static void put_embedding(FILE *f, const struct site *site, const struct page *p)
 {
+    const struct shown *shown = shown_by(p);
+    char script[64];
+    snprintf(script, sizeof script, "relume/%s", shown->script);
     fputs("<details>\n<summary>Show this in your own page</summary>\n"
           "<pre><code>&lt;script src=&quot;",
           f);
-    site_put_address(f, site, "relume/relume.js");
-    fputs("&quot; defer&gt;&lt;/script&gt;\n&lt;relume-view src=&quot;", f);
+    site_put_address(f, site, script);
+    fprintf(f, "&quot; defer&gt;&lt;/script&gt;\n&lt;%s src=&quot;", shown->element);
     site_put_address(f, site, p->name);
-    fputs("/scene.json&quot;&gt;&lt;/relume-view&gt;</code></pre>\n</details>\n", f);
+    fprintf(f, "/%s&quot;&gt;&lt;/%s&gt;</code></pre>\n</details>\n", shown->source,
+            shown->element);
 }
 
 relume_status page_write(const struct site *site, const struct page *p, const char *site_title)
@@ -130,20 +147,24 @@ relume_status page_write(const struct site *site, const struct page *p, const ch
     if (status)
         return status;
     FILE *f = t.file;
-    put_head(f, site, name, poster, &p->details);
+    const struct shown *shown = shown_by(p);
+    put_head(f, site, name, poster, &p->details, shown->script);
     fputs("<nav><a href=\"index.html\">", f);
     text_html(f, site_title ? site_title : "All objects");
     fputs("</a></nav>\n<main>\n<h1>", f);
     text_html(f, p->details.title);
-    fprintf(f, "</h1>\n<relume-view src=\"%s/scene.json\" poster=\"%s\" title=\"", p->name, poster);
+    fprintf(f, "</h1>\n<%s src=\"%s/%s\" poster=\"%s\" title=\"", shown->element, p->name,
+            shown->source, poster);
     text_html(f, p->details.title);
     fputs("\"><noscript>", f);
     put_poster(f, p, "class=\"still\" ");
-    fputs("<p>This page needs JavaScript to move the light.</p></noscript></relume-view>\n", f);
+    fprintf(f, "<p>This page needs JavaScript to move the light.</p></noscript></%s>\n",
+            shown->element);
     put_description(f, &p->details);
     put_details(f, &p->details);
     put_embedding(f, site, p);
-    fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
+    if (!p->object)
+        fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
     fputs("</main>\n</body>\n</html>\n", f);
     return site_save_text(site, name, false, &t);
 }
@@ -165,7 +186,7 @@ relume_status page_write_open(const struct site *site)
     const relume_status status = text_open(&t);
     if (status)
         return status;
-    put_head(t.file, site, "open.html", NULL, &d);
+    put_head(t.file, site, "open.html", NULL, &d, view.script);
     fputs("<nav><a href=\"index.html\">All objects</a></nav>\n<main>\n<h1>Open a relume "
           "file</h1>\n",
           t.file);
@@ -187,7 +208,7 @@ relume_status page_write_index(const struct site *site, const struct page *pages
     if (status)
         return status;
     FILE *f = t.file;
-    put_head(f, site, "index.html", poster, &d);
+    put_head(f, site, "index.html", poster, &d, view.script);
     fputs("<main>\n<h1>", f);
     text_html(f, d.title);
     fputs("</h1>\n", f);

@@ -10,6 +10,7 @@ struct page {
     const char *name;  // of it and its folder
     struct details details;
     int poster_width, poster_height;
+    bool object;  // it is a baked object, which has a script of its own and no pictures for IIIF
 };
 
 // NAME.html; `site_title` is what its way back is called.

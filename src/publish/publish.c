@@ -10,6 +10,7 @@
 #include "publish/assets.h"
 #include "publish/iiif.h"
 #include "publish/names.h"
+#include "publish/object.h"
 #include "publish/page.h"
 #include "publish/picture.h"
 #include "publish/scene.h"
@@ -141,11 +142,16 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
     struct scene s = {
         .site = &here, .name = w->names[i], .details = page->details, .report = &report};
     memcpy(report.name, w->names[i], sizeof report.name);
-    relume_status status = open_file(&s.pack, w->files[i], w->params);
-    if (!status) {
+    const char *site_title = details_of_site(w->metadata, w->params).title;
+    page->object = object_is_file(w->files[i], w->params->limits);
+    relume_status status = page->object ? object_write(&here, page, w->files[i], &report)
+                                        : open_file(&s.pack, w->files[i], w->params);
+    if (!status && page->object) {
+        status = page_write(&here, page, site_title);
+    } else if (!status) {
         report.views = relume_pack_info(s.pack)->views;
         say_left_out(&here, relume_pack_info(s.pack));
-        status = write_all(&s, page, w->files[i], details_of_site(w->metadata, w->params).title);
+        status = write_all(&s, page, w->files[i], site_title);
     }
     scene_free(&s);
     if (w->reports)
@@ -155,10 +161,15 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
 
 // ---------------------------------------------------------------- the site
 
-static relume_status write_assets(const struct site *site)
+static relume_status write_assets(const struct site *site, const struct page *pages, int count)
 {
     relume_status status = RELUME_OK;
+    bool objects = false;
+    for (int i = 0; i < count; i++)
+        objects = objects || pages[i].object;
     for (const struct asset *a = site_assets; !status && a->name; a++) {
+        if (!objects && !strcmp(a->name, ASSET_OBJECT))
+            continue;
         char name[128];
         snprintf(name, sizeof name, "relume/%s", a->name);
         status = strcmp(a->name, ASSET_OPEN) ? site_save(site, name, a->bytes, a->size)
@@ -205,7 +216,7 @@ relume_status relume_publish(const char *const *files, int count, const char *pa
         status = publish_file(&w, i, &site);
     const struct details details = details_of_site(w.metadata, &p);
     if (!status)
-        status = write_assets(&site);
+        status = write_assets(&site, w.pages, count);
     if (!status)
         status = page_write_index(&site, w.pages, count, &details);
     if (!status)

@@ -91,7 +91,7 @@ const orders = {
     },
     state: (line) => evaluate(`window.relume.setState(${JSON.stringify(line)}); window.relume.idle().then(() => 0)`),
     async snap(file) {
-        const base64 = await evaluate(`document.querySelector('relume-view').snapshot().then(${BLOB})`);
+        const base64 = await evaluate(`document.querySelector('relume-view, relume-object').snapshot().then(${BLOB})`);
         writeFileSync(file, Buffer.from(base64, 'base64'));
     },
     async shot(file) {

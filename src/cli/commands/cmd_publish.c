@@ -50,6 +50,11 @@ static const struct option options[] = {
 
 static void say_result(const struct publish_options *o, const struct relume_publish_report *r)
 {
+    if (!r->views) {
+        announce(&o->args, RELUME_NOTE, "%s/%s.html: an object, %.1f kB", o->output, r->name,
+                 (double)r->bytes / 1e3);
+        return;
+    }
     const bool wished = o->quality || o->psnr > 0.0 || o->bytes_per_pixel > 0.0 || o->coefficients;
     announce(&o->args, RELUME_NOTE,
              "%s/%s.html: %d view%s, %d planes, %.1f kB, of which %.1f kB show the first picture; "

@@ -209,21 +209,11 @@ static void sent_by(float rgb[3], const void *context, const struct trace_hit *h
     }
 }
 
-// A matte surface is a lit texture; mirrors, and what is baked, do not gather for themselves.
-static bool is_shiny(const struct relume_objects_info *info)
+bool exchange_shines(const struct exchange *e, int part)
 {
-    for (int i = 0; i < info->parts; i++) {
-        const struct relume_object_material *m = &info->material[info->part[i].material];
-        if (!m->mirror && !m->baked && strcmp(m->model, "lit"))
-            return true;
-    }
-    return false;
-}
-
-static int usual_samples(const struct exchange *e)
-{
-    const struct relume_transport *t = e->transport;
-    return t->glossy && is_shiny(relume_objects_info(e->o)) ? t->glossy : t->samples;
+    const struct relume_objects_info *info = relume_objects_info(e->o);
+    const struct relume_object_material *m = &info->material[info->part[part].material];
+    return !m->mirror && !m->baked && strcmp(m->model, "lit");
 }
 
 static void begin_world(struct exchange *e)
@@ -242,7 +232,7 @@ static void begin_world(struct exchange *e)
         .bare = {&e->scene.places, &e->scene.normals, e->lone, NULL},
         .full = {&e->frame.places, &e->frame.normals, &e->shown, e->behind},
         .radius = 0.5 * vec3_length(vec3_sub(info->max, info->min)),
-        .samples = p->transport_samples ? p->transport_samples : usual_samples(e),
+        .samples = p->transport_samples ? p->transport_samples : e->transport->samples,
         .bounces = p->bounces < 0 ? 0
                    : p->bounces   ? p->bounces
                                   : 1,

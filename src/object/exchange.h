@@ -58,6 +58,9 @@ typedef void do_pixel(struct exchange *e, int x, int y);
 // `rays` for each pixel or so: who stops does not wait for more than some of them. RELUME_ECANCEL.
 relume_status exchange_over_pixels(struct exchange *e, int rays, do_pixel *pixel);
 struct ray exchange_ray(const struct exchange *e, int x, int y, const double at[2]);
+// Whether what a part returns depends on where it is seen from: a matte surface is a lit texture;
+// mirrors, and what is baked, do not gather for themselves.
+bool exchange_shines(const struct exchange *e, int part);
 // The objects as the middle of a pixel shows them, or else some other part of it: pixels along
 // their outline need their light, too.
 bool exchange_objects_at(struct surface_point *point, const struct exchange *e, int x, int y);

@@ -39,8 +39,25 @@ static void arrive_at_objects(void *context, const struct arrival *a)
     const struct at_objects *s = context;
     float rgb[3];
     add(s->white, a->share, a->with);
-    objects_return(rgb, s->e->o, s->point, s->eye, a);
+    if (a->answer)
+        for (int c = 0; c < 3; c++)
+            rgb[c] = a->answer[c] * a->with[c];
+    else
+        objects_return(rgb, s->e->o, s->point, s->eye, a);
     add(s->returned, 1.0, rgb);
+}
+
+static void answer_of(float rgb[3], const void *context, vec3 towards)
+{
+    const struct at_objects *s = context;
+    const struct arrival a = {.towards = towards, .share = 1.0, .with = {1.0f, 1.0f, 1.0f}};
+    objects_return(rgb, s->e->o, s->point, s->eye, &a);
+}
+
+static vec3 mirrored_at(const struct surface_point *point, vec3 eye)
+{
+    const vec3 to = vec3_unit(vec3_sub(eye, point->position)), n = point->normal;
+    return vec3_along(vec3_scale(to, -1.0), n, 2.0 * vec3_dot(n, to));
 }
 
 static void gather_scene(struct exchange *e, int x, int y)
@@ -67,7 +84,10 @@ static void gather_at_point(struct exchange *e, const struct surface_point *poin
     const struct site site = {.position = point->position,
                               .normal = point->normal,
                               .start = point_leave(point),
-                              .key = key};
+                              .key = key,
+                              .answer = exchange_shines(e, point->part) ? answer_of : NULL,
+                              .answers = at,
+                              .mirrored = mirrored_at(point, at->eye)};
     e->transport->gather(&e->world, &site, arrive_at_objects, at);
 }
 

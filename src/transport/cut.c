@@ -9,67 +9,9 @@
 #include "transport/cut.h"
 
 #include "math/bilinear.h"
+#include "transport/warp.h"
 
 #include <math.h>
-
-// ---------------------------------------------------------------- pixels
-
-// The part of a pixel within the disc, and the mean of its places there.
-static void measure(struct cut_pixel *p, double x, double y, double size)
-{
-    enum { FINE = 16 };
-    double at[2] = {0.0, 0.0};
-    int n = 0;
-    for (int i = 0; i < FINE * FINE; i++) {
-        const double u = x + (i % FINE + 0.5) / FINE * size, v = y + (i / FINE + 0.5) / FINE * size;
-        if (u * u + v * v >= 1.0)
-            continue;
-        at[0] += u, at[1] += v;
-        n++;
-    }
-    *p = (struct cut_pixel){.inside = (float)n / (FINE * FINE)};
-    if (!n)
-        return;
-    p->direction[0] = (float)(at[0] / n), p->direction[1] = (float)(at[1] / n);
-    p->direction[2] =
-        sqrtf(1.0f - p->direction[0] * p->direction[0] - p->direction[1] * p->direction[1]);
-}
-
-void cut_view_create(struct cut_view *out, int side)
-{
-    double all = 0.0;
-    out->side = side;
-    for (int i = 0; i < side * side; i++) {
-        measure(&out->pixel[i], 2.0 * (i % side) / side - 1.0, 2.0 * (i / side) / side - 1.0,
-                2.0 / side);
-        all += (double)out->pixel[i].inside;
-    }
-    for (int i = 0; i < side * side; i++)
-        out->pixel[i].share = (float)((double)out->pixel[i].inside / all);
-}
-
-void cut_place_at(struct cut_place *out, const struct cut_view *view, vec3 at, vec3 normal)
-{
-    const vec3 any = fabs(normal.x) < 0.7 ? vec3_of(1, 0, 0) : vec3_of(0, 1, 0);
-    const vec3 x = vec3_unit(vec3_cross(any, normal)), y = vec3_cross(normal, x);
-    const vec3 axes[] = {x, y, normal};
-    for (int k = 0; k < 3; k++) {
-        out->frame[k][0] = (float)axes[k].x;
-        out->frame[k][1] = (float)axes[k].y;
-        out->frame[k][2] = (float)axes[k].z;
-    }
-    out->at[0] = (float)at.x, out->at[1] = (float)at.y, out->at[2] = (float)at.z;
-    out->view = view;
-}
-
-vec3 cut_direction(const struct cut_place *place, const struct cut_pixel *pixel)
-{
-    double d[3] = {0.0, 0.0, 0.0};
-    for (int k = 0; k < 3; k++)
-        for (int c = 0; c < 3; c++)
-            d[c] += (double)pixel->direction[k] * (double)place->frame[k][c];
-    return vec3_unit(vec3_of(d[0], d[1], d[2]));
-}
 
 // ---------------------------------------------------------------- nodes
 
@@ -157,14 +99,28 @@ static inline void put_object(struct cut_cell *cell, const struct cut_light *lig
     add_light(&cell->object, light, weight);
 }
 
-// Shared among the four pixels about its place.
+// The four pixels about a place.
+static inline void square_parts(struct warp_parts *out, int side, float u, float v)
+{
+    const float half = 0.5f * (float)side;
+    const float x = (u + 1.0f) * half + 0.5f, y = (v + 1.0f) * half + 0.5f;
+    const int i = (int)x, j = (int)y;
+    const float right = x - (float)i, down = y - (float)j;
+    const int left = index_clamped(i - 1, side), next = index_clamped(i, side);
+    const int top = index_clamped(j - 1, side) * side, bottom = index_clamped(j, side) * side;
+    *out = (struct warp_parts){{top + left, top + next, bottom + left, bottom + next},
+                               {(1.0f - right) * (1.0f - down), right * (1.0f - down),
+                                (1.0f - right) * down, right * down}};
+}
+
+// Shared among the pixels about its place.
 static inline void draw(struct cut_cell *cells, const struct cut_place *place,
                         const struct seen *seen, int k, const struct sent *sent, bool objects)
 {
     const int side = place->view->side;
-    const float half = 0.5f * (float)side, depth = seen->depth[k];
+    const float pixels = place->warp ? 1.0f : 0.25f * (float)(side * side);
     const float covers =
-        (objects ? 0.5f * (seen->wide[k] - seen->back[k]) : seen->wide[k]) * half * half;
+        (objects ? 0.5f * (seen->wide[k] - seen->back[k]) : seen->wide[k]) * pixels;
     if (!(covers > 0.0f))
         return;
     struct cut_light light = {.covers = covers};
@@ -172,19 +128,18 @@ static inline void draw(struct cut_cell *cells, const struct cut_place *place,
         light.without[c] = covers * sent->without[c];
         light.with[c] = covers * sent->with[c];
     }
-    const float x = (seen->u[k] + 1.0f) * half + 0.5f, y = (seen->v[k] + 1.0f) * half + 0.5f;
-    const int i = (int)x, j = (int)y;
-    const float right = x - (float)i, down = y - (float)j;
-    const int left = index_clamped(i - 1, side), next = index_clamped(i, side);
-    const int top = index_clamped(j - 1, side) * side, bottom = index_clamped(j, side) * side;
-    const int pixel[] = {top + left, top + next, bottom + left, bottom + next};
-    const float weight[] = {(1.0f - right) * (1.0f - down), right * (1.0f - down),
-                            (1.0f - right) * down, right * down};
+    struct warp_parts to;
+    if (place->warp)
+        warp_parts(&to, place->warp, seen->u[k], seen->v[k]);
+    else
+        square_parts(&to, side, seen->u[k], seen->v[k]);
     for (int n = 0; n < 4; n++)
-        if (objects)
-            put_object(&cells[pixel[n]], &light, depth, weight[n]);
+        if (!(to.weight[n] > 0.0f))
+            continue;
+        else if (objects)
+            put_object(&cells[to.pixel[n]], &light, seen->depth[k], to.weight[n]);
         else
-            put_scene(&cells[pixel[n]], &light, depth, weight[n]);
+            put_scene(&cells[to.pixel[n]], &light, seen->depth[k], to.weight[n]);
 }
 
 // A leaf as a disc, in the frame of the place.
@@ -218,25 +173,49 @@ static bool is_met(const struct disc *d, const float direction[3])
     return distance > 0.0f && square <= d->radius * d->radius;
 }
 
+static inline void mark_one(struct cut_cell *cell, const struct cut_pixel *pixel,
+                            const struct disc *disc, bool objects)
+{
+    if (!is_met(disc, pixel->direction))
+        return;
+    if (objects)
+        cell->object_close = true;
+    else
+        cell->close = true;
+}
+
+static void mark_warped(struct cut_cell *cells, const struct warp *warp, float u, float v,
+                        float reach, const struct disc *disc, bool objects)
+{
+    const int side = warp->view.side;
+    int columns[2], rows[2];
+    warp_columns(columns, warp, u, reach);
+    for (int x = columns[0]; x <= columns[1]; x++) {
+        warp_rows(rows, warp, x, v, reach);
+        for (int y = rows[0]; y <= rows[1]; y++)
+            mark_one(&cells[y * side + x], &warp->view.pixel[y * side + x], disc, objects);
+    }
+}
+
 // All pixels whose middle it covers.
-static void mark(struct cut_cell *cells, const struct cut_view *view, const struct seen *seen,
+static void mark(struct cut_cell *cells, const struct cut_place *place, const struct seen *seen,
                  int k, const struct disc *disc, bool objects)
 {
+    const struct cut_view *view = place->view;
     const int side = view->side;
     const float half = 0.5f * (float)side, sine = fminf(seen->sine[k], 1.0f);
     // the chord, by which places on the disc are apart at most
     const float chord = sine < 1.0f ? sqrtf(2.0f - 2.0f * sqrtf(1.0f - sine * sine)) : 2.0f;
+    if (place->warp) {
+        mark_warped(cells, place->warp, seen->u[k], seen->v[k], chord, disc, objects);
+        return;
+    }
     const float u = (seen->u[k] + 1.0f) * half, v = (seen->v[k] + 1.0f) * half, r = chord * half;
     const int left = index_clamped((int)(u - r), side), right = index_clamped((int)(u + r), side);
     const int top = index_clamped((int)(v - r), side), bottom = index_clamped((int)(v + r), side);
     for (int y = top; y <= bottom; y++)
         for (int x = left; x <= right; x++)
-            if (!is_met(disc, view->pixel[y * side + x].direction))
-                continue;
-            else if (objects)
-                cells[y * side + x].object_close = true;
-            else
-                cells[y * side + x].close = true;
+            mark_one(&cells[y * side + x], &view->pixel[y * side + x], disc, objects);
 }
 
 // ---------------------------------------------------------------- the cut
@@ -249,12 +228,20 @@ static bool is_low(const struct disc *d)
     return d->middle[2] + d->radius * tilt < LOW * d->radius;
 }
 
+// The area of the pixel that the middle of a node lies in.
+static inline float pixel_at(const struct cut_place *place, const struct seen *seen, int k)
+{
+    const float LEAST = 1e-6f;
+    if (!place->warp)
+        return 4.0f / (float)(place->view->side * place->view->side);
+    return fmaxf(warp_area(place->warp, seen->u[k], seen->v[k]), LEAST);
+}
+
 // Down to nodes of `part` of a pixel.
 static inline void cut(struct cut_cell *cells, struct cut_list *close, const struct hierarchy *h,
                        const struct cut_place *place, float part, bool objects)
 {
-    const float pixel = 4.0f / (float)(place->view->side * place->view->side);
-    const float limit = part * pixel, LISTED = 2.0f;
+    const float LISTED = 2.0f;
     struct {
         int level;
         uint32_t group;  // of its level
@@ -267,9 +254,10 @@ static inline void cut(struct cut_cell *cells, struct cut_list *close, const str
         look(&seen, &h->groups[at], place);
         for (int k = 0; k < HIERARCHY_WAYS; k++) {
             const size_t node = HIERARCHY_WAYS * at + (size_t)k;
-            const bool large = seen.spread[k] > limit || seen.sine[k] >= 1.0f;
             if (seen.hidden[k] || (objects && seen.turned[k]))
                 continue;
+            const float pixel = pixel_at(place, &seen, k);
+            const bool large = seen.spread[k] > part * pixel || seen.sine[k] >= 1.0f;
             if (large && level + 1 < h->levels) {
                 stack[n].level = level + 1;
                 stack[n++].group = HIERARCHY_WAYS * group + (uint32_t)k;
@@ -278,7 +266,7 @@ static inline void cut(struct cut_cell *cells, struct cut_list *close, const str
                 if (is_low(&disc))
                     continue;
                 close->node[close->count++] = (uint32_t)node;
-                mark(cells, place->view, &seen, k, &disc, objects);
+                mark(cells, place, &seen, k, &disc, objects);
             } else if (seen.up[k]) {
                 draw(cells, place, &seen, k, &h->sent[node], objects);
             }

@@ -8,6 +8,7 @@
 // Points of objects gather in the same way, once for each bounce (Jacobi's iteration).
 #include "transport/cut.h"
 #include "transport/points.h"
+#include "transport/warp.h"
 
 #include "base/memory.h"
 #include "base/thread.h"
@@ -25,6 +26,7 @@ struct micro {
     struct hierarchy side[SIDES];
     // A view's cells for each worker, and whether one has them: no stack is so large.
     struct cut_cell *cells;  // [workers][side * side]
+    struct warp *warps;      // [workers]
     atomic_flag *taken;      // [workers]
     int workers;
 };
@@ -59,7 +61,6 @@ static void draw(struct gathering *g)
     const struct micro *m = g->m;
     memset(g->cells, 0, (size_t)(m->view.side * m->view.side) * sizeof *g->cells);
     g->scene.count = 0;
-    cut_place_at(&g->place, &m->view, g->site->start, g->site->normal);
     cut_scene(g->cells, &g->scene, &m->scene, &g->place);
     for (int k = 0; k < SIDES; k++) {
         g->side[k].count = 0;
@@ -156,10 +157,11 @@ static float part_of(const struct cut_cell *cell, const struct shown *scene, flo
 static void resolve(struct arrival *out, const struct gathering *g, int i)
 {
     const struct cut_cell *cell = &g->cells[i];
-    const struct cut_pixel *pixel = &g->m->view.pixel[i];
+    const struct cut_pixel *pixel = &g->place.view->pixel[i];
     struct shown scene;
     out->towards = cut_direction(&g->place, pixel);
     out->share = (double)pixel->share;
+    out->answer = g->place.warp ? g->place.warp->answer[i] : NULL;
     if (cell->close || cell->near.covers + cell->far.covers < FULL * pixel->inside)
         from_ray(&scene, g, cell, out->towards);
     else
@@ -183,10 +185,14 @@ static void gather(const struct world *w, const struct site *site, take_arrival 
     struct gathering g;
     const int pixels = m->view.side * m->view.side, taken = take_cells(m);
     g.w = w, g.m = m, g.site = site, g.cells = m->cells + (ptrdiff_t)taken * pixels;
+    cut_place_at(&g.place, &m->view, site->start, site->normal);
+    if (site->answer)
+        (void)warp_create(&m->warps[taken], &g.place, m->view.side, site->mirrored, site->answer,
+                          site->answers);
     draw(&g);
     for (int i = 0; i < pixels; i++) {
         struct arrival arrival;
-        if (!(m->view.pixel[i].share > 0.0f))
+        if (!(g.place.view->pixel[i].share > 0.0f))
             continue;
         resolve(&arrival, &g, i);
         arrive(context, &arrival);
@@ -438,6 +444,7 @@ static void end(struct world *w)
         hierarchy_forget(&m->side[k]);
     points_forget(&m->points);
     mem_free(m->cells);
+    mem_free(m->warps);
     mem_free(m->taken);
     mem_free(m);
     w->state = NULL;
@@ -448,10 +455,11 @@ static relume_status make_cells(struct micro *m, int threads)
     m->workers = thread_count(threads);
     m->cells =
         mem_array((size_t)m->workers, (size_t)(m->view.side * m->view.side) * sizeof *m->cells);
+    m->warps = mem_array((size_t)m->workers, sizeof *m->warps);
     m->taken = mem_array((size_t)m->workers, sizeof *m->taken);
     for (int i = 0; m->taken && i < m->workers; i++)
         atomic_flag_clear(&m->taken[i]);
-    return m->cells && m->taken ? RELUME_OK : RELUME_ENOMEM;
+    return m->cells && m->warps && m->taken ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status begin(struct world *w, const struct relume_log *log)
@@ -475,7 +483,6 @@ const struct relume_transport transport_micro = {
     .name = "micro",
     .summary = "a small picture of the surroundings for each place, drawn from points",
     .samples = 64,
-    .glossy = 256,
     .spacing = 4,
     .pattern = 1,
     .begin = begin,

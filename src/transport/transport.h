@@ -15,6 +15,11 @@ struct site {
     vec3 position, normal;  // unit, towards the eye
     vec3 start;             // where rays begin: just off the surface
     uint64_t key;           // of its random numbers
+    // What the surface returns of light of 1 from a direction over all that a white matte one
+    // returns; NULL: it is matte, or nothing is known of it.
+    void (*answer)(float rgb[3], const void *context, vec3 towards);
+    const void *answers;  // its context
+    vec3 mirrored;        // unit; what a mirror there would show
 };
 
 // Light from one direction.
@@ -23,6 +28,8 @@ struct arrival {
     double share;      // of what a white matte surface there shows, the cosine included
     float without[3];  // radiance, were there no objects
     float with[3];     // ... as it is
+    // [3]: what the surface returns of light of 1, the share included; NULL: it is to be asked.
+    const float *answer;
 };
 
 // A frame as it shows on the screen, for ways that go by that.
@@ -60,7 +67,6 @@ typedef void take_arrival(void *context, const struct arrival *arrival);
 struct relume_transport {
     const char *name, *summary;
     int samples;  // at a site, by default
-    int glossy;   // the same where objects shine; 0: as many
     int spacing;  // sites gather at every so many pixels each way, by default; 0: always at each
     int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
     bool screen;  // needs the frames

@@ -4,12 +4,15 @@
 //
 //   bench_transport [FOLDER]      the room is photographed into FOLDER, or found there
 //   bench_transport FOLDER rows   the ways in the Cornell box and the colonnade instead
+//   bench_transport FOLDER glossy  micro's pictures of a glossy ball, even and warped, instead
 #include "bench.h"
 
 #include "capture_fixture.h"
 #include "made_room.h"
+#include "transport/cut.h"
 #include "transport/instant.h"
 
+#include <stdatomic.h>
 #include <sys/stat.h>
 
 enum { HEIGHT = 96, WIDTH = 2 * HEIGHT, BOUNCES = 2 };
@@ -415,12 +418,154 @@ static void judge_row(const struct row *r)
     relume_pack_destroy(&truth);
 }
 
+// ---------------------------------------------------------------- glossy
+
+static double processor_of_thread(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static atomic_long glossy_places, glossy_nanoseconds;
+static bool even;
+
+// As micro does, of the ball alone.
+static void gather_glossy(const struct world *w, const struct site *site, take_arrival *arrive,
+                          void *context)
+{
+    struct site one = *site;
+    if (!site->answer)
+        return;
+    if (even)
+        one.answer = NULL;
+    const double began = processor_of_thread();
+    transport_micro.gather(w, &one, arrive, context);
+    atomic_fetch_add(&glossy_places, 1);
+    atomic_fetch_add(&glossy_nanoseconds, (long)(1e9 * (processor_of_thread() - began)));
+}
+
+// The same light by a ray through each of many squares of the disc of directions.
+static void gather_by_rays(const struct world *w, const struct site *site, take_arrival *arrive,
+                           void *context)
+{
+    enum { FINE = 80 };
+    struct cut_place place;
+    if (!site->answer)
+        return;
+    cut_place_at(&place, NULL, site->start, site->normal);
+    for (int i = 0; i < FINE * FINE; i++) {
+        const float u = 2.0f * ((float)(i % FINE) + 0.5f) / FINE - 1.0f;
+        const float v = 2.0f * ((float)(i / FINE) + 0.5f) / FINE - 1.0f;
+        if (u * u + v * v >= 1.0f)
+            continue;
+        const struct cut_pixel pixel = {.direction = {u, v, sqrtf(1.0f - u * u - v * v)}};
+        struct arrival a = {.towards = cut_direction(&place, &pixel),
+                            .share = 4.0 / (FINE * FINE * M_PI)};
+        struct scenery_hit hit;
+        (void)scenery_meet(&hit, w->scenery, site->start, a.towards);
+        const double part = hit.distance < INFINITY
+                                ? w->dimmed(w->context, hit.place, hit.normal, (uint64_t)i)
+                                : 1.0;
+        for (int c = 0; c < 3; c++)
+            a.without[c] = hit.sent[c], a.with[c] = (float)part * hit.sent[c];
+        arrive(context, &a);
+    }
+}
+
+static relume_objects *open_glossy_ball(double roughness)
+{
+    relume_objects *o;
+    char text[512];
+    FILE *file = fopen(path_of("glossy.mtl"), "w");
+    if (!file || fprintf(file, "newmtl own\nKd 0.8 0.8 0.8\nPm 1\nPr %g\n", roughness) < 0 ||
+        fclose(file) || !write_ball_mesh(path_of("ball.obj"), 64, false))
+        bench_check(RELUME_EIO);
+    snprintf(text, sizeof text, "(echo mtllib glossy.mtl; echo usemtl own; cat %s) > %s",
+             path_of("ball.obj"), path_of("glossy.obj"));
+    bench_check(system(text) ? RELUME_EIO : RELUME_OK);
+    snprintf(text, sizeof text,
+             "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"glossy.obj\","
+             "\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]}}]}",
+             ball_radius, ball[0], ball[1], ball[2]);
+    file = fopen(path_of("glossy.json"), "w");
+    if (!file || fputs(text, file) < 0 || fclose(file))
+        bench_check(RELUME_EIO);
+    bench_check(relume_objects_open(&o, path_of("glossy.json"), NULL));
+    return o;
+}
+
+// Over pixels of the ball, all of whose light is what it has gathered.
+static double glossy_difference(const struct relume_image *got, const struct relume_image *want,
+                                const struct relume_geometry *geometry)
+{
+    const vec3 at = vec3_of(ball[0], ball[1], ball[2]);
+    const double within = sqrt(1.0 - pow(0.95 * ball_radius / vec3_length(at), 2.0));
+    double wrong = 0.0, all = 0.0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        const vec3 ray = relume_panorama_ray(geometry, WIDTH, HEIGHT, (double)(i % WIDTH) + 0.5,
+                                             (double)(i / WIDTH) + 0.5);
+        for (size_t c = 3 * i; c < 3 * i + 3 && vec3_dot(ray, vec3_unit(at)) > within; c++) {
+            wrong += pow((double)got->data[c] - (double)want->data[c], 2.0);
+            all += pow((double)want->data[c], 2.0);
+        }
+    }
+    return sqrt(wrong / all);
+}
+
+static void judge_glossy(relume_pack *pack)
+{
+    static const int sides[] = {8, 16, 24};
+    static const double roughness[] = {0.25, 0.4, 0.6};
+    struct relume_transport rays = transport_path, micro = transport_micro;
+    rays.gather = gather_by_rays;
+    micro.gather = gather_glossy;
+    micro.spacing = 1;
+    puts("| roughness | pixels | even | us a place | warped | us a place "
+         "|\n|---|---|---|---|---|---|");
+    for (size_t r = 0; r < sizeof roughness / sizeof *roughness; r++) {
+        char name[64];
+        relume_objects *o = open_glossy_ball(roughness[r]);
+        struct shot truth = frame_of(pack, o, &rays, 1, &unfolded);
+        snprintf(name, sizeof name, "glossy-%g.exr", roughness[r]);
+        bench_check(relume_image_save(&truth.image, path_of(name), NULL));
+        for (size_t s = 0; s < sizeof sides / sizeof *sides; s++) {
+            printf("| %g | %d x %d |", roughness[r], sides[s], sides[s]);
+            for (int k = 0; k < 2; k++) {
+                even = !k;
+                atomic_store(&glossy_places, 0);
+                atomic_store(&glossy_nanoseconds, 0);
+                struct shot f = frame_of(pack, o, &micro, sides[s] * sides[s], &unfolded);
+                printf(" %.4f | %.0f |",
+                       glossy_difference(&f.image, &truth.image, &relume_pack_info(pack)->geometry),
+                       1e-3 * (double)atomic_load(&glossy_nanoseconds) /
+                           (double)atomic_load(&glossy_places));
+                snprintf(name, sizeof name, "glossy-%g-%d-%s.exr", roughness[r], sides[s],
+                         even ? "even" : "warped");
+                bench_check(relume_image_save(&f.image, path_of(name), NULL));
+                relume_image_destroy(&f.image);
+            }
+            puts("");
+            fflush(stdout);
+        }
+        relume_image_destroy(&truth.image);
+        relume_objects_destroy(&o);
+    }
+}
+
 int main(int argc, char **argv)
 {
     struct judge j = {.touched = {0}};
     snprintf(folder, sizeof folder, "%s", argc > 1 ? argv[1] : "/tmp/bench-transport-XXXXXX");
     if (argc > 1 ? mkdir(folder, 0777) && access(folder, W_OK) : !mkdtemp(folder))
         bench_check(RELUME_EIO);
+    if (argc > 2 && !strcmp(argv[2], "glossy")) {
+        photograph(&room, "room", "room.exr", HEIGHT, 256, 4);
+        j.room = open_pack("room.exr");
+        judge_glossy(j.room);
+        relume_pack_destroy(&j.room);
+        return 0;
+    }
     if (argc > 2) {
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
             judge_row(&rows[i]);

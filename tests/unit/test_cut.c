@@ -2,6 +2,7 @@
 // points that are none.
 #include "test.h"
 #include "transport/cut.h"
+#include "transport/warp.h"
 
 #include "base/memory.h"
 
@@ -115,6 +116,184 @@ static void a_wall_takes_its_part(void **state)
     hierarchy_forget(&h);
 }
 
+// ---------------------------------------------------------------- warped by the material
+
+// Phong's lobe about where a mirror would show, over a little of a matte one.
+struct lobe {
+    vec3 mirrored;
+    double sharp;
+};
+
+static double returned(const struct lobe *l, vec3 towards)
+{
+    const double MATTE = 0.05, along = fmax(vec3_dot(l->mirrored, towards), 0.0);
+    return MATTE + 0.5 * (l->sharp + 2.0) * pow(along, l->sharp);
+}
+
+static void answer(float rgb[3], const void *context, vec3 towards)
+{
+    rgb[0] = rgb[1] = rgb[2] = (float)returned(context, towards);
+}
+
+// All that it returns of light of 1 within a strip of the disc of z = 0's directions.
+static double return_between(const struct lobe *l, double from, double to, double low, double high)
+{
+    enum { FINE = 64 };
+    double sum = 0.0;
+    for (int i = 0; i < FINE * FINE; i++) {
+        const double u = from + (to - from) * (i % FINE + 0.5) / FINE, h = sqrt(1.0 - u * u);
+        const double v = h * (low + (high - low) * (i / FINE + 0.5) / FINE);
+        const vec3 towards = vec3_of(u, v, sqrt(1.0 - u * u - v * v));
+        sum += returned(l, towards) * h * (to - from) * (high - low) / (FINE * FINE) / M_PI;
+    }
+    return sum;
+}
+
+static struct cut_place place_of(const struct cut_view *view, vec3 at)
+{
+    struct cut_place place;
+    cut_place_at(&place, view, at, vec3_of(0, 0, 1));
+    return place;
+}
+
+// Pixels take up the whole disc, all of one weight, of which a twentieth is spread evenly; what
+// they return is what the surface does.
+static void warped_pixels_are_worth_the_same(void **state)
+{
+    (void)state;
+    enum { SIDE = 8, PIXELS = SIDE * SIDE };
+    static const double sharp[] = {1.0, 5.0, 20.0, 100.0};
+    static struct warp w;
+    for (int k = 0; k < 4; k++) {
+        const struct lobe l = {vec3_unit(vec3_of(0, 0.6, 1)), sharp[k]};
+        struct cut_place place = place_of(NULL, vec3_of(0, 0, 0));
+        double all = 0.0, share = 0.0, weight_off = 0.0;
+        assert_true(warp_create(&w, &place, SIDE, l.mirrored, answer, &l));
+        for (int i = 0; i < PIXELS; i++)
+            all += (double)w.answer[i][1], share += (double)w.view.pixel[i].share;
+        const double up = (double)place.frame[1][1], across = (double)place.frame[0][0];
+        for (int i = 0; i < PIXELS; i++) {
+            const double weight =
+                0.95 * (double)w.answer[i][1] / all + 0.05 * (double)w.view.pixel[i].share;
+            weight_off = fmax(weight_off, fabs(PIXELS * weight - 1.0));
+        }
+        const double truth = return_between(&l, -1.0, 1.0, -1.0, 1.0);
+        printf("lobe %g: returns %.4f of %.4f, weights off by %.4f\n", sharp[k], all, truth,
+               weight_off);
+        CHECK_NEAR(up, 1.0, 1e-6);  // the picture is turned as the lobe is
+        CHECK_NEAR(fabs(across), 1.0, 1e-6);
+        CHECK_NEAR(share, 1.0, 1e-5);
+        CHECK_NEAR(all, truth, 0.03 * truth);
+        CHECK_NEAR(weight_off, 0.0, 0.03);
+    }
+}
+
+// What is spread evenly over the disc covers all pixels alike.
+static void warped_pixels_are_evenly_covered(void **state)
+{
+    (void)state;
+    enum { SIDE = 8, ACROSS = 1000 };
+    static struct warp w;
+    const struct lobe l = {vec3_unit(vec3_of(0.3, -0.4, 1)), 30.0};
+    double covers[SIDE * SIDE] = {0.0};
+    struct cut_place place = place_of(NULL, vec3_of(0, 0, 0));
+    assert_true(warp_create(&w, &place, SIDE, l.mirrored, answer, &l));
+    for (int i = 0; i < ACROSS * ACROSS; i++) {
+        const double u = 2.0 * (i % ACROSS + 0.5) / ACROSS - 1.0;
+        const double v = 2.0 * (i / ACROSS + 0.5) / ACROSS - 1.0;
+        struct warp_parts p;
+        if (u * u + v * v >= 1.0)
+            continue;
+        warp_parts(&p, &w, (float)u, (float)v);
+        for (int n = 0; n < 4; n++)
+            covers[p.pixel[n]] += (double)p.weight[n] * 4.0 / (ACROSS * ACROSS);
+    }
+    for (int i = 0; i < SIDE * SIDE; i++)
+        CHECK_NEAR(covers[i], 1.0, 0.08);
+}
+
+// What a place throws back of a square of light.
+static double shown(const struct hierarchy *h, const struct lobe *l, int side, vec3 at, bool warped)
+{
+    static struct cut_view view;
+    static struct warp w;
+    static struct cut_cell cells[CUT_MOST * CUT_MOST];
+    struct cut_list list = {0};
+    struct cut_place place = place_of(&view, at);
+    double sum = 0.0;
+    cut_view_create(&view, side);
+    if (warped)
+        assert_true(warp_create(&w, &place, side, l->mirrored, answer, l));
+    memset(cells, 0, sizeof cells);
+    cut_objects(cells, &list, h, &place);
+    for (int i = 0; i < side * side; i++) {
+        const struct cut_pixel *p = &place.view->pixel[i];
+        if (!(p->share > 0.0f))
+            continue;
+        const double worth = warped ? (double)w.answer[i][1]
+                                    : (double)p->share * returned(l, cut_direction(&place, p));
+        sum += worth *
+               (double)(cells[i].object_close ? 1.0f : fminf(cells[i].covered / p->inside, 1.0f));
+    }
+    return sum;
+}
+
+static double square_returned(const struct lobe *l, vec3 at)
+{
+    enum { FINE = 200 };
+    double sum = 0.0;
+    for (int i = 0; i < FINE * FINE; i++) {
+        const vec3 to =
+            vec3_of((i % FINE + 0.5) / FINE - at.x, (i / FINE + 0.5) / FINE - at.y, 1.0);
+        const double square = vec3_dot(to, to), cosine = 1.0 / sqrt(square);
+        sum += returned(l, vec3_scale(to, cosine)) * cosine * cosine / square / (FINE * FINE);
+    }
+    return sum / M_PI;
+}
+
+// A square of light above glossy places: warped pictures are nearer to the integral than even ones.
+static void warped_pictures_show_lobes(void **state)
+{
+    (void)state;
+    enum { SITES = 6, SIDE = 8 };
+    struct hierarchy h =
+        tree_of(rectangle(128, 128, vec3_of(0, 1, 1), vec3_of(1, 0, 0), vec3_of(0, -1, 0)),
+                128 * 128, 1 << 14);
+    for (double sharp = 20.0; sharp < 400.0; sharp *= 4.0) {
+        const struct lobe l = {vec3_unit(vec3_of(0.5, 0.25, 1)), sharp};
+        double wrong[2] = {0.0, 0.0}, all = 0.0;
+        for (int i = 0; i < SITES * SITES; i++) {
+            const vec3 at = vec3_of(1.6 * (i % SITES + 0.5) / SITES - 0.8,
+                                    1.6 * (i / SITES + 0.5) / SITES - 0.6, 0.0);
+            const double want = square_returned(&l, at);
+            all += want * want;
+            for (int warped = 0; warped < 2; warped++)
+                wrong[warped] += pow(shown(&h, &l, SIDE, at, warped) - want, 2.0);
+        }
+        const double even = sqrt(wrong[0] / all), warped = sqrt(wrong[1] / all);
+        printf("lobe %g: off by %.4f, warped %.4f\n", sharp, even, warped);
+        assert_true(warped < 0.12 && warped < (sharp < 50.0 ? 0.9 : 0.4) * even);
+    }
+    hierarchy_forget(&h);
+}
+
+static void nothing(float rgb[3], const void *context, vec3 towards)
+{
+    (void)context, (void)towards;
+    rgb[0] = NAN, rgb[1] = -1.0f, rgb[2] = 0.0f;
+}
+
+static void what_returns_nothing_is_not_warped(void **state)
+{
+    (void)state;
+    static struct cut_view view;
+    static struct warp w;
+    struct cut_place place = place_of(&view, vec3_of(0, 0, 0));
+    assert_false(warp_create(&w, &place, 8, vec3_of(0, 0, 1), nothing, NULL));
+    assert_ptr_equal(place.view, &view);
+    assert_null(place.warp);
+}
+
 // ---------------------------------------------------------------- trees
 
 static void check_ball(const struct hierarchy *h, const struct piece *pieces, size_t leaf)
@@ -209,6 +388,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(squares_have_their_form_factor),
         cmocka_unit_test(a_wall_takes_its_part),
+        cmocka_unit_test(warped_pixels_are_worth_the_same),
+        cmocka_unit_test(warped_pixels_are_evenly_covered),
+        cmocka_unit_test(warped_pictures_show_lobes),
+        cmocka_unit_test(what_returns_nothing_is_not_warped),
         cmocka_unit_test(trees_hold_all_pieces),
         cmocka_unit_test(pieces_that_are_none_do_not_count),
     };

@@ -42,7 +42,8 @@ struct relume_simplify_params {
 // back to the original (a progressive mesh; Hoppe 1996).
 struct relume_simplify_step {
     uint32_t vertex, onto;  // of the original
-    float error;            // most distance of the surfaces so far
+    float error;            // most distance of the surfaces so far; infinite where `triangles` were
+                            // wanted and nothing else could go
     float distance;         // beyond which no step so far is seen
 };
 

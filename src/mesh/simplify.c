@@ -232,7 +232,7 @@ static void note_step(struct run *r, const struct moves *moves)
         r->step[r->steps++] = (struct relume_simplify_step){
             .vertex = moves->from[i],
             .onto = moves->to[i],
-            .error = (float)r->done.length,
+            .error = r->last_resort ? INFINITY : (float)r->done.length,
             .distance = (float)r->done.distance,
         };
     }

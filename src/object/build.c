@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "mesh/mesh_read.h"
 #include "mesh/tangents.h"
+#include "object/levels.h"
 #include "object/object.h"
 #include "object/skin.h"
 
@@ -260,6 +261,8 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
                               standing->covering[i].part, file.part[0]);
     if (!status && standing->billboards > 0.0)
         status = objects_add_cloud(o, first, standing->billboards, log);
+    if (!status && standing->levels > 0.0)
+        status = objects_want_levels(o, o->info.objects - 1, standing->levels);
     mesh_file_free(&file);
     return status;
 }
@@ -326,6 +329,8 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     o->info.min = b.min, o->info.max = b.max;
     struct trace_holes holes;
     const bool has_holes = skin_holes(&holes, o);
-    return trace_create_clouds(&o->tracer, &o->mesh, o->cloud, o->clouds, has_holes ? &holes : NULL,
-                               log);
+    status = objects_make_levels(o, log);
+    return status ? status
+                  : trace_create_clouds(&o->tracer, &o->mesh, o->cloud, o->clouds,
+                                        has_holes ? &holes : NULL, log);
 }

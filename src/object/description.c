@@ -215,10 +215,29 @@ static relume_status read_billboards(const struct reader *r, const jvalue *error
                     "of the object");
 }
 
+// true, or the pixels that their error may be seen as.
+static relume_status read_levels(const struct reader *r, const jvalue *value, struct standing *s)
+{
+    const double USUAL = 0.25, MOST = 100.0;
+    bool wanted;
+    if (!value)
+        return RELUME_OK;
+    if (jvalue_truth(value, &wanted)) {
+        s->levels = wanted ? USUAL : 0.0;
+        return RELUME_OK;
+    }
+    if (jvalue_number(value, &s->levels) && s->levels > 0.0 && s->levels <= MOST)
+        return RELUME_OK;
+    return log_fail(r->log, RELUME_EFORMAT,
+                    "levels: expected true, false, or the pixels that their error may be seen as, "
+                    "above 0 and at most %g",
+                    MOST);
+}
+
 static relume_status read_object(const struct reader *r, const jvalue *object)
 {
-    static const char *const known[] = {"mesh",        "name",       "pose", "parts",
-                                        "reflections", "billboards", NULL};
+    static const char *const known[] = {"mesh",        "name",       "pose",   "parts",
+                                        "reflections", "billboards", "levels", NULL};
     struct standing s = {.frame = frame_world};
     const char *mesh = jvalue_text(jvalue_member(object, "mesh"));
     if (!jvalue_is_object(object) || !mesh || !*mesh)
@@ -229,6 +248,8 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
         status = objects_read_pose(&s.frame, jvalue_member(object, "pose"), r->log);
     if (!status)
         status = read_billboards(r, jvalue_member(object, "billboards"), &s);
+    if (!status)
+        status = read_levels(r, jvalue_member(object, "levels"), &s);
     if (!status)
         status = read_coverings(r, object, &s);
     if (!status)

@@ -6,6 +6,7 @@
 #include "frame/renderer.h"
 #include "mesh/places.h"
 #include "object/coarse.h"
+#include "object/levels.h"
 #include "object/object.h"
 #include "object/skin.h"
 
@@ -161,6 +162,7 @@ relume_status objects_layer(struct relume_image *out, const struct layered *give
 // What a renderer has been given.
 struct standing_in {
     const relume_objects *objects;
+    relume_objects *shown;  // as the eye of the last frame saw them; NULL: all of them
     struct relume_render_params params;
     bool said;                // that mirrors are black
     bool said_within;         // that the eye is in an object
@@ -174,6 +176,7 @@ static void free_standing_in(void *over)
 {
     struct standing_in *in = over;
     if (in) {
+        relume_objects_destroy(&in->shown);
         scenery_destroy(&in->scenery);
         bodies_destroy(&in->bodies);
     }
@@ -267,7 +270,7 @@ static relume_status find_surround(struct surround *s, relume_renderer *renderer
 static bool mirrors_surroundings(const relume_renderer *renderer, const struct standing_in *in)
 {
     return renderer->info->geometry.projection >= RELUME_CYLINDRICAL &&
-           objects_have_mirrors(in->objects);
+           objects_have_mirrors(objects_or(in->shown, in->objects));
 }
 
 static relume_status light_objects(struct lighting *lighting, relume_renderer *renderer,
@@ -275,10 +278,11 @@ static relume_status light_objects(struct lighting *lighting, relume_renderer *r
                                    const struct relume_light *lights, int n)
 {
     struct standing_in *in = renderer->over;
-    relume_status status = lighting_create(lighting, in->objects, lights, n, &in->params);
+    const relume_objects *o = objects_or(in->shown, in->objects);
+    relume_status status = lighting_create(lighting, o, lights, n, &in->params);
     if (!status && mirrors_surroundings(renderer, in))
         status = find_surround(&lighting->surround, renderer, camera);
-    if (!status && !in->said && surround_lacks(&lighting->surround, in->objects)) {
+    if (!status && !in->said && surround_lacks(&lighting->surround, o)) {
         log_line(in->params.log, RELUME_WARNING, "%s", SURROUND_LACKS);
         in->said = true;
     }
@@ -325,8 +329,8 @@ static relume_status exchange_all(struct relume_image *scene, struct relume_imag
     if (!status && reflected)
         status = relume_image_create(reflected, places->width, places->height, 3);
     if (!status)
-        status = exchange_create(&e, in->objects, n, in->bodies, in->scenery, viewport, places,
-                                 &in->params);
+        status = exchange_create(&e, objects_or(in->shown, in->objects), n, in->bodies, in->scenery,
+                                 viewport, places, &in->params);
     for (int i = 0; i < n && !status; i++) {
         struct relume_image *share =
             shares && lights[i].kind == RELUME_LIGHT_ENVIRONMENT ? shares++ : NULL;
@@ -390,6 +394,10 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
     if (!status)
         status = relume_frame_viewport(&viewport, relume_renderer_pack(renderer), camera,
                                        places.width, places.height);
+    if (!status)
+        status = relume_objects_shown(&in->shown, objects, relume_viewport_eye(&viewport),
+                                      objects_pixel_of_viewport(&viewport), true);
+    objects = objects_or(in->shown, objects);
     if (!status) {
         objects_say_around(&in->said_within, objects, relume_viewport_eye(&viewport), params->log);
         status = light_objects(&lighting, renderer, camera, lights, n);

@@ -41,6 +41,11 @@ struct relume_objects {
     struct translucent *translucent;  // [materials]
     struct standing_baked *standing;  // [materials]
     relume_reflection **reflection;   // [objects]; NULL: as it is
+    struct wanted_levels *wanted;     // [wants]: of objects that are shown in levels
+    int wants;
+    struct object_levels **levels;    // [objects]; NULL: none, or of one of them
+    const relume_objects *shown_of;   // NULL; or these are others as an eye sees them, and own ...
+    struct level_choice *choice;      // ... but the surface and this, [objects], nothing
 };
 
 // One more vertex of the mesh, in the world; `colour` (sRGB) is part of the file's own look, and
@@ -99,6 +104,7 @@ struct covering {
 struct standing {
     struct frame frame;
     double billboards;  // their error, of the longest side of the object; 0: it is shown itself
+    double levels;      // pixels that an error of fewer triangles may be seen as; 0: all of them
     struct covering *covering;
     int coverings;
 };

@@ -2,6 +2,7 @@
 #include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "object/levels.h"
 #include "object/object.h"
 #include "object/skin.h"
 #include "transport/dipole.h"
@@ -24,21 +25,35 @@ static void close_material(struct relume_object_material *m)
     mem_free((void *)m->name);
 }
 
+static void destroy_surface(relume_objects *o)
+{
+    trace_destroy(&o->tracer);
+    mesh_free(&o->mesh);
+    mem_free(o->tint);
+    mem_free(o->vertices);
+    mem_free(o->triangles);
+    mem_free(o->part);
+    mem_free(o->choice);
+}
+
 void relume_objects_destroy(relume_objects **objects)
 {
     relume_objects *o = *objects;
     *objects = NULL;
     if (!o)
         return;
-    trace_destroy(&o->tracer);
+    for (int i = 0; i < o->info.parts && !o->shown_of; i++)
+        mem_free((void *)o->part[i].name);
+    destroy_surface(o);
+    if (o->shown_of) {
+        mem_free(o);
+        return;
+    }
     for (int i = 0; i < o->clouds; i++) {
         relume_billboards_free((struct relume_billboards *)o->cloud[i].cloud);
         mem_free((void *)o->cloud[i].cloud);
     }
     mem_free(o->cloud);
-    mesh_free(&o->mesh);
-    for (int i = 0; i < o->info.parts; i++)
-        mem_free((void *)o->part[i].name);
     for (int i = 0; i < o->info.materials; i++) {
         close_material(&o->material[i]);
         relume_baked_destroy(&o->standing[i].baked);
@@ -46,12 +61,12 @@ void relume_objects_destroy(relume_objects **objects)
     }
     for (int i = 0; o->reflection && i < o->info.objects; i++)
         relume_reflection_destroy(&o->reflection[i]);
+    for (int i = 0; o->levels && i < o->info.objects; i++)
+        object_levels_free(&o->levels[i]);
+    mem_free(o->levels);
+    mem_free(o->wanted);
     mem_free(o->reflection);
-    mem_free(o->tint);
     mem_free(o->vertex_tint);
-    mem_free(o->vertices);
-    mem_free(o->triangles);
-    mem_free(o->part);
     mem_free(o->material);
     mem_free(o->folder);
     mem_free(o->translucent);

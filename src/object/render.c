@@ -3,6 +3,7 @@
 #include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "object/levels.h"
 #include "object/skin.h"
 
 #include <string.h>
@@ -459,12 +460,11 @@ static void view_value(float rgb[3], const void *context, double x, double y, do
     }
 }
 
-relume_status relume_objects_render(struct relume_image *out, const relume_objects *objects,
-                                    const struct relume_window *window,
-                                    const struct relume_light *lights, int n,
-                                    const struct relume_render_params *params)
+static relume_status render(struct relume_image *out, const relume_objects *objects,
+                            const struct relume_window *window, const struct relume_light *lights,
+                            int n, const struct relume_render_params *params)
 {
-    const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
+    const struct relume_render_params own = *params;
     struct view view = {.o = objects, .window = window, .width = out->width, .height = out->height};
     struct bodies *bodies = NULL;
     objects_say_around(&(bool){false}, objects, window->eye, own.log);
@@ -483,6 +483,21 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
     seen_destroy(&view.seen);
     lighting_destroy(&view.lighting);
     bodies_destroy(&bodies);
+    return status;
+}
+
+relume_status relume_objects_render(struct relume_image *out, const relume_objects *objects,
+                                    const struct relume_window *window,
+                                    const struct relume_light *lights, int n,
+                                    const struct relume_render_params *params)
+{
+    const struct relume_render_params own = PARAMS_WORK(relume_render_params, params);
+    const double pixel = objects_pixel_of_window(window, out->width, out->height);
+    relume_objects *shown = NULL;
+    relume_status status = relume_objects_shown(&shown, objects, window->eye, pixel, true);
+    if (!status)
+        status = render(out, objects_or(shown, objects), window, lights, n, &own);
+    relume_objects_destroy(&shown);
     return status;
 }
 

@@ -10,6 +10,7 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "mesh/places.h"
+#include "object/levels.h"
 
 #include <string.h>
 
@@ -22,6 +23,7 @@ struct drawing {
     struct relume_render_params params;
     struct relume_camera camera;
     struct relume_viewport viewport;
+    const relume_objects *objects;       // as the eye sees them
     bool *shown;                         // [captures]
     struct relume_image *seen, *colour;  // [captures]: places, and what is seen there
     struct relume_image places, lone, scene, reflected;
@@ -276,13 +278,13 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
     const size_t rows = (size_t)d->camera.height;
     relume_status status = relight_captures(d, light);
     if (!status)
-        status = relume_objects_lights(&light_samples, &d->light_samples, t->objects, light, 1);
+        status = relume_objects_lights(&light_samples, &d->light_samples, d->objects, light, 1);
     if (status)
         return status;
     d->light_sample = light_samples;
     if (d->exchange)
         status =
-            scenery_light(t->capture[0].scenery, &t->capture[0].relit, objects_middle(t->objects));
+            scenery_light(t->capture[0].scenery, &t->capture[0].relit, objects_middle(d->objects));
     if (!status && d->exchange)
         scenery_mean(d->rest, t->capture[0].scenery);
     if (!status)
@@ -294,7 +296,7 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
     if (!status && d->exchange)
         status = exchange_light(d->exchange, &d->scene, &d->reflected, share, &d->lone, light);
     else if (!status)
-        scene_add(&(struct scene_in_shadow){t->objects, &d->places, &d->lone, &d->scene,
+        scene_add(&(struct scene_in_shadow){d->objects, &d->places, &d->lone, &d->scene,
                                             light_samples, d->light_samples, d->params.no_shadows},
                   d->params.threads);
     mem_free(light_samples);
@@ -306,7 +308,7 @@ static relume_status add_light(struct drawing *d, const struct relume_light *lig
 static relume_status begin_exchange(struct drawing *d, int lights)
 {
     relume_tableau *t = d->t;
-    if (!render_exchanges(&d->params) || !t->objects->info.triangle_count) {
+    if (!render_exchanges(&d->params) || !d->objects->info.triangle_count) {
         d->params.transport = NULL;
         return RELUME_OK;
     }
@@ -321,7 +323,7 @@ static relume_status begin_exchange(struct drawing *d, int lights)
     if (!status && !d->shares)
         status = RELUME_ENOMEM;
     if (!status)
-        status = exchange_create(&d->exchange, t->objects, lights, t->bodies, t->capture[0].scenery,
+        status = exchange_create(&d->exchange, d->objects, lights, t->bodies, t->capture[0].scenery,
                                  &d->viewport, &d->places, &d->params);
     if (!status)
         exchange_stand_before(d->exchange, d->scenery, d->sceneries);
@@ -333,18 +335,18 @@ static relume_status begin_lighting(struct drawing *d, const struct relume_light
     relume_tableau *t = d->t;
     const struct relume_geometry *g =
         t->info.captures ? &relume_pack_info(t->capture[0].pack)->geometry : NULL;
-    relume_status status = lighting_create(&d->lighting, t->objects, lights, n, &d->params);
+    relume_status status = lighting_create(&d->lighting, d->objects, lights, n, &d->params);
     d->lighting.scenery = d->scenery, d->lighting.sceneries = d->sceneries;
-    if (!status && g && g->projection >= RELUME_CYLINDRICAL && objects_have_mirrors(t->objects)) {
+    if (!status && g && g->projection >= RELUME_CYLINDRICAL && objects_have_mirrors(d->objects)) {
         d->lighting.surround.geometry = g;
         status = exhibit_whole_places(&d->lighting.surround.places, &t->capture[0]);
     }
     if (!status)
-        status = bodies_need(&t->bodies, t->objects, t->params.threads, t->params.log);
+        status = bodies_need(&t->bodies, d->objects, t->params.threads, t->params.log);
     if (!status)
         status =
-            lighting_enters(&d->lighting, t->objects, t->bodies, t->params.threads, t->params.log);
-    if (!status && !t->said_black && surround_lacks(&d->lighting.surround, t->objects)) {
+            lighting_enters(&d->lighting, d->objects, t->bodies, t->params.threads, t->params.log);
+    if (!status && !t->said_black && surround_lacks(&d->lighting.surround, d->objects)) {
         log_line(t->params.log, RELUME_WARNING, "%s", SURROUND_LACKS);
         t->said_black = true;
     }
@@ -362,7 +364,11 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
         return RELUME_EINVAL;
     relume_status status = begin(&d, tableau, camera);
     if (!status)
-        objects_say_around(&tableau->said_within, tableau->objects, d.camera.eye, d.params.log);
+        status = relume_objects_shown(&tableau->shown, tableau->objects, d.camera.eye,
+                                      objects_pixel_of_viewport(&d.viewport), true);
+    d.objects = objects_or(tableau->shown, tableau->objects);
+    if (!status)
+        objects_say_around(&tableau->said_within, d.objects, d.camera.eye, d.params.log);
     if (!status)
         status = relume_image_create(&d.lone, d.camera.width, d.camera.height, 3);
     if (!status)
@@ -376,7 +382,7 @@ relume_status relume_tableau_frame(struct relume_image *out, relume_tableau *tab
         if (!status && !log_progress(d.params.log, "relighting the scene", (i + 1.0) / n))
             status = RELUME_ECANCEL;
     }
-    const struct layered layers = {.o = tableau->objects,
+    const struct layered layers = {.o = d.objects,
                                    .viewport = &d.viewport,
                                    .scene = &d.scene,
                                    .places = &d.places,

@@ -23,6 +23,7 @@ void relume_tableau_destroy(relume_tableau **tableau)
     for (int i = 0; i < t->info.captures; i++)
         exhibit_destroy(&t->capture[i]);
     bodies_destroy(&t->bodies);
+    relume_objects_destroy(&t->shown);
     relume_objects_destroy(&t->objects);
     relume_rig_destroy(&t->rig);
     jvalue_free(&t->root);
@@ -161,6 +162,7 @@ static relume_status read_objects(relume_tableau *t, const bool *left_out)
     if (status)
         return status;
     bodies_destroy(&t->bodies);
+    relume_objects_destroy(&t->shown);
     relume_objects_destroy(&t->objects);
     t->objects = objects;
     return RELUME_OK;

@@ -20,6 +20,7 @@ struct relume_tableau {
     struct extent *extent;                 // [objects]
     bool *left_out;                        // [objects]: of `objects`
     relume_objects *objects;               // never NULL
+    relume_objects *shown;                 // as the eye of the last frame saw them; NULL: in full
     struct bodies *bodies;                 // of them; NULL: not needed yet
     relume_rig *rig;
     jvalue *root;

@@ -583,6 +583,37 @@ static void own_looks_agree(void **state)
     }
 }
 
+// Levels of detail on their way to the next, without and with shadows of the same surface.
+static void details_agree(void **state)
+{
+    (void)state;
+    const char *const lights[] = {sunlight, NULL};
+    const struct relume_light *list;
+    struct objects_drawer t;
+    int n;
+    write_description("details.json",
+                      "\"mesh\": \"mesh.obj\", \"levels\": 0.7, \"parts\": [{\"material\": "
+                      "{\"diffuse\": 0.6}}]");
+    relume_objects *o;
+    assert_int_equal(relume_objects_open(&o, path_of("details.json"), NULL), RELUME_OK);
+    assert_int_equal(objects_drawer_create(&t, &fixture_gl, o, &fixture_log), RELUME_OK);
+    relume_rig *rig = rig_of(lights);
+    assert_int_equal(relume_rig_lights(&list, &n, rig), RELUME_OK);
+    const size_t all = relume_objects_info(t.objects)->triangle_count;
+    for (int k = 0; k < 2; k++) {
+        double brightest;
+        struct picture p = both(&t, list, n, k == 0);
+        const int apart = count_apart(&p.cpu, &p.gl, 5e-3, &brightest);
+        if (apart > 48 || !(brightest > 0.02))
+            fail_msg("details: %d pixels differ", apart);
+        assert_non_null(t.seen);
+        assert_in_range(relume_objects_info(t.seen)->triangle_count, 12, all / 2);
+        destroy(&p);
+    }
+    relume_rig_destroy(&rig);
+    finish(&t);
+}
+
 // Baked, turned, with views of their own and without, under a lamp and a sky.
 static void baked_objects_agree(void **state)
 {
@@ -668,6 +699,7 @@ int main(void)
         cmocka_unit_test(shadows_agree),
         cmocka_unit_test(baked_objects_agree),
         cmocka_unit_test(own_looks_agree),
+        cmocka_unit_test(details_agree),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

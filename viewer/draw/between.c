@@ -338,7 +338,7 @@ static void find_backs(const struct between *b, const struct objects_drawer *t,
     use_eye(b, b->back.at[BACK_EYE], v);
     gl->BindVertexArray(t->array);
     gl->Enable(GL_DEPTH_TEST);
-    gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * relume_objects_info(t->objects)->triangle_count),
+    gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * objects_drawer_drawn(t)->triangle_count),
                      GL_UNSIGNED_INT, NULL);
     gl->Disable(GL_DEPTH_TEST);
 }

@@ -58,6 +58,8 @@ bool frame_projection_of_window(struct frame_projection *out, const struct relum
     set_row(out->clip, 3, c, -vec3_dot(c, w->eye));
     const float eye[4] = {(float)w->eye.x, (float)w->eye.y, (float)w->eye.z, 1.0f};
     memcpy(out->eye, eye, sizeof eye);
+    const double away = fabs(volume) / vec3_length(normal);
+    out->pixel = fmin(vec3_length(w->right) / wide, vec3_length(w->down) / high) / away;
     return true;
 }
 

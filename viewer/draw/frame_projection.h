@@ -7,6 +7,7 @@
 struct frame_projection {
     float clip[16];  // columns first; rows of the frame run down
     float eye[4];    // its place, 1; or the direction towards it, 0
+    double pixel;    // what it sees at a distance of 1 under a pixel; 0: of parallel rays
 };
 
 // Through a window that `picture`, in pixels of a frame of width x height, shows; objects are

@@ -91,8 +91,25 @@ enum { SHADOW_SIDE = 2048, SHADOW_SIDE_SOFTWARE = 1024, FINER = 2 };
 
 // ---------------------------------------------------------------- making
 
+static void fill(const struct gl *gl, GLenum target, GLuint buffer, const void *data, size_t bytes)
+{
+    gl->BindBuffer(target, buffer);
+    gl->BufferData(target, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
+}
+
+// Into the buffers of the vertex array in use.
+static void upload_surface(const struct objects_drawer *t, const struct relume_objects_info *info)
+{
+    fill(t->gl, GL_ARRAY_BUFFER, t->vertices, info->vertices,
+         info->vertex_count * sizeof *info->vertices);
+    fill(t->gl, GL_ELEMENT_ARRAY_BUFFER, t->indices, info->triangles,
+         info->triangle_count * sizeof *info->triangles);
+    if (info->tint)
+        fill(t->gl, GL_ARRAY_BUFFER, t->tints, info->tint, info->vertex_count * sizeof *info->tint);
+}
+
 // Attribute 4.
-static void upload_tints(struct objects_drawer *t, const struct relume_objects_info *info)
+static void create_tints(struct objects_drawer *t, const struct relume_objects_info *info)
 {
     const struct gl *gl = t->gl;
     enum { TINT_AT = 4 };
@@ -100,8 +117,6 @@ static void upload_tints(struct objects_drawer *t, const struct relume_objects_i
         return;
     gl->GenBuffers(1, &t->tints);
     gl->BindBuffer(GL_ARRAY_BUFFER, t->tints);
-    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(info->vertex_count * sizeof *info->tint),
-                   info->tint, GL_STATIC_DRAW);
     gl->EnableVertexAttribArray(TINT_AT);
     gl->VertexAttribPointer(TINT_AT, 3, GL_FLOAT, GL_FALSE, 0, NULL);
 }
@@ -120,20 +135,33 @@ static void upload_mesh(struct objects_drawer *t, const struct relume_objects_in
     gl->BindVertexArray(t->array);
     gl->GenBuffers(1, &t->vertices);
     gl->BindBuffer(GL_ARRAY_BUFFER, t->vertices);
-    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(info->vertex_count * sizeof *info->vertices),
-                   info->vertices, GL_STATIC_DRAW);
     gl->GenBuffers(1, &t->indices);
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, t->indices);
-    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                   (GLsizeiptr)(info->triangle_count * sizeof *info->triangles), info->triangles,
-                   GL_STATIC_DRAW);
     for (GLuint i = 0; i < 4; i++) {
         gl->EnableVertexAttribArray(i);
         gl->VertexAttribPointer(i, attribute[i].numbers, GL_FLOAT, GL_FALSE,
                                 sizeof(struct relume_object_vertex),
                                 (const void *)attribute[i].offset);
     }
-    upload_tints(t, info);
+    create_tints(t, info);
+    upload_surface(t, info);
+}
+
+relume_status objects_drawer_see(struct objects_drawer *t,
+                                 const struct frame_projection *projection)
+{
+    const relume_objects *before = t->seen;
+    const float *e = projection->eye;
+    const struct relume_vec3 eye = {(double)e[0], (double)e[1], (double)e[2]};
+    GLint array = 0;
+    const relume_status status =
+        relume_objects_shown(&t->seen, t->objects, eye, projection->pixel, false);
+    if (status || t->seen == before)
+        return status;
+    t->gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &array);
+    t->gl->BindVertexArray(t->array);
+    upload_surface(t, objects_drawer_drawn(t));
+    t->gl->BindVertexArray((GLuint)array);
+    return gl_check(t->gl, "uploading objects", t->log);
 }
 
 static relume_status create_programs(struct objects_drawer *t)
@@ -233,6 +261,7 @@ void objects_drawer_destroy(struct objects_drawer *t)
     t->gl->DeleteBuffers(1, &t->vertices);
     t->gl->DeleteBuffers(1, &t->indices);
     t->gl->DeleteBuffers(1, &t->tints);
+    relume_objects_destroy(&t->seen);
     free(t->program);
     free(t->material);
     relume_free(t->light_sample);
@@ -348,7 +377,7 @@ static void draw_triangles(const struct objects_drawer *t, size_t first, size_t 
 static void draw_all(void *context, const float clip[16])
 {
     const struct objects_drawer *t = context;
-    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    const struct relume_objects_info *info = objects_drawer_drawn(t);
     t->gl->UniformMatrix4fv(t->depth.at[SURFACE_CLIP], 1, GL_FALSE, clip);
     if (!t->holes)
         draw_triangles(t, 0, info->triangle_count);
@@ -381,7 +410,7 @@ static void draw_surface(struct objects_drawer *t, const struct frame_projection
                          int only)
 {
     const struct gl *gl = t->gl;
-    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    const struct relume_objects_info *info = objects_drawer_drawn(t);
     GLint before = 0;
     gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &before);
     gl->BindVertexArray(t->array);
@@ -608,6 +637,8 @@ relume_status objects_drawer_shade(struct objects_drawer *t,
 {
     const struct gl *gl = t->gl;
     relume_status status = need_targets(t, width, height);
+    if (!status)
+        status = objects_drawer_see(t, projection);
     if (status)
         return status;
     t->projection = *projection;

@@ -19,6 +19,10 @@ void objects_drawer_destroy(struct objects_drawer *drawer);
 relume_status objects_drawer_light(struct objects_drawer *drawer, const struct relume_light *lights,
                                    int n);
 
+// Objects that have levels of detail are drawn from now on as the eye of the frame sees them.
+// RELUME_ENOMEM, RELUME_ESYSTEM.
+relume_status objects_drawer_see(struct objects_drawer *drawer,
+                                 const struct frame_projection *projection);
 // Light the objects as seen in a frame of width x height, with all light samples, into
 // drawer->shaded; `only` >= 0: with all parts in this material. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status objects_drawer_shade(struct objects_drawer *drawer,

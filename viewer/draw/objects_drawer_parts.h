@@ -49,6 +49,12 @@ enum {
     SURFACE_COUNT
 };
 
+// What is drawn: vertices and triangles; all else is that of the objects.
+static inline const struct relume_objects_info *objects_drawer_drawn(const struct objects_drawer *t)
+{
+    return relume_objects_info(t->seen ? t->seen : t->objects);
+}
+
 // skins.c: RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status objects_drawer_upload_skins(struct objects_drawer *t);
 void objects_drawer_forget_skins(struct objects_drawer *t);

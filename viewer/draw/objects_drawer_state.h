@@ -21,6 +21,7 @@ struct objects_drawer {
     const struct gl *gl;
     const struct relume_log *log;
     relume_objects *objects;                 // borrowed
+    relume_objects *seen;                    // as the eye of the frame sees them; NULL: in full
     GLuint array, vertices, indices, tints;  // the last: 0 where no vertex has one
     struct program surface, depth, over, cast, share, sky;
     struct objects_drawer_program *program;  // [programs]: of the models in use

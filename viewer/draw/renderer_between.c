@@ -79,6 +79,8 @@ relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struc
     if (!status)
         status = prepare(r, place);
     if (!status)
+        status = objects_drawer_see(&r->drawer, &projection);
+    if (!status)
         status = renderer_find_scene(r, q, *place);
     if (status)
         return status;

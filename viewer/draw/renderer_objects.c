@@ -277,7 +277,9 @@ relume_status renderer_draw_objects(struct renderer *r, const struct frame_reque
     struct frame_projection projection;
     const bool seen = renderer_projection(&projection, r, q, place);
     r->gl->BindVertexArray(r->vertices);
-    relume_status status = draw_scene(r, q, place, lights, count, seen);
+    relume_status status = seen ? objects_drawer_see(&r->drawer, &projection) : RELUME_OK;
+    if (!status)
+        status = draw_scene(r, q, place, lights, count, seen);
     if (status || !seen || q->pass != RELUME_PASS_COLOUR)
         return status;
     status = objects_drawer_light(&r->drawer, lights, count);

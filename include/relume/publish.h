@@ -59,7 +59,7 @@ struct relume_publish_report {
     uint64_t first_bytes;  // of these, what a page loads before it shows something
     double psnr_db;  // of pictures: of one view, mean over at most 16 lights, 8-bit sRGB, against
                      // the file's own pictures
-    bool linear;  // its planes hold linear light
+    bool linear;     // its planes hold linear light
 };
 
 // Publish `files`, `count` of them, whatever relume_open or relume_baked_open opens, as the folder

@@ -243,15 +243,6 @@ static relume_status write_numbers(struct arrays *a, size_t *bytes, const struct
 
 // ---------------------------------------------------------------- object.json
 
-static void put_text(FILE *f, const char *key, const char *value)
-{
-    if (!value)
-        return;
-    fprintf(f, "  \"%s\": ", key);
-    text_json(f, value);
-    fputs(",\n", f);
-}
-
 // Functions of the light by name and lights; the basis is `transform` times these, where it has
 // one.
 static void put_basis(FILE *f, const struct baked_basis *b)
@@ -283,12 +274,12 @@ static relume_status write_json(const struct site *site, const struct page *page
         return status;
     FILE *f = t.file;
     fputs("{\n  \"format\": \"relume-web-object\", \"version\": 1,\n", f);
-    put_text(f, "name", page->name);
-    put_text(f, "title", page->details.title);
-    put_text(f, "maker", page->details.maker);
-    put_text(f, "licence", page->details.licence);
-    put_text(f, "object", page->details.object);
-    put_text(f, "description", page->details.description);
+    text_member(f, "name", page->name);
+    text_member(f, "title", page->details.title);
+    text_member(f, "maker", page->details.maker);
+    text_member(f, "licence", page->details.licence);
+    text_member(f, "object", page->details.object);
+    text_member(f, "description", page->details.description);
     if (!i->fixed)
         put_basis(f, &b->basis);
     fprintf(f, "  \"fixed\": %s, \"coefficients\": %d,\n", i->fixed ? "true" : "false", b->kept);

@@ -20,23 +20,14 @@ static void put_numbers(FILE *f, const char *key, const float *v, int n)
     fputs("],\n", f);
 }
 
-static void put_text(FILE *f, const char *key, const char *value)
-{
-    if (!value)
-        return;
-    fprintf(f, "  \"%s\": ", key);
-    text_json(f, value);
-    fputs(",\n", f);
-}
-
 static void put_details(FILE *f, const struct scene *s)
 {
-    put_text(f, "name", s->name);
-    put_text(f, "title", s->details.title);
-    put_text(f, "maker", s->details.maker);
-    put_text(f, "licence", s->details.licence);
-    put_text(f, "object", s->details.object);
-    put_text(f, "description", s->details.description);
+    text_member(f, "name", s->name);
+    text_member(f, "title", s->details.title);
+    text_member(f, "maker", s->details.maker);
+    text_member(f, "licence", s->details.licence);
+    text_member(f, "object", s->details.object);
+    text_member(f, "description", s->details.description);
     if (s->mm_per_pixel > 0.0)
         fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->mm_per_pixel);
     if (s->notes)

@@ -67,6 +67,15 @@ void text_json(FILE *to, const char *text)
     putc('"', to);
 }
 
+void text_member(FILE *to, const char *key, const char *value)
+{
+    if (!value)
+        return;
+    fprintf(to, "  \"%s\": ", key);
+    text_json(to, value);
+    fputs(",\n", to);
+}
+
 void text_address(FILE *to, const char *text)
 {
     for (; text && *text; text++) {

@@ -9,6 +9,8 @@
 void text_html(FILE *to, const char *text);
 // As a JSON string with its quotes, which may also stand inside a script of a page.
 void text_json(FILE *to, const char *text);
+// A line of a JSON object with a comma; none where `value` is NULL.
+void text_member(FILE *to, const char *key, const char *value);
 // As an address: what may not stand in one is percent-encoded.
 void text_address(FILE *to, const char *text);
 

@@ -213,6 +213,8 @@ static void parse(struct options *o, int argc, char **argv)
             o->intensities |= is(name, "--intensities");
             o->half |= is(name, "--half");
             continue;
+        } else if (name[0] == '-' || o->folder) {
+            fail("unknown option; usage: sphere DIR [--size N] [--lights N] ...", name);
         } else {
             o->folder = name;
             continue;

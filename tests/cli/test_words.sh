@@ -66,6 +66,11 @@ expect_fail 'a PTM for a capture' 1 "coin.ptm: this is a PTM file, no capture; u
 expect_ok 'lamps to add, in words' 'add lamps: .*, [0-9]* degrees above the table \([0-9]* degrees counter-clockwise' \
     "$RELUME" capture few/view00/light*.png --lights few/dirs.lp -o uneven
 
+# ---- tools of the tests: a mistyped option is no folder to write to
+"$BUILD/samples/sphere" --help 2>err.txt
+check 'an option is no folder' test $? = 1 -a ! -e ./--help
+check '... and refused in words' grep -q -e '--help: unknown option; usage: sphere DIR' err.txt
+
 # ---- captures that name files outside their folder, and images that are missing
 "$BUILD/samples/sphere" c --size 16 --lights 6 --format png || exit 1
 mkdir lps && sed 's|view00/|../c/view00/|' c/dirs.lp >lps/outside.lp

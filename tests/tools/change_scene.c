@@ -225,7 +225,7 @@ int main(int argc, char **argv)
                       .gain = {1, 1, 1},
                       .h = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     double two[2];
-    if (argc < 2)
+    if (argc < 2 || argv[1][0] == '-')
         return fprintf(stderr, "usage: change_scene DIR [OPTION ...]\n"), 2;
     s.folder = argv[1];
     for (int i = 2; i < argc; i++) {

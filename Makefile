@@ -115,7 +115,8 @@ TOOLS_C  := $(wildcard tests/tools/*.c)
 SAMPLES_C := samples/sphere.c samples/figures.c samples/mirrorball.c
 
 # Instruction sets beyond the baseline; what is written for another processor compiles to nothing.
-AVX2     := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),-mavx2 -mfma -mf16c)
+# Where no compiler is yet (make deps gets one, later in this run), the machine says what it is.
+AVX2     := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null || uname -m)),-mavx2 -mfma -mf16c)
 AVX512   := $(if $(AVX2),$(AVX2) -mavx512f -mavx512bw -mavx512dq -mavx512vl)
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/web/assets.o $(addprefix $B/obj/src/kernel/lsq_eigen,.o $(if $(AVX2),_avx2.o _avx512.o))
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
@@ -206,8 +207,12 @@ $B/obj/viewer/window/context_glfw.o: own_flags = $(GLFW)
 $(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o $B/obj/tests/unit/test_piz.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Isrc/cli -Itests -Iviewer
-# Tests themselves are many and short: compiled fast, and linked by the faster linker where it is.
-$(UNIT_C:%.c=$B/obj/%.o) $(GL_C:%.c=$B/obj/%.o): own_mode = $(if $(filter release,$(config)),-O1)
+# Tests themselves are many and short: compiled fast, and linked by the faster linker where it is. So are
+# the programs for sanitizers: what takes time in them is the library.
+$(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(FUZZ_C)): own_mode = $(if $(filter release,$(config)),-O1)
+ifneq ($(filter asan tsan,$(config)),)
+$(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(CLI_C) $(VIEWER_C)): own_mode = -O0
+endif
 TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold)
 
 $B/obj/%.o: %.c | $(DEPS)

@@ -22,6 +22,11 @@ else
     check "an unknown config is refused" grep -q "expected release, debug, asan, tsan, fuzzer or msan" make.txt
 fi
 
+# On a fresh machine the compiler comes with make deps, after this file was read.
+if [ "$(uname -m)" = x86_64 ]; then
+    check "kernels of AVX2 are built where no compiler is yet" sh -c 'make -pn -C "$TOP" CC=nosuch 2>/dev/null | grep -q "^AVX2 := -mavx2"'
+fi
+
 # ---------------------------------------------------------------- hardened and reproducible
 # reads FILE OPTION PATTERN: `readelf OPTION FILE` has a line that matches
 reads() { readelf "$2" "$1" 2>/dev/null | grep -qE -e "$3"; }

@@ -2,7 +2,7 @@
 //
 // With one thread everything runs in the caller's. Each job runs in one of STACK bytes, where an
 // overflow is a crash. Frames of sanitizers are several times as large: there the same jobs run on
-// a larger stack, for what they find.
+// a larger stack, for what they find; under ThreadSanitizer by two threads, as one races with none.
 #include "test.h"
 
 #include "capture_fixture.h"
@@ -14,6 +14,11 @@
 enum { STACK = 4 << 20 };
 #else
 enum { STACK = 128 << 10 };
+#endif
+#ifdef __SANITIZE_THREAD__
+enum { THREADS = 2 };
+#else
+enum { THREADS = 1 };
 #endif
 
 static char folder[64], path[96], copy[96];
@@ -76,7 +81,7 @@ static relume_status encode(const void *context)
 {
     const struct coding *c = context;
     struct relume_pack_encode_params p = c->pack;
-    p.threads = 1;
+    p.threads = THREADS;
     return fixture_encode_with(folder, path, c->basis, &c->coder, &p);
 }
 
@@ -100,16 +105,17 @@ static relume_status frame(const void *context)
     const struct relume_camera camera = {
         .framing = RELUME_FRAME_EYE, .eye = {0.4, 0.0, 3.0}, .width = 81, .height = 43};
     if (!status)
-        status = relume_pack_open(&pack, path, relume_pack_params(.threads = 1));
+        status = relume_pack_open(&pack, path, relume_pack_params(.threads = THREADS));
     if (!status && !context)
-        status = relume_frame(&out, pack, &camera, lights, 4, relume_frame_params(.threads = 1));
+        status =
+            relume_frame(&out, pack, &camera, lights, 4, relume_frame_params(.threads = THREADS));
     if (!status && context) {
         const struct relume_codes *codes;
         uint8_t *bytes = malloc((size_t)4 * 120 * 90);
         status = relume_pack_codes(&codes, pack, 0);
         if (!status)
-            status =
-                relume_relight_rgba8(bytes, codes, lights, 1, relume_relight_params(.threads = 1));
+            status = relume_relight_rgba8(bytes, codes, lights, 1,
+                                          relume_relight_params(.threads = THREADS));
         free(bytes);
     }
     relume_image_destroy(&out);
@@ -127,9 +133,9 @@ static relume_status evaluate(const void *context)
     relume_status status =
         relume_capture_open(&capture, copy, relume_capture_params(.allow_outside = true));
     if (!status)
-        status = relume_pack_open(&pack, path, relume_pack_params(.threads = 1));
+        status = relume_pack_open(&pack, path, relume_pack_params(.threads = THREADS));
     if (!status)
-        status = relume_evaluate(&e, pack, capture, relume_evaluate_params(.threads = 1));
+        status = relume_evaluate(&e, pack, capture, relume_evaluate_params(.threads = THREADS));
     relume_evaluation_destroy(&e);
     relume_pack_destroy(&pack);
     relume_capture_destroy(&capture);
@@ -169,11 +175,11 @@ static relume_status hold_out(const void *context)
     relume_status status =
         relume_capture_open(&capture, copy, relume_capture_params(.allow_outside = true));
     if (!status)
-        status =
-            relume_heldout_open(&h, capture, relume_heldout_params(.leave_out = 4, .threads = 1));
+        status = relume_heldout_open(&h, capture,
+                                     relume_heldout_params(.leave_out = 4, .threads = THREADS));
     if (!status)
-        status = relume_heldout_measure(h, context, relume_coder_params(.threads = 1), store, 2,
-                                        &before, after);
+        status = relume_heldout_measure(h, context, relume_coder_params(.threads = THREADS), store,
+                                        2, &before, after);
     relume_heldout_destroy(&h);
     relume_capture_destroy(&capture);
     return status;
@@ -205,7 +211,7 @@ static relume_status fit(const void *context)
     const struct fitting *f = context;
     relume_btf_fitted *fitted = NULL;
     const relume_status status =
-        relume_btf_fit(&fitted, f->btf, f->model, relume_btf_fit_params(.threads = 1));
+        relume_btf_fit(&fitted, f->btf, f->model, relume_btf_fit_params(.threads = THREADS));
     float rgb[3];
     if (!status)
         relume_btf_fitted_evaluate(fitted, 3, 2, (struct relume_vec3){0.1, 0.2, 0.97},
@@ -236,15 +242,15 @@ static relume_status exchange(const void *transport)
     const struct relume_light light = {.direction = {0.3, 0.2, 0.9}, .rgb = {1, 1, 1}};
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .width = 6, .height = 4};
     snprintf(file, sizeof file, "%s/objects.json", folder);
-    relume_status status = relume_pack_open(&pack, path, relume_pack_params(.threads = 1));
+    relume_status status = relume_pack_open(&pack, path, relume_pack_params(.threads = THREADS));
     if (!status)
-        status = relume_objects_open(&objects, file, relume_objects_params(.threads = 1));
+        status = relume_objects_open(&objects, file, relume_objects_params(.threads = THREADS));
     if (!status)
-        status = relume_renderer_create(&renderer, pack, relume_frame_params(.threads = 1));
+        status = relume_renderer_create(&renderer, pack, relume_frame_params(.threads = THREADS));
     if (!status)
         status = relume_renderer_set_objects(
             renderer, objects,
-            relume_render_params(.samples = 1, .threads = 1, .transport = transport,
+            relume_render_params(.samples = 1, .threads = THREADS, .transport = transport,
                                  .transport_samples = samples, .bounces = samples > 16 ? -1 : 1));
     if (!status)
         status = relume_renderer_set_lights(renderer, &light, 1);

@@ -201,7 +201,7 @@ relume_status relume_pack_decide(relume_coder **out, const relume_capture *captu
         status = relume_coder_learn(out, &relume_basis_pca, capture, &more, &encode);
     }
     const struct relume_coder_info *info = status ? NULL : relume_coder_info(*out);
-    if (status || !info->basis->joint || 3 * lights > MOST_PLANES)
+    if (status || coder->coefficients || !info->basis->joint || 3 * lights > MOST_PLANES)
         return status;
     status = learn_pictures(&pictures, *out, capture, coder, &encode);
     if (!status && p.psnr_db > 0.0 && decision.psnr_db < p.psnr_db + LEAST_SPARE_DB) {

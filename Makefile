@@ -100,7 +100,8 @@ VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 WEB_OBJECT := $(wildcard web/object*.js)
 WEB_JS   := $(filter-out $(WEB_OBJECT),$(wildcard web/*.js))
 # ... of which pages of objects have these, and nothing else
-WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js pointer.js shaders.js state.js wasm.js)
+WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js marks.js noteindex.js notepanel.js notes.js overlay.js pointer.js shaders.js \
+              state.js wasm.js)
 WEB_CORE := $(wildcard web/core/relume-core.wasm)
 WEB_OPEN := $(wildcard web/open/relume-open.wasm web/open/licences.txt)
 WEB_CSS  := $(wildcard web/*.css)

@@ -163,8 +163,7 @@ relume_status page_write(const struct site *site, const struct page *p, const ch
     put_description(f, &p->details);
     put_details(f, &p->details);
     put_embedding(f, site, p);
-    if (!p->object)
-        fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
+    fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
     fputs("</main>\n</body>\n</html>\n", f);
     return site_save_text(site, name, false, &t);
 }

@@ -56,7 +56,8 @@ static void look_inside(const struct fuzz *f, struct bytes b)
     if (b.size)
         memcpy(text, b.data, b.size);
     text[b.size] = 0;
-    const struct relume_notes_file file = {"a.exr", 64, 64, 1, text};
+    const struct relume_notes_file file = {
+        .name = "a.exr", .width = 64, .height = 64, .views = 1, .inside = text};
     if (!relume_notes_open(&notes, f->path, &file, NULL))
         look(notes);
     relume_notes_destroy(&notes);
@@ -81,7 +82,7 @@ static void come_back(const struct fuzz *f, const relume_notes *notes,
 
 static bool one(struct fuzz *f, struct bytes b)
 {
-    const struct relume_notes_file file = {"a.exr", 64, 64, 1, NULL};
+    const struct relume_notes_file file = {.name = "a.exr", .width = 64, .height = 64, .views = 1};
     relume_notes *notes;
     int added;
     look_inside(f, b);

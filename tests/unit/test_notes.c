@@ -4,7 +4,8 @@
 
 #include "in_folder.h"
 
-static const struct relume_notes_file file = {"a.exr", 100, 80, 1, NULL};
+static const struct relume_notes_file file = {
+    .name = "a.exr", .width = 100, .height = 80, .views = 1};
 
 static struct relume_note line(const double (*place)[2], int places)
 {
@@ -212,7 +213,8 @@ static void test_round_trip(void **state)
     fclose(f);
     assert_non_null(strstr(text, "\"kept\":{\"by\":3.25}"));
     relume_notes_destroy(&again);
-    const struct relume_notes_file other = {"a.exr", 100, 81, 1, NULL};
+    const struct relume_notes_file other = {
+        .name = "a.exr", .width = 100, .height = 81, .views = 1};
     assert_int_equal(relume_notes_open(&again, path_of("a.exr"), &other, &log.log), RELUME_EUNFIT);
     assert_null(again);
     char *inside;
@@ -222,7 +224,8 @@ static void test_round_trip(void **state)
     assert_int_equal(access(path_of("a.notes.json"), F_OK), -1);
     relume_notes_destroy(&notes);
     // a list inside the file, which an empty one beside it hides
-    const struct relume_notes_file holder = {"a.exr", 100, 80, 1, inside};
+    const struct relume_notes_file holder = {
+        .name = "a.exr", .width = 100, .height = 80, .views = 1, .inside = inside};
     CHECK_OK(relume_notes_open(&again, path_of("a.exr"), &holder, NULL));
     assert_int_equal(relume_notes_count(again), 3);
     empty(again);

@@ -33,8 +33,11 @@ static void listen(struct session *s)
 static relume_status open_list(struct session *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
-    const struct relume_notes_file file = {s->name, info->width, info->height, info->views,
-                                           info->notes};
+    const struct relume_notes_file file = {.name = s->name,
+                                           .width = info->width,
+                                           .height = info->height,
+                                           .views = info->views,
+                                           .inside = info->notes};
     relume_notes *list = NULL;
     const relume_status status = relume_notes_open(&list, s->file, &file, s->log);
     return status ? status : notes_create(&s->app.notes, list);

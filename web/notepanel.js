@@ -152,7 +152,7 @@ export class NotePanel {
     click(place) {
         const { drawing } = this.overlay;
         if (!place)
-            return this.to.say('There is nothing of the object; click on its surface.');
+            return this.to.say('There is nothing there to write on.');
         drawing.places.push(place);
         if (drawing.kind === 'point')
             this.end();

@@ -1,7 +1,9 @@
 // notes.c - notes on the picture, and what the mouse does with them
 #include "app/notes.h"
 
+#include "app/gizmo.h"
 #include "app/place.h"
+#include "common/vec.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,22 +36,38 @@ void notes_destroy(struct notes **notes)
 
 bool notes_have_places(const struct app *app)
 {
-    return !app->file.around && !app->file.scene && app->file.width > 0 &&
-           app->now.camera.framing != RELUME_FRAME_LOOK;
+    return !app->file.around && !app->file.scene && app->file.width > 0;
 }
 
-void notes_to_picture(double place[2], const struct app *app, double x, double y)
+static bool looks_around(const struct app *app)
+{
+    return app->now.camera.framing == RELUME_FRAME_LOOK;
+}
+
+bool notes_to_picture(double place[2], const struct app *app, double x, double y)
 {
     const struct app_rectangle r = app_picture(app);
+    if (looks_around(app))
+        return relume_panorama_pixel(
+            place, &app->file.geometry, app->file.width, app->file.height,
+            relume_pan_tilt_ray(app->now.camera.look, app->width, app->height, x, y));
     place[0] = (x - r.left) / (r.right - r.left) * app->file.width;
     place[1] = (y - r.top) / (r.bottom - r.top) * app->file.height;
+    return place[0] >= 0 && place[1] >= 0 && place[0] <= app->file.width &&
+           place[1] <= app->file.height;
 }
 
-void notes_to_frame(double xy[2], const struct app *app, const double place[2])
+bool notes_to_frame(double xy[2], const struct app *app, const double place[2])
 {
     const struct app_rectangle r = app_picture(app);
+    if (looks_around(app)) {
+        const struct relume_vec3 ray = relume_panorama_ray(&app->file.geometry, app->file.width,
+                                                           app->file.height, place[0], place[1]);
+        return vec3_length(ray) > 0 && gizmo_place(xy, app, vec3_add(app_middle(app), ray));
+    }
     xy[0] = r.left + place[0] / app->file.width * (r.right - r.left);
     xy[1] = r.top + place[1] / app->file.height * (r.bottom - r.top);
+    return true;
 }
 
 // ---------------------------------------------------------------- drawing
@@ -72,8 +90,8 @@ static bool is_on(const struct app *app, int place, double x, double y)
     double at[2];
     if (place < 0 || place >= app->notes->places)
         return false;
-    notes_to_frame(at, app, app->notes->place[place]);
-    return hypot(at[0] - x, at[1] - y) <= near_px;
+    return notes_to_frame(at, app, app->notes->place[place]) &&
+           hypot(at[0] - x, at[1] - y) <= near_px;
 }
 
 // The note that has a place there, -1 without one.
@@ -83,8 +101,7 @@ static int find(const struct app *app, double x, double y)
         const struct relume_note *note = relume_notes_get(app->notes->list, i);
         for (int k = 0; k < note->places; k++) {
             double at[2];
-            notes_to_frame(at, app, note->place[k]);
-            if (hypot(at[0] - x, at[1] - y) <= near_px)
+            if (notes_to_frame(at, app, note->place[k]) && hypot(at[0] - x, at[1] - y) <= near_px)
                 return i;
         }
     }
@@ -102,8 +119,7 @@ bool notes_press(struct app *app, double x, double y)
         n->chosen = hit;
         return hit >= 0;
     }
-    notes_to_picture(place, app, x, y);
-    if (place[0] < 0 || place[1] < 0 || place[0] > app->file.width || place[1] > app->file.height)
+    if (!notes_to_picture(place, app, x, y))
         return false;
     const bool closes = n->tool == RELUME_NOTE_POLYGON && is_on(app, 0, x, y);
     if (closes || is_on(app, n->places - 1, x, y))

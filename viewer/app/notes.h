@@ -24,12 +24,12 @@ struct notes {
 relume_status notes_create(struct notes **out, relume_notes *list);
 void notes_destroy(struct notes **notes);
 
-// Whether the frame shows the whole picture, on which notes have a place: not of a look into a
-// panorama, nor of several slabs.
+// Whether the frame shows the picture that notes have places on: not that of several slabs.
 bool notes_have_places(const struct app *app);
-// Between the frame and the picture, pixels of both.
-void notes_to_picture(double place[2], const struct app *app, double x, double y);
-void notes_to_frame(double xy[2], const struct app *app, const double place[2]);
+// Between the frame and the picture, pixels of both, in a look into a panorama too. False for what
+// the picture does not have there, and for a place behind the eye.
+bool notes_to_picture(double place[2], const struct app *app, double x, double y);
+bool notes_to_frame(double xy[2], const struct app *app, const double place[2]);
 
 // A press at a place of the frame; whether notes take it.
 bool notes_press(struct app *app, double x, double y);

@@ -134,8 +134,8 @@ bool panel_jottings(panel *panel, app *app)
     notes *n = app->notes;
     tools(app);
     if (!notes_have_places(app))
-        ImGui::TextWrapped("from here only views can be kept: notes have places on a whole "
-                           "picture (--view 0)");
+        ImGui::TextWrapped("around an object only views can be kept: other notes have places on "
+                           "one picture (--view 0)");
     list(app, panel->scale);
     if (n->chosen >= 0)
         chosen(panel, app);
@@ -152,11 +152,22 @@ bool panel_jottings(panel *panel, app *app)
 
 static const ImU32 ink = IM_COL32(255, 208, 0, 255), halo = IM_COL32(0, 0, 0, 170);
 
-static ImVec2 at(const app *app, const double place[2])
+// False: it lies behind the eye.
+static bool at(ImVec2 *out, const app *app, const double place[2])
 {
     double xy[2];
-    notes_to_frame(xy, app, place);
-    return ImVec2((float)(app->beside[0] + xy[0]), (float)xy[1]);
+    if (!notes_to_frame(xy, app, place))
+        return false;
+    *out = ImVec2((float)(app->beside[0] + xy[0]), (float)xy[1]);
+    return true;
+}
+
+static void edge(ImDrawList *draw, const app *app, const relume_note &note, int i, ImU32 colour,
+                 float wide)
+{
+    ImVec2 a, b;
+    if (at(&a, app, note.place[i]) && at(&b, app, note.place[(i + 1) % note.places]))
+        draw->AddLine(a, b, colour, wide);
 }
 
 // One of very many: without borders and smooth edges.
@@ -164,12 +175,11 @@ static void draw_plain(ImDrawList *draw, const app *app, const relume_note &note
 {
     const bool closed = note.kind == RELUME_NOTE_POLYGON;
     for (int i = 0; i + 1 < note.places + (int)closed; i++)
-        draw->AddLine(at(app, note.place[i]), at(app, note.place[(i + 1) % note.places]), ink);
-    if (note.kind == RELUME_NOTE_POINT) {
-        const ImVec2 p = at(app, note.place[0]);
+        edge(draw, app, note, i, ink, 1);
+    ImVec2 p;
+    if (note.kind == RELUME_NOTE_POINT && at(&p, app, note.place[0]))
         draw->AddRectFilled(ImVec2(p.x - 2 * scale, p.y - 2 * scale),
                             ImVec2(p.x + 2 * scale, p.y + 2 * scale), ink);
-    }
 }
 
 static void draw_note(ImDrawList *draw, const app *app, const relume_note &note, bool strong,
@@ -181,11 +191,11 @@ static void draw_note(ImDrawList *draw, const app *app, const relume_note &note,
         const float wide = pass ? width : width + 2 * scale;
         const bool closed = note.kind == RELUME_NOTE_POLYGON && note.places > 2;
         for (int i = 0; i + 1 < note.places + (int)closed; i++)
-            draw->AddLine(at(app, note.place[i]), at(app, note.place[(i + 1) % note.places]),
-                          colour, wide);
+            edge(draw, app, note, i, colour, wide);
+        ImVec2 p;
         for (int i = 0; i < note.places; i++)
-            if (strong || note.kind == RELUME_NOTE_POINT)
-                draw->AddCircleFilled(at(app, note.place[i]), radius + (pass ? 0 : scale), colour);
+            if ((strong || note.kind == RELUME_NOTE_POINT) && at(&p, app, note.place[i]))
+                draw->AddCircleFilled(p, radius + (pass ? 0 : scale), colour);
     }
 }
 
@@ -219,9 +229,9 @@ static void scale_bar(ImDrawList *draw, const app *app, float scale)
 static bool is_near_frame(const app *app, const relume_note &note)
 {
     for (int i = 0; i < note.places; i++) {
-        const ImVec2 p = at(app, note.place[i]);
-        if (p.x > -100 && p.y > -100 && p.x < (float)app_window_width(app) + 100 &&
-            p.y < (float)app->height + 100)
+        ImVec2 p;
+        if (at(&p, app, note.place[i]) && p.x > -100 && p.y > -100 &&
+            p.x < (float)app_window_width(app) + 100 && p.y < (float)app->height + 100)
             return true;
     }
     return false;
@@ -250,14 +260,18 @@ void panel_jotted(const app *app, float scale)
         std::string text = note->text ? note->text : "";
         const std::string measure = measure_text(*note, mm);
         text += (text.empty() || measure.empty() ? "" : "  ") + measure;
-        label(draw, at(app, note->place[0]), text, scale);
+        ImVec2 place;
+        if (at(&place, app, note->place[0]))
+            label(draw, place, text, scale);
     }
     draw->Flags = smooth;
     if (n->places) {
         const relume_note drawn = notes_drawn(n);
         draw_note(draw, app, drawn, true, scale);
-        label(draw, at(app, drawn.place[drawn.places - 1]), measure_text(drawn, mm), scale);
+        ImVec2 place;
+        if (at(&place, app, drawn.place[drawn.places - 1]))
+            label(draw, place, measure_text(drawn, mm), scale);
     }
-    if (notes_have_places(app))
+    if (notes_have_places(app) && app->now.camera.framing != RELUME_FRAME_LOOK)
         scale_bar(draw, app, scale);
 }

@@ -16,7 +16,7 @@ image:base math kernel:base io image photograph response
 compare:base math image:base image jnd
 study:base math:base image study
 chart:base math image compare:base image photograph chart
-capture:base math image:base image photograph directions capture response
+capture:base math geometry image:base image photograph directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 stereo:base math:base

@@ -264,12 +264,7 @@ static relume_status write_json(const struct site *site, const struct page *page
         return status;
     FILE *f = t.file;
     fputs("{\n  \"format\": \"relume-web-object\", \"version\": 1,\n", f);
-    text_member(f, "name", page->name);
-    text_member(f, "title", page->details.title);
-    text_member(f, "maker", page->details.maker);
-    text_member(f, "licence", page->details.licence);
-    text_member(f, "object", page->details.object);
-    text_member(f, "description", page->details.description);
+    text_details(f, page->name, &page->details);
     if (relume_notes_scale(notes) > 0.0)
         fprintf(f, "  \"mm_per_unit\": %.9g,\n", relume_notes_scale(notes));
     if (relume_notes_count(notes))

@@ -22,6 +22,15 @@ else
     check "an unknown config is refused" grep -q "expected release, debug, asan, tsan, fuzzer or msan" make.txt
 fi
 
+# ---------------------------------------------------------------- WebAssembly in the tree
+for module in core open; do
+    if (cd "$TOP" && sha256sum -c --quiet web/$module/sources.txt) >sums.txt 2>&1; then
+        ok "web/$module is made of the sources in the tree"
+    else
+        not_ok "web/$module is made of the sources in the tree" "run 'make web' and commit what it makes; $(head -n 5 sums.txt)"
+    fi
+done
+
 # ---------------------------------------------------------------- hardened and reproducible
 # reads FILE OPTION PATTERN: `readelf OPTION FILE` has a line that matches
 reads() { readelf "$2" "$1" 2>/dev/null | grep -qE -e "$3"; }

@@ -61,7 +61,7 @@ bake:base math mesh baked object:base light surface btf object bake
 tableau:base math geometry mesh transport frame object:base image light relight view slab_set pack frame viewport object renderer exchange rig tableau
 helper:base image mesh:base
 measure:base math kernel image:*
-program:base:base image
+program:base:base image notes pack slab_set
 cli:program:*
 mpi::io team
 cli/materials:materials program:*

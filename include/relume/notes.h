@@ -52,10 +52,10 @@ typedef struct relume_notes relume_notes;
 // What a list is for: notes are refused for a file of another size, or an object of another box.
 struct relume_notes_file {
     const char *name;   // of the file, without its folder
-    int width, height;  // of each of its views; of an object 0
+    int width, height;  // of each of its views; of an object without views 0
     int views;
     const char *inside;  // the page that the file itself holds (relume_pack_info.notes); NULL: none
-    bool solid;          // it is an object
+    bool solid;          // it is an object, baked or amid several slabs
     double box[2][3];    // ... and lies between these corners, least and largest coordinates
 };
 

@@ -187,8 +187,12 @@ static relume_status read_head(relume_notes *notes, const jvalue *root,
     const jvalue *file = jvalue_member(root, "relume:file");
     if (!file)
         return RELUME_OK;
-    const relume_status status =
-        notes->solid ? read_box(notes, file, log) : read_file(notes, file, log);
+    const bool boxed = jvalue_member(file, "min") != NULL;
+    relume_status status = RELUME_OK;
+    if (notes->width)
+        status = read_file(notes, file, log);
+    if (!status && notes->solid && (boxed || !notes->width))
+        status = read_box(notes, file, log);
     return status ? status : read_scale(notes, root, log);
 }
 

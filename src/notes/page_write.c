@@ -64,7 +64,6 @@ static void print_box(FILE *f, const relume_notes *notes)
             fprintf(f, "%s%s", c ? ", " : "", jvalue_number_text(notes->box[k][c]).text);
         fputc(']', f);
     }
-    fputs("},\n", f);
 }
 
 static bool print_page(FILE *f, const relume_notes *notes)
@@ -74,11 +73,12 @@ static bool print_page(FILE *f, const relume_notes *notes)
           "\"id\": \"#notes\", \"type\": \"AnnotationPage\",\n\"relume:file\": {\"name\": ",
           f);
     good = note_quote(f, notes->name) && good;
+    if (notes->width)
+        fprintf(f, ", \"width\": %d, \"height\": %d, \"views\": %d", notes->width, notes->height,
+                notes->views);
     if (notes->solid)
         print_box(f, notes);
-    else
-        fprintf(f, ", \"width\": %d, \"height\": %d, \"views\": %d},\n", notes->width,
-                notes->height, notes->views);
+    fputs("},\n", f);
     if (notes->mm_per_pixel > 0.0)
         fprintf(f, "\"%s\": %s,\n", notes_scale_name(notes),
                 jvalue_number_text(notes->mm_per_pixel).text);

@@ -31,12 +31,19 @@ void notes_destroy(struct notes **notes)
         return;
     relume_notes_destroy(&n->list);
     free(n->place);
+    free(n->z);
     free(n);
+}
+
+// An object that slabs stand around.
+static bool has_depth(const struct app *app)
+{
+    return app->file.around && relume_slab_set_count(app->file.around) > 1;
 }
 
 bool notes_have_places(const struct app *app)
 {
-    return !app->file.around && !app->file.scene && app->file.width > 0;
+    return (!app->file.around || has_depth(app)) && !app->file.scene && app->file.width > 0;
 }
 
 static bool looks_around(const struct app *app)
@@ -44,9 +51,23 @@ static bool looks_around(const struct app *app)
     return app->now.camera.framing == RELUME_FRAME_LOOK;
 }
 
-bool notes_to_picture(double place[2], const struct app *app, double x, double y)
+static bool on_surface(double place[2], double *z, const struct app *app, double x, double y)
+{
+    struct relume_vec3 p;
+    if (!app->scene.surface || !app->scene.surface(app->scene.user, &p, x, y))
+        return false;
+    place[0] = p.x;
+    place[1] = p.y;
+    *z = p.z;
+    return true;
+}
+
+bool notes_to_picture(double place[2], double *z, const struct app *app, double x, double y)
 {
     const struct app_rectangle r = app_picture(app);
+    *z = 0;
+    if (has_depth(app))
+        return on_surface(place, z, app, x, y);
     if (looks_around(app))
         return relume_panorama_pixel(
             place, &app->file.geometry, app->file.width, app->file.height,
@@ -57,9 +78,11 @@ bool notes_to_picture(double place[2], const struct app *app, double x, double y
            place[1] <= app->file.height;
 }
 
-bool notes_to_frame(double xy[2], const struct app *app, const double place[2])
+bool notes_to_frame(double xy[2], const struct app *app, const double place[2], double z)
 {
     const struct app_rectangle r = app_picture(app);
+    if (has_depth(app))
+        return gizmo_place(xy, app, (struct relume_vec3){place[0], place[1], z});
     if (looks_around(app)) {
         const struct relume_vec3 ray = relume_panorama_ray(&app->file.geometry, app->file.width,
                                                            app->file.height, place[0], place[1]);
@@ -72,14 +95,17 @@ bool notes_to_frame(double xy[2], const struct app *app, const double place[2])
 
 // ---------------------------------------------------------------- drawing
 
-static bool add(struct notes *n, const double place[2])
+static bool add(struct notes *n, const double place[2], double z)
 {
-    double(*more)[2] = n->places < RELUME_NOTE_MOST_PLACES
-                           ? realloc(n->place, ((size_t)n->places + 1) * sizeof *more)
-                           : NULL;
-    if (!more)
+    const bool full = n->places == RELUME_NOTE_MOST_PLACES;
+    const size_t room = (size_t)n->places + 1;
+    double(*more)[2] = full ? NULL : realloc(n->place, room * sizeof *more);
+    n->place = more ? more : n->place;
+    double *deep = more ? realloc(n->z, room * sizeof *deep) : NULL;
+    if (!deep)
         return false;
-    n->place = more;
+    n->z = deep;
+    deep[n->places] = z;
     more[n->places][0] = place[0];
     more[n->places++][1] = place[1];
     return true;
@@ -90,7 +116,7 @@ static bool is_on(const struct app *app, int place, double x, double y)
     double at[2];
     if (place < 0 || place >= app->notes->places)
         return false;
-    return notes_to_frame(at, app, app->notes->place[place]) &&
+    return notes_to_frame(at, app, app->notes->place[place], app->notes->z[place]) &&
            hypot(at[0] - x, at[1] - y) <= near_px;
 }
 
@@ -101,7 +127,8 @@ static int find(const struct app *app, double x, double y)
         const struct relume_note *note = relume_notes_get(app->notes->list, i);
         for (int k = 0; k < note->places; k++) {
             double at[2];
-            if (notes_to_frame(at, app, note->place[k]) && hypot(at[0] - x, at[1] - y) <= near_px)
+            if (notes_to_frame(at, app, note->place[k], note->z ? note->z[k] : 0) &&
+                hypot(at[0] - x, at[1] - y) <= near_px)
                 return i;
         }
     }
@@ -111,7 +138,7 @@ static int find(const struct app *app, double x, double y)
 bool notes_press(struct app *app, double x, double y)
 {
     struct notes *n = app->notes;
-    double place[2];
+    double place[2], z;
     if (!notes_have_places(app))
         return false;
     const int hit = n->places ? -1 : find(app, x, y);
@@ -119,12 +146,12 @@ bool notes_press(struct app *app, double x, double y)
         n->chosen = hit;
         return hit >= 0;
     }
-    if (!notes_to_picture(place, app, x, y))
+    if (!notes_to_picture(place, &z, app, x, y))
         return false;
     const bool closes = n->tool == RELUME_NOTE_POLYGON && is_on(app, 0, x, y);
     if (closes || is_on(app, n->places - 1, x, y))
         (void)notes_finish(app);
-    else if (add(n, place) && n->tool == RELUME_NOTE_POINT)
+    else if (add(n, place, z) && n->tool == RELUME_NOTE_POINT)
         (void)notes_finish(app);
     return true;
 }
@@ -147,10 +174,13 @@ bool notes_take_back(struct app *app)
     return draws;
 }
 
-struct relume_note notes_drawn(const struct notes *n)
+struct relume_note notes_drawn(const struct app *app)
 {
-    return (struct relume_note){
-        .kind = n->tool, .places = n->places, .place = (const double(*)[2])n->place};
+    const struct notes *n = app->notes;
+    return (struct relume_note){.kind = n->tool,
+                                .places = n->places,
+                                .place = (const double(*)[2])n->place,
+                                .z = has_depth(app) ? n->z : NULL};
 }
 
 double notes_scale_bar(const struct notes *n, double pixels, double most)

@@ -2,6 +2,8 @@
 // file
 #include "cli.h"
 
+#include "program/notes_file.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -415,11 +417,7 @@ static relume_status on_picture(const struct notes_options *o)
     relume_status status = relume_open(&pack, path, relume_open_params(.log = o->args.log));
     if (!status) {
         const struct relume_pack_info *info = relume_pack_info(pack);
-        const struct relume_notes_file file = {.name = base_name(path),
-                                               .width = info->width,
-                                               .height = info->height,
-                                               .views = info->views,
-                                               .inside = info->notes};
+        const struct relume_notes_file file = notes_file_of(pack, base_name(path));
         status = o->view < info->views
                      ? work(pack, &file, o)
                      : usage_error("--view %d: %s has %d view%s, counted from 0", o->view, path,

@@ -1,6 +1,6 @@
 // kept_notes.h - notes inside a relume file that another one replaces
-#ifndef COMMANDS_KEPT_NOTES_H
-#define COMMANDS_KEPT_NOTES_H
+#ifndef CLI_KEPT_NOTES_H
+#define CLI_KEPT_NOTES_H
 
 #include "cli.h"
 

@@ -100,7 +100,8 @@ VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 WEB_OBJECT := $(wildcard web/object*.js)
 WEB_JS   := $(filter-out $(WEB_OBJECT),$(wildcard web/*.js))
 # ... of which pages of objects have these, and nothing else
-WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js pointer.js shaders.js state.js wasm.js)
+WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js marks.js noteindex.js notepanel.js notes.js overlay.js pointer.js shaders.js \
+              state.js wasm.js)
 WEB_CORE := $(wildcard web/core/relume-core.wasm)
 WEB_OPEN := $(wildcard web/open/relume-open.wasm web/open/licences.txt)
 WEB_CSS  := $(wildcard web/*.css)
@@ -172,8 +173,7 @@ CORE_C := $(wildcard web/core/*.c src/coder/interpolant_*.c) $(addprefix src/,$(
           basis_ptm.c basis_hsh.c basis_sh.c basis_dct.c basis_dct_resampled.c harmonics.c disc.c zone.c mesh.c) \
           math/hull.c math/sh.c math/hsh.c $(addprefix relight/,environment.c directions.c cells.c triangles.c))
 web:
-	emcc -std=gnu11 -Os -DNDEBUG -ffp-contract=off -Wall -Wextra -Iinclude -Isrc $(CORE_C) --no-entry -s STANDALONE_WASM=1 -s MALLOC=emmalloc \
-	    -s ALLOW_MEMORY_GROWTH=1 -s INITIAL_MEMORY=4194304 -s TOTAL_STACK=1048576 -o web/core/relume-core.wasm
+	scripts/web-core.sh web/core/relume-core.wasm $(CORE_C)
 	scripts/web-open.sh web/open/relume-open.wasm
 # The same natively, for tests.
 $B/tests/core.so: $(CORE_C) | $(DEPS)

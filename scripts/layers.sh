@@ -16,7 +16,7 @@ image:base math kernel:base io image photograph response
 compare:base math image:base image jnd
 study:base math:base image study
 chart:base math image compare:base image photograph chart
-capture:base math image:base image photograph directions capture response
+capture:base math geometry image:base image photograph directions capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph ingest slab_depth
 stereo:base math:base
@@ -61,7 +61,7 @@ bake:base math mesh baked object:base light surface btf object bake
 tableau:base math geometry mesh transport frame object:base image light relight view slab_set pack frame viewport object renderer exchange rig tableau
 helper:base image mesh:base
 measure:base math kernel image:*
-program:base:base image
+program:base:base image notes pack slab_set
 cli:program:*
 mpi::io team
 cli/materials:materials program:*

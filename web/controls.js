@@ -5,7 +5,7 @@ import { RADIANS, distanceOf, gainOf, softnessOf } from './lights.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const PASS_NAMES = ['Colour', 'Normals', 'Shiny', 'Relief', 'Fine relief', 'Grey', 'False colour'];
-const WAY_NAMES = ['Nothing', 'Lens', 'Side by side', 'Blink', 'Difference'];
+export const WAY_NAMES = ['Nothing', 'Lens', 'Side by side', 'Blink', 'Difference'];
 const DISTANCES = [-2, 3];  // of a light, logarithms in units of the scene; the last: far
 const TONE_NAMES = ['Plain', 'Soft highlights', 'Film', 'Gamma 2.2'];
 
@@ -65,7 +65,7 @@ export function slider(text, low, high, step, act) {
     return input;
 }
 
-function select(text, names, shown, act) {
+export function select(text, names, shown, act) {
     const node = make('select', { 'aria-label': text, onchange: () => act(node.value) },
                       ...names.map((name, i) => make('option', { value: name }, shown[i])));
     return node;

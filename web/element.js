@@ -11,6 +11,7 @@ import { Failure, loadJson } from './load.js';
 import { Notes } from './notes.js';
 import { NotePanel } from './notepanel.js';
 import { Overlay } from './overlay.js';
+import { profileOfNote } from './profile.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
 
 const STEP = 0.06;  // of the disc of lights, a key
@@ -157,7 +158,7 @@ export class RelumeView extends HTMLElement {
         this.overlay = new Overlay(this.over, viewer, () => this.panel.rested());
         this.panel = new NotePanel(viewer, notes, this.overlay, {
             draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state),
-            focus: () => this.surface.focus(),
+            focus: () => this.surface.focus(), profile: (note, list) => profileOfNote(viewer, note, list),
         });
         this.panel.node.hidden = true;
         this.frame.append(this.panel.node);

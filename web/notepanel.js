@@ -1,7 +1,6 @@
 // notepanel.js - the list of notes beside the picture, and how they are made
 import { handOut, make } from './controls.js';
-import { measureNote, sayMeasures } from './notes.js';
-import { profileGraph, profileOf, profileTable, shortNumber } from './profile.js';
+import { measureNote } from './notes.js';
 
 const SHOWN = 200;  // of the list at once
 const FEWEST = { point: 1, line: 2, polygon: 3 };
@@ -13,7 +12,8 @@ const HOW = {
 };
 
 export class NotePanel {
-    // `to`: draw(), say(text), go(state), focus() on the picture.
+    // `to`: draw(), say(text), go(state), focus() on the picture, profile(note, notes), a promise of
+    // { text, nodes }, where there are profiles.
     constructor(viewer, notes, overlay, to) {
         Object.assign(this, { viewer, notes, overlay, to });
         overlay.notes = notes;
@@ -51,10 +51,10 @@ export class NotePanel {
 
     // Of very many notes the list has those near the middle of the picture.
     show() {
-        const { mm } = this.notes, found = this.found(), many = found.length > SHOWN;
+        const { notes } = this, found = this.found(), many = found.length > SHOWN;
         const line = (note) => make('li', {}, make('button', { type: 'button', class: note === this.overlay.chosen ? 'note chosen' : 'note',
                                                               onclick: () => { this.choose(note); this.visit(); } },
-            make('span', {}, note.text.slice(0, 200) || KINDS[note.kind]), make('small', {}, sayMeasures(note, mm))));
+            make('span', {}, note.text.slice(0, 200) || KINDS[note.kind]), make('small', {}, notes.sayMeasures(note))));
         this.list.replaceChildren(...(many ? this.overlay.nearest(found, SHOWN) : found).map(line));
         if (many)
             this.list.append(make('li', { class: 'more' }, `and ${found.length - SHOWN} more, farther from the middle`));
@@ -69,8 +69,9 @@ export class NotePanel {
         this.chosen.hidden = !note;
         if (note) {
             this.text.value = note.text;
-            this.measures.textContent = sayMeasures(note, this.notes.mm);
-            this.ruler.hidden = this.profiler.hidden = note.kind !== 'line';
+            this.measures.textContent = this.notes.sayMeasures(note);
+            this.ruler.hidden = note.kind !== 'line';
+            this.profiler.hidden = note.kind !== 'line' || !this.to.profile;
         }
         this.show();
         this.to.draw();
@@ -90,7 +91,7 @@ export class NotePanel {
         const i = at < 0 ? (by > 0 ? 0 : n - 1) : (at + by + n) % n, note = found[i];
         this.choose(note);
         this.visit();
-        return this.to.say([`${i + 1} of ${n}: ${note.text.slice(0, 200) || KINDS[note.kind]}`, sayMeasures(note, this.notes.mm)].filter((t) => t).join(', '));
+        return this.to.say([`${i + 1} of ${n}: ${note.text.slice(0, 200) || KINDS[note.kind]}`, this.notes.sayMeasures(note)].filter((t) => t).join(', '));
     }
 
     // The light, eye and framing that a note was made in.
@@ -119,31 +120,22 @@ export class NotePanel {
             return this.to.say('Give the true length of this line in millimetres.');
         this.notes.setScale(mm);
         this.choose(this.overlay.chosen);
-        return this.to.say(`A pixel is ${+mm.toPrecision(4)} mm wide.`);
+        return this.to.say(`A ${this.notes.unit} is ${+mm.toPrecision(4)} mm wide.`);
     }
 
     // Along the chosen line: a graph, and a table to keep.
     async profile() {
-        const note = this.overlay.chosen, { mm } = this.notes;
+        const note = this.overlay.chosen;
         try {
-            const found = await profileOf(this.viewer, note.places);
-            if (note === this.overlay.chosen)
-                this.showProfile(found, mm);
+            const { text, nodes } = await this.to.profile(note, this.notes);
+            if (note !== this.overlay.chosen)
+                return;
+            this.profiled.replaceChildren(...nodes);
+            this.profiled.hidden = false;
+            this.to.say(text);
         } catch (error) {
             this.to.say(`${error.message}.`);
         }
-    }
-
-    showProfile(found, mm) {
-        const note = this.overlay.chosen, name = `${this.notes.file.name.replace(/\.exr$/, '')}.${note.item.id || 'line'}.csv`;
-        const { svg, low, high } = profileGraph(found), unit = mm ? 'mm' : 'pixels', k = mm || 1;
-        const what = found.names.length > 1 ? `Light from ${shortNumber(low)} to ${shortNumber(high)}`
-            : `Height from ${+(low * k).toPrecision(3)} to ${+(high * k).toPrecision(3)} ${unit}`;
-        const text = low <= high ? `${what}.` : 'Nothing is known along this line.';
-        this.profiled.replaceChildren(...(low <= high ? [svg] : []), make('p', { class: 'measures' }, text),
-            make('button', { type: 'button', class: 'word', onclick: () => handOut(profileTable(found, mm), 'text/csv', name) }, 'Save the table'));
-        this.profiled.hidden = false;
-        this.to.say(text);
     }
 
     // ------------------------------------------------------------ drawing
@@ -159,10 +151,12 @@ export class NotePanel {
 
     click(place) {
         const { drawing } = this.overlay;
+        if (!place)
+            return this.to.say('There is nothing there to write on.');
         drawing.places.push(place);
         if (drawing.kind === 'point')
             this.end();
-        this.to.draw();
+        return this.to.draw();
     }
 
     end() {

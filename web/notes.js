@@ -4,7 +4,7 @@ import { Failure } from './load.js';
 
 const MOST_NOTES = 100000, MOST_PLACES = 10000, MOST_TEXT = 65536;
 
-const arePlaces = (places) => places.length >= 1 && places.length <= MOST_PLACES && places.flat().every(Number.isFinite);
+export const arePlaces = (places) => places.length >= 1 && places.length <= MOST_PLACES && places.flat().every(Number.isFinite);
 
 // Straight shapes of an SVG selector: { closed, places }, or null.
 function shapeOf(svg) {
@@ -18,8 +18,17 @@ function shapeOf(svg) {
     return arePlaces(places) ? { closed: path ? /[zZ]\s*$/.test(text) : points[1] === 'polygon', places } : null;
 }
 
-// One annotation as the page knows it; null where it is of a kind that it does not.
-function noteOf(item) {
+// A place on a picture, or a shape of it: { kind, places }; null.
+function pictureShape(selector) {
+    if (selector.type === 'PointSelector' && arePlaces([[selector.x, selector.y]]))
+        return { kind: 'point', places: [[selector.x, selector.y]] };
+    const shape = selector.type === 'SvgSelector' ? shapeOf(String(selector.value)) : null;
+    return shape && shape.places.length > 1 ? { kind: shape.closed ? 'polygon' : 'line', places: shape.places } : null;
+}
+
+// One annotation as the page knows it; null where it is of a kind that it does not. `read` makes a
+// shape of a selector.
+function noteOf(item, read) {
     if (!item || typeof item !== 'object')
         return null;
     const body = [].concat(item.body || [])[0], target = [].concat(item.target || [])[0] || {};
@@ -28,50 +37,49 @@ function noteOf(item) {
                    state: state && typeof state.value === 'string' ? state.value : '' };
     if (!selector)
         return note.state ? note : null;
-    if (selector.type === 'PointSelector' && arePlaces([[selector.x, selector.y]]))
-        return { ...note, kind: 'point', places: [[selector.x, selector.y]] };
-    const shape = selector.type === 'SvgSelector' ? shapeOf(String(selector.value)) : null;
-    return shape && shape.places.length > 1 ? { ...note, kind: shape.closed ? 'polygon' : 'line', places: shape.places } : null;
+    const found = read(selector);
+    return found && { ...note, ...found };
 }
 
-const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+const between = (a, b) => a.map((v, c) => v - b[c]);
+const distance = (a, b) => Math.hypot(...between(a, b));
 
-// { length, area, degrees } of a note in pixels, as relume_note_measure; undefined where it has none.
+// Half of the sum of the crosses of neighbours: of places in the plane or in space.
+function areaOf(places) {
+    const sum = [0, 0, 0];
+    places.forEach((p, i) => {
+        const [x, y, z = 0] = between(p, places[0]), [u, v, w = 0] = between(places[(i + 1) % places.length], places[0]);
+        [y * w - z * v, z * u - x * w, x * v - y * u].forEach((part, c) => { sum[c] += part / 2; });
+    });
+    return Math.hypot(...sum);
+}
+
+function angleOf([a, middle, b]) {
+    const u = between(a, middle), v = between(b, middle), dot = u.reduce((sum, x, c) => sum + x * v[c], 0);
+    return Math.acos(Math.min(Math.max(dot / (Math.hypot(...u) * Math.hypot(...v)), -1), 1)) * 180 / Math.PI;
+}
+
+// { length, area, degrees } of a note in pixels, or in an object's units, as relume_note_measure;
+// undefined where it has none.
 export function measureNote({ kind, places }) {
     const n = places.length, closed = kind === 'polygon', out = {};
     if (n < 2)
         return out;
     out.length = places.reduce((sum, p, i) => sum + (i + 1 < n || closed ? distance(p, places[(i + 1) % n]) : 0), 0);
     if (closed)
-        out.area = Math.abs(places.reduce((sum, p, i) => sum + p[0] * places[(i + 1) % n][1] - p[1] * places[(i + 1) % n][0], 0)) / 2;
-    if (kind === 'line' && n === 3) {
-        const [a, b] = [places[0], places[2]].map((p) => Math.atan2(p[1] - places[1][1], p[0] - places[1][0]));
-        const turn = Math.abs(a - b) * 180 / Math.PI;
-        out.degrees = turn > 180 ? 360 - turn : turn;
-    }
+        out.area = areaOf(places);
+    if (kind === 'line' && n === 3)
+        out.degrees = angleOf(places);
     return out;
 }
 
 const short = (x) => String(+x.toPrecision(4));
 
-// A length in pixels, or in millimetres where they are known.
-export const sayLength = (pixels, mm) => (mm ? `${short(pixels * mm)} mm` : `${short(pixels)} pixels`);
-
-export function sayMeasures(note, mm) {
-    const m = measureNote(note), out = [];
-    if (m.length !== undefined)
-        out.push(sayLength(m.length, mm));
-    if (m.area !== undefined)
-        out.push(mm ? `${short(m.area * mm * mm)} mm²` : `${short(m.area)} square pixels`);
-    if (m.degrees !== undefined)
-        out.push(`${short(m.degrees)}°`);
-    return out.join(', ');
-}
 
 export class Notes {
-    // An empty list on a scene.
-    constructor(scene) {
-        this.file = { name: `${scene.name || 'picture'}.exr`, width: scene.width, height: scene.height, views: scene.views.length };
+    // An empty list on a scene, or on a file of which `file` says what notes must fit.
+    constructor(scene, file = { width: scene.width, height: scene.height, views: scene.views && scene.views.length }) {
+        this.file = { name: `${scene.name || 'picture'}.exr`, ...file };
         this.mm = scene.mm_per_pixel > 0 ? scene.mm_per_pixel : 0;
         this.page = { '@context': ['http://www.w3.org/ns/anno.jsonld', { relume: 'urn:relume:' }], id: '#notes',
                       type: 'AnnotationPage', 'relume:file': this.file, items: [] };
@@ -81,20 +89,55 @@ export class Notes {
         this.changed = false;
     }
 
-    // What a page says; notes on a file of another size are refused.
+    // What places are counted in, and the member of the page that says how many millimetres one has.
+    get unit() { return 'pixel'; }
+    get scaleName() { return 'relume:mmPerPixel'; }
+
+    // Why notes on a file that says so of itself are none on this one; nothing where they are.
+    unfit({ width, height }) {
+        const { file } = this;
+        return width === file.width && height === file.height ? ''
+            : `these notes are on a picture of ${width} x ${height} pixels, this one has ${file.width} x ${file.height}`;
+    }
+
+    readShape(selector) { return pictureShape(selector); }
+
+    writeShape(kind, places) {
+        const d = places.map((p) => p.map((x) => +x.toFixed(2)).join(','));
+        return kind === 'point' ? { type: 'PointSelector', x: places[0][0], y: places[0][1] }
+            : { type: 'SvgSelector', value: `<svg xmlns='http://www.w3.org/2000/svg'><path d='M${d.join(' L')}${kind === 'polygon' ? ' Z' : ''}'/></svg>` };
+    }
+
+    // A length as it is measured, or in millimetres where they are known.
+    sayLength(length) { return this.mm ? `${short(length * this.mm)} mm` : `${short(length)} ${this.unit}s`; }
+
+    sayMeasures(note) {
+        const m = measureNote(note), out = [], { mm } = this;
+        if (m.length !== undefined)
+            out.push(this.sayLength(m.length));
+        if (m.area !== undefined)
+            out.push(mm ? `${short(m.area * mm * mm)} mm²` : `${short(m.area)} square ${this.unit}s`);
+        if (m.degrees !== undefined)
+            out.push(`${short(m.degrees)}°`);
+        return out.join(', ');
+    }
+
+    // What a page says; notes on another file are refused.
     read(page) {
-        const own = page && page['relume:file'], { width, height } = this.file;
+        const own = page && page['relume:file'];
         if (!page || page.type !== 'AnnotationPage' || !Array.isArray(page.items) || page.items.length > MOST_NOTES)
             throw new Failure('notes.json is no page of annotations');
-        if (own && (own.width !== width || own.height !== height))
-            throw new Failure(`these notes are on a picture of ${own.width} x ${own.height} pixels, this one has ${width} x ${height}`);
-        const found = page.items.map(noteOf);
+        const unfit = own ? this.unfit(own) : '';
+        if (unfit)
+            throw new Failure(unfit);
+        const found = page.items.map((item) => noteOf(item, (selector) => this.readShape(selector)));
         this.page = page;
         this.version++;
         this.all = found.filter((note) => note);
         this.unknown = found.length - this.all.length;
-        if (page['relume:mmPerPixel'] > 0 && Number.isFinite(page['relume:mmPerPixel']))
-            this.mm = page['relume:mmPerPixel'];
+        const mm = page[this.scaleName];
+        if (mm > 0 && Number.isFinite(mm))
+            this.mm = mm;
     }
 
     nameOf() {
@@ -106,14 +149,11 @@ export class Notes {
     }
 
     add(kind, places, text, state) {
-        const d = places.map((p) => p.map((x) => +x.toFixed(2)).join(','));
-        const selector = kind === 'point' ? { type: 'PointSelector', x: places[0][0], y: places[0][1] }
-            : { type: 'SvgSelector', value: `<svg xmlns='http://www.w3.org/2000/svg'><path d='M${d.join(' L')}${kind === 'polygon' ? ' Z' : ''}'/></svg>` };
         const item = {
             id: this.nameOf(), type: 'Annotation', motivation: kind === 'view' ? 'bookmarking' : 'commenting',
             created: new Date().toISOString().replace(/\.\d+Z$/, 'Z'),
             body: { type: 'TextualBody', format: 'text/plain', value: text },
-            target: { type: 'SpecificResource', source: this.file.name, ...(kind === 'view' ? {} : { selector }),
+            target: { type: 'SpecificResource', source: this.file.name, ...(kind === 'view' ? {} : { selector: this.writeShape(kind, places) }),
                       state: { type: 'relume:State', value: state } },
         };
         const note = { item, kind, places, text, state };
@@ -143,7 +183,7 @@ export class Notes {
 
     setScale(mm) {
         this.mm = mm;
-        this.page['relume:mmPerPixel'] = mm;
+        this.page[this.scaleName] = mm;
         this.changed = true;
     }
 

@@ -1,9 +1,13 @@
 // object.js - <relume-object src="…/object.json">: a baked object that can be turned and relit
 import { Ball, directionOf, placeOf, sayDirection } from './ball.js';
-import { button, colourOf, handOut, hexOf, labelled, make, slider } from './controls.js';
+import { COMPARISONS } from './compare.js';
+import { WAY_NAMES, button, colourOf, handOut, hexOf, labelled, make, select, slider } from './controls.js';
 import { RADIANS } from './lights.js';
-import { Failure, put } from './load.js';
+import { Failure, loadJson, put } from './load.js';
+import { NotePanel } from './notepanel.js';
+import { ObjectNotes } from './objectnotes.js';
 import { ObjectViewer } from './objectview.js';
+import { Overlay } from './overlay.js';
 import { listenPointers } from './pointer.js';
 import { TONES_BY_NAME } from './shaders.js';
 import { putCore } from './wasm.js';
@@ -13,8 +17,11 @@ const MOST_LAMPS = 16;
 const OBJECT_KEYS = [
     ['Arrow keys', 'turn the object (Shift: the other way of dragging)'], ['L', 'dragging and arrows: turning, or light'],
     ['+ −', 'enlarge, reduce'], ['0', 'the whole object, from the front'], ['N  Delete', 'another light, remove it'], ['[ ]', 'darker, brighter'],
-    ['T', 'how highlights are shown'], ['F', 'full screen'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
+    ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], [', .', 'the note before, the next one'],
+    ['K  V  B', 'keep this look; ways to compare with it; change sides'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
+
+const following = (list, value) => list[(list.indexOf(value) + 1) % list.length];
 
 export class RelumeObject extends HTMLElement {
     // Where relume.css and core.js lie.
@@ -23,10 +30,11 @@ export class RelumeObject extends HTMLElement {
     connectedCallback() {
         this.root = this.shadowRoot || this.attachShadow({ mode: 'open' });
         this.canvas = make('canvas', { 'aria-hidden': 'true' });
+        this.over = make('canvas', { 'aria-hidden': 'true' });
         this.poster = make('img', { class: 'poster', alt: '', hidden: true });
         this.hint = make('p', { class: 'hint' }, 'Drag to turn the object, move the light by its ball');
         this.status = make('p', { class: 'status', role: 'status', 'aria-live': 'polite' });
-        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.poster, this.hint);
+        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.over, this.poster, this.hint);
         this.frame = make('div', { class: 'frame' }, this.surface, this.status);
         this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeObject.home).href }), this.frame);
         this.ready = new Promise((resolve) => { this.isReady = resolve; });
@@ -36,7 +44,9 @@ export class RelumeObject extends HTMLElement {
     disconnectedCallback() {
         if (this.observer)
             this.observer.disconnect();
+        document.removeEventListener('keydown', this.bodyKey);
         if (this.viewer) {
+            this.overlay.close();
             this.first = this.getState();
             this.viewer.close();
         }
@@ -70,6 +80,7 @@ export class RelumeObject extends HTMLElement {
     async open() {
         const viewer = new ObjectViewer(this.canvas, RelumeObject.home, {
             changed: () => this.controls && this.show(),
+            drawn: () => this.drawOver(),
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
         });
@@ -81,6 +92,7 @@ export class RelumeObject extends HTMLElement {
         this.surface.setAttribute('aria-label', `${viewer.object.title || 'Object'}: an object that can be turned, and whose light can be moved. ` +
                                                 'Arrow keys turn it; press the question mark for all keys.');
         this.addControls();
+        this.openNotes();
         this.listen();
         this.observer = new ResizeObserver(() => this.viewer.resize());
         this.observer.observe(this.canvas);
@@ -90,6 +102,88 @@ export class RelumeObject extends HTMLElement {
             viewer.setState(first);
         await viewer.idle();
         return this.isReady();
+    }
+
+    // ------------------------------------------------------------ notes
+
+    // Those that were published with the object, and those that are made here.
+    async openNotes() {
+        const { viewer } = this, notes = new ObjectNotes(viewer.object);
+        this.overlay = new Overlay(this.over, viewer, () => this.panel.rested());
+        this.panel = new NotePanel(viewer, notes, this.overlay, {
+            draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state), focus: () => this.surface.focus(),
+        });
+        this.panel.node.hidden = true;
+        this.frame.append(this.panel.node);
+        if (!viewer.object.notes)
+            return;
+        try {
+            notes.read(await loadJson(new URL('notes.json', this.source).href));
+            this.panel.show();
+            viewer.invalidate();
+        } catch (error) {
+            this.say(`The notes cannot be shown: ${error.message}.`);
+        }
+    }
+
+    drawOver() {
+        const { overlay, viewer } = this;
+        if (!overlay)
+            return;
+        if (overlay.drawing || (overlay.shown && overlay.notes.all.some((note) => note.places.length)))
+            viewer.measure();
+        overlay.draw();
+    }
+
+    toggleNotes() {
+        const { node } = this.panel;
+        node.hidden = !node.hidden;
+        (node.hidden ? this.surface : node.querySelector('button')).focus();
+    }
+
+    // What a click on the object means for notes; false: nothing.
+    clickNotes(at) {
+        const { panel, overlay, viewer } = this, ratio = this.canvas.width / this.surface.getBoundingClientRect().width;
+        if (panel.isDrawing) {
+            panel.click(viewer.toPicture([at.x * ratio, at.y * ratio]));
+            return true;
+        }
+        const note = overlay.find(at.x, at.y);
+        if (note && panel.node.hidden)
+            this.toggleNotes();
+        if (note || overlay.chosen)
+            panel.choose(note);
+        return !!note;
+    }
+
+    // ------------------------------------------------------------ comparing
+
+    // With the kept look, or with the object that `compare` names.
+    async compare(way) {
+        const { comparison } = this.viewer, named = this.getAttribute('compare'), { kept } = comparison;
+        const address = named && new URL(named, document.baseURI).href;
+        try {
+            if (way !== 'off' && address && (!kept || (kept.follows && kept.follows !== address)))
+                await comparison.open(address);
+        } catch (error) {
+            comparison.setWay('off');
+            this.show();
+            return this.say(`${error.message}.`);
+        }
+        comparison.setWay(way);
+        this.show();
+        const what = comparison.title || 'the kept look';
+        return way === 'off' ? this.say('') : this.say(way === 'lens' ? `The lens shows ${what}.` : `This is compared with ${what}.`);
+    }
+
+    keep() {
+        this.viewer.comparison.keep();
+        this.say('This look is kept; turn the object or change the light, and compare.');
+    }
+
+    divide(value) {
+        this.viewer.comparison.divide = value;
+        this.viewer.invalidate();
     }
 
     // ------------------------------------------------------------ state
@@ -120,6 +214,8 @@ export class RelumeObject extends HTMLElement {
         this.softness = slider('Softness of the light', 0, 40, 1, () => this.setLight());
         this.exposure = slider('Exposure', -5, 5, 0.1, (value) => this.set('exposure', value));
         this.mode = button('move', '', () => this.toggleMode());
+        this.way = select('Compare', COMPARISONS, WAY_NAMES, (value) => this.compare(value));
+        this.divider = slider('Where the two pictures meet', 0, 1, 0.01, (value) => this.divide(value));
         const lights = [this.ball.node, make('div', { class: 'group' },
             make('div', { class: 'row' }, this.mode, this.counter, button('add', 'Another light (N)', () => this.addLight()),
                  button('remove', 'Remove this light (Delete)', () => this.removeLight()), this.colour),
@@ -127,10 +223,14 @@ export class RelumeObject extends HTMLElement {
         this.controls = { node: make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
             ...(fixed ? [] : lights),
             make('div', { class: 'group' }, make('div', { class: 'row' }, labelled('Exposure', this.exposure))),
+            make('div', { class: 'group' },
+                make('div', { class: 'row' }, labelled('Compare', this.way)),
+                make('div', { class: 'row' }, make('button', { type: 'button', class: 'word', title: 'Keep this look to compare with (K)',
+                                                              onclick: () => this.keep() }, 'Keep this look'), this.divider)),
             make('div', { class: 'group tools' },
                 make('div', { class: 'row' }, button('fit', 'The whole object (0)', () => this.fit()), button('screen', 'Full screen (F)', () => this.fullScreen()),
-                     button('link', 'Copy a link to this view (C)', () => this.copyLink())),
-                make('div', { class: 'row' }, button('save', 'Save this picture (S)', () => this.save()), button('help', 'Keys (?)', () => this.help())))) };
+                     button('note', 'Notes and measures (M)', () => this.toggleNotes())),
+                make('div', { class: 'row' }, button('link', 'Copy a link to this view (C)', () => this.copyLink()), button('save', 'Save this picture (S)', () => this.save()), button('help', 'Keys (?)', () => this.help())))) };
         this.frame.append(this.controls.node);
         this.showMode();
         this.show();
@@ -149,6 +249,9 @@ export class RelumeObject extends HTMLElement {
             this.softness.value = light.kind === 'area' ? Math.round(light.radius / RADIANS) : 0;
         }
         this.exposure.value = viewer.exposure;
+        this.way.value = viewer.comparison.way;
+        this.divider.value = viewer.comparison.divide;
+        this.divider.hidden = viewer.comparison.way !== 'slider';
     }
 
     showMode() {
@@ -271,7 +374,7 @@ export class RelumeObject extends HTMLElement {
     listen() {
         const enlarge = (factor, x, y) => { this.viewer.touch(); this.viewer.enlarge(factor, ...this.placeOn(x, y).slice(0, 2)); };
         listenPointers(this.surface, {
-            click: (at) => this.lighting && this.lightAt(at),
+            click: (at) => this.clickNotes(at) || (this.lighting && this.lightAt(at)),
             held: () => this.say(this.lighting ? 'Dragging turns the object now.' : 'Dragging moves the light now.'),
             drag: (at, dx, dy, other) => (this.lighting !== other && !this.viewer.object.fixed ? this.lightAt(at) : this.turn(dx, dy)),
             pinch: (factor, x, y, dx, dy) => {
@@ -282,6 +385,14 @@ export class RelumeObject extends HTMLElement {
             wheel: enlarge,
         });
         this.surface.addEventListener('keydown', (event) => this.key(event));
+        this.bodyKey = (event) => event.target === document.body && document.querySelector('relume-object') === this && this.key(event);
+        document.addEventListener('keydown', this.bodyKey);
+        this.surface.addEventListener('pointermove', (event) => {
+            const { comparison } = this.viewer, box = this.surface.getBoundingClientRect();
+            comparison.lens = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+            if (comparison.way === 'lens')
+                this.viewer.invalidate();
+        });
         this.ball.node.addEventListener('keydown', (event) => this.key(event, true));
     }
 
@@ -296,12 +407,20 @@ export class RelumeObject extends HTMLElement {
     key(event, onBall = false) {
         if (event.ctrlKey || event.metaKey || event.altKey)
             return;
+        if (this.panel.isDrawing && ['Enter', 'Escape'].includes(event.key)) {
+            if (event.key === 'Enter') this.panel.end();
+            else this.panel.cancel();
+            event.preventDefault();
+            return;
+        }
         const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
         const { viewer } = this, acts = {
             '+': () => viewer.enlarge(1.25), '=': () => viewer.enlarge(1.25), '-': () => viewer.enlarge(0.8), 0: () => this.fit(),
             l: () => this.toggleMode(), n: () => this.addLight(), Delete: () => this.removeLight(),
             '[': () => this.set('exposure', Math.max(viewer.exposure - 0.25, -20)), ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
-            t: () => this.set('tone', TONES_BY_NAME[(TONES_BY_NAME.indexOf(viewer.tone) + 1) % TONES_BY_NAME.length]),
+            t: () => this.set('tone', following(TONES_BY_NAME, viewer.tone)), m: () => this.toggleNotes(),
+            ',': () => this.panel.step(-1), '.': () => this.panel.step(1),
+            k: () => this.keep(), v: () => this.compare(following(COMPARISONS, viewer.comparison.way)), b: () => viewer.comparison.swap(),
             f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), '?': () => this.help(),
         };
         const act = acts[event.key] || acts[event.key.toLowerCase()];

@@ -101,6 +101,17 @@ void main()
     colour = vec4(all > 0.0 ? max(sum / all, 0.0) : vec3(0.0), 1.0);
 }`;
 
+// The distance of a place along the look.
+export const distanceShader = () => `${HEAD}
+uniform vec3 eye, ahead;
+uniform float unit;
+in vec3 where;
+out vec4 colour;
+void main()
+{
+    colour = vec4(unit * dot(where - eye, ahead));
+}`;
+
 // Exposure, tone and the sRGB curve before black, as 'relume btf render' shows it.
 export const objectPresentShader = () => `${HEAD}${LUMINANCE}
 uniform sampler2D light;

@@ -1,46 +1,39 @@
 // objectview.js - an open object: its eye, lights and picture, drawn when something has changed
 import { Device } from './gl.js';
-import { Basis } from './wasm.js';
-import { cross, spread, unit } from './lights.js';
-import { loadObject } from './objectfile.js';
+import { cross, unit } from './lights.js';
+import { ObjectComparison } from './objectcompare.js';
+import { ObjectModel, minus, product } from './objectmodel.js';
 import { TONES_BY_NAME } from './shaders.js';
-import { COLOURS_ACROSS, OBJECT_VERTEX, objectPresentShader, objectShader } from './objectshaders.js';
+import { objectPresentShader } from './objectshaders.js';
 import { readState, writeState } from './state.js';
 
 const STEEPEST = 1.5;  // radians over the horizon
 const LEAST_SCALE = 0.2, MOST_SCALE = 100;
 const SLOW_FRAME = 90, REST_OF_MOVING = 250;  // milliseconds
 const FIRST_EYE = [0, 0.6, 1.8];  // from the middle, in diagonals of the box, as 'relume btf render' looks
+const MOST_DISTANCES = 512;       // pixels a side
+const BEHIND = 0.01;              // diagonals: what lies so much behind the surface is hidden by it
 
-const minus = (a, b) => a.map((v, c) => v - b[c]);
-const product = (a, b) => a.reduce((sum, v, c) => sum + v * b[c], 0);
 const within = (x, low, high) => Math.min(Math.max(x, low), high);
 
 export class ObjectViewer {
-    // `told`: changed(), broken(error), problem(sentence).
+    // `told`: changed(), drawn(), broken(error), problem(sentence).
     constructor(canvas, home, told) {
-        Object.assign(this, { canvas, home, told, waiting: [], moving: 0, rough: false });
+        Object.assign(this, { canvas, home, told, waiting: [], moving: 0, rough: false, targets: {}, lit: {}, marked: false });
         this.device = new Device(canvas);
+        this.comparison = new ObjectComparison(this);
     }
 
     async open(address) {
-        const object = await loadObject(address);
-        this.middle = object.min.map((v, c) => (v + object.max[c]) / 2);
-        this.across = Math.hypot(...minus(object.max, object.min));
-        this.basis = object.fixed ? null : await this.openBasis(object);
-        this.object = object;
-        this.upload();
+        this.model = await this.openModel(address);
+        Object.assign(this, { object: this.model.object, middle: this.model.middle, across: this.model.across });
         this.reset();
         this.resize();
     }
 
-    // The basis that the object was baked in, in all three colours the same.
-    openBasis({ basis, coefficients: n }) {
-        const { functions, transform: own } = basis, transform = new Float32Array(3 * n * functions);
-        for (let c = 0; c < 3; c++)
-            transform.set(own, c * n * functions);
-        return Basis.open({ basis: { ...basis, parameter: [] }, functions, planes: n, transform, mean: new Float32Array(3 * functions) }, this.home);
-    }
+    openModel(address) { return ObjectModel.open(this.device, address, this.home); }
+
+    get isObject() { return true; }
 
     reset() {
         this.lights = this.object.fixed ? [] : [{ kind: 'dir', direction: unit([-0.4, 0.6, 0.7]), rgb: [1, 1, 1] }];
@@ -49,68 +42,11 @@ export class ObjectViewer {
         this.setLights(this.lights);
     }
 
-    // ------------------------------------------------------------ buffers
-
-    upload() {
-        const { device: { gl }, object: o } = this;
-        this.mesh = gl.createVertexArray();
-        gl.bindVertexArray(this.mesh);
-        [[o.position, 4], [o.place, 2]].forEach(([data, size], i) => {
-            gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-            gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
-            gl.enableVertexAttribArray(i);
-            gl.vertexAttribPointer(i, size, gl.UNSIGNED_SHORT, true, 0, 0);
-        });
-        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-        gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, o.index, gl.STATIC_DRAW);
-        gl.bindVertexArray(this.device.empty);
-        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-        this.clusters = this.device.texture(gl.NEAREST);
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.R16UI, o.width, o.height, 0, gl.RED_INTEGER, gl.UNSIGNED_SHORT, o.cluster);
-        this.weights = this.layersOf(gl.RGBA8, gl.UNSIGNED_BYTE, Math.ceil(o.components / 4), o.weight);
-        this.frames = o.frame && this.layersOf(gl.RGBA8_SNORM, gl.BYTE, 2, o.frame);
-        this.colours = this.device.texture(gl.NEAREST);
-        this.colour = new Float32Array(4 * COLOURS_ACROSS * Math.ceil(o.vectors / COLOURS_ACROSS));
-    }
-
-    layersOf(format, type, layers, data) {
-        const { device: { gl }, object: o } = this, texture = this.device.texture(gl.NEAREST, gl.TEXTURE_2D_ARRAY);
-        gl.texImage3D(gl.TEXTURE_2D_ARRAY, 0, format, o.width, o.height, layers, 0, gl.RGBA, type, data);
-        return texture;
-    }
-
-    // All means and components under the lights.
-    light() {
-        const { device: { gl }, object: o, colour } = this, n = o.coefficients, sum = new Float32Array(3 * n).fill(o.fixed ? 1 : 0);
-        if (this.basis)
-            for (const light of spread(this.lights, this.basis)) {
-                const { share, weights } = this.basis.weights(light.direction);
-                for (let c = 0; c < 3; c++)
-                    for (let k = 0; k < n; k++)
-                        sum[c * n + k] += share * light.rgb[c] * weights[c * (n + 1) + k];
-            }
-        for (let i = 0, from = 0; i < o.vectors; i++) {
-            let r = 0, g = 0, b = 0;
-            for (let k = 0; k < n; k++, from += 3) {
-                r += o.value[from] * sum[k];
-                g += o.value[from + 1] * sum[n + k];
-                b += o.value[from + 2] * sum[2 * n + k];
-            }
-            colour[4 * i] = r;
-            colour[4 * i + 1] = g;
-            colour[4 * i + 2] = b;
-        }
-        gl.bindTexture(gl.TEXTURE_2D, this.colours);
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, COLOURS_ACROSS, colour.length / 4 / COLOURS_ACROSS, 0, gl.RGBA, gl.FLOAT, colour);
-        this.isLit = true;
-    }
-
     // ------------------------------------------------------------ changes
 
     setLights(lights) {
         this.lights = lights;
         this.chosen = within(this.chosen, 0, Math.max(0, lights.length - 1));
-        this.isLit = false;
         this.changed();
     }
 
@@ -177,7 +113,7 @@ export class ObjectViewer {
             this.setEye(values.eye);
         if (values.at)
             this.setFraming(values.at);
-        if (lights && this.basis)
+        if (lights && !this.object.fixed)
             this.setLights(lights);
         if (problem)
             this.told.problem(problem);
@@ -187,8 +123,8 @@ export class ObjectViewer {
     // ------------------------------------------------------------ drawing
 
     // The axes of what is seen: right, down, ahead; as relume_objects_window.
-    axes() {
-        const ahead = unit(minus(this.middle, this.eye));
+    axes(eye = this.eye) {
+        const ahead = unit(minus(this.middle, eye));
         const up = Math.abs(ahead[1]) > 0.9999 ? [0, 0, ahead[1] < 0 ? -1 : 1] : [0, 1, 0], right = unit(cross(ahead, up));
         return { right, down: unit(cross(ahead, right)), ahead };
     }
@@ -223,65 +159,118 @@ export class ObjectViewer {
         return new Promise((resolve) => { this.waiting.push(resolve); this.invalidate(); });
     }
 
-    // Floats of the frame, and depth, `times` as wide and high as the canvas.
-    target(times) {
-        const { device, device: { gl } } = this, width = times * this.canvas.width, height = times * this.canvas.height;
-        if (this.drawn && this.drawn.width === width && this.drawn.height === height)
-            return this.drawn;
-        device.drop(this.drawn);
-        if (this.depth)
-            gl.deleteRenderbuffer(this.depth);
-        this.drawn = device.target(width, height);
-        this.depth = gl.createRenderbuffer();
-        gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
-        gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
-        gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
-        return this.drawn;
+    // Floats, `width` x `height`, of a name; `deep`: with depth.
+    target(name, width, height, deep = false) {
+        const { device, device: { gl } } = this, had = this.targets[name];
+        if (had && had.width === width && had.height === height)
+            return had;
+        this.drop(had);
+        const target = this.targets[name] = device.target(width, height);
+        if (deep) {
+            target.depth = gl.createRenderbuffer();
+            gl.bindRenderbuffer(gl.RENDERBUFFER, target.depth);
+            gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
+            gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, target.depth);
+        }
+        return target;
+    }
+
+    drop(target) {
+        this.device.drop(target);
+        if (target && target.depth)
+            this.device.gl.deleteRenderbuffer(target.depth);
+    }
+
+    // How the object is seen now.
+    seen() {
+        const { model, lit, lights, eye, at, exposure, tone } = this;
+        return { model, lit, lights, eye, at, exposure, tone };
     }
 
     frame(finely = false) {
-        const { device: { gl }, canvas, waiting } = this, begun = performance.now(), moving = begun - this.moving < REST_OF_MOVING;
+        const { device: { gl }, canvas, waiting, comparison } = this, begun = performance.now(), moving = begun - this.moving < REST_OF_MOVING;
         if (this.closed || gl.isContextLost())
             return;
-        if (!this.isLit)
-            this.light();
-        const rough = moving && this.rough && !finely;
-        this.draw(this.target(rough || canvas.width * canvas.height > 1 << 22 ? 1 : 2));
+        const rough = moving && this.rough && !finely, times = rough || canvas.width * canvas.height > 1 << 22 ? 1 : 2;
+        comparison.follow();
+        if (comparison.other) {
+            const [own, other] = [this.seen(), comparison.other].map((look, i) => this.draw(look, times, this.target(`shown${i}`, canvas.width, canvas.height)));
+            comparison.draw(own, other);
+        } else {
+            this.draw(this.seen(), times, null);
+        }
         if (moving && !finely) {
             gl.finish();
             this.rough = performance.now() - begun > SLOW_FRAME || this.rough;
         }
+        this.told.drawn();
         if (rough)
             setTimeout(() => this.invalidate(), REST_OF_MOVING + 10);
         else
             waiting.splice(0).forEach((resolve) => resolve());
     }
 
-    draw(target) {
-        const { device, device: { gl }, object: o, canvas: { width, height } } = this, { right, down, ahead } = this.axes();
-        const radius = this.across / 2, apart = Math.max(Math.hypot(...minus(this.middle, this.eye)), 1.2 * radius);
-        const half = 1.05 * radius / Math.sqrt(apart * apart - radius * radius) / this.at[2], shorter = Math.min(width, height);
-        const program = device.program('object', () => objectShader(o.side > 1), OBJECT_VERTEX);
-        const nearest = Math.max(Math.hypot(...minus(this.middle, this.eye)) - 1.01 * radius, 1e-3 * radius);
-        const window_ = [half * width / shorter, half * height / shorter];
+    // The eye of a look and its window, as relume_objects_window has them; the same for all that is compared.
+    cameraOf({ eye, at }) {
+        const axes = this.axes(eye), radius = this.across / 2, { width, height } = this.canvas, shorter = Math.min(width, height);
+        const apart = Math.max(Math.hypot(...minus(this.middle, eye)), 1.2 * radius);
+        const half = 1.05 * radius / Math.sqrt(apart * apart - radius * radius) / at[2];
+        return { eye, ...axes, window: [half * width / shorter, half * height / shorter, at[0] * at[2] * shorter / width, at[1] * at[2] * shorter / height] };
+    }
+
+    // A look into `target`, the canvas where it is null; its light has `times` as many pixels each way.
+    draw(look, times, target) {
+        const { device, canvas: { width, height } } = this, light = this.target('light', times * width, times * height, true);
+        look.model.draw(light, this.cameraOf(look), look.model.light(look.lit, look.lights));
         device.begin(target);
-        gl.enable(gl.DEPTH_TEST);
-        gl.clear(gl.DEPTH_BUFFER_BIT);
-        program.set({
-            low: o.min, high: o.max, eye: this.eye, right, down, ahead, depths: [nearest, apart + 2 * radius],
-            window: [...window_, this.at[0] * this.at[2] * shorter / width, this.at[1] * this.at[2] * shorter / height],
-            side: { int: o.side }, components: { int: o.components }, clusters: { texture: this.clusters },
-            weights: { texture: this.weights, array: true }, colours: { texture: this.colours },
-            ...(this.frames ? { frames: { texture: this.frames, array: true } } : {}),
-        });
-        gl.bindVertexArray(this.mesh);
-        gl.drawElements(gl.TRIANGLES, 3 * o.triangles, gl.UNSIGNED_INT, 0);
-        gl.bindVertexArray(device.empty);
-        gl.disable(gl.DEPTH_TEST);
-        device.begin(null);
         const present = device.program('present', objectPresentShader);
-        present.set({ light: { texture: target.texture }, exposure: 2 ** this.exposure, tone: { int: TONES_BY_NAME.indexOf(this.tone) } });
+        present.set({ light: { texture: light.texture }, exposure: 2 ** look.exposure, tone: { int: TONES_BY_NAME.indexOf(look.tone) } });
         present.draw();
+        return target;
+    }
+
+    // ------------------------------------------------------------ places
+
+    camera() { return { at: null }; }
+    scale() { return 0; }
+
+    // A place of the object on the canvas: [x, y, distance along the look]; null behind the eye.
+    project(place) {
+        const { eye, right, down, ahead, window: [wide, high, x, y] } = this.cameraOf(this), { width, height } = this.canvas;
+        const to = minus(place, eye), z = product(to, ahead);
+        return z > 1e-6 * this.across
+            ? [(1 + product(to, right) / wide / z - x) * width / 2, (1 + product(to, down) / high / z - y) * height / 2, z] : null;
+    }
+
+    // ... and null where the surface hides it.
+    toCanvas(place) {
+        const at = this.project(place);
+        return at && this.isSeen(at) ? at.slice(0, 2) : null;
+    }
+
+    // The place of the surface that is seen at a place of the canvas, or null.
+    toPicture([x, y]) {
+        const { eye, right, down, ahead, window: [wide, high, left, top] } = this.cameraOf(this), { width, height } = this.canvas;
+        const a = (2 * x / width - 1 + left) * wide, b = (2 * y / height - 1 + top) * high;
+        return this.model.meet(eye, ahead.map((v, c) => v + a * right[c] + b * down[c]));
+    }
+
+    // The distances of what is seen, while notes want to know them.
+    measure() {
+        const { width, height } = this.canvas, k = Math.min(1, MOST_DISTANCES / Math.max(width, height));
+        const target = this.target('distances', Math.ceil(k * width), Math.ceil(k * height), true);
+        this.model.drawDistances(target, this.cameraOf(this));
+        this.distances = { width: target.width, height: target.height, data: this.device.read(target) };
+    }
+
+    // The farthest surface around a place of the canvas hides what lies behind it.
+    isSeen([x, y, z]) {
+        const { width, height, data } = this.distances || {}, column = Math.floor(x / this.canvas.width * width), row = Math.floor((1 - y / this.canvas.height) * height);
+        let far = 0;
+        for (let j = Math.max(row - 1, 0); j <= Math.min(row + 1, height - 1); j++)
+            for (let i = Math.max(column - 1, 0); i <= Math.min(column + 1, width - 1); i++)
+                far = Math.max(far, data[4 * (j * width + i)]);
+        return !(far > 0) || z / this.across <= far + BEHIND;
     }
 
     snapshot() {
@@ -293,8 +282,9 @@ export class ObjectViewer {
 
     close() {
         this.closed = true;
-        if (this.basis)
-            this.basis.close();
+        this.comparison.close();
+        if (this.model)
+            this.model.close();
         const lost = this.device.gl.getExtension('WEBGL_lose_context');
         if (lost)
             lost.loseContext();

@@ -1,7 +1,6 @@
 // overlay.js - notes, what is being drawn and the scale bar over the picture
 import { MOST_AT_ONCE, Marks } from './marks.js';
 import { NoteIndex } from './noteindex.js';
-import { sayLength } from './notes.js';
 
 const NEAR = 9;         // CSS pixels: what a click means
 const MARK = '#e8c46a', SHADE = 'rgba(0, 0, 0, .65)';
@@ -26,6 +25,7 @@ export class Overlay {
     // `canvas` lies over the viewer's. `rested` is called when the picture has been still for a while.
     constructor(canvas, viewer, rested) {
         Object.assign(this, { canvas, viewer, rested, notes: null, shown: true, chosen: null, drawing: null, ratio: 1 });
+        this.turns = viewer.isPanorama || viewer.isObject;  // what is seen of the notes is known one by one
         this.context = canvas.getContext('2d');
         this.marks = new Marks(canvas, {
             again: () => requestAnimationFrame(() => this.draw()),
@@ -33,7 +33,7 @@ export class Overlay {
         });
     }
 
-    // A place of the picture on the screen, CSS pixels; null behind the eye.
+    // A place of the picture on the screen, CSS pixels; null behind the eye, and behind an object.
     screen(place) {
         const at = this.viewer.toCanvas(place), { ratio } = this;
         return at && [at[0] / ratio, at[1] / ratio];
@@ -49,12 +49,12 @@ export class Overlay {
         return this.notesByPlace;
     }
 
-    // Notes that may be seen within some pixels of the canvas around a box of it; all in a panorama.
+    // Notes that may be seen within some pixels of the canvas around a box of it; all where one turns.
     around(left, top, right, bottom, margin) {
         const { viewer } = this;
         if (!this.shown || !this.notes)
             return [];
-        if (viewer.isPanorama)
+        if (this.turns)
             return this.notes.all.filter((note) => note.places.length);
         return this.index().within([...viewer.toPicture([left - margin, top - margin]), ...viewer.toPicture([right + margin, bottom + margin])]);
     }
@@ -145,7 +145,7 @@ export class Overlay {
         this.stroke(context, '#fff', 2);
         at.forEach(([x, y]) => { context.beginPath(); context.arc(x, y, 3.5, 0, 7); this.stroke(context, '#fff', 1.5); });
         if (at.length > 1)
-            this.label(context, sayLength(drawing.length(), this.notes.mm), ...at[at.length - 1]);
+            this.label(context, this.notes.sayLength(drawing.length()), ...at[at.length - 1]);
         return true;
     }
 
@@ -153,7 +153,7 @@ export class Overlay {
     drawNotes(seen, width, height) {
         const inside = ([x, y]) => x > -BESIDE && y > -BESIDE && x < width + BESIDE && y < height + BESIDE;
         const there = seen.map((note) => [note, note.places.map((p) => this.screen(p))])
-            .filter(([, at]) => at.every((p) => p) && (!this.viewer.isPanorama || at.some(inside)));
+            .filter(([, at]) => at.every((p) => p) && (!this.turns || at.some(inside)));
         const moving = there.length > MOST_AT_ONCE && performance.now() - this.moved < REST;
         for (const [note, at] of moving ? there.slice(0, MOST_AT_ONCE) : there)
             this.drawNote(this.context, note, at, there.length <= MOST_LABELS || note === this.chosen);
@@ -176,7 +176,7 @@ export class Overlay {
         const ratio = this.ratio = width / Math.max(viewer.canvas.clientWidth, 1), { at } = viewer.camera();
         if (canvas.width !== width || canvas.height !== height)
             Object.assign(canvas, { width, height });
-        this.follow([at, viewer.pan, viewer.tilt, viewer.zoom]);
+        this.follow([at, viewer.eye, viewer.at, viewer.pan, viewer.tilt, viewer.zoom]);
         context.setTransform(ratio, 0, 0, ratio, 0, 0);
         context.clearRect(0, 0, width, height);
         context.font = '13px system-ui, sans-serif';

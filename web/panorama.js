@@ -12,6 +12,19 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 const discsOf = (scene) => (scene.projection === 'cylindrical' && scene.panorama.discs) || 0;
 
+// The end discs of a cylinder lie in squares below it, the upper one first; as src/view/panorama_discs.c.
+function discRay(scene, x, y) {
+    const side = discsOf(scene), lower = x >= side, { v_min, v_max } = scene.panorama;
+    const right = 2 * (lower ? x - side : x) / side - 1, up = 1 - 2 * y / side;
+    return [right, lower ? v_min : v_max, lower ? -up : up];
+}
+
+function discPixel(scene, d) {
+    const side = discsOf(scene), lower = d[1] < 0, scale = (lower ? scene.panorama.v_min : scene.panorama.v_max) / d[1];
+    const at = [0.5 + 0.5 * scale * d[0], 0.5 - 0.5 * scale * (lower ? -d[2] : d[2])].map((v) => Math.min(Math.max(v, 0), 1) * side);
+    return [at[0] + (lower ? side : 0), at[1] + scene.height - side];
+}
+
 // The direction that a place of the unfolded picture looks along; any length.
 function rayOf(scene, x, y) {
     const { width, projection, panorama } = scene, height = scene.height - discsOf(scene), phi = (2 * x / width - 1) * Math.PI;
@@ -20,6 +33,8 @@ function rayOf(scene, x, y) {
         const a = 2 * (x - face * height) / height - 1, b = 1 - 2 * y / height;
         return ahead.map((v, i) => v + a * right[i] + b * up[i]);
     }
+    if (discsOf(scene) && y >= height)
+        return discRay(scene, x, y - height);
     if (projection === 'cylindrical')
         return [Math.sin(phi), panorama.v_max - y / height * (panorama.v_max - panorama.v_min), -Math.cos(phi)];
     const elevation = (0.5 - y / height) * Math.PI;
@@ -35,8 +50,11 @@ function pixelOf(scene, d) {
         const [ahead, right, up] = FACES[face], k = 1 / dot(d, ahead);
         return [(face + 0.5 + 0.5 * k * dot(d, right)) * height, (0.5 - 0.5 * k * dot(d, up)) * height];
     }
+    const h = d[1] / across;
+    if (discsOf(scene) && !(h >= panorama.v_min && h <= panorama.v_max))
+        return discPixel(scene, d);
     if (projection === 'cylindrical')
-        return [column, (panorama.v_max - d[1] / across) / (panorama.v_max - panorama.v_min) * height];
+        return [column, (panorama.v_max - h) / (panorama.v_max - panorama.v_min) * height];
     return [column, (0.5 - Math.atan2(d[1], across) / Math.PI) * height];
 }
 
@@ -63,13 +81,15 @@ export class Panorama {
         this.level = level;
     }
 
-    // A look's way through a place of the frame, and the place of a direction; twins of the shader's.
+    // A look's way through a place of the frame, null where the picture ends before; and the place of a direction;
+    // twins of the shader's.
     toPicture([x, y], camera, width, height) {
         const a = (2 * x / width - 1) / camera.zoom, b = (height - 2 * y) / width / camera.zoom;
         const [pan, tilt] = [camera.pan * RADIANS, camera.tilt * RADIANS];
         const depth = camera.planet ? 0.5 * (1 - a * a - b * b) : 1;
         const up = b * Math.cos(tilt) + depth * Math.sin(tilt), ahead = depth * Math.cos(tilt) - b * Math.sin(tilt);
-        return pixelOf(this.scene, [a * Math.cos(pan) + ahead * Math.sin(pan), up, a * Math.sin(pan) - ahead * Math.cos(pan)]);
+        const at = pixelOf(this.scene, [a * Math.cos(pan) + ahead * Math.sin(pan), up, a * Math.sin(pan) - ahead * Math.cos(pan)]);
+        return at[1] >= 0 && at[1] <= this.scene.height ? at : null;
     }
 
     toCanvas([x, y], camera, width, height) {

@@ -1,13 +1,14 @@
-// notes.h - what people write on a relightable picture: points, lines, polygons and saved views
-// that keep the light, the eye and the pass in which they were made; lengths, areas, angles and
-// profiles of them
+// notes.h - what people write on a relightable picture or an object: points, lines, polygons and
+// saved views that keep the light, the eye and the pass in which they were made; lengths, areas,
+// angles and profiles of them
 //
 // A list is kept beside its file, coin.exr has coin.notes.json, as a page of annotations (Web
 // Annotation Data Model, W3C recommendation 2017), so that other programs read it (docs/notes.md),
 // or inside it (relume_pack_keep_notes).
 // Places are counted in pixels of a view at its full size, (0, 0) being the upper left corner of
 // the upper left pixel, x to the right and y down; of a slab they lie on the window that all its
-// cameras see, of a panorama on the view unfolded.
+// cameras see, of a panorama on the view unfolded. Of an object they are its own coordinates, in
+// its own units.
 #ifndef RELUME_NOTES_H
 #define RELUME_NOTES_H
 
@@ -36,26 +37,30 @@ enum { RELUME_NOTES_MOST = 100000, RELUME_NOTE_MOST_PLACES = 10000, RELUME_NOTE_
 struct relume_note {
     enum relume_note_kind kind;
     int places;
-    const double (*place)[2];  // [places], pixels
+    const double (*place)[2];  // [places], pixels; of an object: x and y
     const char *text;          // what it says; NULL: nothing
     const char *state;         // eye, lights, exposure and pass, as `--state` takes it; NULL: any
     const char *creator;       // who made it; NULL: unknown
     const char *created;       // when, as "2026-11-28T12:00:00Z"; NULL: unknown
     const char *id;            // its name within the list; NULL: relume_notes_add finds one
+    const double *z;           // [places]: the third coordinates on an object; NULL on a picture
 };
 
 // A list of notes on one file. Thread-safety: one thread at a time.
 typedef struct relume_notes relume_notes;
 
-// What a list is for: notes are refused for a file of another size.
+// What a list is for: notes are refused for a file of another size, or an object of another box.
 struct relume_notes_file {
     const char *name;   // of the file, without its folder
-    int width, height;  // of each of its views
+    int width, height;  // of each of its views; of an object without views 0
     int views;
     const char *inside;  // the page that the file itself holds (relume_pack_info.notes); NULL: none
+    bool solid;          // it is an object, baked or amid several slabs
+    double box[2][3];    // ... and lies between these corners, least and largest coordinates
 };
 
-// An empty list. RELUME_EINVAL for sizes below 1, RELUME_ENOMEM.
+// An empty list. RELUME_EINVAL for sizes below 1, of an object for a box without extent;
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_notes_create(relume_notes **out,
                                                 const struct relume_notes_file *file);
 // The list kept beside the file `path`; where there is none that inside it, or an empty one.
@@ -83,8 +88,9 @@ RELUME_RESULT relume_status relume_notes_unlink(const char *path, const struct r
 RELUME_API void relume_notes_destroy(relume_notes **notes);
 
 // Append a copy. RELUME_EINVAL with a sentence for a number of places that its kind has not, places
-// that are not finite or farther than the picture's size beside it, text that is no UTF-8 or too
-// long, a name that is taken, a full list; RELUME_ENOMEM.
+// that are not finite or farther than the picture's size beside it, of an object than its diagonal
+// from its box, a note on a picture for an object and the other way round, text that is no UTF-8 or
+// too long, a name that is taken, a full list; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_notes_add(relume_notes *notes, const struct relume_note *note,
                                              const struct relume_log *log);
 // Another text for note number `i`. RELUME_EINVAL, RELUME_ENOMEM.
@@ -97,16 +103,19 @@ RELUME_API const struct relume_note *relume_notes_get(const relume_notes *notes,
 // The number of the note of that name, -1 when there is none.
 RELUME_API int relume_notes_find(const relume_notes *notes, const char *id);
 
-// Millimetres a pixel, 0: not known. RELUME_EINVAL unless it is 0 or positive and finite.
+// Millimetres a pixel, of an object a unit; 0: not known. RELUME_EINVAL unless it is 0 or positive
+// and finite.
 RELUME_API double relume_notes_scale(const relume_notes *notes);
 RELUME_RESULT relume_status relume_notes_set_scale(relume_notes *notes, double mm_per_pixel);
 
 // ---------------------------------------------------------------- measures
 
-// What can be measured in the picture's plane; NaN where the kind of note has no such thing.
+// What can be measured in the picture's plane, in an object's units through space; NaN where the
+// kind of note has no such thing.
 struct relume_note_measures {
     double length;   // pixels: of a line, around a polygon
-    double area;     // square pixels: of a polygon that does not cross itself
+    double area;     // square pixels: of a polygon that does not cross itself; in space half of the
+                     // sum of its edges' crosses
     double degrees;  // [0, 180]: at the middle of a line of three places
 };
 RELUME_API struct relume_note_measures relume_note_measure(const struct relume_note *note);
@@ -141,8 +150,9 @@ enum relume_notes_format {
 // "csv", "svg", "iiif". RELUME_EINVAL when `name` is none of these.
 RELUME_RESULT relume_status relume_notes_format_parse(enum relume_notes_format *out,
                                                       const char *name);
-// Write the file `path`. `canvas` is the canvas's address for IIIF; NULL: the name of the file.
-// RELUME_EIO, RELUME_ENOMEM.
+// Write the file `path`. `canvas` is the canvas's address for IIIF, of an object its scene's or its
+// own; NULL: the name of the file. RELUME_EUNSUPPORTED (an overlay of an object), RELUME_EIO,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_notes_write(const relume_notes *notes, const char *path,
                                                enum relume_notes_format format, const char *canvas,
                                                const struct relume_log *log);

@@ -5,6 +5,7 @@
 #include "acquire/report_picture.h"
 #include "base/memory.h"
 #include "base/outfile.h"
+#include "math/markup.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -19,34 +20,15 @@ struct report {
 };
 
 static const char style[] =
-    "body{font:14px/1.5 sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#222}"
-    "h1{font-size:22px}h2{font-size:17px;margin-top:1.8em}"
-    "img,svg{display:block;max-width:100%;height:auto}figure{margin:0;max-width:100%}"
+    "body{font:14px/1.5 sans-serif;max-width:1100px}"
+    "img,svg{display:block;max-width:100%;height:auto}"
     "figcaption{font-size:12px;color:#555;max-width:420px}"
-    ".row{display:flex;flex-wrap:wrap;gap:16px}.over{position:relative}"
     ".over svg{position:absolute;left:0;top:0;width:100%}"
-    ".wide{overflow-x:auto}table{border-collapse:collapse}"
-    "td,th{padding:2px 10px;text-align:right}.wide td,.wide "
-    "th{white-space:nowrap}th{border-bottom:1px solid #999}"
-    "td:first-child,th:first-child{text-align:left}"
-    ".warn{background:#fff3d6;border-left:4px solid #e0a000;padding:4px 10px;margin:4px 0;"
-    "overflow-wrap:anywhere}.good{color:#060}.off td,.off figcaption{color:#b00}"
+    ".wide{overflow-x:auto}.wide td,.wide th{white-space:nowrap}"
+    ".warn{margin:4px 0;overflow-wrap:anywhere}.off td,.off figcaption{color:#b00}"
     ".patches td{padding:2px;width:92px;text-align:center!important;line-height:1.1}"
     ".sun{position:absolute;right:3px;top:3px;width:34px!important;left:auto!important}"
     "@media print{body{margin:0}}";
-
-static void put_text(FILE *f, const char *text)
-{
-    for (; *text; text++)
-        if (*text == '<')
-            fputs("&lt;", f);
-        else if (*text == '&')
-            fputs("&amp;", f);
-        else if (*text == '"')
-            fputs("&quot;", f);
-        else
-            fputc(*text, f);
-}
 
 static void put_picture(struct report *r, const struct relume_image *image, int side, float gain,
                         enum report_look look)
@@ -65,7 +47,7 @@ static void put_warnings(struct report *r)
         fputs("<p class=\"good\">none</p>\n", r->f);
     for (int i = 0; i < out->warnings; i++) {
         fputs("<div class=\"warn\">", r->f);
-        put_text(r->f, out->warning[i]);
+        markup_text(r->f, out->warning[i]);
         fputs("</div>\n", r->f);
     }
 }
@@ -100,7 +82,7 @@ static void put_chart(struct report *r)
     fputs("<h2>Colour</h2>\n<p>Corrected by a colour target", f);
     if (r->s->p.chart_path) {
         fputs(" in ", f);
-        put_text(f, path_name(r->s->p.chart_path));
+        markup_text(f, path_name(r->s->p.chart_path));
     }
     fprintf(f,
             ", %d of 24 patches used. Colour difference (CIEDE2000, mean and largest): %.1f and "
@@ -218,7 +200,7 @@ static void put_row(FILE *f, const struct relume_acquisition *out, int i, double
     const struct relume_acquired_photo *p = &out->photo[i];
     const vec3 d = out->position ? out->position[i] : out->direction[i];
     fprintf(f, "<tr%s><td>%d ", p->outlier ? " class=\"off\"" : "", i);
-    put_text(f, path_name(p->path));
+    markup_text(f, path_name(p->path));
     fprintf(f, "</td><td>%.3f</td><td>%.3f</td><td>%.3f</td>", d.x, d.y, d.z);
     fprintf(f, p->sigma_deg > 0.0 ? "<td>%.2f&#176;</td>" : "<td></td>", p->sigma_deg);
     fprintf(f, p->light.spread_deg > 0.0 ? "<td>%.1f&#176;</td>" : "<td></td>",
@@ -268,7 +250,7 @@ static void put_thumbnails(struct report *r)
                 "stroke=\"#aaa\"/><circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.6\" fill=\"#fd4\"/></svg>",
                 8.0 * s->out->direction[i].x, -8.0 * s->out->direction[i].y);
         fprintf(r->f, "</div><figcaption>%d ", i);
-        put_text(r->f, path_name(s->shot[i].path));
+        markup_text(r->f, path_name(s->shot[i].path));
         fputs("</figcaption></figure>\n", r->f);
     }
     fputs("</div>\n", r->f);
@@ -297,9 +279,9 @@ static void put_provenance(struct report *r)
     for (int i = 0; i < s->shots; i++) {
         const struct shot *shot = &s->shot[i];
         fprintf(f, "<tr><td>%d ", i);
-        put_text(f, path_name(shot->path));
+        markup_text(f, path_name(shot->path));
         fputs("</td><td>", f);
-        put_text(f, shot->notes.camera);
+        markup_text(f, shot->notes.camera);
         fputs("</td><td>", f);
         put_exposure(f, &shot->notes);
         if (isfinite(shot->sharpness))
@@ -334,8 +316,8 @@ relume_status acquire_report(const struct acquisition *s, const char *dir)
     fprintf(r.f,
             "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
             "name=\"viewport\" content=\"width=device-width\"><title>capture"
-            "</title><style>%s</style></head><body>\n<h1>Capture of %d photographs</h1>\n",
-            style, s->shots);
+            "</title><style>%s%s</style></head><body>\n<h1>Capture of %d photographs</h1>\n",
+            markup_style, style, s->shots);
     put_warnings(&r);
     put_summary(&r);
     put_chart(&r);

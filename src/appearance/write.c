@@ -1,6 +1,7 @@
 // write.c - a folder of maps (docs/maps.md)
 #include "appearance/write.h"
 
+#include "appearance/folder.h"
 #include "appearance/ggx.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -22,24 +23,13 @@ relume_status write_bytes(const struct writing *w, const char *name, const void 
 relume_status write_text(const struct writing *w, const char *name,
                          void (*put)(const void *w, FILE *f))
 {
-    char *path = mem_format("%s/%s", w->folder, name);
-    const relume_status status =
-        path ? relume_file_print(path, put, w, w->params->log) : RELUME_ENOMEM;
-    mem_free(path);
-    return status;
+    return folder_print(w->folder, name, put, w, w->params->log);
 }
 
 static relume_status save(const struct writing *w, const struct relume_image *image,
                           const char *name)
 {
-    char *path = mem_format("%s/%s", w->folder, name);
-    const relume_status status =
-        path ? relume_image_save(
-                   image, path,
-                   relume_image_params(.log = w->params->log, .threads = w->params->threads))
-             : RELUME_ENOMEM;
-    mem_free(path);
-    return status;
+    return folder_save(w->folder, name, image, w->params->threads, w->params->log);
 }
 
 // ---------------------------------------------------------------- pictures for other programs

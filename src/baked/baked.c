@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 
+#include <math.h>
 #include <string.h>
 
 // In memory, or as the file has it before it packs: halves in place of floats.
@@ -62,4 +63,17 @@ void relume_baked_destroy(relume_baked **baked)
 const struct relume_baked_info *relume_baked_info(const relume_baked *baked)
 {
     return &baked->info;
+}
+
+void relume_baked_box(float box[2][3], const relume_baked *baked)
+{
+    for (int c = 0; c < 3; c++) {
+        box[0][c] = INFINITY;
+        box[1][c] = -INFINITY;
+        for (size_t i = 0; i < 3 * baked->info.triangles; i++) {
+            const float v = baked->triangle[i / 3][i % 3].position[c];
+            box[0][c] = fminf(box[0][c], v);
+            box[1][c] = fmaxf(box[1][c], v);
+        }
+    }
 }

@@ -52,6 +52,20 @@ static relume_status look(enum kind *kind, const char *path, const struct relume
     return RELUME_OK;
 }
 
+// The lights' names, where all have one; false without memory.
+static bool list_names(struct relume_captured_lights *out, const jvalue *list)
+{
+    const size_t n = jvalue_count(list);
+    for (size_t i = 0; i < n; i++)
+        if (!jvalue_text(jvalue_member(jvalue_item(list, i), "name")))
+            return true;
+    out->name = mem_zeroed(n, sizeof *out->name);
+    for (size_t i = 0; out->name && i < n; i++)
+        if (!(out->name[i] = mem_text(jvalue_text(jvalue_member(jvalue_item(list, i), "name")))))
+            return false;
+    return out->name != NULL;
+}
+
 // [[x, y, z], ...], or objects that have such a "direction", "dir" or "position".
 static relume_status list_lights(struct relume_captured_lights *out, const jvalue *list,
                                  const char *path, const struct relume_log *log)
@@ -76,7 +90,7 @@ static relume_status list_lights(struct relume_captured_lights *out, const jvalu
                             "%s: light %zu; expected three numbers x y z, not all 0", path, i);
     }
     out->count = (int)n;
-    return RELUME_OK;
+    return list_names(out, list) ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status from_json(struct relume_captured_lights *out, const char *path,
@@ -200,6 +214,9 @@ void relume_captured_lights_destroy(struct relume_captured_lights *list)
     mem_free(list->direction);
     mem_free(list->position);
     mem_free(list->intensity);
+    for (int i = 0; list->name && i < list->count; i++)
+        mem_free(list->name[i]);
+    mem_free(list->name);
     *list = (struct relume_captured_lights){0};
 }
 

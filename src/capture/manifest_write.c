@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
+#include "geometry/print.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,21 +45,13 @@ static void put_lights(FILE *f, const struct relume_manifest *m)
     fputs("\n  },\n", f);
 }
 
-static void put_planes(FILE *f, const struct relume_geometry *g)
-{
-    fprintf(f,
-            "{\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
-            "\"st_max\": [%.9g, %.9g]",
-            g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
-}
-
 static void put_slabs(FILE *f, const struct relume_manifest *m)
 {
     fputs("  \"slabs\": [", f);
     for (int i = 0; i < m->slabs; i++) {
         const struct relume_pose *pose = &m->slab[i].pose;
         fputs(i ? ",\n    " : "\n    ", f);
-        put_planes(f, &m->slab[i]);
+        geometry_print_planes(f, &m->slab[i]);
         fprintf(f, ",\n     \"origin\": [%.9g, %.9g, %.9g], \"axes\": [", pose->origin.x,
                 pose->origin.y, pose->origin.z);
         for (int a = 0; a < 3; a++)
@@ -69,31 +62,14 @@ static void put_slabs(FILE *f, const struct relume_manifest *m)
     fputs("\n  ],\n", f);
 }
 
-static void put_slab(FILE *f, const struct relume_geometry *g)
-{
-    fputs("  \"slab\": ", f);
-    put_planes(f, g);
-    fputs("},\n", f);
-}
-
 static void put_geometry(FILE *f, const struct relume_manifest *m)
 {
-    const struct relume_geometry *g = &m->geometry;
-    fprintf(f, "  \"projection\": \"%s\",\n", relume_projection_name(g->projection));
-    if (g->projection == RELUME_PLANAR)
-        fprintf(f,
-                "  \"window\": {\"min\": [%.9g, %.9g], \"max\": [%.9g, %.9g], \"camera\": \"%s\", "
-                "\"camera_z\": %.9g},\n",
-                g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
-                g->perspective ? "perspective" : "orthographic", g->camera_z);
-    else if (g->projection == RELUME_SLAB)
-        m->slabs ? put_slabs(f, m) : put_slab(f, g);
-    else {
-        fprintf(f, "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, ", g->v_min, g->v_max);
-        if (g->disc)
-            fprintf(f, "\"discs\": %d, ", g->disc);
-        fprintf(f, "\"center\": [%.9g, %.9g, %.9g]},\n", g->center.x, g->center.y, g->center.z);
+    if (!m->slabs) {
+        geometry_print(f, &m->geometry);
+        return;
     }
+    geometry_print_projection(f, &m->geometry);
+    put_slabs(f, m);
 }
 
 static void put_view(FILE *f, const struct relume_manifest *m, const struct relume_manifest_view *v)

@@ -171,6 +171,57 @@ static char *list_beside(const char *path, const struct relume_log *log)
     return out;
 }
 
+// Whether a list's name is that of a picture, with its ending or without, or of a layer.
+static bool is_named(const char *picture, const char *name)
+{
+    const char *file = path_name(picture), *dot = strrchr(file, '.');
+    const size_t n = strlen(name);
+    return !strcmp(file, name) || (dot && n == (size_t)(dot - file) && !strncmp(file, name, n));
+}
+
+// The lights in the order of the pictures that a list names, names[lights]; as they stand where it
+// names none of these.
+static relume_status order_by_name(struct relume_captured_lights *lights,
+                                   const char *const *pictures, const char *list,
+                                   const struct relume_log *log)
+{
+    const size_t n = (size_t)lights->count;
+    struct relume_vec3 *ordered = mem_array(n, sizeof *ordered);
+    const char *lost = NULL;
+    size_t found = 0;
+    if (!ordered)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; lights->name && i < n; i++) {
+        size_t at = 0;
+        while (at < n && !is_named(pictures[i], lights->name[at]))
+            at++;
+        ordered[i] = lights->direction[at < n ? at : 0];
+        found += at < n;
+        lost = at < n || lost ? lost : path_name(pictures[i]);
+    }
+    if (found == n)
+        memcpy(lights->direction, ordered, n * sizeof *ordered);
+    mem_free(ordered);
+    if (found && lost)
+        return log_fail(
+            log, RELUME_EUNFIT,
+            "%s: it names no light '%s'; expected the names of all pictures, or of none", list,
+            lost);
+    return RELUME_OK;
+}
+
+// The same of layers.
+static relume_status order_by_layer(struct relume_captured_lights *lights, const struct layers *l,
+                                    const char *list, const struct relume_log *log)
+{
+    const char **name = mem_array((size_t)l->count, sizeof *name);
+    for (int i = 0; name && i < l->count; i++)
+        name[i] = l->layer[i].name;
+    const relume_status status = name ? order_by_name(lights, name, list, log) : RELUME_ENOMEM;
+    mem_free(name);
+    return status;
+}
+
 static relume_status directions_of(struct relume_captured_lights *out, const struct layers *l,
                                    const char *path, const struct relume_log *log)
 {
@@ -198,8 +249,11 @@ static relume_status directions_of(struct relume_captured_lights *out, const str
         status =
             log_fail(log, RELUME_EUNFIT, "%s: %d lights; expected %d, one for each layer of %s",
                      list, out->count, l->count, path);
-        relume_captured_lights_destroy(out);
     }
+    if (!status)
+        status = order_by_layer(out, l, list, log);
+    if (status)
+        relume_captured_lights_destroy(out);
     mem_free(list);
     return status;
 }
@@ -401,6 +455,8 @@ relume_status olat_read_folder(struct draft *out, char **path, const char *folde
         status = log_fail(log, RELUME_EUNFIT,
                           "%s: %d lights, but %d pictures in the folder; expected one for each",
                           from, lights.count, list.count);
+    if (!status)
+        status = order_by_name(&lights, (const char *const *)list.path, from, log);
     if (!status)
         status = draft_of(out, &list, &lights);
     relume_captured_lights_destroy(&lights);

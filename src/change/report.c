@@ -4,39 +4,22 @@
 // stands still for people who have asked for less motion.
 #include "change/report.h"
 
-#include "base/memory.h"
+#include "appearance/folder.h"
+#include "math/markup.h"
 #include "math/scalar.h"
 
 #include <math.h>
 
 static const char style[] =
-    "body{font:15px/1.5 sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}"
-    "h1{font-size:22px}h2{font-size:17px;margin-top:1.8em}"
-    "figure{margin:0;flex:1 1 340px;max-width:100%}figcaption{font-size:13px;color:#444}"
+    "body{font:15px/1.5 sans-serif;max-width:1200px}"
+    "figure{flex:1 1 340px}figcaption{font-size:13px;color:#444}"
     "img{display:block;width:100%;height:auto;image-rendering:auto}"
-    ".row{display:flex;flex-wrap:wrap;gap:16px}.over{position:relative}"
     ".over>svg,.over>.top{position:absolute;left:0;top:0;width:100%;height:100%}"
     "@keyframes blink{0%,49%{opacity:0}50%,100%{opacity:1}}"
     ".top{animation:blink 1.6s steps(1) infinite}.over:hover .top{animation-play-state:paused}"
     "@media(prefers-reduced-motion:reduce){.top{animation:none;opacity:.5}}"
-    "table{border-collapse:collapse}td,th{padding:2px 10px;text-align:right}"
-    "th{border-bottom:1px solid #999}td:first-child,th:first-child{text-align:left}"
-    ".good{color:#060}.warn{background:#fff3d6;border-left:4px solid #e0a000;padding:4px 10px}"
     ".ramp{display:inline-block;width:120px;height:10px;background:linear-gradient(to right,"
     "#000005,#570f6e,#ba3654,#fa8c0a,#fcffbf)}";
-
-static void put_text(FILE *f, const char *text)
-{
-    for (; *text; text++)
-        if (*text == '<')
-            fputs("&lt;", f);
-        else if (*text == '&')
-            fputs("&amp;", f);
-        else if (*text == '"')
-            fputs("&quot;", f);
-        else
-            fputc(*text, f);
-}
 
 static double share(const struct relume_change *c, size_t area)
 {
@@ -143,11 +126,12 @@ static void put_page(const void *context, FILE *f)
           "name=\"viewport\" content=\"width=device-width\"><title>change over "
           "time</title><style>",
           f);
+    fputs(markup_style, f);
     fputs(style, f);
     fputs("</style></head><body>\n<h1>What has changed from ", f);
-    put_text(f, w->params->name[0]);
+    markup_text(f, w->params->name[0]);
     fputs(" to ", f);
-    put_text(f, w->params->name[1]);
+    markup_text(f, w->params->name[1]);
     fputs("</h1>\n", f);
     put_summary(f, c);
     put_pictures(f, c, places);
@@ -157,9 +141,5 @@ static void put_page(const void *context, FILE *f)
 
 relume_status report_write(const struct writing *w)
 {
-    char *path = mem_format("%s/report.html", w->folder);
-    const relume_status status =
-        path ? relume_file_print(path, put_page, w, w->params->log) : RELUME_ENOMEM;
-    mem_free(path);
-    return status;
+    return folder_print(w->folder, "report.html", put_page, w, w->params->log);
 }

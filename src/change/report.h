@@ -12,8 +12,6 @@ struct writing {
     const struct relume_change_write_params *params;
     const char *folder;
 };
-relume_status writing_save(const struct writing *w, const struct relume_image *image,
-                           const char *name);
 
 // report.html in the folder, beside the pictures that it shows.
 relume_status report_write(const struct writing *w);

@@ -1,7 +1,7 @@
 // write.c - the folder of a comparison: pictures, what was measured, and a page that shows both
 #include "change/report.h"
 
-#include "base/memory.h"
+#include "appearance/folder.h"
 #include "base/outdir.h"
 #include "base/params.h"
 #include "math/scalar.h"
@@ -12,17 +12,10 @@
 static const struct relume_vec3 lamp = {-0.62, 0.62, 0.48};  // raking, from the upper left
 static const float ambient = 0.06f;
 
-relume_status writing_save(const struct writing *w, const struct relume_image *image,
-                           const char *name)
+static relume_status save(const struct writing *w, const struct relume_image *image,
+                          const char *name)
 {
-    char *path = mem_format("%s/%s", w->folder, name);
-    const relume_status status =
-        path ? relume_image_save(
-                   image, path,
-                   relume_image_params(.log = w->params->log, .threads = w->params->threads))
-             : RELUME_ENOMEM;
-    mem_free(path);
-    return status;
+    return folder_save(w->folder, name, image, w->params->threads, w->params->log);
 }
 
 static relume_status save_made(const struct writing *w, const char *name,
@@ -34,7 +27,7 @@ static relume_status save_made(const struct writing *w, const char *name,
     for (size_t i = 0; !status && i < (size_t)c->width * (size_t)c->height; i++)
         pixel(image.data + 3 * i, w, i);
     if (!status)
-        status = writing_save(w, &image, name);
+        status = save(w, &image, name);
     relume_image_destroy(&image);
     return status;
 }
@@ -128,11 +121,11 @@ static relume_status save_all(const struct writing *w)
     for (size_t i = 0; !status && i < sizeof made / sizeof *made; i++)
         status = save_made(w, made[i].name, made[i].pixel);
     if (!status)
-        status = writing_save(w, &w->change->degrees, "degrees.exr");
+        status = save(w, &w->change->degrees, "degrees.exr");
     if (!status)
-        status = writing_save(w, &w->change->delta_e, "delta_e.exr");
+        status = save(w, &w->change->delta_e, "delta_e.exr");
     if (!status)
-        status = writing_save(w, &w->change->significance, "significance.exr");
+        status = save(w, &w->change->significance, "significance.exr");
     return status;
 }
 

@@ -7,6 +7,7 @@
 struct develop_options {
     double exposure, white;          // stops, NaN: by the picture; 0: the tone's own
     const struct relume_tone *tone;  // NULL: linear
+    bool icc;                        // with a profile of sRGB
 };
 // Table rows for a command's options; `develop` in its struct.
 #define DEVELOP_OPTIONS                                                                            \
@@ -18,7 +19,8 @@ struct develop_options {
      .min = -100, .max = 100, .names = NAMES("auto")},                                             \
         ENTRY("--tone", develop.tone, "T", tone_help, relume_tones, NULL),                         \
         NUMBER("--white", develop.white, "L",                                                      \
-               "reinhard: the luminance shown as white; default: 4", 1e-3, 1e6)
+               "reinhard: the luminance shown as white; default: 4", 1e-3, 1e6),                   \
+        FLAG("--icc", develop.icc, "put an sRGB colour profile into the picture (.jpg, .tif)")
 
 // In place, for a file of that name: linear formats stay linear.
 relume_status develop(struct relume_image *frame, const struct develop_options *options,

@@ -35,16 +35,17 @@ static bool print_csv(FILE *f, const relume_notes *n, const char *canvas)
 {
     (void)canvas;
     const double mm = n->mm_per_pixel;
-    fprintf(f, "id,kind,places,length_px,area_px2,degrees%s,text,state,creator,created\r\n",
-            mm > 0.0 ? ",length_mm,area_mm2" : "");
+    fprintf(f, "id,kind,places,%s,degrees%s,text,state,creator,created\r\n",
+            n->solid ? "length,area" : "length_px,area_px2", mm > 0.0 ? ",length_mm,area_mm2" : "");
     for (int i = 0; i < n->count; i++) {
         const struct relume_note *note = &n->note[i].note;
         const struct relume_note_measures m = relume_note_measure(note);
         cell(f, note->id);
         fprintf(f, ",%s,\"", relume_note_kind_name(note->kind));
         for (int k = 0; k < note->places; k++)
-            fprintf(f, "%s%s %s", k ? ", " : "", jvalue_number_text(note->place[k][0]).text,
-                    jvalue_number_text(note->place[k][1]).text);
+            fprintf(f, "%s%s %s%s%s", k ? ", " : "", jvalue_number_text(note->place[k][0]).text,
+                    jvalue_number_text(note->place[k][1]).text, note->z ? " " : "",
+                    note->z ? jvalue_number_text(note->z[k]).text : "");
         fputc('"', f);
         cell_number(f, m.length);
         cell_number(f, m.area);
@@ -169,6 +170,9 @@ relume_status relume_notes_write(const relume_notes *notes, const char *path,
 {
     char *text = NULL;
     size_t size = 0;
+    if (notes->solid && format == RELUME_NOTES_SVG)
+        return log_fail(log, RELUME_EUNSUPPORTED,
+                        "notes on an object have no overlay; expected csv or iiif");
     FILE *f = open_memstream(&text, &size);
     if (!f)
         return RELUME_ENOMEM;

@@ -40,10 +40,21 @@ char *notes_name(const char *path)
     return mem_format("%.*s.notes.json", (int)(exr ? n - 4 : n), path);
 }
 
+const char *notes_scale_name(const relume_notes *notes)
+{
+    return notes->solid ? "relume:mmPerUnit" : "relume:mmPerPixel";
+}
+
+static double diagonal(const double box[2][3])
+{
+    return hypot(hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]), box[1][2] - box[0][2]);
+}
+
 relume_status relume_notes_create(relume_notes **out, const struct relume_notes_file *file)
 {
     *out = NULL;
-    if (file->width < 1 || file->height < 1 || file->views < 1)
+    if (file->solid ? !(diagonal(file->box) > 0.0)
+                    : file->width < 1 || file->height < 1 || file->views < 1)
         return RELUME_EINVAL;
     relume_notes *n = mem_zeroed(1, sizeof *n);
     if (!n)
@@ -52,6 +63,8 @@ relume_status relume_notes_create(relume_notes **out, const struct relume_notes_
     n->height = file->height;
     n->views = file->views;
     n->inside = file->inside != NULL;
+    n->solid = file->solid;
+    memcpy(n->box, file->box, sizeof n->box);
     n->name = mem_text(file->name ? file->name : "");
     if (!n->name)
         relume_notes_destroy(&n);
@@ -63,6 +76,7 @@ void notes_forget(struct kept_note *kept)
 {
     const struct relume_note *n = &kept->note;
     mem_free((void *)n->place);
+    mem_free((void *)n->z);
     mem_free((char *)n->text);
     mem_free((char *)n->state);
     mem_free((char *)n->creator);
@@ -158,13 +172,28 @@ static bool text_is_good(const char *text)
 }
 
 // One size of the picture beside it: notes on a part of a picture that was cut stay.
-static bool within(const double place[2], const relume_notes *n)
+static bool within(const struct relume_note *note, int i, const relume_notes *n)
 {
-    const double size[2] = {n->width, n->height};
-    for (int k = 0; k < 2; k++)
-        if (!(place[k] >= -size[k] && place[k] <= 2.0 * size[k]))
+    const double place[3] = {note->place[i][0], note->place[i][1], n->solid ? note->z[i] : 0.0};
+    const double size[2] = {n->width, n->height}, across = diagonal(n->box);
+    for (int k = 0; k < 2 + n->solid; k++) {
+        const double low = n->solid ? n->box[0][k] - across : -size[k];
+        const double high = n->solid ? n->box[1][k] + across : 2.0 * size[k];
+        if (!(place[k] >= low && place[k] <= high))
             return false;
+    }
     return true;
+}
+
+static relume_status far_beside(const struct relume_note *note, int i, const relume_notes *n,
+                                const struct relume_log *log)
+{
+    if (n->solid)
+        return log_fail(log, RELUME_EINVAL, "the place %g,%g,%g lies far beside the object",
+                        note->place[i][0], note->place[i][1], note->z[i]);
+    return log_fail(log, RELUME_EINVAL,
+                    "the place %g,%g lies far beside the picture of %d x %d pixels",
+                    note->place[i][0], note->place[i][1], n->width, n->height);
 }
 
 static relume_status check(const relume_notes *n, const struct relume_note *note,
@@ -176,11 +205,13 @@ static relume_status check(const relume_notes *n, const struct relume_note *note
         return log_fail(log, RELUME_EINVAL, "a %s has %d to %d places; found %d",
                         kinds[note->kind].name, kinds[note->kind].least, kinds[note->kind].most,
                         note->places);
+    if (note->places && n->solid != (note->z != NULL))
+        return log_fail(log, RELUME_EINVAL, "%s",
+                        n->solid ? "a place of two coordinates; expected x, y and z of the object"
+                                 : "a place in space; expected x and y of the picture");
     for (int i = 0; i < note->places; i++)
-        if (!within(note->place[i], n))
-            return log_fail(log, RELUME_EINVAL,
-                            "the place %g,%g lies far beside the picture of %d x %d pixels",
-                            note->place[i][0], note->place[i][1], n->width, n->height);
+        if (!within(note, i, n))
+            return far_beside(note, i, n, log);
     const char *const texts[] = {note->text, note->state, note->creator, note->created, note->id};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         if (!text_is_good(texts[i]))
@@ -217,8 +248,9 @@ relume_status notes_append(relume_notes *n, const struct relume_note *note, char
     for (int i = 0; place && i < note->places; i++)
         memcpy(place[i], note->place[i], sizeof place[i]);
     own->place = (const double(*)[2])place;
+    own->z = note->z ? mem_copy(note->z, (size_t)note->places, sizeof *note->z) : NULL;
     own->id = note->id ? mem_text(note->id) : new_id(n);
-    if (!own->place || !own->id || !copy_text(&own->text, note->text) ||
+    if (!own->place || (note->z && !own->z) || !own->id || !copy_text(&own->text, note->text) ||
         !copy_text(&own->state, note->state) || !copy_text(&own->creator, note->creator) ||
         !copy_text(&own->created, note->created) ||
         !mem_grow(&n->note, (size_t)n->count, sizeof *n->note) || !grow_slots(n)) {

@@ -14,7 +14,9 @@ struct kept_note {
 struct relume_notes {
     char *name;  // of the file
     int width, height, views;
-    bool inside;  // the file holds a list itself, which one beside it hides
+    bool solid;        // it is an object, within
+    double box[2][3];  // ... these corners
+    bool inside;       // the file holds a list itself, which one beside it hides
     double mm_per_pixel;
     int count;
     struct kept_note *note;  // [count]
@@ -29,6 +31,8 @@ void notes_forget(struct kept_note *kept);
 relume_status notes_append(relume_notes *notes, const struct relume_note *note, char *raw,
                            const struct relume_log *log);
 
+// The member of the page that has the scale.
+const char *notes_scale_name(const relume_notes *notes);
 // The name of the list of the file `path`, to be freed; NULL: no memory.
 char *notes_name(const char *path);
 

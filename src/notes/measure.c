@@ -5,39 +5,75 @@
 
 #include <math.h>
 
+// Of a place on an object the third coordinate too.
+static void place_of(double out[3], const struct relume_note *note, int i)
+{
+    out[0] = note->place[i][0];
+    out[1] = note->place[i][1];
+    out[2] = note->z ? note->z[i] : 0.0;
+}
+
+static void minus(double out[3], const double a[3], const double b[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = a[c] - b[c];
+}
+
+static void cross(double out[3], const double a[3], const double b[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+static double length_of(const double a[3])
+{
+    return hypot(hypot(a[0], a[1]), a[2]);
+}
+
 static double distance(const double a[2], const double b[2])
 {
     return hypot(b[0] - a[0], b[1] - a[1]);
 }
 
-// At b, between the directions to a and c; atan2 stays exact where they are nearly parallel.
-static double angle(const double a[2], const double b[2], const double c[2])
+// In the middle of three, between the directions to the others; atan2 stays exact where they are
+// nearly parallel.
+static double angle(const struct relume_note *note)
 {
-    const double u[2] = {a[0] - b[0], a[1] - b[1]}, v[2] = {c[0] - b[0], c[1] - b[1]};
-    return fabs(atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])) * (180.0 / M_PI);
+    double p[3][3], u[3], v[3], w[3];
+    for (int i = 0; i < 3; i++)
+        place_of(p[i], note, i);
+    minus(u, p[0], p[1]);
+    minus(v, p[2], p[1]);
+    cross(w, u, v);
+    return atan2(length_of(w), u[0] * v[0] + u[1] * v[1] + u[2] * v[2]) * (180.0 / M_PI);
 }
 
 struct relume_note_measures relume_note_measure(const struct relume_note *note)
 {
     struct relume_note_measures m = {(double)NAN, (double)NAN, (double)NAN};
-    const double(*p)[2] = note->place;
     const int n = note->places;
     const bool closed = note->kind == RELUME_NOTE_POLYGON;
     if (note->kind != RELUME_NOTE_LINE && !closed)
         return m;
-    double length = 0.0, twice = 0.0;
+    double length = 0.0, twice[3] = {0.0, 0.0, 0.0}, first[3], here[3], next[3], step[3];
+    place_of(first, note, 0);
     for (int i = 0; i < n; i++) {
-        const double *next = p[(i + 1) % n];
-        length += i + 1 < n || closed ? distance(p[i], next) : 0.0;
+        place_of(here, note, i);
+        place_of(next, note, (i + 1) % n);
+        minus(step, next, here);
+        length += i + 1 < n || closed ? length_of(step) : 0.0;
         // about the first place, so that far coordinates cost no digits
-        twice +=
-            (p[i][0] - p[0][0]) * (next[1] - p[0][1]) - (next[0] - p[0][0]) * (p[i][1] - p[0][1]);
+        minus(here, here, first);
+        minus(next, next, first);
+        cross(step, here, next);
+        for (int c = 0; c < 3; c++)
+            twice[c] += step[c];
     }
     m.length = length;
     if (closed)
-        m.area = 0.5 * fabs(twice);
+        m.area = 0.5 * length_of(twice);
     else if (n == 3)
-        m.degrees = angle(p[0], p[1], p[2]);
+        m.degrees = angle(note);
     return m;
 }
 

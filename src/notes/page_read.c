@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "notes/shape.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -98,6 +99,7 @@ static relume_status read_item(relume_notes *notes, const jvalue *item, size_t n
         .creator = name_of(jvalue_member(item, "creator")),
         .created = jvalue_text(jvalue_member(item, "created")),
         .id = jvalue_text(jvalue_member(item, "id")),
+        .z = shape.z,
     };
     char *raw = jvalue_print(item);
     status = raw ? notes_append(notes, &note, raw, at) : RELUME_ENOMEM;
@@ -129,13 +131,10 @@ static relume_status check_names(const relume_notes *notes, const struct relume_
     return status;
 }
 
-static relume_status read_file(relume_notes *notes, const jvalue *root,
+static relume_status read_file(const relume_notes *notes, const jvalue *file,
                                const struct relume_log *log)
 {
-    const jvalue *file = jvalue_member(root, "relume:file");
     int width = 0, height = 0, views = 0;
-    if (!file)
-        return RELUME_OK;
     if (!jvalue_whole(jvalue_member(file, "width"), 1, 1 << 30, &width) ||
         !jvalue_whole(jvalue_member(file, "height"), 1, 1 << 30, &height) ||
         !jvalue_whole(jvalue_member(file, "views"), 1, 1 << 30, &views))
@@ -146,11 +145,55 @@ static relume_status read_file(relume_notes *notes, const jvalue *root,
                         "%d x %d in %s",
                         views, relume_plural(views), width, height, notes->views, notes->width,
                         notes->height, notes->name);
-    const jvalue *scale = jvalue_member(root, "relume:mmPerPixel");
+    return RELUME_OK;
+}
+
+// An object's box, whose corners may be off by a thousandth of it: a page has them rounded.
+static relume_status read_box(const relume_notes *notes, const jvalue *file,
+                              const struct relume_log *log)
+{
+    static const char *const names[] = {"min", "max"};
+    double corner[3], away = 0.0, across = 0.0;
+    for (int k = 0; k < 2; k++) {
+        if (!jvalue_numbers(jvalue_member(file, names[k]), corner, 3))
+            return log_fail(log, RELUME_EFORMAT,
+                            "\"relume:file\"; expected min and max of the object");
+        for (int c = 0; c < 3; c++) {
+            away = fmax(away, fabs(corner[c] - notes->box[k][c]));
+            across = fmax(across, notes->box[1][c] - notes->box[0][c]);
+        }
+    }
+    if (!(away <= 1e-3 * across))
+        return log_fail(log, RELUME_EUNFIT, "these notes are on an object of another shape than %s",
+                        notes->name);
+    return RELUME_OK;
+}
+
+static relume_status read_scale(relume_notes *notes, const jvalue *root,
+                                const struct relume_log *log)
+{
+    const char *name = notes_scale_name(notes);
+    const jvalue *scale = jvalue_member(root, name);
     double mm = 0.0;
     if (scale && (!jvalue_number(scale, &mm) || relume_notes_set_scale(notes, mm)))
-        return log_fail(log, RELUME_EFORMAT, "\"relume:mmPerPixel\"; expected a number above 0");
+        return log_fail(log, RELUME_EFORMAT, "\"%s\"; expected a number above 0", name);
     return RELUME_OK;
+}
+
+// What a page of ours says of its file.
+static relume_status read_head(relume_notes *notes, const jvalue *root,
+                               const struct relume_log *log)
+{
+    const jvalue *file = jvalue_member(root, "relume:file");
+    if (!file)
+        return RELUME_OK;
+    const bool boxed = jvalue_member(file, "min") != NULL;
+    relume_status status = RELUME_OK;
+    if (notes->width)
+        status = read_file(notes, file, log);
+    if (!status && notes->solid && (boxed || !notes->width))
+        status = read_box(notes, file, log);
+    return status ? status : read_scale(notes, root, log);
 }
 
 static relume_status read_page(relume_notes *notes, const jvalue *root,
@@ -161,7 +204,7 @@ static relume_status read_page(relume_notes *notes, const jvalue *root,
     if (!type || strcmp(type, "AnnotationPage") || !jvalue_is_array(items))
         return log_fail(log, RELUME_EFORMAT,
                         "no notes; expected \"type\": \"AnnotationPage\" and its items");
-    relume_status status = read_file(notes, root, log);
+    relume_status status = read_head(notes, root, log);
     for (size_t i = 0; !status && i < jvalue_count(items); i++)
         status = read_item(notes, jvalue_item(items, i), i + 1, log);
     return status ? status : check_names(notes, log);
@@ -220,16 +263,21 @@ static bool same_note(const struct relume_note *a, const struct relume_note *b)
 {
     return a->kind == b->kind && a->places == b->places && same_text(a->text, b->text) &&
            same_text(a->state, b->state) &&
-           (!a->places || !memcmp(a->place, b->place, (size_t)a->places * sizeof *a->place));
+           (!a->places || !memcmp(a->place, b->place, (size_t)a->places * sizeof *a->place)) &&
+           (!a->z || !memcmp(a->z, b->z, (size_t)a->places * sizeof *a->z));
 }
 
 relume_status relume_notes_import(relume_notes *notes, const char *path, int *added,
                                   const struct relume_log *log)
 {
     relume_notes *other = NULL;
-    relume_status status =
-        relume_notes_create(&other, &(struct relume_notes_file){notes->name, notes->width,
-                                                                notes->height, notes->views, NULL});
+    struct relume_notes_file file = {.name = notes->name,
+                                     .width = notes->width,
+                                     .height = notes->height,
+                                     .views = notes->views,
+                                     .solid = notes->solid};
+    memcpy(file.box, notes->box, sizeof file.box);
+    relume_status status = relume_notes_create(&other, &file);
     *added = 0;
     if (!status)
         status = read_named(other, path, false, log);

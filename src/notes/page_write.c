@@ -56,6 +56,16 @@ bool note_print(FILE *f, const struct relume_note *note, const char *source)
     return good;
 }
 
+static void print_box(FILE *f, const relume_notes *notes)
+{
+    for (int k = 0; k < 2; k++) {
+        fprintf(f, ", \"%s\": [", k ? "max" : "min");
+        for (int c = 0; c < 3; c++)
+            fprintf(f, "%s%s", c ? ", " : "", jvalue_number_text(notes->box[k][c]).text);
+        fputc(']', f);
+    }
+}
+
 static bool print_page(FILE *f, const relume_notes *notes)
 {
     bool good = true;
@@ -63,10 +73,15 @@ static bool print_page(FILE *f, const relume_notes *notes)
           "\"id\": \"#notes\", \"type\": \"AnnotationPage\",\n\"relume:file\": {\"name\": ",
           f);
     good = note_quote(f, notes->name) && good;
-    fprintf(f, ", \"width\": %d, \"height\": %d, \"views\": %d},\n", notes->width, notes->height,
-            notes->views);
+    if (notes->width)
+        fprintf(f, ", \"width\": %d, \"height\": %d, \"views\": %d", notes->width, notes->height,
+                notes->views);
+    if (notes->solid)
+        print_box(f, notes);
+    fputs("},\n", f);
     if (notes->mm_per_pixel > 0.0)
-        fprintf(f, "\"relume:mmPerPixel\": %s,\n", jvalue_number_text(notes->mm_per_pixel).text);
+        fprintf(f, "\"%s\": %s,\n", notes_scale_name(notes),
+                jvalue_number_text(notes->mm_per_pixel).text);
     fputs("\"items\": [", f);
     for (int i = 0; i < notes->count; i++) {
         fputs(i ? ",\n" : "\n", f);

@@ -9,10 +9,12 @@
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 void shape_free(struct shape *shape)
 {
     mem_free(shape->place);
+    mem_free(shape->z);
     *shape = (struct shape){.places = 0};
 }
 
@@ -47,6 +49,65 @@ static bool add(struct shape *s, double x, double y, relume_status *status)
     s->place[s->places][0] = x;
     s->place[s->places++][1] = y;
     return true;
+}
+
+static bool add_deep(struct shape *s, const double at[3], relume_status *status)
+{
+    if (!mem_grow(&s->z, (size_t)s->places, sizeof *s->z)) {
+        *status = RELUME_ENOMEM;
+        return false;
+    }
+    s->z[s->places] = at[2];
+    return add(s, at[0], at[1], status);
+}
+
+// ---------------------------------------------------------------- well-known text
+
+static const char *word(const char *at, const char *wanted)
+{
+    const size_t n = strlen(wanted);
+    at += strspn(at, " \t\r\n");
+    return strncasecmp(at, wanted, n) ? NULL : at + n;
+}
+
+// The places of a ring or line, and what closes it; NULL where it breaks the grammar.
+static const char *read_ring(struct shape *s, const char *at, relume_status *status)
+{
+    for (;;) {
+        double v[3];
+        for (int c = 0; c < 3; c++)
+            if (!(at = number(&v[c], at)))
+                return NULL;
+        if (!add_deep(s, v, status))
+            return NULL;
+        const char *more = word(at, ",");
+        if (!more)
+            return word(at, ")");
+        at = more;
+    }
+}
+
+// "LINESTRING Z (0 0 0, 1 0 0)" and "POLYGON Z ((0 0 0, 1 0 0, 0 1 0, 0 0 0))", of one ring.
+static relume_status read_text(struct shape *s, const char *text)
+{
+    relume_status status = RELUME_OK;
+    const char *at = word(text, "LINESTRING");
+    s->kind = at ? RELUME_NOTE_LINE : RELUME_NOTE_POLYGON;
+    if (!at && !(at = word(text, "POLYGON")))
+        return RELUME_EUNSUPPORTED;
+    const bool ring = s->kind == RELUME_NOTE_POLYGON;
+    if (!(at = word(at, "Z")) || !(at = word(at, "(")) || (ring && !(at = word(at, "("))))
+        return RELUME_EFORMAT;
+    at = read_ring(s, at, &status);
+    if (status)
+        return status;
+    if (!at || (ring && !(at = word(at, ")"))) || *skip(at))
+        return RELUME_EFORMAT;
+    const int last = s->places - 1;
+    if (ring && last > 0 && !memcmp(s->place[0], s->place[last], sizeof *s->place) &&
+        !memcmp(&s->z[0], &s->z[last], sizeof *s->z))
+        s->places--;
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- SVG
@@ -204,21 +265,30 @@ relume_status shape_read_fragment(struct shape *s, const char *text)
     return *skip(text) ? RELUME_EFORMAT : read_box(s, v[0], v[1], v[2], v[3]);
 }
 
+static relume_status read_point(struct shape *out, const jvalue *selector)
+{
+    const jvalue *deep = jvalue_member(selector, "z");
+    relume_status status = RELUME_OK;
+    double at[3];
+    if (!jvalue_number(jvalue_member(selector, "x"), &at[0]) ||
+        !jvalue_number(jvalue_member(selector, "y"), &at[1]) ||
+        (deep && !jvalue_number(deep, &at[2])))
+        return RELUME_EFORMAT;
+    (void)(deep ? add_deep(out, at, &status) : add(out, at[0], at[1], &status));
+    return status;
+}
+
 relume_status shape_read(struct shape *out, const jvalue *selector)
 {
     const char *type = jvalue_text(jvalue_member(selector, "type"));
     const char *value = jvalue_text(jvalue_member(selector, "value"));
     relume_status status = RELUME_EUNSUPPORTED;
-    double x, y;
     *out = (struct shape){.kind = RELUME_NOTE_POINT};
-    if (type && !strcmp(type, "PointSelector")) {
-        status = RELUME_EFORMAT;
-        if (jvalue_number(jvalue_member(selector, "x"), &x) &&
-            jvalue_number(jvalue_member(selector, "y"), &y)) {
-            status = RELUME_OK;
-            (void)add(out, x, y, &status);
-        }
-    } else if (type && value && !strcmp(type, "SvgSelector"))
+    if (type && !strcmp(type, "PointSelector"))
+        status = read_point(out, selector);
+    else if (type && value && !strcmp(type, "WktSelector"))
+        status = read_text(out, value);
+    else if (type && value && !strcmp(type, "SvgSelector"))
         status = read_svg(out, value);
     else if (type && value && !strcmp(type, "FragmentSelector"))
         status = shape_read_fragment(out, value);
@@ -236,14 +306,41 @@ void shape_print_path(FILE *f, const struct relume_note *note)
         fputs(" Z", f);
 }
 
+static void print_deep(FILE *f, const struct relume_note *note, int i)
+{
+    fprintf(f, "%s %s %s", jvalue_number_text(note->place[i][0]).text,
+            jvalue_number_text(note->place[i][1]).text, jvalue_number_text(note->z[i]).text);
+}
+
+// A line or polygon on an object; the ring of a polygon ends where it began.
+static void print_text(FILE *f, const struct relume_note *note)
+{
+    const bool closed = note->kind == RELUME_NOTE_POLYGON;
+    fprintf(f, "{\"type\": \"WktSelector\", \"value\": \"%s",
+            closed ? "POLYGON Z ((" : "LINESTRING Z (");
+    for (int i = 0; i < note->places + closed; i++) {
+        fputs(i ? ", " : "", f);
+        print_deep(f, note, i % note->places);
+    }
+    fprintf(f, "%s\"}", closed ? "))" : ")");
+}
+
 void shape_print(FILE *f, const struct relume_note *note)
 {
-    if (note->kind == RELUME_NOTE_POINT)
-        fprintf(f, "{\"type\": \"PointSelector\", \"x\": %s, \"y\": %s}",
+    if (note->kind == RELUME_NOTE_POINT) {
+        fprintf(f, "{\"type\": \"PointSelector\", \"x\": %s, \"y\": %s",
                 jvalue_number_text(note->place[0][0]).text,
                 jvalue_number_text(note->place[0][1]).text);
+        if (note->z)
+            fprintf(f, ", \"z\": %s", jvalue_number_text(note->z[0]).text);
+        fputc('}', f);
+    }
     if (note->kind == RELUME_NOTE_POINT || note->kind == RELUME_NOTE_VIEW)
         return;
+    if (note->z) {
+        print_text(f, note);
+        return;
+    }
     fputs("{\"type\": \"SvgSelector\", \"value\": \"<svg xmlns='http://www.w3.org/2000/svg'><path "
           "d='",
           f);

@@ -11,12 +11,14 @@ struct shape {
     enum relume_note_kind kind;
     int places;
     double (*place)[2];  // [places]
+    double *z;           // [places]: of a place in space; NULL: on a picture
 };
 void shape_free(struct shape *shape);
 
-// IIIF's PointSelector, SvgSelector (one path, line, polyline, polygon, rect or circle) or
-// FragmentSelector (xywh in pixels). RELUME_EUNSUPPORTED for others, RELUME_EFORMAT for those that
-// break their grammar, without a sentence; RELUME_ENOMEM.
+// IIIF's PointSelector, with a z in space, WktSelector (a line or polygon in space), SvgSelector
+// (one path, line, polyline, polygon, rect or circle) or FragmentSelector (xywh in pixels).
+// RELUME_EUNSUPPORTED for others, RELUME_EFORMAT for those that break their grammar, without a
+// sentence; RELUME_ENOMEM.
 relume_status shape_read(struct shape *out, const jvalue *selector);
 // Such a fragment, "xywh=1,2,3,4".
 relume_status shape_read_fragment(struct shape *out, const char *text);

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "publish/iiif.h"
+#include "publish/names.h"
 
 #include <errno.h>
 #include <string.h>
@@ -13,8 +14,7 @@ relume_status annotations_open(relume_notes **out, const struct site *site, cons
                                relume_pack *pack)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
-    const char *slash = strrchr(path, '/');
-    const struct relume_notes_file file = {.name = slash ? slash + 1 : path,
+    const struct relume_notes_file file = {.name = names_file(path),
                                            .width = info->width,
                                            .height = info->height,
                                            .views = info->views,
@@ -58,11 +58,11 @@ static relume_status copy(const struct site *site, const char *path, const char 
 }
 
 relume_status annotations_write(const struct site *site, const relume_notes *notes,
-                                const char *path, const char *inside, const char *name)
+                                const char *path, const char *inside, const struct page *page)
 {
-    char *canvas = iiif_canvas(site, name);
-    char *list = mem_format("%s/%s/iiif/notes.json", site->path, name);
-    relume_status status = canvas && list ? copy(site, path, inside, name) : RELUME_ENOMEM;
+    char *canvas = iiif_target(site, page);
+    char *list = mem_format("%s/%s/iiif/notes.json", site->path, page->name);
+    relume_status status = canvas && list ? copy(site, path, inside, page->name) : RELUME_ENOMEM;
     if (!status)
         status = relume_notes_write(notes, list, RELUME_NOTES_IIIF, canvas, site->log);
     mem_free(canvas);

@@ -2,7 +2,7 @@
 #ifndef PUBLISH_ANNOTATIONS_H
 #define PUBLISH_ANNOTATIONS_H
 
-#include "publish/site.h"
+#include "publish/page.h"
 
 #include <relume/notes.h>
 #include <relume/pack.h>
@@ -13,6 +13,6 @@ relume_status annotations_open(relume_notes **out, const struct site *site, cons
 // As NAME/notes.json, and for IIIF as NAME/iiif/notes.json; `inside`: relume_pack_info.notes.
 // RELUME_EIO, RELUME_ENOMEM, and where the list cannot be read again an input status.
 relume_status annotations_write(const struct site *site, const relume_notes *notes,
-                                const char *path, const char *inside, const char *name);
+                                const char *path, const char *inside, const struct page *page);
 
 #endif

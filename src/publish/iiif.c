@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "math/scalar.h"
 #include "publish/picture.h"
+#include "publish/turn.h"
 
 #include <string.h>
 
@@ -183,69 +184,140 @@ static void put_links(FILE *f, const struct site *site, const struct page *p)
     fputs("\"type\": \"Text\", \"format\": \"text/html\", \"label\": {\"en\": [\"The page with the "
           "moving light\"]}}],\n  \"seeAlso\": [{",
           f);
-    put_id(f, site, p->name, "/scene.json");
-    fputs("\"type\": \"Dataset\", \"format\": \"application/json\", \"label\": {\"en\": "
-          "[\"Coefficient layers of the relightable image (relume-web 1)\"]}}],\n",
-          f);
+    put_id(f, site, p->name, p->object ? "/object.json" : "/scene.json");
+    fprintf(
+        f, "\"type\": \"%s\", \"format\": \"application/json\", \"label\": {\"en\": [\"%s\"]}}],\n",
+        p->object ? "Model" : "Dataset",
+        p->object ? "The relightable object (relume-web-object 1)"
+                  : "Coefficient layers of the relightable image (relume-web 1)");
 }
 
-static void put_canvas(FILE *f, const struct site *site, const struct page *p, int width,
-                       int height, bool notes)
+static void put_notes(FILE *f, const struct site *site, const struct page *p)
 {
-    fputs("  \"items\": [{", f);
-    put_id(f, site, p->name, "/canvas/1");
-    fprintf(f, "\"type\": \"Canvas\", \"width\": %d, \"height\": %d,\n    ", width, height);
-    put_words(f, "label", p->details.title);
+    fputs("\"annotations\": [{", f);
+    put_id(f, site, p->name, "/iiif/notes.json");
+    fputs("\"type\": \"AnnotationPage\"}]", f);
+}
+
+// What a canvas shows: a picture below the file's folder; `service`: the file's image service has
+// it, too. Canvases are counted from 1.
+struct canvas {
+    int number, width, height;
+    const char *picture, *label;
+    bool service, notes;
+};
+
+static void put_canvas(FILE *f, const struct site *site, const struct page *p,
+                       const struct canvas *c)
+{
+    char id[32], below[64], whole[192];
+    snprintf(id, sizeof id, "/canvas/%d", c->number);
+    fprintf(f, "%s{", c->number > 1 ? ", " : "");
+    put_id(f, site, p->name, id);
+    fprintf(f, "\"type\": \"Canvas\", \"width\": %d, \"height\": %d,\n    ", c->width, c->height);
+    put_words(f, "label", c->label);
     fputs(",\n    \"items\": [{", f);
-    put_id(f, site, p->name, "/canvas/1/page");
+    snprintf(below, sizeof below, "%s/page", id);
+    put_id(f, site, p->name, below);
     fputs("\"type\": \"AnnotationPage\", \"items\": [{", f);
-    put_id(f, site, p->name, "/canvas/1/picture");
+    snprintf(below, sizeof below, "%s/picture", id);
+    put_id(f, site, p->name, below);
     fputs("\"type\": \"Annotation\", \"motivation\": \"painting\",\n      \"target\": \"", f);
-    char canvas[128];
-    snprintf(canvas, sizeof canvas, "%s/canvas/1", p->name);
-    site_put_address(f, site, canvas);
+    snprintf(whole, sizeof whole, "%s%s", p->name, id);
+    site_put_address(f, site, whole);
     fputs("\",\n      \"body\": {", f);
-    put_id(f, site, p->name, "/iiif/full/max/0/default.jpg");
-    fprintf(f,
-            "\"type\": \"Image\", \"format\": \"image/jpeg\", \"width\": %d, \"height\": %d,\n"
-            "        \"service\": [{",
-            width, height);
-    put_id(f, site, p->name, "/iiif");
-    fputs("\"type\": \"ImageService3\", \"profile\": \"level0\"}]}}]}]", f);
-    if (notes) {
-        fputs(",\n    \"annotations\": [{", f);
-        put_id(f, site, p->name, "/iiif/notes.json");
-        fputs("\"type\": \"AnnotationPage\"}]", f);
+    put_id(f, site, p->name, c->picture);
+    fprintf(f, "\"type\": \"Image\", \"format\": \"image/jpeg\", \"width\": %d, \"height\": %d",
+            c->width, c->height);
+    if (c->service) {
+        fputs(",\n        \"service\": [{", f);
+        put_id(f, site, p->name, "/iiif");
+        fputs("\"type\": \"ImageService3\", \"profile\": \"level0\"}]", f);
     }
-    fputs("\n  }]\n", f);
+    fputs("}}]}]", f);
+    if (c->notes) {
+        fputs(",\n    ", f);
+        put_notes(f, site, p);
+    }
+    fputs("\n  }", f);
+}
+
+// All of a manifest before its canvases.
+static relume_status manifest_begin(struct text *t, const struct site *site, const struct page *p)
+{
+    const relume_status status = text_open(t);
+    if (status)
+        return status;
+    fputs("{\n  \"@context\": \"http://iiif.io/api/presentation/3/context.json\",\n  ", t->file);
+    put_id(t->file, site, p->name, "/manifest.json");
+    fputs("\"type\": \"Manifest\",\n  ", t->file);
+    put_words(t->file, "label", p->details.title);
+    fputs(",\n", t->file);
+    put_metadata(t->file, &p->details);
+    put_links(t->file, site, p);
+    fputs("  \"items\": [", t->file);
+    return RELUME_OK;
+}
+
+static relume_status manifest_end(struct text *t, const struct site *site, const struct page *p)
+{
+    char path[128];
+    fputs("\n}\n", t->file);
+    snprintf(path, sizeof path, "%s/manifest.json", p->name);
+    return site_save_text(site, path, false, t);
 }
 
 static relume_status write_manifest(const struct site *site, const struct page *p, int width,
                                     int height, bool notes)
 {
     struct text t;
-    char path[128];
-    const relume_status status = text_open(&t);
+    const relume_status status = manifest_begin(&t, site, p);
     if (status)
         return status;
-    fputs("{\n  \"@context\": \"http://iiif.io/api/presentation/3/context.json\",\n  ", t.file);
-    put_id(t.file, site, p->name, "/manifest.json");
-    fputs("\"type\": \"Manifest\",\n  ", t.file);
-    put_words(t.file, "label", p->details.title);
-    fputs(",\n", t.file);
-    put_metadata(t.file, &p->details);
-    put_links(t.file, site, p);
-    put_canvas(t.file, site, p, width, height, notes);
-    fputs("}\n", t.file);
-    snprintf(path, sizeof path, "%s/manifest.json", p->name);
-    return site_save_text(site, path, false, &t);
+    put_canvas(t.file, site, p,
+               &(struct canvas){.number = 1,
+                                .width = width,
+                                .height = height,
+                                .picture = "/iiif/full/max/0/default.jpg",
+                                .label = p->details.title,
+                                .service = true,
+                                .notes = notes});
+    fputc(']', t.file);
+    return manifest_end(&t, site, p);
 }
 
-char *iiif_canvas(const struct site *site, const char *name)
+relume_status iiif_write_object(const struct site *site, const struct page *p, bool notes)
+{
+    struct text t;
+    const relume_status status = manifest_begin(&t, site, p);
+    if (status)
+        return status;
+    for (int step = 0; step < TURN_STEPS; step++) {
+        char picture[32] = "/poster.jpg", label[64] = "From the front";
+        if (step) {
+            snprintf(picture, sizeof picture, "/iiif/turn-%d.jpg", step);
+            snprintf(label, sizeof label, "From %d degrees to the right", step * 360 / TURN_STEPS);
+        }
+        put_canvas(t.file, site, p,
+                   &(struct canvas){.number = step + 1,
+                                    .width = step ? TURN_WIDTH : POSTER_WIDTH,
+                                    .height = step ? TURN_HEIGHT : POSTER_HEIGHT,
+                                    .picture = picture,
+                                    .label = label});
+    }
+    fputc(']', t.file);
+    if (notes) {
+        fputs(",\n  ", t.file);
+        put_notes(t.file, site, p);
+    }
+    return manifest_end(&t, site, p);
+}
+
+char *iiif_target(const struct site *site, const struct page *page)
 {
     struct text t;
     char path[128], *canvas = NULL;
-    snprintf(path, sizeof path, "%s/canvas/1", name);
+    snprintf(path, sizeof path, "%s%s", page->name, page->object ? "/object.json" : "/canvas/1");
     if (!text_open(&t)) {
         site_put_address(t.file, site, path);
         canvas = text_close(&t) ? NULL : mem_text(t.bytes);

@@ -11,13 +11,15 @@
 #include "base/memory.h"
 #include "image/exr.h"
 #include "math/base64.h"
-#include "publish/picture.h"
+#include "publish/annotations.h"
+#include "publish/iiif.h"
+#include "publish/names.h"
+#include "publish/turn.h"
 
 #include <math.h>
-#include <relume/object.h>
 #include <string.h>
 
-enum { POSTER_WIDTH = 640, POSTER_HEIGHT = 480, MOST_CODE = 65535 };
+enum { MOST_CODE = 65535 };
 // What browsers take: a texture's side, colours under a light, all numbers.
 enum { MOST_SIDE = 4096, MOST_VECTORS = 1 << 22, MOST_BYTES = 1 << 28 };
 
@@ -33,7 +35,7 @@ struct arrays {
     uint16_t *cluster;        // [height][width]
     uint8_t (*weight)[4];     // [layers][height][width]
     int8_t (*frame)[4];       // [2][height][width]: normals, tangents; none of one view
-    float min[3], max[3];
+    float box[2][3];
 };
 
 struct corner_code {
@@ -55,19 +57,6 @@ static uint16_t code_of(float value, float low, float high)
     return (uint16_t)lrint(fmin(fmax(share, 0.0), 1.0) * MOST_CODE);
 }
 
-static void find_box(struct arrays *a, const relume_baked *b)
-{
-    for (int c = 0; c < 3; c++) {
-        a->min[c] = INFINITY;
-        a->max[c] = -INFINITY;
-        for (size_t i = 0; i < a->corners; i++) {
-            const float v = b->triangle[i / 3][i % 3].position[c];
-            a->min[c] = fminf(a->min[c], v);
-            a->max[c] = fmaxf(a->max[c], v);
-        }
-    }
-}
-
 // The corners in the order of their codes, for mem_free; equal ones are one vertex.
 static struct corner_code *find_vertices(struct arrays *a, const relume_baked *b)
 {
@@ -76,7 +65,7 @@ static struct corner_code *find_vertices(struct arrays *a, const relume_baked *b
         const struct baked_corner *corner = &b->triangle[i / 3][i % 3];
         code[i].number = (uint32_t)i;
         for (int c = 0; c < 3; c++)
-            code[i].at[c] = code_of(corner->position[c], a->min[c], a->max[c]);
+            code[i].at[c] = code_of(corner->position[c], a->box[0][c], a->box[1][c]);
         for (int c = 0; c < 2; c++)
             code[i].at[3 + c] = code_of(corner->place[c], 0.0f, 1.0f);
     }
@@ -217,7 +206,7 @@ static relume_status write_numbers(struct arrays *a, size_t *bytes, const struct
 {
     *a = (struct arrays){.corners = 3 * b->info.triangles,
                          .layers = ((size_t)b->info.components + 3) / 4};
-    find_box(a, b);
+    relume_baked_box(a->box, b);
     struct corner_code *code = find_vertices(a, b);
     float *range =
         mem_array(2 * (size_t)b->info.clusters * (size_t)b->info.components, sizeof *range);
@@ -264,7 +253,8 @@ static void put_basis(FILE *f, const struct baked_basis *b)
 }
 
 static relume_status write_json(const struct site *site, const struct page *page,
-                                const relume_baked *b, const struct arrays *a, size_t bytes)
+                                const relume_baked *b, const struct arrays *a, size_t bytes,
+                                const relume_notes *notes)
 {
     const struct relume_baked_info *i = &b->info;
     char name[128];
@@ -274,12 +264,11 @@ static relume_status write_json(const struct site *site, const struct page *page
         return status;
     FILE *f = t.file;
     fputs("{\n  \"format\": \"relume-web-object\", \"version\": 1,\n", f);
-    text_member(f, "name", page->name);
-    text_member(f, "title", page->details.title);
-    text_member(f, "maker", page->details.maker);
-    text_member(f, "licence", page->details.licence);
-    text_member(f, "object", page->details.object);
-    text_member(f, "description", page->details.description);
+    text_details(f, page->name, &page->details);
+    if (relume_notes_scale(notes) > 0.0)
+        fprintf(f, "  \"mm_per_unit\": %.9g,\n", relume_notes_scale(notes));
+    if (relume_notes_count(notes))
+        fputs("  \"notes\": true,\n", f);
     if (!i->fixed)
         put_basis(f, &b->basis);
     fprintf(f, "  \"fixed\": %s, \"coefficients\": %d,\n", i->fixed ? "true" : "false", b->kept);
@@ -287,73 +276,33 @@ static relume_status write_json(const struct site *site, const struct page *page
         f, "  \"width\": %d, \"height\": %d, \"side\": %d, \"clusters\": %d, \"components\": %d,\n",
         i->width, i->height, i->side, i->clusters, i->components);
     fprintf(f, "  \"triangles\": %zu, \"vertices\": %zu,\n", i->triangles, a->vertices);
-    fprintf(f, "  \"min\": [%.9g, %.9g, %.9g], \"max\": [%.9g, %.9g, %.9g],\n", (double)a->min[0],
-            (double)a->min[1], (double)a->min[2], (double)a->max[0], (double)a->max[1],
-            (double)a->max[2]);
+    fprintf(f, "  \"min\": [%.9g, %.9g, %.9g], \"max\": [%.9g, %.9g, %.9g],\n",
+            (double)a->box[0][0], (double)a->box[0][1], (double)a->box[0][2], (double)a->box[1][0],
+            (double)a->box[1][1], (double)a->box[1][2]);
     fprintf(f, "  \"bytes\": %zu\n}\n", bytes);
     snprintf(name, sizeof name, "%s/object.json", page->name);
     return site_save_text(site, name, true, &t);
 }
 
-// ---------------------------------------------------------------- the poster
+// ---------------------------------------------------------------- notes
 
-static relume_status write_poster(const struct site *site, struct page *page, const char *path)
+static relume_status open_notes(relume_notes **notes, const struct site *site, const char *path,
+                                const struct arrays *a)
 {
-    const struct relume_light light = {
-        .kind = RELUME_LIGHT_DIRECTIONAL, .direction = {-0.4, 0.6, 0.7}, .rgb = {1.0f, 1.0f, 1.0f}};
-    const struct relume_render_params params = {.struct_size = sizeof params,
-                                                .log = site->log,
-                                                .samples = 2,
-                                                .threads = site->params->threads};
-    relume_objects *objects = NULL;
-    struct relume_image image = {0};
-    struct relume_window window;
-    char name[128];
-    snprintf(name, sizeof name, "%s/poster.jpg", page->name);
-    relume_status status =
-        relume_objects_open(&objects, path,
-                            relume_objects_params(.log = site->log, .limits = site->params->limits,
-                                                  .threads = site->params->threads));
-    if (!status) {
-        const struct relume_objects_info *i = relume_objects_info(objects);
-        const vec3 across = vec3_sub(i->max, i->min);
-        const vec3 eye = vec3_along(vec3_scale(vec3_add(i->min, i->max), 0.5),
-                                    vec3_of(0.0, 0.6, 1.8), vec3_length(across));
-        const struct relume_look_at look = {.aimed = false};
-        if (!relume_objects_window(&window, objects, eye, &look, POSTER_WIDTH, POSTER_HEIGHT))
-            status = log_fail(site->log, RELUME_EFORMAT, "%s: an object without extent", path);
-    }
-    if (!status)
-        status = relume_image_create(&image, POSTER_WIDTH, POSTER_HEIGHT, 3);
-    if (!status)
-        status = relume_objects_render(&image, objects, &window, &light, 1, &params);
-    const struct relume_rect all = {0, 0, POSTER_WIDTH, POSTER_HEIGHT};
-    if (!status)
-        status = picture_save_jpeg(site, name, &image, &all);
-    page->poster_width = POSTER_WIDTH;
-    page->poster_height = POSTER_HEIGHT;
-    relume_image_destroy(&image);
-    relume_objects_destroy(&objects);
-    return status;
+    struct relume_notes_file file = {.name = names_file(path), .solid = true};
+    for (int k = 0; k < 2; k++)
+        for (int c = 0; c < 3; c++)
+            file.box[k][c] = (double)a->box[k][c];
+    return relume_notes_open(notes, path, &file, site->log);
 }
 
 // ---------------------------------------------------------------- the whole
-
-bool object_is_file(const char *path, const struct relume_limits *limits)
-{
-    const struct relume_limits all = limits_or_default(limits);
-    exr_file *file = NULL;
-    int version;
-    const bool is =
-        !exr_open(&file, path, NULL, &all, NULL) && exr_get_int(file, 0, "bakedVersion", &version);
-    exr_close(&file);
-    return is;
-}
 
 relume_status object_write(const struct site *site, struct page *page, const char *path,
                            struct relume_publish_report *report)
 {
     relume_baked *b = NULL;
+    relume_notes *notes = NULL;
     struct arrays a;
     size_t bytes = 0;
     relume_status status = relume_baked_open(&b, path, site->params->limits, site->log);
@@ -362,9 +311,17 @@ relume_status object_write(const struct site *site, struct page *page, const cha
     if (!status)
         status = write_numbers(&a, &bytes, site, page->name, b);
     if (!status)
-        status = write_json(site, page, b, &a, bytes);
+        status = open_notes(&notes, site, path, &a);
     if (!status)
-        status = write_poster(site, page, path);
+        status = write_json(site, page, b, &a, bytes, notes);
+    if (!status)
+        status = turn_write(site, page, path);
+    const bool noted = !status && relume_notes_count(notes) > 0;
+    if (!status)
+        status = iiif_write_object(site, page, noted);
+    if (noted && !status)
+        status = annotations_write(site, notes, path, NULL, page);
+    relume_notes_destroy(&notes);
     report->bytes = report->first_bytes = bytes;
     relume_baked_destroy(&b);
     return status;

@@ -4,12 +4,9 @@
 
 #include "publish/page.h"
 
-// Whether a file is a baked object, whole or not.
-bool object_is_file(const char *path, const struct relume_limits *limits);
-
-// The object of a file: its folder with poster, but not its page, of which the sizes are set. An
-// input status with a sentence, RELUME_EUNSUPPORTED (wavelets, views apart, what is too large for
-// a page), RELUME_ENOMEM, RELUME_EIO.
+// The object of a file: its folder with poster, notes and manifest, but not its page, of which the
+// sizes are set. An input status with a sentence, RELUME_EUNSUPPORTED (wavelets, views apart, what
+// is too large for a page), RELUME_ENOMEM, RELUME_EIO.
 relume_status object_write(const struct site *site, struct page *page, const char *path,
                            struct relume_publish_report *report);
 

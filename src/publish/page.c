@@ -1,10 +1,11 @@
 // page.c - the pages of a site
 //
-// Texts of people go through text_html alone; names of files are those of names.h. Pages load
+// Texts of people go through markup_text alone; names of files are those of names.h. Pages load
 // nothing from elsewhere.
 #include "publish/page.h"
 
 #include "base/memory.h"
+#include "math/markup.h"
 #include "publish/assets.h"
 
 #include <string.h>
@@ -14,7 +15,7 @@ static void put_meta(FILE *f, const char *kind, const char *key, const char *val
     if (!value || !*value)
         return;
     fprintf(f, "<meta %s=\"%s\" content=\"", kind, key);
-    text_html(f, value);
+    markup_text(f, value);
     fputs("\">\n", f);
 }
 
@@ -46,7 +47,7 @@ static void put_head(FILE *f, const struct site *site, const char *page, const c
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
           f);
-    text_html(f, d->title);
+    markup_text(f, d->title);
     fputs("</title>\n", f);
     put_open_graph(f, site, page, poster, d);
     fprintf(f, "<meta name=\"generator\" content=\"relume %s\">\n", RELUME_VERSION);
@@ -62,7 +63,7 @@ static void put_row(FILE *f, const char *term, const char *value)
     if (!value || !*value)
         return;
     fprintf(f, "<dt>%s</dt><dd>", term);
-    text_html(f, value);
+    markup_text(f, value);
     fputs("</dd>\n", f);
 }
 
@@ -78,9 +79,9 @@ static void put_licence(FILE *f, const char *licence)
         return;
     }
     fputs("<dt>Licence</dt><dd><a rel=\"license\" href=\"", f);
-    text_html(f, licence);
+    markup_text(f, licence);
     fputs("\">", f);
-    text_html(f, licence);
+    markup_text(f, licence);
     fputs("</a></dd>\n", f);
 }
 
@@ -89,7 +90,7 @@ static void put_description(FILE *f, const struct details *d)
     if (!d->description)
         return;
     fputs("<p>", f);
-    text_html(f, d->description);
+    markup_text(f, d->description);
     fputs("</p>\n", f);
 }
 
@@ -106,7 +107,7 @@ static void put_poster(FILE *f, const struct page *p, const char *more)
 {
     fprintf(f, "<img %ssrc=\"%s/poster.jpg\" width=\"%d\" height=\"%d\" alt=\"", more, p->name,
             p->poster_width, p->poster_height);
-    text_html(f, p->details.title);
+    markup_text(f, p->details.title);
     fputs(", in one light\">", f);
 }
 
@@ -150,12 +151,12 @@ relume_status page_write(const struct site *site, const struct page *p, const ch
     const struct shown *shown = shown_by(p);
     put_head(f, site, name, poster, &p->details, shown->script);
     fputs("<nav><a href=\"index.html\">", f);
-    text_html(f, site_title ? site_title : "All objects");
+    markup_text(f, site_title ? site_title : "All objects");
     fputs("</a></nav>\n<main>\n<h1>", f);
-    text_html(f, p->details.title);
+    markup_text(f, p->details.title);
     fprintf(f, "</h1>\n<%s src=\"%s/%s\" poster=\"%s\" title=\"", shown->element, p->name,
             shown->source, poster);
-    text_html(f, p->details.title);
+    markup_text(f, p->details.title);
     fputs("\"><noscript>", f);
     put_poster(f, p, "class=\"still\" ");
     fprintf(f, "<p>This page needs JavaScript to move the light.</p></noscript></%s>\n",
@@ -163,8 +164,7 @@ relume_status page_write(const struct site *site, const struct page *p, const ch
     put_description(f, &p->details);
     put_details(f, &p->details);
     put_embedding(f, site, p);
-    if (!p->object)
-        fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
+    fprintf(f, "<p><a href=\"%s/manifest.json\">IIIF manifest</a></p>\n", p->name);
     fputs("</main>\n</body>\n</html>\n", f);
     return site_save_text(site, name, false, &t);
 }
@@ -210,7 +210,7 @@ relume_status page_write_index(const struct site *site, const struct page *pages
     FILE *f = t.file;
     put_head(f, site, "index.html", poster, &d, view.script);
     fputs("<main>\n<h1>", f);
-    text_html(f, d.title);
+    markup_text(f, d.title);
     fputs("</h1>\n", f);
     put_description(f, &d);
     fputs("<ul class=\"gallery\">\n", f);
@@ -218,9 +218,9 @@ relume_status page_write_index(const struct site *site, const struct page *pages
         fprintf(f, "<li><a href=\"%s.html\">", pages[i].name);
         put_poster(f, &pages[i], i < 12 ? "" : "loading=\"lazy\" ");
         fputs("<span>", f);
-        text_html(f, pages[i].details.title);
+        markup_text(f, pages[i].details.title);
         fputs("</span><span class=\"quiet\">", f);
-        text_html(f, pages[i].details.maker);
+        markup_text(f, pages[i].details.maker);
         fputs("</span></a></li>\n", f);
     }
     fputs("</ul>\n", f);

@@ -10,7 +10,7 @@ struct page {
     const char *name;  // of it and its folder
     struct details details;
     int poster_width, poster_height;
-    bool object;  // it is a baked object, which has a script of its own and no pictures for IIIF
+    bool object;  // it is a baked object, which has a script of its own
 };
 
 // NAME.html; `site_title` is what its way back is called.

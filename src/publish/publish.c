@@ -15,6 +15,7 @@
 #include "publish/picture.h"
 #include "publish/scene.h"
 
+#include <relume/bake.h>
 #include <relume/exchange.h>
 #include <string.h>
 
@@ -122,7 +123,7 @@ static relume_status write_all(struct scene *s, struct page *page, const char *p
     if (!status)
         status = iiif_write(s->site, page, s->pack, s->notes);
     if (!status && s->notes)
-        status = annotations_write(s->site, notes, path, relume_pack_info(s->pack)->notes, s->name);
+        status = annotations_write(s->site, notes, path, relume_pack_info(s->pack)->notes, page);
     if (!status)
         status = page_write(s->site, page, site_title);
     relume_notes_destroy(&notes);
@@ -143,7 +144,7 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
         .site = &here, .name = w->names[i], .details = page->details, .report = &report};
     memcpy(report.name, w->names[i], sizeof report.name);
     const char *site_title = details_of_site(w->metadata, w->params).title;
-    page->object = object_is_file(w->files[i], w->params->limits);
+    page->object = relume_baked_is_file(w->files[i], w->params->limits);
     relume_status status = page->object ? object_write(&here, page, w->files[i], &report)
                                         : open_file(&s.pack, w->files[i], w->params);
     if (!status && page->object) {

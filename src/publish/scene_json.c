@@ -1,5 +1,7 @@
 // scene_json.c - scene.json: what the tiles mean
 #include "publish/scene.h"
+
+#include "geometry/print.h"
 #include "math/base64.h"
 
 #include <relume/coder.h>
@@ -22,12 +24,7 @@ static void put_numbers(FILE *f, const char *key, const float *v, int n)
 
 static void put_details(FILE *f, const struct scene *s)
 {
-    text_member(f, "name", s->name);
-    text_member(f, "title", s->details.title);
-    text_member(f, "maker", s->details.maker);
-    text_member(f, "licence", s->details.licence);
-    text_member(f, "object", s->details.object);
-    text_member(f, "description", s->details.description);
+    text_details(f, s->name, &s->details);
     if (s->mm_per_pixel > 0.0)
         fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->mm_per_pixel);
     if (s->notes)
@@ -48,27 +45,6 @@ static void put_basis(FILE *f, const struct common *c)
         fprintf(f, "%s%.9g, %.9g, %.9g", i ? ", " : "", info->directions[i].x,
                 info->directions[i].y, info->directions[i].z);
     fputs("]},\n", f);
-}
-
-static void put_geometry(FILE *f, const struct relume_geometry *g)
-{
-    fprintf(f, "  \"projection\": \"%s\",\n", relume_projection_name(g->projection));
-    if (g->projection == RELUME_PLANAR)
-        fprintf(f,
-                "  \"window\": {\"min\": [%.9g, %.9g], \"max\": [%.9g, %.9g], \"camera\": \"%s\", "
-                "\"camera_z\": %.9g},\n",
-                g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
-                g->perspective ? "perspective" : "orthographic", g->camera_z);
-    else if (g->projection == RELUME_SLAB)
-        fprintf(f,
-                "  \"slab\": {\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, "
-                "%.9g], \"st_max\": [%.9g, %.9g]},\n",
-                g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
-    else
-        fprintf(f,
-                "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, \"discs\": %d, "
-                "\"center\": [%.9g, %.9g, %.9g]},\n",
-                g->v_min, g->v_max, g->disc, g->center.x, g->center.y, g->center.z);
 }
 
 static void put_levels(FILE *f, const struct scene *s)
@@ -110,7 +86,7 @@ void scene_print_json(FILE *f, const struct scene *s)
     fputs("{\n  \"format\": \"relume-web\", \"version\": 1,\n", f);
     put_details(f, s);
     fprintf(f, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
-    put_geometry(f, &info->geometry);
+    geometry_print(f, &info->geometry);
     relume_transfer_text(c->source.coding, transfer, sizeof transfer);
     fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
     put_basis(f, c);

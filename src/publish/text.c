@@ -1,47 +1,11 @@
-// text.c - texts of people inside HTML, JSON and addresses
+// text.c - texts of people inside JSON and addresses
 #include "publish/text.h"
 
 #include "base/memory.h"
+#include "math/markup.h"
+#include "publish/details.h"
 
 #include <string.h>
-
-// The next character, a blank for line ends and '?' for what is no text; 0 at the end.
-static uint32_t next(const char **text, int *bytes)
-{
-    uint32_t code;
-    *bytes = relume_text_step(&code, *text);
-    *text += *bytes;
-    return !*bytes                        ? 0
-           : code == '\n' || code == '\t' ? ' '
-           : relume_text_harmless(code)   ? code
-                                          : '?';
-}
-
-static void put(FILE *to, const char *text, const char *(*escape)(uint32_t code))
-{
-    int n = 0;
-    for (uint32_t code; text && (code = next(&text, &n));) {
-        const char *instead = escape(code);
-        if (instead)
-            fputs(instead, to);
-        else if (code < 0x80)
-            putc((int)code, to);
-        else
-            fwrite(text - n, 1, (size_t)n, to);
-    }
-}
-
-static const char *html(uint32_t code)
-{
-    switch (code) {
-    case '<': return "&lt;";
-    case '>': return "&gt;";
-    case '&': return "&amp;";
-    case '"': return "&quot;";
-    case '\'': return "&#39;";
-    default: return NULL;
-    }
-}
 
 static const char *json(uint32_t code)
 {
@@ -55,15 +19,10 @@ static const char *json(uint32_t code)
     }
 }
 
-void text_html(FILE *to, const char *text)
-{
-    put(to, text, html);
-}
-
 void text_json(FILE *to, const char *text)
 {
     putc('"', to);
-    put(to, text, json);
+    markup_escape(to, text, json);
     putc('"', to);
 }
 
@@ -74,6 +33,16 @@ void text_member(FILE *to, const char *key, const char *value)
     fprintf(to, "  \"%s\": ", key);
     text_json(to, value);
     fputs(",\n", to);
+}
+
+void text_details(FILE *to, const char *name, const struct details *d)
+{
+    text_member(to, "name", name);
+    text_member(to, "title", d->title);
+    text_member(to, "maker", d->maker);
+    text_member(to, "licence", d->licence);
+    text_member(to, "object", d->object);
+    text_member(to, "description", d->description);
 }
 
 void text_address(FILE *to, const char *text)

@@ -1,16 +1,18 @@
-// text.h - texts of people inside HTML, JSON and addresses
+// text.h - texts of people inside JSON and addresses (of HTML: markup.h)
 #ifndef PUBLISH_TEXT_H
 #define PUBLISH_TEXT_H
 
 #include <relume/base.h>
 #include <stdio.h>
 
-// `text` as HTML shows it, in content and in quoted attributes. NULL is nothing.
-void text_html(FILE *to, const char *text);
+struct details;
+
 // As a JSON string with its quotes, which may also stand inside a script of a page.
 void text_json(FILE *to, const char *text);
 // A line of a JSON object with a comma; none where `value` is NULL.
 void text_member(FILE *to, const char *key, const char *value);
+// Such lines of a file's name and of what visitors read of it.
+void text_details(FILE *to, const char *name, const struct details *d);
 // As an address: what may not stand in one is percent-encoded.
 void text_address(FILE *to, const char *text);
 

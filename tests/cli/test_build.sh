@@ -27,6 +27,15 @@ if [ "$(uname -m)" = x86_64 ]; then
     check "kernels of AVX2 are built where no compiler is yet" sh -c 'make -pn -C "$TOP" CC=nosuch 2>/dev/null | grep -q "^AVX2 := -mavx2"'
 fi
 
+# ---------------------------------------------------------------- WebAssembly in the tree
+for module in core open; do
+    if (cd "$TOP" && sha256sum -c --quiet web/$module/sources.txt) >sums.txt 2>&1; then
+        ok "web/$module is made of the sources in the tree"
+    else
+        not_ok "web/$module is made of the sources in the tree" "run 'make web' and commit what it makes; $(head -n 5 sums.txt)"
+    fi
+done
+
 # ---------------------------------------------------------------- hardened and reproducible
 # reads FILE OPTION PATTERN: `readelf OPTION FILE` has a line that matches
 reads() { readelf "$2" "$1" 2>/dev/null | grep -qE -e "$3"; }

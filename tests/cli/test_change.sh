@@ -56,7 +56,7 @@ for file in report.html before.png after.png changed.png shape.png colour.png si
     check "writes $file" test -s "found/$file"
 done
 if grep -q '<script\|http' found/report.html; then not_ok "the report needs nothing else" "script or link"; else ok "the report needs nothing else"; fi
-check "names are escaped" grep -q 'to &lt;b>&amp;/' found/report.html
+check "names are escaped" grep -q 'to &lt;b&gt;&amp;/' found/report.html
 [ -z "$python" ] || check "--json is JSON" "$python" -c 'import json; json.load(open("found.json"))'
 "$RELUME" change a/lights.lp '<b>&/lights.lp' -o twice --threads 1 -q 2>err.txt
 same "one thread measures the same" found/degrees.exr twice/degrees.exr

@@ -63,6 +63,15 @@ cp kept.json dome.notes.json
 expect_ok 'without notes and scale' - ./notes --remove n1 --remove n2 --remove n4
 check 'the scale stays' grep -q '"relume:mmPerPixel": 0.5,' dome.notes.json
 
+# ---- a file that is encoded again keeps what is inside it; pictures of another size do not
+cp dome.exr old.exr
+"$RELUME" notes old.exr --add 'point 3,4' --text kept -q >/dev/null && "$RELUME" notes old.exr --embed -q >/dev/null
+expect_ok 'encoded again' - "$RELUME" encode dome -o old.exr --bits half -q
+check 'notes stay inside' sh -c "'$RELUME' notes old.exr | grep -q kept && [ ! -e old.notes.json ]"
+"$sphere" larger --size 64 --lights 12 --hemisphere --shade wrap --format png || exit 1
+"$RELUME" encode larger -o old.exr -q 2>err.txt
+check 'those of other pictures lie beside it' sh -c "grep -q 'notes on pictures of another size; they are in old.exr.notes-before.json' err.txt && grep -q kept old.exr.notes-before.json"
+
 # ---- inside the file: it holds its notes and is else the same, byte by byte
 cp dome.exr alone.exr
 printf '{"@context": "http://www.w3.org/ns/anno.jsonld", "type": "AnnotationPage", "items": [{"id": "n1", "type": "Annotation",

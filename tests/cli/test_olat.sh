@@ -40,6 +40,7 @@ for f in cap/view00/light*.exr; do
     i=$((i + 1))
 done
 sed -n 's/^[^ ]*\.exr //p' cap/*.lp >stage/light_dirs.txt
+cp stage/light_dirs.txt places.txt
 expect_ok 'a stage' - "$RELUME" encode stage -o a.exr --basis table --bits half -q
 expect_ok 'from the capture' - "$RELUME" encode cap -o c.exr --basis table --bits half -q
 for f in a c; do "$RELUME" relight $f.exr -o $f-lit.exr --light 'dir 0.3 0.2 1'; done
@@ -52,6 +53,16 @@ for list in lights.csv lights.json; do
     expect_ok "a stage with $list" - "$RELUME" encode stage -o b.exr --basis table --bits half -q
     same "$list says the same" a.exr b.exr
 done
+
+# JSON that names its pictures, in another order; with a name that is none
+rm -f stage/*.*
+awk '{ line[NR] = sprintf("{\"name\": \"dir_%d.exr\", \"direction\": [%s, %s, %s]}", NR - 1, $1, $2, $3) } END { printf "["; for (i = NR; i > 0; i--) printf "%s%s", line[i], (i > 1 ? ", " : "]\n") }' places.txt >stage/lights.json
+expect_ok 'a list by name' - "$RELUME" encode stage -o b.exr --basis table --bits half -q
+same 'says the same in any order' a.exr b.exr
+sed -i 's/dir_7\./dir_77./' stage/lights.json
+expect_fail 'a picture without a light' 1 "names no light 'dir_7.exr'" no "$RELUME" encode stage -o no
+rm -f stage/*.*
+cp lights.json stage/
 
 # ---- photographs of kinds that OpenImageIO reads by plugins
 for kind in webp avif; do

@@ -97,6 +97,12 @@ snap pot "light=dir,0.5,0.3,0.7&eye=$eye" "--size 96x96 --eye $eye" --light 'dir
     show site/room.html
 } >>orders.txt
 snap room 'light=dir,0,1,0.3&pan=30&tilt=10&zoom=1' '--size 128x64 --pan 30 --tilt 10' --light 'dir 0 1 0.3'
+# a line in a look, which stays where it is while one looks elsewhere
+view="document.querySelector('relume-view')"
+ask "($view.panel.begin('line'), 0)"
+{ echo 'drag 70 20 70 20'; echo 'drag 110 44 110 44'; echo 'key Enter'; } >>orders.txt
+ask "(window.relume.setState('pan=200&projection=planet&zoom=0.5'), [[70, 20], [110, 44]].forEach(p => $view.viewer.toPicture(p)), window.relume.setState('pan=30&tilt=10&zoom=1'), ['turned', ...$view.panel.notes.all[0].places.map(p => $view.viewer.toCanvas(p).map(x => Math.round(10 * x) / 10))])"
+echo "write room.page.json $view.panel.notes.toText()" >>orders.txt
 ask "(document.body.append(document.querySelector('relume-view')), document.querySelector('relume-view').ready.then(() => 'put elsewhere'))"
 ask "(document.querySelector('relume-view').controls.node.remove(), new Promise(done => setTimeout(done, 200)))"
 snap room 'light=dir,0.5,0.5,0.7&projection=planet' '--size 128x64 --projection planet' --light 'dir 0.5 0.5 0.7'
@@ -136,6 +142,14 @@ if [ "$(wc -l <notes.txt)" -eq 2 ] && grep -q 'n2 *polygon .* a loss' notes.txt;
 else
     not_ok 'an area drawn on the page comes back, what was there comes once' "$(cat notes.txt)"
 fi
+# the same by the viewer, in a window five times as large
+says 'a line in a panorama stays while one looks elsewhere' '^\["turned",\[70,20\],\[110,44\]\]'
+printf 'size 640 320\nkey ctrl+n\nshot none.png\nclick 163 48\nshot none.png\nclick 350 100\nclick 550 220\nkey enter\nshot line.png\n' >jot.txt
+"$VIEWER" room.exr --state 'pan=30&tilt=10&zoom=1' --script jot.txt >jot.out 2>&1 || not_ok 'the viewer notes in a look' "$(cat jot.out)"
+"$RELUME" notes room.exr --import room.page.json --json >both.json 2>note.txt
+check 'page and viewer find the same places of a panorama, and the tool keeps both' awk '
+    { n = split($0, part, "\"places\": "); for (i = 2; i <= n; i++) { split(part[i], v, /[^-0-9.e]+/); for (k = 2; k <= 5; k++) p[i, k] = v[k] } }
+    END { for (k = 2; k <= 5; k++) { d = p[2, k] - p[3, k]; if (d > 0.02 || d < -0.02) bad = 1 } print p[2, 2], p[3, 2]; exit bad || n != 3 || p[2, 2] == "" }' both.json
 says 'two looks are compared' '^"difference"'
 says 'without WebGL2 there is a still picture and a sentence' '^\["Only a still picture can be shown: this browser has no WebGL2\.",true,"'
 [ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'

@@ -32,6 +32,17 @@ light='dir 5 3 8'
 synth ring --slabs 6 --views 4x2 --lights-from lights.txt || exit 1
 relume encode ring -o ring.exr --basis table --bits 16 || exit 1
 
+# ---- notes: the mouse finds places of the surface, which is within the block; by the tool they are X,Y,Z
+printf '%s\n' 'size 640 480' 'key ctrl+n' 'shot none.png' 'click 163 48' 'shot none.png' 'click 350 240' 'click 390 260' 'key enter' 'shot line.png' >jot.txt
+"$VIEWER" ring.exr --script jot.txt >jot.out 2>&1 || not_ok 'the viewer notes around an object' "$(cat jot.out)"
+relume notes ring.exr --json >notes.json
+check 'notes around an object lie on it' awk '{ gsub(/.*"places": /, ""); split($0, v, /[^-0-9.e]+/)
+    for (i = 2; i <= 7; i += 3) { if (v[i] ^ 2 > 0.3 || v[i + 1] ^ 2 > 0.9 || v[i + 2] < 0.25 || v[i + 2] > 0.45) bad = 1 } print v[2], v[3], v[4]; exit bad || v[4] == "" }' notes.json
+expect_ok 'the tool adds one, inside the file' - "$RELUME" notes ring.exr --add 'line 0,0,0 0.3,0.4,0' --embed
+check 'both are there, in units of the object' grep -q '^n2 *line *0.5 units' out.txt
+expect_ok 'the list comes out again' - "$RELUME" notes ring.exr --extract
+rm ring.notes.json
+
 # ---- eyes that were not captured, seen through the window of each slab: truth is what synth renders
 for spread in 1.328 1.732; do # between the cameras of one slab, and where neighbours meet
     synth held$spread --slabs 6 --views 2x1 --spread $spread --lights-from lamps.txt

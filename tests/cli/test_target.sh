@@ -49,6 +49,8 @@ for e in jpg tif; do
     expect_ok "without in .$e" - "$RELUME" relight f.exr -o bare.$e
     check "bare .$e has none" test -z "$(grep -ca acsp bare.$e | grep -v '^0$')"
 done
+expect_ok 'a profile of tonemap' - "$RELUME" tonemap lit.tif -o toned.jpg --icc
+check 'is in the picture' grep -qa acsp toned.jpg
 expect_ok 'again' - "$RELUME" relight f.exr -o again.jpg --icc
 same 'the profile has no date' lit.jpg again.jpg
 finish

@@ -24,6 +24,8 @@ static const char *const words[] = {"AnnotationPage",
                                     "relume:State",
                                     "relume:file",
                                     "relume:mmPerPixel",
+                                    "WktSelector",
+                                    "LINESTRING Z (",
                                     "body",
                                     "creator",
                                     "id",
@@ -56,7 +58,8 @@ static void look_inside(const struct fuzz *f, struct bytes b)
     if (b.size)
         memcpy(text, b.data, b.size);
     text[b.size] = 0;
-    const struct relume_notes_file file = {"a.exr", 64, 64, 1, text};
+    const struct relume_notes_file file = {
+        .name = "a.exr", .width = 64, .height = 64, .views = 1, .inside = text};
     if (!relume_notes_open(&notes, f->path, &file, NULL))
         look(notes);
     relume_notes_destroy(&notes);
@@ -79,22 +82,32 @@ static void come_back(const struct fuzz *f, const relume_notes *notes,
     relume_notes_destroy(&again);
 }
 
-static bool one(struct fuzz *f, struct bytes b)
+// On a picture, or on an object.
+static bool import(struct fuzz *f, const struct relume_notes_file *file)
 {
-    const struct relume_notes_file file = {"a.exr", 64, 64, 1, NULL};
     relume_notes *notes;
     int added;
-    look_inside(f, b);
-    fuzz_store(f->path, b);
-    relume_status status = relume_notes_create(&notes, &file);
+    relume_status status = relume_notes_create(&notes, file);
     if (status)
         return false;  // an allocation failed
     status = relume_notes_import(notes, f->path, &added, NULL);
     look(notes);
     if (!status && added)
-        come_back(f, notes, &file);
+        come_back(f, notes, file);
     relume_notes_destroy(&notes);
     return !status;
+}
+
+static bool one(struct fuzz *f, struct bytes b)
+{
+    const struct relume_notes_file file = {.name = "a.exr", .width = 64, .height = 64, .views = 1};
+    const struct relume_notes_file object = {
+        .name = "a.exr", .solid = true, .box = {{-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}}};
+    look_inside(f, b);
+    fuzz_store(f->path, b);
+    const bool picture = import(f, &file);
+    fuzz_store(f->path, b);  // what came back lies there
+    return import(f, &object) || picture;
 }
 
 int main(int argc, char **argv)
@@ -107,6 +120,13 @@ int main(int argc, char **argv)
             "{\"name\": \"Ann\"}, \"body\": [{\"value\": \"x\"}], \"target\": {\"selector\": "
             "{\"type\": \"PointSelector\", \"x\": 1, \"y\": 2}, \"state\": {\"type\": "
             "\"relume:State\", \"value\": \"light=dir,0,0,1\"}}}]}");
+    fuzz_add_text(
+        &f,
+        "{\"type\": \"AnnotationPage\", \"relume:file\": {\"min\": [-1, -1, -1], \"max\": [1, 1, "
+        "1]}, \"relume:mmPerUnit\": 0.5, \"items\": [{\"target\": {\"selector\": {\"type\": "
+        "\"PointSelector\", \"x\": 1, \"y\": 0, \"z\": 0.5}}}, {\"target\": {\"selector\": "
+        "{\"type\": "
+        "\"WktSelector\", \"value\": \"POLYGON Z ((0 0 0, 1 0 0, 0 1 0, 0 0 0))\"}}}]}");
     fuzz_add_text(
         &f, "{\"type\": \"AnnotationPage\", \"items\": [{\"target\": {\"selector\": {\"type\": "
             "\"SvgSelector\", \"value\": \"<svg><path d='M1,2 l3,4 H5 v6 z'/></svg>\"}}}, "

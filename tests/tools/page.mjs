@@ -5,6 +5,7 @@
 //   snap FILE.png     the picture as saved     shot FILE.png      the window
 //   eval SCRIPT       prints what it gives     key NAME...        press keys
 //   drag X Y X Y      the mouse                drop FILE          onto the picture
+//   touch X Y X Y ... each finger from a place to a place
 //   write FILE SCRIPT the text that it gives
 //   before SCRIPT     runs first in pages from now on
 //   serve ADDRESS FOLDER   answers what begins with ADDRESS from there, and prints what is asked for
@@ -132,6 +133,16 @@ const orders = {
         for (let i = 1; i <= 4; i++)
             await mouse('mouseMoved', x + (toX - x) * i / 4, y + (toY - y) * i / 4, 1);
         await mouse('mouseReleased', toX, toY, 0);
+    },
+    async touch(...places) {
+        const fingers = [];
+        for (let i = 0; i + 3 < places.length; i += 4)
+            fingers.push(places.slice(i, i + 4).map(Number));
+        const at = (t) => fingers.map(([x, y, toX, toY], id) => ({ x: x + t * (toX - x), y: y + t * (toY - y), id }));
+        await send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: at(0) });
+        for (let i = 1; i <= 4; i++)
+            await send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: at(i / 4) });
+        await send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
     },
     async drop(file) {
         const base64 = readFileSync(file).toString('base64'), name = file.split('/').pop();

@@ -4,7 +4,8 @@
 
 #include "in_folder.h"
 
-static const struct relume_notes_file file = {"a.exr", 100, 80, 1, NULL};
+static const struct relume_notes_file file = {
+    .name = "a.exr", .width = 100, .height = 80, .views = 1};
 
 static struct relume_note line(const double (*place)[2], int places)
 {
@@ -212,7 +213,8 @@ static void test_round_trip(void **state)
     fclose(f);
     assert_non_null(strstr(text, "\"kept\":{\"by\":3.25}"));
     relume_notes_destroy(&again);
-    const struct relume_notes_file other = {"a.exr", 100, 81, 1, NULL};
+    const struct relume_notes_file other = {
+        .name = "a.exr", .width = 100, .height = 81, .views = 1};
     assert_int_equal(relume_notes_open(&again, path_of("a.exr"), &other, &log.log), RELUME_EUNFIT);
     assert_null(again);
     char *inside;
@@ -222,7 +224,8 @@ static void test_round_trip(void **state)
     assert_int_equal(access(path_of("a.notes.json"), F_OK), -1);
     relume_notes_destroy(&notes);
     // a list inside the file, which an empty one beside it hides
-    const struct relume_notes_file holder = {"a.exr", 100, 80, 1, inside};
+    const struct relume_notes_file holder = {
+        .name = "a.exr", .width = 100, .height = 80, .views = 1, .inside = inside};
     CHECK_OK(relume_notes_open(&again, path_of("a.exr"), &holder, NULL));
     assert_int_equal(relume_notes_count(again), 3);
     empty(again);
@@ -278,12 +281,94 @@ static void test_names(void **state)
     relume_notes_destroy(&notes);
 }
 
+#define WKT(text)                                                                                  \
+    "{\"target\": {\"selector\": {\"type\": \"WktSelector\", \"value\": \"" text "\"}}}"
+
+static const struct relume_notes_file solid = {
+    .name = "a.exr", .solid = true, .box = {{-1, -2, -3}, {1, 2, 3}}};
+
+// Notes on an object: places in space, measures through it, selectors as the drafts of IIIF have
+// them; those of pictures and of other objects are none.
+static void test_space(void **state)
+{
+    (void)state;
+    // a triangle that leans by 45 degrees: 2 wide, sqrt 8 deep
+    static const double place[][2] = {{0, 0}, {2, 0}, {0, 2}}, z[] = {0, 0, 2};
+    static const char *const broken[] = {
+        WKT("LINESTRING (0 0, 1 1)"),
+        WKT("LINESTRING Z (0 0 0, 1 1)"),
+        WKT("LINESTRING Z (0 0 0, 1 1 1"),
+        WKT("LINESTRING Z (0 0 0, 1 1 1) 2"),
+        WKT("POLYGON Z (0 0 0, 1 0 0, 0 1 0)"),
+        WKT("POLYGON Z ((0 0 0, 1 0 0, 0 0 0))"),
+        WKT("LINESTRING Z (0 0 0, 1 1 nan)"),
+        WKT("LINESTRING Z (0 0 0, 1 1 99)"),
+        "{\"target\": {\"selector\": {\"type\": \"PointSelector\", \"x\": 1, \"y\": 1}}}",
+        "{\"target\": {\"selector\": {\"type\": \"PointSelector\", \"x\": 1, \"y\": 1, \"z\": "
+        "\"2\"}}}"};
+    struct relume_note note = {.kind = RELUME_NOTE_POLYGON, .places = 3, .place = place, .z = z};
+    struct relume_note_measures m = relume_note_measure(&note);
+    CHECK_NEAR(m.area, 0.5 * 2.0 * sqrt(8.0), 1e-12);
+    CHECK_NEAR(m.length, 2.0 + sqrt(8.0) + sqrt(12.0), 1e-12);
+    note.kind = RELUME_NOTE_LINE;
+    m = relume_note_measure(&note);
+    CHECK_NEAR(m.length, 2.0 + sqrt(12.0), 1e-12);
+    CHECK_NEAR(m.degrees, 180.0 / M_PI * acos(1.0 / sqrt(3.0)), 1e-12);
+
+    struct test_log log;
+    test_log_init(&log);
+    relume_notes *notes, *again;
+    CHECK_OK(relume_notes_create(&notes, &solid));
+    for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+        log.lines = 0;
+        assert_int_equal(import(notes, broken[i], &log), RELUME_EFORMAT);
+        assert_int_equal(log.lines, 1);
+    }
+    CHECK_OK(import(notes, WKT("MULTIPOINT Z (0 0 0)"), &log));
+    assert_int_equal(relume_notes_count(notes), 0);
+    CHECK_OK(relume_notes_add(notes, &note, NULL));
+    note.kind = RELUME_NOTE_POLYGON;
+    CHECK_OK(relume_notes_add(notes, &note, NULL));
+    CHECK_OK(import(notes, WKT(" polygon z((0 0 0,1 0 .5, 0 1e0 0,0 0 0)) "), &log));
+    assert_int_equal(relume_notes_get(notes, 2)->places, 3);
+    CHECK_OK(relume_notes_set_scale(notes, 2.5));
+    CHECK_OK(relume_notes_save(notes, path_of("a.exr"), NULL));
+    CHECK_OK(relume_notes_open(&again, path_of("a.exr"), &solid, NULL));
+    CHECK_NEAR(relume_notes_scale(again), 2.5, 0.0);
+    for (int i = 0; i < 2; i++) {
+        const struct relume_note *n = relume_notes_get(again, i);
+        assert_int_equal(n->kind, i ? RELUME_NOTE_POLYGON : RELUME_NOTE_LINE);
+        assert_int_equal(n->places, 3);
+        assert_memory_equal(n->place, place, sizeof place);
+        assert_memory_equal(n->z, z, sizeof z);
+    }
+    relume_notes_destroy(&again);
+    assert_int_equal(relume_notes_write(notes, path_of("a.svg"), RELUME_NOTES_SVG, NULL, &log.log),
+                     RELUME_EUNSUPPORTED);
+    note.z = NULL;
+    assert_int_equal(relume_notes_add(notes, &note, &log.log), RELUME_EINVAL);
+    relume_notes_destroy(&notes);
+    // what is on an object is neither on a picture nor on another object
+    struct relume_notes_file other = solid;
+    other.box[1][2] = 3.1;
+    assert_int_equal(relume_notes_open(&again, path_of("a.exr"), &other, &log.log), RELUME_EUNFIT);
+    assert_int_equal(relume_notes_open(&again, path_of("a.exr"), &file, &log.log), RELUME_EFORMAT);
+    memcpy(other.box[1], other.box[0], sizeof other.box[1]);
+    assert_int_equal(relume_notes_create(&again, &other), RELUME_EINVAL);
+    CHECK_OK(relume_notes_create(&notes, &file));
+    note.z = z;
+    assert_int_equal(relume_notes_add(notes, &note, &log.log), RELUME_EINVAL);
+    relume_notes_destroy(&notes);
+    assert_int_equal(unlink(path_of("a.notes.json")), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_measures),   cmocka_unit_test(test_profile_of_a_sphere),
         cmocka_unit_test(test_selectors),  cmocka_unit_test(test_bad_selectors),
         cmocka_unit_test(test_round_trip), cmocka_unit_test(test_names),
+        cmocka_unit_test(test_space),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -122,13 +122,21 @@ static void drag_before_window(struct relume_vec3 *p, const struct app *app, dou
     p->y = scale == 1 ? t : eye.y + (t - eye.y) / scale;
 }
 
+// By which a look divides what lies to the right of it and above; above 0 where it shows the point.
+static double depth_in_look(const struct app *app, const struct app_axes *a, struct relume_vec3 d)
+{
+    const double ahead = -vec3_dot(d, a->back), far = vec3_length(d);
+    const double depth = app->now.camera.look.stereographic ? far + ahead : ahead;
+    return depth > 1e-3 * far ? depth : 0.0;
+}
+
 static bool place_in_look(double xy[2], const struct app *app, struct relume_vec3 p)
 {
     const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 d = vec3_sub(p, app_middle(app));
-    const double ahead = -vec3_dot(d, a.back);
-    const double scale = 0.5 * app->width * app->now.camera.look.zoom / ahead;
-    if (!(ahead > 1e-9))
+    const double depth = depth_in_look(app, &a, d);
+    const double scale = 0.5 * app->width * app->now.camera.look.zoom / depth;
+    if (!(depth > 0.0))
         return false;
     xy[0] = 0.5 * app->width + scale * vec3_dot(d, a.right);
     xy[1] = 0.5 * app->height - scale * vec3_dot(d, a.up);
@@ -140,7 +148,8 @@ static void drag_in_look(struct relume_vec3 *p, const struct app *app, double x,
     const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 middle = app_middle(app);
     const double ahead = -vec3_dot(vec3_sub(*p, middle), a.back);
-    const double scale = ahead / (0.5 * app->width * app->now.camera.look.zoom);
+    const double scale = depth_in_look(app, &a, vec3_sub(*p, middle)) /
+                         (0.5 * app->width * app->now.camera.look.zoom);
     const double right = scale * (x - 0.5 * app->width);
     const double up = scale * (0.5 * app->height - y);
     *p = (struct relume_vec3){

@@ -1,7 +1,9 @@
 // notes.c - notes on the picture, and what the mouse does with them
 #include "app/notes.h"
 
+#include "app/gizmo.h"
 #include "app/place.h"
+#include "common/vec.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,39 +31,81 @@ void notes_destroy(struct notes **notes)
         return;
     relume_notes_destroy(&n->list);
     free(n->place);
+    free(n->z);
     free(n);
+}
+
+// An object that slabs stand around.
+static bool has_depth(const struct app *app)
+{
+    return app->file.around && relume_slab_set_count(app->file.around) > 1;
 }
 
 bool notes_have_places(const struct app *app)
 {
-    return !app->file.around && !app->file.scene && app->file.width > 0 &&
-           app->now.camera.framing != RELUME_FRAME_LOOK;
+    return (!app->file.around || has_depth(app)) && !app->file.scene && app->file.width > 0;
 }
 
-void notes_to_picture(double place[2], const struct app *app, double x, double y)
+static bool looks_around(const struct app *app)
+{
+    return app->now.camera.framing == RELUME_FRAME_LOOK;
+}
+
+static bool on_surface(double place[2], double *z, const struct app *app, double x, double y)
+{
+    struct relume_vec3 p;
+    if (!app->scene.surface || !app->scene.surface(app->scene.user, &p, x, y))
+        return false;
+    place[0] = p.x;
+    place[1] = p.y;
+    *z = p.z;
+    return true;
+}
+
+bool notes_to_picture(double place[2], double *z, const struct app *app, double x, double y)
 {
     const struct app_rectangle r = app_picture(app);
+    *z = 0;
+    if (has_depth(app))
+        return on_surface(place, z, app, x, y);
+    if (looks_around(app))
+        return relume_panorama_pixel(
+            place, &app->file.geometry, app->file.width, app->file.height,
+            relume_pan_tilt_ray(app->now.camera.look, app->width, app->height, x, y));
     place[0] = (x - r.left) / (r.right - r.left) * app->file.width;
     place[1] = (y - r.top) / (r.bottom - r.top) * app->file.height;
+    return place[0] >= 0 && place[1] >= 0 && place[0] <= app->file.width &&
+           place[1] <= app->file.height;
 }
 
-void notes_to_frame(double xy[2], const struct app *app, const double place[2])
+bool notes_to_frame(double xy[2], const struct app *app, const double place[2], double z)
 {
     const struct app_rectangle r = app_picture(app);
+    if (has_depth(app))
+        return gizmo_place(xy, app, (struct relume_vec3){place[0], place[1], z});
+    if (looks_around(app)) {
+        const struct relume_vec3 ray = relume_panorama_ray(&app->file.geometry, app->file.width,
+                                                           app->file.height, place[0], place[1]);
+        return vec3_length(ray) > 0 && gizmo_place(xy, app, vec3_add(app_middle(app), ray));
+    }
     xy[0] = r.left + place[0] / app->file.width * (r.right - r.left);
     xy[1] = r.top + place[1] / app->file.height * (r.bottom - r.top);
+    return true;
 }
 
 // ---------------------------------------------------------------- drawing
 
-static bool add(struct notes *n, const double place[2])
+static bool add(struct notes *n, const double place[2], double z)
 {
-    double(*more)[2] = n->places < RELUME_NOTE_MOST_PLACES
-                           ? realloc(n->place, ((size_t)n->places + 1) * sizeof *more)
-                           : NULL;
-    if (!more)
+    const bool full = n->places == RELUME_NOTE_MOST_PLACES;
+    const size_t room = (size_t)n->places + 1;
+    double(*more)[2] = full ? NULL : realloc(n->place, room * sizeof *more);
+    n->place = more ? more : n->place;
+    double *deep = more ? realloc(n->z, room * sizeof *deep) : NULL;
+    if (!deep)
         return false;
-    n->place = more;
+    n->z = deep;
+    deep[n->places] = z;
     more[n->places][0] = place[0];
     more[n->places++][1] = place[1];
     return true;
@@ -72,8 +116,8 @@ static bool is_on(const struct app *app, int place, double x, double y)
     double at[2];
     if (place < 0 || place >= app->notes->places)
         return false;
-    notes_to_frame(at, app, app->notes->place[place]);
-    return hypot(at[0] - x, at[1] - y) <= near_px;
+    return notes_to_frame(at, app, app->notes->place[place], app->notes->z[place]) &&
+           hypot(at[0] - x, at[1] - y) <= near_px;
 }
 
 // The note that has a place there, -1 without one.
@@ -83,8 +127,8 @@ static int find(const struct app *app, double x, double y)
         const struct relume_note *note = relume_notes_get(app->notes->list, i);
         for (int k = 0; k < note->places; k++) {
             double at[2];
-            notes_to_frame(at, app, note->place[k]);
-            if (hypot(at[0] - x, at[1] - y) <= near_px)
+            if (notes_to_frame(at, app, note->place[k], note->z ? note->z[k] : 0) &&
+                hypot(at[0] - x, at[1] - y) <= near_px)
                 return i;
         }
     }
@@ -94,7 +138,7 @@ static int find(const struct app *app, double x, double y)
 bool notes_press(struct app *app, double x, double y)
 {
     struct notes *n = app->notes;
-    double place[2];
+    double place[2], z;
     if (!notes_have_places(app))
         return false;
     const int hit = n->places ? -1 : find(app, x, y);
@@ -102,13 +146,12 @@ bool notes_press(struct app *app, double x, double y)
         n->chosen = hit;
         return hit >= 0;
     }
-    notes_to_picture(place, app, x, y);
-    if (place[0] < 0 || place[1] < 0 || place[0] > app->file.width || place[1] > app->file.height)
+    if (!notes_to_picture(place, &z, app, x, y))
         return false;
     const bool closes = n->tool == RELUME_NOTE_POLYGON && is_on(app, 0, x, y);
     if (closes || is_on(app, n->places - 1, x, y))
         (void)notes_finish(app);
-    else if (add(n, place) && n->tool == RELUME_NOTE_POINT)
+    else if (add(n, place, z) && n->tool == RELUME_NOTE_POINT)
         (void)notes_finish(app);
     return true;
 }
@@ -131,10 +174,13 @@ bool notes_take_back(struct app *app)
     return draws;
 }
 
-struct relume_note notes_drawn(const struct notes *n)
+struct relume_note notes_drawn(const struct app *app)
 {
-    return (struct relume_note){
-        .kind = n->tool, .places = n->places, .place = (const double(*)[2])n->place};
+    const struct notes *n = app->notes;
+    return (struct relume_note){.kind = n->tool,
+                                .places = n->places,
+                                .place = (const double(*)[2])n->place,
+                                .z = has_depth(app) ? n->z : NULL};
 }
 
 double notes_scale_bar(const struct notes *n, double pixels, double most)

@@ -17,19 +17,21 @@ struct notes {
     int chosen;                  // -1: none
     enum relume_note_kind tool;  // VIEW: presses do not draw
     int places;
-    double (*place)[2];  // [places]: of what is being drawn, pixels of the picture
+    double (
+        *place)[2];  // [places]: of what is being drawn, pixels of the picture; of an object x, y
+    double *z;       // [places]: of an object
 };
 
 // Takes the list over, also on failure. RELUME_ENOMEM.
 relume_status notes_create(struct notes **out, relume_notes *list);
 void notes_destroy(struct notes **notes);
 
-// Whether the frame shows the whole picture, on which notes have a place: not of a look into a
-// panorama, nor of several slabs.
+// Whether the frame shows the picture that notes have places on, or the object amid several slabs.
 bool notes_have_places(const struct app *app);
-// Between the frame and the picture, pixels of both.
-void notes_to_picture(double place[2], const struct app *app, double x, double y);
-void notes_to_frame(double xy[2], const struct app *app, const double place[2]);
+// Between the frame and the picture, pixels of both, in a look into a panorama too; of an object in
+// the world, `z` with it. False for what there is not there, and for a place behind the eye.
+bool notes_to_picture(double place[2], double *z, const struct app *app, double x, double y);
+bool notes_to_frame(double xy[2], const struct app *app, const double place[2], double z);
 
 // A press at a place of the frame; whether notes take it.
 bool notes_press(struct app *app, double x, double y);
@@ -39,7 +41,7 @@ bool notes_finish(struct app *app);
 bool notes_take_back(struct app *app);
 
 // The note as it is being drawn; it has at least one place.
-struct relume_note notes_drawn(const struct notes *notes);
+struct relume_note notes_drawn(const struct app *app);
 
 // The length of a scale bar for a picture whose pixels are `pixels` wide on the screen: 1, 2 or 5
 // times a power of ten, in millimetres, at most `most` pixels of the screen; 0: the scale is not

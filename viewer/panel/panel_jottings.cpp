@@ -13,28 +13,26 @@ extern "C" {
 
 // ---------------------------------------------------------------- words
 
-static std::string length_text(double pixels, double mm)
+static std::string length_text(double length, double mm, const char *unit)
 {
     char text[64];
-    if (mm > 0)
-        std::snprintf(text, sizeof text, "%.4g mm", pixels * mm);
-    else
-        std::snprintf(text, sizeof text, "%.4g px", pixels);
+    std::snprintf(text, sizeof text, "%.4g %s", length * (mm > 0 ? mm : 1), mm > 0 ? "mm" : unit);
     return text;
 }
 
 static std::string measure_text(const relume_note &note, double mm)
 {
     const relume_note_measures m = relume_note_measure(&note);
+    const char *unit = note.z ? "units" : "px";
     char text[96] = "";
     if (std::isfinite(m.area))
-        std::snprintf(text, sizeof text, "%.4g %s", m.area * (mm > 0 ? mm * mm : 1),
-                      mm > 0 ? "mm\xc2\xb2" : "px\xc2\xb2");
+        std::snprintf(text, sizeof text, "%.4g %s\xc2\xb2", m.area * (mm > 0 ? mm * mm : 1),
+                      mm > 0 ? "mm" : unit);
     else if (std::isfinite(m.degrees))
-        std::snprintf(text, sizeof text, "%s, %.3g\xc2\xb0", length_text(m.length, mm).c_str(),
-                      m.degrees);
+        std::snprintf(text, sizeof text, "%s, %.3g\xc2\xb0",
+                      length_text(m.length, mm, unit).c_str(), m.degrees);
     else if (std::isfinite(m.length))
-        return length_text(m.length, mm);
+        return length_text(m.length, mm, unit);
     return text;
 }
 
@@ -152,11 +150,22 @@ bool panel_jottings(panel *panel, app *app)
 
 static const ImU32 ink = IM_COL32(255, 208, 0, 255), halo = IM_COL32(0, 0, 0, 170);
 
-static ImVec2 at(const app *app, const double place[2])
+// False: it lies behind the eye.
+static bool at(ImVec2 *out, const app *app, const relume_note &note, int i)
 {
     double xy[2];
-    notes_to_frame(xy, app, place);
-    return ImVec2((float)(app->beside[0] + xy[0]), (float)xy[1]);
+    if (!notes_to_frame(xy, app, note.place[i], note.z ? note.z[i] : 0))
+        return false;
+    *out = ImVec2((float)(app->beside[0] + xy[0]), (float)xy[1]);
+    return true;
+}
+
+static void edge(ImDrawList *draw, const app *app, const relume_note &note, int i, ImU32 colour,
+                 float wide)
+{
+    ImVec2 a, b;
+    if (at(&a, app, note, i) && at(&b, app, note, (i + 1) % note.places))
+        draw->AddLine(a, b, colour, wide);
 }
 
 // One of very many: without borders and smooth edges.
@@ -164,12 +173,11 @@ static void draw_plain(ImDrawList *draw, const app *app, const relume_note &note
 {
     const bool closed = note.kind == RELUME_NOTE_POLYGON;
     for (int i = 0; i + 1 < note.places + (int)closed; i++)
-        draw->AddLine(at(app, note.place[i]), at(app, note.place[(i + 1) % note.places]), ink);
-    if (note.kind == RELUME_NOTE_POINT) {
-        const ImVec2 p = at(app, note.place[0]);
+        edge(draw, app, note, i, ink, 1);
+    ImVec2 p;
+    if (note.kind == RELUME_NOTE_POINT && at(&p, app, note, 0))
         draw->AddRectFilled(ImVec2(p.x - 2 * scale, p.y - 2 * scale),
                             ImVec2(p.x + 2 * scale, p.y + 2 * scale), ink);
-    }
 }
 
 static void draw_note(ImDrawList *draw, const app *app, const relume_note &note, bool strong,
@@ -181,11 +189,11 @@ static void draw_note(ImDrawList *draw, const app *app, const relume_note &note,
         const float wide = pass ? width : width + 2 * scale;
         const bool closed = note.kind == RELUME_NOTE_POLYGON && note.places > 2;
         for (int i = 0; i + 1 < note.places + (int)closed; i++)
-            draw->AddLine(at(app, note.place[i]), at(app, note.place[(i + 1) % note.places]),
-                          colour, wide);
+            edge(draw, app, note, i, colour, wide);
+        ImVec2 p;
         for (int i = 0; i < note.places; i++)
-            if (strong || note.kind == RELUME_NOTE_POINT)
-                draw->AddCircleFilled(at(app, note.place[i]), radius + (pass ? 0 : scale), colour);
+            if ((strong || note.kind == RELUME_NOTE_POINT) && at(&p, app, note, i))
+                draw->AddCircleFilled(p, radius + (pass ? 0 : scale), colour);
     }
 }
 
@@ -219,9 +227,9 @@ static void scale_bar(ImDrawList *draw, const app *app, float scale)
 static bool is_near_frame(const app *app, const relume_note &note)
 {
     for (int i = 0; i < note.places; i++) {
-        const ImVec2 p = at(app, note.place[i]);
-        if (p.x > -100 && p.y > -100 && p.x < (float)app_window_width(app) + 100 &&
-            p.y < (float)app->height + 100)
+        ImVec2 p;
+        if (at(&p, app, note, i) && p.x > -100 && p.y > -100 &&
+            p.x < (float)app_window_width(app) + 100 && p.y < (float)app->height + 100)
             return true;
     }
     return false;
@@ -250,14 +258,18 @@ void panel_jotted(const app *app, float scale)
         std::string text = note->text ? note->text : "";
         const std::string measure = measure_text(*note, mm);
         text += (text.empty() || measure.empty() ? "" : "  ") + measure;
-        label(draw, at(app, note->place[0]), text, scale);
+        ImVec2 place;
+        if (at(&place, app, *note, 0))
+            label(draw, place, text, scale);
     }
     draw->Flags = smooth;
     if (n->places) {
-        const relume_note drawn = notes_drawn(n);
+        const relume_note drawn = notes_drawn(app);
         draw_note(draw, app, drawn, true, scale);
-        label(draw, at(app, drawn.place[drawn.places - 1]), measure_text(drawn, mm), scale);
+        ImVec2 place;
+        if (at(&place, app, drawn, drawn.places - 1))
+            label(draw, place, measure_text(drawn, mm), scale);
     }
-    if (notes_have_places(app))
+    if (notes_have_places(app) && app->now.camera.framing != RELUME_FRAME_LOOK && !app->file.around)
         scale_bar(draw, app, scale);
 }

@@ -5,6 +5,7 @@
 #include "app/adjust.h"
 #include "app/app.h"
 #include "app/notes.h"
+#include "program/notes_file.h"
 #include "program/state_line.h"
 
 #include <relume/tone.h>
@@ -32,9 +33,7 @@ static void listen(struct session *s)
 
 static relume_status open_list(struct session *s)
 {
-    const struct relume_pack_info *info = relume_pack_info(s->pack);
-    const struct relume_notes_file file = {s->name, info->width, info->height, info->views,
-                                           info->notes};
+    const struct relume_notes_file file = notes_file_of(s->pack, s->name);
     relume_notes *list = NULL;
     const relume_status status = relume_notes_open(&list, s->file, &file, s->log);
     return status ? status : notes_create(&s->app.notes, list);
@@ -68,7 +67,7 @@ relume_status session_notes_add(struct session *s)
 {
     char state[STATE_LINE_MOST], created[32];
     struct notes *n = s->app.notes;
-    struct relume_note note = notes_drawn(n);
+    struct relume_note note = notes_drawn(&s->app);
     relume_status status = session_state_line(state, sizeof state, s);
     if (status == RELUME_ENOMEM)
         return status;

@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "encode_parts.h"
 #include "encode_seen.h"
+#include "kept_notes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -816,7 +817,7 @@ static relume_status encode_at(void *context, const struct args *args, double ps
     return encode(args, &r);
 }
 
-static relume_status run(const struct args *args)
+static relume_status work(const struct args *args)
 {
     static const char *const not_kept[] = {"-o",       "--part",       "--commands",
                                            "--learnt", "--learn-only", NULL};
@@ -911,6 +912,15 @@ static relume_status run(const struct args *args)
                                                              .trial = encode_at,
                                                              .context = &r});
     return status || o->commands ? status : encode(args, &r);
+}
+
+// A new model of what was photographed; what people have written in the old one stays.
+static relume_status run(const struct args *args)
+{
+    const struct encode_options *o = (const void *)args;
+    struct kept_notes kept;
+    kept_notes_read(&kept, o->output);
+    return kept_notes_write(&kept, o->output, work(args), args);
 }
 
 relume_status encode_as_usual(const struct args *args, const char *capture, const char *output)

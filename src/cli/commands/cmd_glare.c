@@ -133,7 +133,8 @@ static relume_status save_one(struct viewer_eye *e, const struct relume_image *f
     if (!status)
         status = develop(&out, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(&out, o->output, relume_image_params(.log = o->args.log));
+        status = relume_image_save(
+            &out, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
     relume_image_destroy(&out);
     return status;
 }
@@ -199,6 +200,8 @@ static relume_status check(const struct glare_options *o)
         return usage_error("glare: --fps and --cycle need --frames N");
     if (out && !many && strchr(out, '%') && film_is(out))
         return usage_error("glare: expected --frames N for '%s'", out);
+    if (many && o->develop.icc)
+        return usage_error("--icc is of single pictures; expected without --frames");
     if (given(o, &o->width) && given(o, &o->field))
         return usage_error("glare: expected one of --field, --width");
     relume_status status = RELUME_OK;

@@ -1,5 +1,6 @@
 // cmd_import.c - relume import: files of other programs into a relume file
 #include "cli.h"
+#include "kept_notes.h"
 
 struct import_options {
     struct args args;
@@ -19,9 +20,13 @@ static const struct option options[] = {
 static relume_status run(const struct args *args)
 {
     const struct import_options *o = (const void *)args;
-    return relume_import(args->input[0], o->output,
-                         relume_import_params(.log = args->log, .threads = args->threads,
-                                              .compression = o->compression));
+    struct kept_notes kept;
+    kept_notes_read(&kept, o->output);
+    const relume_status status =
+        relume_import(args->input[0], o->output,
+                      relume_import_params(.log = args->log, .threads = args->threads,
+                                           .compression = o->compression));
+    return kept_notes_write(&kept, o->output, status, args);
 }
 
 const struct command command_import = {

@@ -1,5 +1,6 @@
 // cmd_join.c - relume join: the parts of a relume file become the file
 #include "cli.h"
+#include "kept_notes.h"
 
 struct join_options {
     struct args args;
@@ -17,6 +18,8 @@ static relume_status run(const struct args *args)
 {
     const struct join_options *o = (const void *)args;
     struct relume_encode_report report;
+    struct kept_notes kept;
+    kept_notes_read(&kept, o->output);
     const relume_status status = relume_pack_join(
         args->input, args->inputs, o->output, &report,
         relume_pack_params(.log = args->log, .limits = &args->limits, .threads = args->threads));
@@ -26,7 +29,7 @@ static relume_status run(const struct args *args)
                  "%d part%s",
                  o->output, report.psnr_db, judgement(report.psnr_db), args->inputs,
                  relume_plural(args->inputs));
-    return status;
+    return kept_notes_write(&kept, o->output, status, args);
 }
 
 const struct command command_join = {

@@ -1,5 +1,8 @@
-// cmd_notes.c - relume notes: what people write on a picture, kept beside its file
+// cmd_notes.c - relume notes: what people write on a picture or a baked object, kept beside its
+// file
 #include "cli.h"
+
+#include "program/notes_file.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,7 +25,8 @@ static const struct option options[] = {
     GROUP("new notes"),
     TEXTS("--add", add, "NOTE",
           "'point X,Y', 'line X,Y X,Y ...', 'polygon X,Y X,Y X,Y ...' in pixels from the upper "
-          "left corner, or 'view' for a saved view; repeatable"),
+          "left corner, of an object X,Y,Z in its own units, or 'view' for a saved view; "
+          "repeatable"),
     TEXT("--text", text, "TEXT", "what the new notes say"),
     TEXT("--state", state, "LINE",
          "the light, eye and pass that they keep, as the pages and viewers copy it"),
@@ -34,7 +38,8 @@ static const struct option options[] = {
           "add the notes of this file, as pages save them; repeatable"),
     FLAG("--embed", embed, "keep the list inside the relume file, no longer beside it"),
     FLAG("--extract", extract, "keep the list beside the file, no longer inside it"),
-    NUMBER("--scale", scale, "MM", "one pixel is so many millimetres wide", 1e-9, 1e9),
+    NUMBER("--scale", scale, "MM", "one pixel, of an object one unit, is so many millimetres wide",
+           1e-9, 1e9),
     TEXT("--ruler", ruler, "ID", "this line is --length long: sets the scale"),
     NUMBER("--length", length, "MM", "the length of --ruler in millimetres", 1e-9, 1e12),
     GROUP("output"),
@@ -51,25 +56,39 @@ static const struct option options[] = {
 
 // ---------------------------------------------------------------- changes
 
-static relume_status parse_places(double (*place)[2], int *places, const char *at,
-                                  const char *given)
+struct places {
+    double (*place)[2], *z;  // [RELUME_NOTE_MOST_PLACES]
+    int count;
+};
+
+static relume_status expected_places(const char *given, int across)
 {
-    for (*places = 0; *(at += strspn(at, " ")); ++*places) {
-        char *comma, *end;
-        const double x = strtod(at, &comma);
-        const double y = *comma == ',' ? strtod(comma + 1, &end) : 0.0;
-        if (comma == at || *comma != ',' || end == comma + 1 || (*end && *end != ' '))
-            return usage_error("--add '%s': expected places as 'X,Y X,Y'", given);
-        if (*places == RELUME_NOTE_MOST_PLACES)
+    return usage_error("--add '%s': expected places as '%s'", given,
+                       across > 2 ? "X,Y,Z X,Y,Z" : "X,Y X,Y");
+}
+
+// Each of `across` coordinates.
+static relume_status parse_places(struct places *p, const char *at, int across, const char *given)
+{
+    for (p->count = 0; *(at += strspn(at, " ")); p->count++) {
+        double v[3];
+        char *end;
+        for (int c = 0; c < across; c++) {
+            v[c] = strtod(at, &end);
+            if (end == at || (c + 1 < across ? *end != ',' : *end && *end != ' '))
+                return expected_places(given, across);
+            at = end + (c + 1 < across);
+        }
+        if (p->count == RELUME_NOTE_MOST_PLACES)
             return usage_error("--add: expected at most %d places", RELUME_NOTE_MOST_PLACES);
-        place[*places][0] = x;
-        place[*places][1] = y;
-        at = end;
+        memcpy(p->place[p->count], v, sizeof p->place[p->count]);
+        p->z[p->count] = across > 2 ? v[2] : 0.0;
     }
     return RELUME_OK;
 }
 
-static relume_status add(relume_notes *notes, const char *given, const struct notes_options *o)
+static relume_status add(relume_notes *notes, const char *given, bool solid,
+                         const struct notes_options *o)
 {
     char kind[16] = "", now[32] = "";
     const size_t n = strcspn(given, " ");
@@ -83,14 +102,17 @@ static relume_status add(relume_notes *notes, const char *given, const struct no
     struct tm parts;
     if (gmtime_r(&seconds, &parts) && strftime(now, sizeof now, "%Y-%m-%dT%H:%M:%SZ", &parts))
         note.created = now;
-    double(*place)[2] = malloc(RELUME_NOTE_MOST_PLACES * sizeof *place);
-    if (!place)
-        return RELUME_ENOMEM;
-    note.place = (const double(*)[2])place;
-    relume_status status = parse_places(place, &note.places, given + n, given);
+    struct places p = {malloc(RELUME_NOTE_MOST_PLACES * sizeof *p.place),
+                       malloc(RELUME_NOTE_MOST_PLACES * sizeof *p.z), 0};
+    relume_status status =
+        p.place && p.z ? parse_places(&p, given + n, solid ? 3 : 2, given) : RELUME_ENOMEM;
+    note.places = p.count;
+    note.place = (const double(*)[2])p.place;
+    note.z = solid ? p.z : NULL;
     if (!status)
         status = relume_notes_add(notes, &note, o->args.log);
-    free(place);
+    free(p.place);
+    free(p.z);
     return status;
 }
 
@@ -123,7 +145,7 @@ static bool changes(const struct notes_options *o)
            o->ruler;
 }
 
-static relume_status change(relume_notes *notes, const struct notes_options *o)
+static relume_status change(relume_notes *notes, bool solid, const struct notes_options *o)
 {
     relume_status status = RELUME_OK;
     int n;
@@ -144,7 +166,7 @@ static relume_status change(relume_notes *notes, const struct notes_options *o)
             status = relume_notes_rewrite(notes, n, o->text, o->args.log);
     }
     for (int i = 0; !status && i < o->add.count; i++)
-        status = add(notes, o->add.text[i], o);
+        status = add(notes, o->add.text[i], solid, o);
     return status ? status : set_scale(notes, o);
 }
 
@@ -243,9 +265,10 @@ static relume_status write_profile(const relume_notes *notes, relume_pack *pack,
 
 // ---------------------------------------------------------------- the list
 
-static void print_text(const relume_notes *notes)
+static void print_text(const relume_notes *notes, const char *unit)
 {
     const double mm = relume_notes_scale(notes);
+    const char *const what = mm > 0.0 ? "mm" : unit;
     struct shown text;
     for (int i = 0; i < relume_notes_count(notes); i++) {
         const struct relume_note *n = relume_notes_get(notes, i);
@@ -254,11 +277,12 @@ static void print_text(const relume_notes *notes)
         printf(" %-8s", relume_note_kind_name(n->kind));
         if (n->kind == RELUME_NOTE_POINT)
             printf(" at %.6g,%.6g", n->place[0][0], n->place[0][1]);
+        if (n->kind == RELUME_NOTE_POINT && n->z)
+            printf(",%.6g", n->z[0]);
         if (isfinite(m.length))
-            printf(" %.6g %s", m.length * (mm > 0.0 ? mm : 1.0), mm > 0.0 ? "mm" : "pixels");
+            printf(" %.6g %s", m.length * (mm > 0.0 ? mm : 1.0), what);
         if (isfinite(m.area))
-            printf(" around %.6g %s", m.area * (mm > 0.0 ? mm * mm : 1.0),
-                   mm > 0.0 ? "square mm" : "square pixels");
+            printf(" around %.6g square %s", m.area * (mm > 0.0 ? mm * mm : 1.0), what);
         if (isfinite(m.degrees))
             printf(" %.4g degrees", m.degrees);
         printf("%s%s\n", n->text ? "  " : "", n->text ? shown(&text, n->text) : "");
@@ -274,10 +298,10 @@ static void print_member(const char *name, const char *text)
         fputs("null", stdout);
 }
 
-static void print_json(const relume_notes *notes)
+static void print_json(const relume_notes *notes, bool solid)
 {
     const double mm = relume_notes_scale(notes);
-    fputs("{\"mm_per_pixel\": ", stdout);
+    printf("{\"%s\": ", solid ? "mm_per_unit" : "mm_per_pixel");
     json_number(stdout, mm > 0.0 ? mm : (double)NAN);
     fputs(", \"notes\": [", stdout);
     for (int i = 0; i < relume_notes_count(notes); i++) {
@@ -286,8 +310,12 @@ static void print_json(const relume_notes *notes)
         printf("%s{\"id\": ", i ? ", " : "");
         json_text(stdout, n->id);
         printf(", \"kind\": \"%s\", \"places\": [", relume_note_kind_name(n->kind));
-        for (int k = 0; k < n->places; k++)
-            printf("%s[%.17g, %.17g]", k ? ", " : "", n->place[k][0], n->place[k][1]);
+        for (int k = 0; k < n->places; k++) {
+            printf("%s[%.17g, %.17g", k ? ", " : "", n->place[k][0], n->place[k][1]);
+            if (n->z)
+                printf(", %.17g", n->z[k]);
+            putchar(']');
+        }
         fputs("], \"length\": ", stdout);
         json_number(stdout, m.length);
         fputs(", \"area\": ", stdout);
@@ -359,45 +387,78 @@ static relume_status keep(const relume_notes *notes, const char *inside,
     return status || !o->extract ? status : keep_inside(path, NULL, o->args.log);
 }
 
-static relume_status work(relume_pack *pack, const struct notes_options *o)
+// On a picture, or on an object, which is no pack.
+static relume_status work(relume_pack *pack, const struct relume_notes_file *file,
+                          const struct notes_options *o)
 {
-    const struct relume_pack_info *info = relume_pack_info(pack);
-    const char *path = o->args.input[0];
-    const struct relume_notes_file file = {base_name(path), info->width, info->height, info->views,
-                                           info->notes};
     relume_notes *notes = NULL;
-    if (o->view >= info->views)
-        return usage_error("--view %d: %s has %d view%s, counted from 0", o->view, path,
-                           info->views, relume_plural(info->views));
-    relume_status status = relume_notes_open(&notes, path, &file, o->args.log);
+    relume_status status = relume_notes_open(&notes, o->args.input[0], file, o->args.log);
     if (!status)
-        status = change(notes, o);
+        status = change(notes, file->solid, o);
     if (!status && o->to)
         status = relume_notes_write(notes, o->output, (enum relume_notes_format)(o->to - TO_CSV),
                                     o->canvas, o->args.log);
     if (!status && o->profile)
         status = write_profile(notes, pack, o);
     if (!status && (changes(o) || o->embed || o->extract))
-        status = keep(notes, info->notes, o);
+        status = keep(notes, file->inside, o);
     if (!status && o->json)
-        print_json(notes);
+        print_json(notes, file->solid);
     else if (!status && !o->output)
-        print_text(notes);
+        print_text(notes, file->solid ? "units" : "pixels");
     relume_notes_destroy(&notes);
     return status;
+}
+
+static relume_status on_picture(const struct notes_options *o)
+{
+    const char *path = o->args.input[0];
+    relume_pack *pack = NULL;
+    relume_status status = relume_open(&pack, path, relume_open_params(.log = o->args.log));
+    if (!status) {
+        const struct relume_pack_info *info = relume_pack_info(pack);
+        const struct relume_notes_file file = notes_file_of(pack, base_name(path));
+        status = o->view < info->views
+                     ? work(pack, &file, o)
+                     : usage_error("--view %d: %s has %d view%s, counted from 0", o->view, path,
+                                   info->views, relume_plural(info->views));
+    }
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+static relume_status on_object(const struct notes_options *o)
+{
+    const char *path = o->args.input[0];
+    struct relume_notes_file file = {.name = base_name(path), .solid = true};
+    relume_baked *baked = NULL;
+    float box[2][3];
+    if (o->embed || o->extract || o->profile || o->to == TO_SVG)
+        return usage_error("%s: %s is an object; --embed, --extract, --profile and --to svg are of "
+                           "pictures",
+                           o->embed     ? "--embed"
+                           : o->extract ? "--extract"
+                           : o->profile ? "--profile"
+                                        : "--to svg",
+                           path);
+    const relume_status status = relume_baked_open(&baked, path, NULL, o->args.log);
+    if (status)
+        return status;
+    relume_baked_box(box, baked);
+    relume_baked_destroy(&baked);
+    for (int k = 0; k < 2; k++)
+        for (int c = 0; c < 3; c++)
+            file.box[k][c] = (double)box[k][c];
+    return work(NULL, &file, o);
 }
 
 static relume_status run(const struct args *args)
 {
     const struct notes_options *o = (const void *)args;
-    relume_pack *pack = NULL;
-    relume_status status = check(o);
-    if (!status)
-        status = relume_open(&pack, args->input[0], relume_open_params(.log = args->log));
-    if (!status)
-        status = work(pack, o);
-    relume_pack_destroy(&pack);
-    return status;
+    const relume_status status = check(o);
+    return status                                       ? status
+           : relume_baked_is_file(args->input[0], NULL) ? on_object(o)
+                                                        : on_picture(o);
 }
 
 const struct command command_notes = {

@@ -23,7 +23,7 @@ struct relight_options {
     unsigned pass;
     const struct relume_transport *transport;  // NULL: none
     int bounces, spacing;
-    bool nearest, alpha, allow_outside, keep_going, icc;
+    bool nearest, alpha, allow_outside, keep_going;
     struct light_options lighting;
     struct develop_options develop;
     struct eye_options glare;
@@ -116,7 +116,6 @@ static const struct option options[] = {
             "--pass false-colour: linear luminance shown as dark blue and as yellow; default: from "
             "the picture",
             2),
-    FLAG("--icc", icc, "put an sRGB colour profile into the picture (.jpg, .tif)"),
     FLAG("--alpha", alpha,
          "captured view with a mask: make the background transparent (.png and .exr)"),
     TEXT("--capture", capture, "CAPTURE", "--pass difference: the capture to compare with"),
@@ -472,8 +471,8 @@ static relume_status render(const struct relight_options *o, struct relume_camer
     if (!status && o->alpha)
         status = add_alpha(&frame, pack, camera);
     if (!status)
-        status = relume_image_save(&frame, o->output,
-                                   relume_image_params(.log = o->args.log, .profile = o->icc));
+        status = relume_image_save(
+            &frame, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
     relume_image_destroy(&frame);
     relume_renderer_destroy(&renderer);
     relume_objects_destroy(&objects);
@@ -550,8 +549,8 @@ static relume_status draw_scene(const struct relight_options *o, const struct re
     if (!status)
         status = develop(&frame, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(&frame, o->output,
-                                   relume_image_params(.log = o->args.log, .profile = o->icc));
+        status = relume_image_save(
+            &frame, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
     relume_image_destroy(&frame);
     relume_tableau_destroy(&tableau);
     return status;

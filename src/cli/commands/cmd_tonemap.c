@@ -29,7 +29,8 @@ static relume_status run(const struct args *args)
     if (!status)
         status = develop(&image, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(&image, o->output, relume_image_params(.log = args->log));
+        status = relume_image_save(
+            &image, o->output, relume_image_params(.log = args->log, .profile = o->develop.icc));
     relume_image_destroy(&image);
     return status;
 }

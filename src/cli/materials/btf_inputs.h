@@ -15,7 +15,7 @@ struct btf_options {
     int clusters, components, ratio, lobes, levels, leave_out, pictures, samples, tiles, tile, size,
         seed, picture[2], matrix[2];
     double fov, repeat, crop[4];
-    bool unseen, no_shadows, fill, force, json, resample;
+    bool icc, unseen, no_shadows, fill, force, json, resample;
     struct light_options lighting;
 };
 

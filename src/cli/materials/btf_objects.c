@@ -115,7 +115,8 @@ relume_status btf_render_objects(const struct btf_options *o)
     if (!status)
         status = render(&image, objects, &window, o);
     if (!status)
-        status = relume_image_save(&image, o->output, relume_image_params(.log = o->args.log));
+        status = relume_image_save(&image, o->output,
+                                   relume_image_params(.log = o->args.log, .profile = o->icc));
     relume_image_destroy(&image);
     relume_objects_destroy(&objects);
     return status;

@@ -45,7 +45,8 @@ static relume_status draw(const relume_btf_surface *surface, const struct btf_op
             relume_btf_draw(&image, surface, &camera, lights, n,
                             relume_btf_draw_params(.log = o->args.log, .threads = o->args.threads));
     if (!status)
-        status = relume_image_save(&image, o->output, relume_image_params(.log = o->args.log));
+        status = relume_image_save(&image, o->output,
+                                   relume_image_params(.log = o->args.log, .profile = o->icc));
     if (!status)
         status = save_lights(&o->args, &o->lighting, rig);
     relume_image_destroy(&image);

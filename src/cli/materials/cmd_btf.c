@@ -43,6 +43,7 @@ static const struct option options[] = {
         "fit, plant, tile, expand: the folder to make, or for a g-BRDF an .exr file; render: the "
         "picture"),
     FLAG("--force", force, "fit, tile: replace a folder that relume made"),
+    FLAG("--icc", icc, "render: put an sRGB colour profile into the picture (.jpg, .tif)"),
     GROUP("model"),
     OWN("--model", model, "NAME", "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default: rfnlc",
         take_model),

@@ -112,6 +112,31 @@ static bool holds(const uint8_t outer[3], const uint8_t inner[3])
 
 enum { FREE, COVERED, SPLIT };
 
+// Whether nobody has any of the 2^level cells from there on; copies of known sizes are loads.
+static bool is_free_row(const box_owner *owner, int level)
+{
+    uint64_t cells[2] = {0};
+    switch (level) {
+    case 0: return !*owner;
+    case 1: memcpy(cells, owner, 2); break;
+    case 2: memcpy(cells, owner, 4); break;
+    case 3: memcpy(cells, owner, 8); break;
+    default: memcpy(cells, owner, 16); break;
+    }
+    return !(cells[0] | cells[1]);
+}
+
+static bool is_free(const box_owner *owner, int side, const struct box *r)
+{
+    for (int z = r->at[2]; z < r->at[2] + (1 << r->level[2]); z++)
+        for (int y = r->at[1]; y < r->at[1] + (1 << r->level[1]); y++)
+            if (!is_free_row(owner + ((size_t)z * (size_t)side + (size_t)y) * (size_t)side +
+                                 r->at[0],
+                             r->level[0]))
+                return false;
+    return true;
+}
+
 // What of the cells of `r` is taken: all by one box, or so that `r` must be split along `*axis`.
 static int look_at(const box_owner *owner, int side, const struct box *r, int *axis)
 {
@@ -134,12 +159,23 @@ static int look_at(const box_owner *owner, int side, const struct box *r, int *a
     return FREE;
 }
 
+static void paint_row(box_owner *owner, int level, box_owner own)
+{
+    switch (level) {
+    case 0: *owner = own; break;
+    case 1: memset(owner, own, 2); break;
+    case 2: memset(owner, own, 4); break;
+    case 3: memset(owner, own, 8); break;
+    default: memset(owner, own, 16); break;
+    }
+}
+
 static void paint(box_owner *owner, int side, const struct box *r)
 {
     const box_owner own = owner_of(r->level);
     for (int z = r->at[2]; z < r->at[2] + (1 << r->level[2]); z++)
         for (int y = r->at[1]; y < r->at[1] + (1 << r->level[1]); y++)
-            memset(block_owner(owner, side, r->at[0], y, z), own, (size_t)1 << r->level[0]);
+            paint_row(block_owner(owner, side, r->at[0], y, z), r->level[0], own);
 }
 
 // Older boxes stay, unless they lie within the new one; what they leave of it becomes dikes again.
@@ -147,6 +183,10 @@ static void place(box_owner *owner, int side, struct box r)
 {
     struct box stack[3 * BLOCK_LEVELS + 2];
     int count = 1, axis = 0;
+    if (is_free(owner, side, &r)) {
+        paint(owner, side, &r);
+        return;
+    }
     stack[0] = r;
     while (count) {
         r = stack[--count];

@@ -27,7 +27,7 @@ void block_load(struct block *b, const struct signs *g, int side, const int at[3
             uint64_t bits = row[w] >> shift;
             if (shift + side == 64 && w + 1 < g->words)
                 bits |= row[w + 1] << side;
-            b->row[z][y] = (uint32_t)bits & own;
+            b->row[z * BLOCK_POINTS + y] = (uint32_t)bits & own;
         }
 }
 
@@ -35,7 +35,7 @@ void block_load(struct block *b, const struct signs *g, int side, const int at[3
 static void climb_x(struct block *b, int z, int y)
 {
     static const uint32_t begins[BLOCK_LEVELS] = {0xffff, 0x5555, 0x1111, 0x0101, 0x0001};
-    const uint32_t bits = b->row[z][y], own = ((uint32_t)1 << b->cells[0]) - 1;
+    const uint32_t bits = b->row[z * BLOCK_POINTS + y], own = ((uint32_t)1 << b->cells[0]) - 1;
     uint32_t once = (bits ^ bits >> 1) & own, twice = 0;
     b->along_x[0][z][y] = 0;
     for (int l = 1; l <= b->levels; l++) {
@@ -71,7 +71,7 @@ static void climb_y(struct block *b, int z)
 {
     uint32_t once[BLOCK_SIDE] = {0}, *dike[BLOCK_LEVELS];
     for (int y = 0; y < b->cells[1]; y++)
-        once[y] = b->row[z][y] ^ b->row[z][y + 1];
+        once[y] = b->row[z * BLOCK_POINTS + y] ^ b->row[z * BLOCK_POINTS + y + 1];
     for (int l = 0; l < BLOCK_LEVELS; l++)
         dike[l] = b->along_y[l][z];
     climb_plane(dike, once, b->cells[1], b->levels);
@@ -81,7 +81,7 @@ static void climb_z(struct block *b, int y)
 {
     uint32_t once[BLOCK_SIDE] = {0}, *dike[BLOCK_LEVELS];
     for (int z = 0; z < b->cells[2]; z++)
-        once[z] = b->row[z][y] ^ b->row[z + 1][y];
+        once[z] = b->row[z * BLOCK_POINTS + y] ^ b->row[(z + 1) * BLOCK_POINTS + y];
     for (int l = 0; l < BLOCK_LEVELS; l++)
         dike[l] = b->along_z[l][y];
     climb_plane(dike, once, b->cells[2], b->levels);

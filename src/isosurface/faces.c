@@ -36,7 +36,7 @@ static int sample_at(const int p[3])
 
 static bool is_inside(const struct block *b, int sample)
 {
-    return b->row[0][sample / FACE_ROW] >> sample % FACE_ROW & 1;
+    return b->row[sample / FACE_ROW] >> sample % FACE_ROW & 1;
 }
 
 static void sample_place(const struct faces *f, int sample, int p[3])

@@ -56,7 +56,6 @@ struct parts {
     struct by_cell now, original;
     struct box *box;      // [cells]: of the original's triangles
     struct list *border;  // [cells]: triangles at points that others touch
-    double done_share;
 };
 
 // A piece while it is made and run.
@@ -506,7 +505,7 @@ static relume_status run_piece(struct parts *p, int cell, double share)
     if (!status)
         status = r.status = run_prepare(&r);
     if (!status) {
-        run_down(&r, NULL);
+        run_down(&r, p->log);
         status = r.status;
     }
     if (!status)
@@ -528,8 +527,10 @@ static relume_status run_pass(struct parts *p, size_t most, double cut, double f
     relume_status status = begin_pass(p, most, cut);
     const double share = target ? fmin((double)target / (double)p->alive, 1.0) : 0.0;
     for (int cell = 0; cell < p->cells.count && !status && p->alive > target; cell++) {
-        const double part = (double)cell / p->cells.count;
-        if (!log_progress(p->log, "simplify", from + part * (to - from)))
+        const double each = (to - from) / p->cells.count;
+        p->run->told[0] = from + cell * each;
+        p->run->told[1] = from + (cell + 1) * each;
+        if (!log_progress(p->log, "simplify", p->run->told[0]))
             status = RELUME_ECANCEL;
         else if (has_work(p, cell))
             status = run_piece(p, cell, share);

@@ -322,8 +322,9 @@ void run_down(struct run *r, const struct relume_log *log)
     const double from = (double)r->s.connect.alive;
     weigh_all(r);
     for (size_t i = 1; !is_done(r); i++) {
+        const double done = 1.0 - (double)r->s.connect.alive / from;
         if (i % PROGRESS_EVERY == 0 &&
-            !log_progress(log, "simplify", 1.0 - (double)r->s.connect.alive / from))
+            !log_progress(log, "simplify", r->told[0] + done * (r->told[1] - r->told[0])))
             r->status = RELUME_ECANCEL;
         const uint32_t point = queue_take(&r->queue);
         if (r->stale[point]) {
@@ -374,6 +375,7 @@ relume_status relume_mesh_simplify(struct relume_mesh *out, struct relume_simpli
     if (!r)
         return RELUME_ENOMEM;
     r->s.mesh = mesh;
+    r->told[1] = 1.0;
     r->keep_steps = report && !p.no_steps;
     relume_status status =
         are_sound(&p) && is_whole(mesh) && find_scale(&r->s) ? RELUME_OK : RELUME_EINVAL;

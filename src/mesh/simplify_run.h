@@ -34,6 +34,7 @@ struct run {
     struct relume_simplify_step *step;  // or NULL
     size_t steps;
     bool keep_steps;
+    double told[2];  // the share of all work that this is: from, to
     relume_status status;
 };
 

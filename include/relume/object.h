@@ -150,14 +150,14 @@ RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int p
 // ---------------------------------------------------------------- seen from afar
 
 // The objects as they are drawn for an eye in `eye` that sees `pixel` at a distance of 1 under a
-// pixel: those whose description asks for levels of detail have the fewest triangles that are off
-// by no more pixels than it says, which move to the next level's as the eye does
-// (relume_lod_choose; geomorphs, Hoppe 1996). Pictures do so themselves; this is for those who
-// draw. `*shown` is NULL at first, later what the last call left: it stays where the eye sees the
-// same, else it is another one, and NULL where all is shown in full, as for a `pixel` of 0. Parts
-// and materials are numbered as in `objects`, which must outlive it; `rays`: it can be ray traced,
-// too. It is for relume_objects_info, relume_objects_render and relume_objects_destroy alone.
-// RELUME_ENOMEM, RELUME_ESYSTEM; then it is as before.
+// pixel: parts whose description asks for levels of detail have the fewest triangles that are off
+// by no more pixels than it says, closed where parts of an object meet, which move to the next
+// level's as the eye does (relume_lod_choose; geomorphs, Hoppe 1996). Pictures do so themselves;
+// this is for those who draw. `*shown` is NULL at first, later what the last call left: it stays
+// where the eye sees the same, else it is another one, and NULL where all is shown in full, as for
+// a `pixel` of 0. Parts and materials are numbered as in `objects`, which must outlive it; `rays`:
+// it can be ray traced, too. It is for relume_objects_info, relume_objects_render and
+// relume_objects_destroy alone. RELUME_ENOMEM, RELUME_ESYSTEM; then it is as before.
 RELUME_RESULT relume_status relume_objects_shown(relume_objects **shown,
                                                  const relume_objects *objects,
                                                  struct relume_vec3 eye, double pixel, bool rays);

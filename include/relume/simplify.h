@@ -34,6 +34,10 @@ struct relume_simplify_params {
     double gloss;      // exponent of the highlight, [0, 1000]: 0 is matte; default 20. Negative: 0
     double white;      // cd/m^2 of a white surface in full light; default 200
     bool quadrics;     // quadric errors alone: nothing is tested, `error` is one of quadrics
+    size_t memory;     // bytes that it may take beside the two meshes; default --max-memory
+                       // (context.h). Larger meshes are done in parts, with what waits in a file
+                       // without a name ($TMPDIR), about 30 bytes a triangle
+    bool no_steps;     // leave `step` out of the report: 16 bytes a vertex
 };
 #define relume_simplify_params(...)                                                                \
     (&(const struct relume_simplify_params){RELUME_SIZED(relume_simplify_params), __VA_ARGS__})
@@ -60,8 +64,9 @@ struct relume_simplified {
 // `*out` is new; `report` may be NULL. Edges of three and more triangles stay, as do borders,
 // seams of texture, normals or colour, and edges between parts, along which vertices go. Triangles
 // of less than three places go. RELUME_EINVAL for params out of range or vertices that are not
-// there, RELUME_ELIMIT with a sentence when it would take more memory than a model may,
-// RELUME_EUNFIT where nothing is left, RELUME_ENOMEM, RELUME_ECANCEL.
+// there, RELUME_ELIMIT with a sentence when not even one part fits into the memory, RELUME_EIO with
+// one where there is no room for the file, RELUME_EUNFIT where nothing is left, RELUME_ENOMEM,
+// RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_mesh_simplify(struct relume_mesh *out,
                                                  struct relume_simplified *report,
                                                  const struct relume_mesh *mesh,

@@ -147,7 +147,7 @@ static relume_status find_texels(struct baking *b)
         for (int k = 0; k < 3; k++)
             set_corner(&b->triangle[i][k], &info->vertices[info->triangles[i][k]]);
     const relume_status status = atlas_make(&b->atlas, b->triangle, info->triangle_count,
-                                            b->atlas.width, b->atlas.height, b->log);
+                                            b->atlas.width, b->atlas.height, 0.0, b->log);
     if (status)
         return status;
     b->used = mem_array(b->atlas.used, sizeof *b->used);

@@ -150,16 +150,32 @@ static void fill(struct atlas *a, struct baked_corner (*triangle)[3], size_t n, 
     }
 }
 
+// The area of so many texels, where half of the picture holds the surface.
+static double area_of(struct baked_corner (*triangle)[3], size_t n, const struct atlas *a,
+                      double texels)
+{
+    double area = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        vec3 p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = vec3_floats(triangle[i][k].position);
+        area += 0.5 * vec3_length(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])));
+    }
+    return area * texels / (0.5 * a->width * a->height);
+}
+
 // Charts that fold over themselves lose the triangles on top, which become charts.
 static relume_status make_places(struct atlas *a, struct baked_corner (*triangle)[3], size_t n,
-                                 bool *alone, uint32_t *owner, const struct relume_log *log)
+                                 bool *alone, uint32_t *owner, double small_texels,
+                                 const struct relume_log *log)
 {
     enum { ROUNDS = 4 };
+    const double small = area_of(triangle, n, a, small_texels);
     relume_status status = RELUME_OK;
     memset(alone, 0, n * sizeof *alone);
     for (int i = 0; i < ROUNDS && !status; i++) {
         struct charts charts;
-        status = charts_make(&charts, triangle, n, alone);
+        status = charts_make(&charts, triangle, n, alone, small);
         if (!status)
             status = charts_place(&charts, triangle, n, a->width, a->height, log);
         a->charts = (int)charts.count;
@@ -171,7 +187,7 @@ static relume_status make_places(struct atlas *a, struct baked_corner (*triangle
 }
 
 relume_status atlas_make(struct atlas *out, struct baked_corner (*triangle)[3], size_t n, int width,
-                         int height, const struct relume_log *log)
+                         int height, double small, const struct relume_log *log)
 {
     const size_t texels = (size_t)width * (size_t)height;
     *out = (struct atlas){.width = width, .height = height};
@@ -182,7 +198,7 @@ relume_status atlas_make(struct atlas *out, struct baked_corner (*triangle)[3], 
     relume_status status = out->texel && owner && square && alone ? RELUME_OK : RELUME_ENOMEM;
     if (!status &&
         (!lies_within(triangle, n) || find_doubles(alone, triangle, n, owner, width, height)))
-        status = make_places(out, triangle, n, alone, owner, log);
+        status = make_places(out, triangle, n, alone, owner, small, log);
     if (!status)
         fill(out, triangle, n, square);
     mem_free(owner);

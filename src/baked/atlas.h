@@ -20,10 +20,11 @@ struct atlas {
 
 // Texels for `n` triangles whose places are set: the mesh's own, where these lie within the picture
 // and no two triangles on the same texel; else places are made, and set. Triangles become charts of
-// neighbours that face the same of six ways, seen from there, which are packed in rows.
-// RELUME_EUNFIT with a sentence where the picture is too small for all charts, RELUME_ENOMEM.
+// neighbours that face the same of six ways, seen from there, which are packed in rows. Charts of
+// fewer texels than `small`, about, become parts of larger ones beside them where they can; 0:
+// none. RELUME_EUNFIT with a sentence where the picture is too small for all charts, RELUME_ENOMEM.
 relume_status atlas_make(struct atlas *out, struct baked_corner (*triangle)[3], size_t n, int width,
-                         int height, const struct relume_log *log);
+                         int height, double small, const struct relume_log *log);
 void atlas_free(struct atlas *atlas);
 
 #endif

@@ -12,12 +12,26 @@ static vec3 at(const struct baked_corner *c)
     return vec3_of((double)c->position[0], (double)c->position[1], (double)c->position[2]);
 }
 
-// 2 k for the axis k that it faces most, 2 k + 1 the other way.
-static int facing(const struct baked_corner t[3])
+// Twice the area, times the normal.
+static vec3 across(const struct baked_corner t[3])
 {
-    const vec3 n = vec3_cross(vec3_sub(at(&t[1]), at(&t[0])), vec3_sub(at(&t[2]), at(&t[0])));
+    return vec3_cross(vec3_sub(at(&t[1]), at(&t[0])), vec3_sub(at(&t[2]), at(&t[0])));
+}
+
+// 2 k for the axis k that it faces most, 2 k + 1 the other way.
+static uint8_t facing(const struct baked_corner t[3])
+{
+    const vec3 n = across(t);
     const double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
-    return x >= y && x >= z ? n.x < 0.0 : y >= z ? 2 + (n.y < 0.0) : 4 + (n.z < 0.0);
+    return (uint8_t)(x >= y && x >= z ? n.x < 0.0 : y >= z ? 2 + (n.y < 0.0) : 4 + (n.z < 0.0));
+}
+
+// The cosine between a triangle's normal and a way that a chart faces.
+static double cosine_to(const struct baked_corner t[3], int face)
+{
+    const vec3 n = across(t);
+    const double length = vec3_length(n), along = face < 2 ? n.x : face < 4 ? n.y : n.z;
+    return length > 0.0 ? (face % 2 ? -along : along) / length : 0.0;
 }
 
 // ---------------------------------------------------------------- groups
@@ -57,43 +71,112 @@ static void join(size_t *of, size_t a, size_t b)
     of[x > y ? x : y] = x > y ? y : x;
 }
 
-relume_status charts_make(struct charts *out, struct baked_corner (*triangle)[3], size_t n,
-                          const bool *alone)
+// Edges that two triangles share stand one behind the other.
+static bool do_share(const struct edge *edge, size_t i)
 {
-    struct edge *edge = mem_array(3 * n, sizeof *edge);
-    size_t *of = mem_array(n, sizeof *of), *first = mem_array(n, sizeof *first);
-    *out = (struct charts){.of = of};
-    if (!edge || !of || !first) {
-        mem_free(edge);
-        mem_free(first);
-        charts_free(out);
+    return !memcmp(edge[i - 1].end, edge[i].end, sizeof edge[i].end);
+}
+
+struct grouping {
+    struct baked_corner (*triangle)[3];
+    size_t n;
+    const bool *alone;
+    struct edge *edge;  // [3 n], in order
+    uint8_t *face;      // [n]: the way that its chart faces
+    size_t *first;      // [n]: of its group
+};
+
+static bool is_alone(const struct grouping *g, size_t i)
+{
+    return g->alone && g->alone[i];
+}
+
+static void group(struct grouping *g)
+{
+    for (size_t i = 0; i < g->n; i++)
+        g->first[i] = i;
+    for (size_t i = 1; i < 3 * g->n; i++) {
+        const size_t a = g->edge[i - 1].triangle, b = g->edge[i].triangle;
+        if (do_share(g->edge, i) && g->face[a] == g->face[b] && !is_alone(g, a) && !is_alone(g, b))
+            join(g->first, a, b);
+    }
+}
+
+// Triangles of small groups go over to a larger one beside them, ring by ring, where they face it
+// too. `area` is room for [n].
+static void merge(struct grouping *g, double small, double *area)
+{
+    enum { RINGS = 6 };
+    const double LEAST_FACING = 0.3;
+    for (int ring = 0; ring < RINGS; ring++) {
+        group(g);
+        memset(area, 0, g->n * sizeof *area);
+        for (size_t i = 0; i < g->n; i++)
+            area[first_of(g->first, i)] += 0.5 * vec3_length(across(g->triangle[i]));
+        for (size_t i = 1; i < 3 * g->n; i++) {
+            size_t a = g->edge[i - 1].triangle, b = g->edge[i].triangle;
+            if (!do_share(g->edge, i) || is_alone(g, a) || is_alone(g, b))
+                continue;
+            if (area[first_of(g->first, a)] > area[first_of(g->first, b)]) {
+                const size_t swap = a;
+                a = b;
+                b = swap;
+            }
+            if (g->face[a] != g->face[b] && area[first_of(g->first, a)] < small &&
+                area[first_of(g->first, b)] > area[first_of(g->first, a)] &&
+                cosine_to(g->triangle[a], g->face[b]) >= LEAST_FACING)
+                g->face[a] = g->face[b];
+        }
+    }
+}
+
+static relume_status make_groups(struct charts *out, struct grouping *g, double small)
+{
+    double *area = small > 0.0 ? mem_array(g->n, sizeof *area) : NULL;
+    if (!g->edge || !g->first || !out->of || !g->face || (small > 0.0 && !area)) {
+        mem_free(area);
         return RELUME_ENOMEM;
     }
-    for (size_t i = 0; i < n; i++) {
-        first[i] = i;
+    for (size_t i = 0; i < g->n; i++) {
+        g->face[i] = facing(g->triangle[i]);
         for (size_t k = 0; k < 3; k++)
-            set_edge(&edge[3 * i + k], &triangle[i][k], &triangle[i][(k + 1) % 3], i);
+            set_edge(&g->edge[3 * i + k], &g->triangle[i][k], &g->triangle[i][(k + 1) % 3], i);
     }
-    qsort(edge, 3 * n, sizeof *edge, by_ends);
-    for (size_t i = 1; i < 3 * n; i++) {
-        const size_t a = edge[i - 1].triangle, b = edge[i].triangle;
-        if (!memcmp(edge[i - 1].end, edge[i].end, sizeof edge[i].end) &&
-            facing(triangle[a]) == facing(triangle[b]) && !(alone && (alone[a] || alone[b])))
-            join(first, a, b);
+    qsort(g->edge, 3 * g->n, sizeof *g->edge, by_ends);
+    if (area)
+        merge(g, small, area);
+    mem_free(area);
+    group(g);
+    for (size_t i = 0; i < g->n; i++) {  // the first of a group comes before its others
+        const size_t root = first_of(g->first, i);
+        out->of[i] = root == i ? out->count++ : out->of[root];
     }
-    for (size_t i = 0; i < n; i++) {  // the first of a group comes before its others
-        const size_t root = first_of(first, i);
-        of[i] = root == i ? out->count++ : of[root];
-    }
-    mem_free(edge);
-    mem_free(first);
     return RELUME_OK;
+}
+
+relume_status charts_make(struct charts *out, struct baked_corner (*triangle)[3], size_t n,
+                          const bool *alone, double small)
+{
+    struct grouping g = {.triangle = triangle,
+                         .n = n,
+                         .alone = alone,
+                         .edge = mem_array(3 * n, sizeof *g.edge),
+                         .face = mem_array(n, sizeof *g.face),
+                         .first = mem_array(n, sizeof *g.first)};
+    *out = (struct charts){.of = mem_array(n, sizeof *out->of), .face = g.face};
+    const relume_status status = make_groups(out, &g, small);
+    mem_free(g.edge);
+    mem_free(g.first);
+    if (status)
+        charts_free(out);
+    return status;
 }
 
 void charts_free(struct charts *charts)
 {
     mem_free(charts->of);
-    charts->of = NULL;
+    mem_free(charts->face);
+    *charts = (struct charts){.of = NULL};
 }
 
 // ---------------------------------------------------------------- room
@@ -121,7 +204,7 @@ static void measure(struct chart *chart, const struct charts *charts,
         chart[i] = (struct chart){.least = {INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY}};
     for (size_t i = 0; i < n; i++) {
         struct chart *c = &chart[charts->of[i]];
-        c->face = facing(triangle[i]);
+        c->face = charts->face[i];
         for (int k = 0; k < 3; k++) {
             double p[2];
             flat(p, &triangle[i][k], c->face);

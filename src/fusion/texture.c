@@ -15,6 +15,9 @@
 
 #include <string.h>
 
+// Texels: noise at outlines would become thousands of charts that are mostly border.
+#define SMALL_CHART 64.0
+
 struct painting {
     const struct texture *t;
     struct atlas atlas;
@@ -35,7 +38,8 @@ static relume_status flatten(struct painting *p, const struct relume_mesh *m)
             memcpy(c->position, m->position[m->triangle[i][k]], sizeof c->position);
             memcpy(c->normal, m->normal[m->triangle[i][k]], sizeof c->normal);
         }
-    return atlas_make(&p->atlas, p->triangle, m->triangle_count, p->t->side, p->t->side, p->t->log);
+    return atlas_make(&p->atlas, p->triangle, m->triangle_count, p->t->side, p->t->side,
+                      SMALL_CHART, p->t->log);
 }
 
 // ---------------------------------------------------------------- light

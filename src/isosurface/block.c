@@ -27,7 +27,7 @@ void block_load(struct block *b, const struct signs *g, int side, const int at[3
             uint64_t bits = row[w] >> shift;
             if (shift + side == 64 && w + 1 < g->words)
                 bits |= row[w + 1] << side;
-            b->row[z][y] = (uint32_t)bits & own;
+            b->row[z * BLOCK_POINTS + y] = (uint32_t)bits & own;
         }
 }
 
@@ -35,7 +35,7 @@ void block_load(struct block *b, const struct signs *g, int side, const int at[3
 static void climb_x(struct block *b, int z, int y)
 {
     static const uint32_t begins[BLOCK_LEVELS] = {0xffff, 0x5555, 0x1111, 0x0101, 0x0001};
-    const uint32_t bits = b->row[z][y], own = ((uint32_t)1 << b->cells[0]) - 1;
+    const uint32_t bits = b->row[z * BLOCK_POINTS + y], own = ((uint32_t)1 << b->cells[0]) - 1;
     uint32_t once = (bits ^ bits >> 1) & own, twice = 0;
     b->along_x[0][z][y] = 0;
     for (int l = 1; l <= b->levels; l++) {
@@ -71,7 +71,7 @@ static void climb_y(struct block *b, int z)
 {
     uint32_t once[BLOCK_SIDE] = {0}, *dike[BLOCK_LEVELS];
     for (int y = 0; y < b->cells[1]; y++)
-        once[y] = b->row[z][y] ^ b->row[z][y + 1];
+        once[y] = b->row[z * BLOCK_POINTS + y] ^ b->row[z * BLOCK_POINTS + y + 1];
     for (int l = 0; l < BLOCK_LEVELS; l++)
         dike[l] = b->along_y[l][z];
     climb_plane(dike, once, b->cells[1], b->levels);
@@ -81,7 +81,7 @@ static void climb_z(struct block *b, int y)
 {
     uint32_t once[BLOCK_SIDE] = {0}, *dike[BLOCK_LEVELS];
     for (int z = 0; z < b->cells[2]; z++)
-        once[z] = b->row[z][y] ^ b->row[z + 1][y];
+        once[z] = b->row[z * BLOCK_POINTS + y] ^ b->row[(z + 1) * BLOCK_POINTS + y];
     for (int l = 0; l < BLOCK_LEVELS; l++)
         dike[l] = b->along_z[l][y];
     climb_plane(dike, once, b->cells[2], b->levels);
@@ -112,6 +112,31 @@ static bool holds(const uint8_t outer[3], const uint8_t inner[3])
 
 enum { FREE, COVERED, SPLIT };
 
+// Whether nobody has any of the 2^level cells from there on; copies of known sizes are loads.
+static bool is_free_row(const box_owner *owner, int level)
+{
+    uint64_t cells[2] = {0};
+    switch (level) {
+    case 0: return !*owner;
+    case 1: memcpy(cells, owner, 2); break;
+    case 2: memcpy(cells, owner, 4); break;
+    case 3: memcpy(cells, owner, 8); break;
+    default: memcpy(cells, owner, 16); break;
+    }
+    return !(cells[0] | cells[1]);
+}
+
+static bool is_free(const box_owner *owner, int side, const struct box *r)
+{
+    for (int z = r->at[2]; z < r->at[2] + (1 << r->level[2]); z++)
+        for (int y = r->at[1]; y < r->at[1] + (1 << r->level[1]); y++)
+            if (!is_free_row(owner + ((size_t)z * (size_t)side + (size_t)y) * (size_t)side +
+                                 r->at[0],
+                             r->level[0]))
+                return false;
+    return true;
+}
+
 // What of the cells of `r` is taken: all by one box, or so that `r` must be split along `*axis`.
 static int look_at(const box_owner *owner, int side, const struct box *r, int *axis)
 {
@@ -134,12 +159,23 @@ static int look_at(const box_owner *owner, int side, const struct box *r, int *a
     return FREE;
 }
 
+static void paint_row(box_owner *owner, int level, box_owner own)
+{
+    switch (level) {
+    case 0: *owner = own; break;
+    case 1: memset(owner, own, 2); break;
+    case 2: memset(owner, own, 4); break;
+    case 3: memset(owner, own, 8); break;
+    default: memset(owner, own, 16); break;
+    }
+}
+
 static void paint(box_owner *owner, int side, const struct box *r)
 {
     const box_owner own = owner_of(r->level);
     for (int z = r->at[2]; z < r->at[2] + (1 << r->level[2]); z++)
         for (int y = r->at[1]; y < r->at[1] + (1 << r->level[1]); y++)
-            memset(block_owner(owner, side, r->at[0], y, z), own, (size_t)1 << r->level[0]);
+            paint_row(block_owner(owner, side, r->at[0], y, z), r->level[0], own);
 }
 
 // Older boxes stay, unless they lie within the new one; what they leave of it becomes dikes again.
@@ -147,6 +183,10 @@ static void place(box_owner *owner, int side, struct box r)
 {
     struct box stack[3 * BLOCK_LEVELS + 2];
     int count = 1, axis = 0;
+    if (is_free(owner, side, &r)) {
+        paint(owner, side, &r);
+        return;
+    }
     stack[0] = r;
     while (count) {
         r = stack[--count];

@@ -37,7 +37,7 @@ static inline void owner_levels(uint8_t level[3], box_owner owner)
 struct block {
     int side, levels;  // 2^levels samples
     int origin[3], cells[3];
-    uint32_t row[BLOCK_POINTS][BLOCK_POINTS];                    // [z][y], bit x: inside
+    uint32_t row[BLOCK_POINTS * BLOCK_POINTS];                   // [z][y], bit x: inside
     uint32_t along_x[BLOCK_LEVELS][BLOCK_POINTS][BLOCK_POINTS];  // [level][z][y]
     uint32_t along_y[BLOCK_LEVELS][BLOCK_POINTS][BLOCK_SIDE];    // [level][z][begin]
     uint32_t along_z[BLOCK_LEVELS][BLOCK_POINTS][BLOCK_SIDE];    // [level][y][begin]
@@ -51,7 +51,7 @@ bool block_climb(struct block *b);
 
 static inline bool block_inside(const struct block *b, const int p[3])
 {
-    return b->row[p[2]][p[1]] >> p[0] & 1;
+    return b->row[p[2] * BLOCK_POINTS + p[1]] >> p[0] & 1;
 }
 
 static inline box_owner *block_owner(box_owner *owner, int side, int x, int y, int z)

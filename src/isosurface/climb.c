@@ -193,9 +193,10 @@ static void put_block(struct climb *k, struct layer *l, struct worker *w, const 
     const struct neighbours beyond = neighbours_of(k, at);
     struct box box = {{0}, {0}};
     block_load(b, k->g, k->side, at);
+    faces_begin_block(&w->faces, b, &beyond);
     if (state == ONE_BOX) {
         memset(box.level, b->levels, sizeof box.level);
-        faces_draw(&w->faces, b, &beyond, &box);
+        faces_draw(&w->faces, &box);
         put_box(k, l, &w->faces);
         return;
     }
@@ -207,7 +208,7 @@ static void put_block(struct climb *k, struct layer *l, struct worker *w, const 
                 owner_levels(box.level, *block_owner(b->owner, b->side, x, y, z));
                 if (!begins(y, box.level[1]) || !begins(z, box.level[2]))
                     continue;
-                faces_draw(&w->faces, b, &beyond, &box);
+                faces_draw(&w->faces, &box);
                 put_box(k, l, &w->faces);
             }
 }
@@ -234,8 +235,8 @@ static uint32_t vertex_of(const struct climb *k, uint64_t key)
     const uint64_t *word = k->used + line * (size_t)k->g->words;
     uint32_t number = k->vertices->first[line];
     for (int w = 0; w < x >> 6; w++)
-        number += (uint32_t)__builtin_popcountll(word[w]);
-    return number + (uint32_t)__builtin_popcountll(word[x >> 6] & (((uint64_t)1 << (x & 63)) - 1));
+        number += (uint32_t)signs_count(word[w]);
+    return number + (uint32_t)signs_count(word[x >> 6] & (((uint64_t)1 << (x & 63)) - 1));
 }
 
 static void number_layer(void *context, size_t z, int worker)

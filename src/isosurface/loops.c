@@ -15,7 +15,8 @@
 // The least cosine between a corner's triangle and its vertices' normals; -2 of none.
 static float agreement(const struct place *a, const struct place *b, const struct place *c)
 {
-    float u[3], v[3];
+    const struct place *corner[3] = {a, b, c};
+    float u[3], v[3], least = 1.0f;
     for (int i = 0; i < 3; i++) {
         u[i] = b->position[i] - a->position[i];
         v[i] = c->position[i] - a->position[i];
@@ -25,23 +26,21 @@ static float agreement(const struct place *a, const struct place *b, const struc
     const float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (!(length > 1e-9f))
         return -2.0f;
-    const struct place *corner[3] = {a, b, c};
-    float least = 1.0f;
-    for (int i = 0; i < 3; i++) {
-        const float *g = corner[i]->normal;
-        least = fminf(least, (n[0] * g[0] + n[1] * g[1] + n[2] * g[2]) / length);
+    for (int k = 0; k < 3; k++) {
+        const float *g = corner[k]->normal;
+        const float cosine = (n[0] * g[0] + n[1] * g[1] + n[2] * g[2]) / length;
+        least = cosine < least ? cosine : least;
     }
     return least;
 }
 
-static void remove_vertex(struct loop *l, int at)
-{
-    const size_t behind = (size_t)(l->count - 1 - at);
-    memmove(l->key + at, l->key + at + 1, behind * sizeof *l->key);
-    memmove(l->place + at, l->place + at + 1, behind * sizeof *l->place);
-    memmove(l->faces + at, l->faces + at + 1, behind * sizeof *l->faces);
-    l->count--;
-}
+// A vertex of the loop that is left, and what cutting off the triangle from it to the next two is
+// worth: its agreement, or UNKNOWN.
+struct corner {
+    uint8_t vertex;
+    float agreement;
+};
+#define UNKNOWN 2.0f
 
 struct patience {
     float angle, cosine;
@@ -59,26 +58,47 @@ static void lose(struct patience *p)
     p->cosine = cosf(p->angle);
 }
 
+static void put_triangle(const struct loop *l, int a, int b, int c, uint64_t out[3])
+{
+    out[0] = l->key[a];
+    out[1] = l->key[b];
+    out[2] = l->key[c];
+}
+
+static bool may_cut(const struct loop *l, const struct patience *p, struct corner *a, int b, int c)
+{
+    if (p->anything)
+        return true;
+    if (!p->any_chord && l->faces[a->vertex] & l->faces[c])
+        return false;
+    if (a->agreement >= UNKNOWN)
+        a->agreement = agreement(l->place[a->vertex], l->place[b], l->place[c]);
+    return a->agreement >= p->cosine;
+}
+
 void loop_cut(struct loop *l, uint64_t (*out)[3])
 {
     struct patience p = {.angle = FIRST_ANGLE, .cosine = cosf(FIRST_ANGLE)};
-    for (int i = 0, fails = 0; l->count > 3;) {
-        const int a = i % l->count, b = (a + 1) % l->count, c = (a + 2) % l->count;
-        const bool chord = l->faces[a] & l->faces[c];
-        if (p.anything || ((p.any_chord || !chord) &&
-                           agreement(&l->place[a], &l->place[b], &l->place[c]) >= p.cosine)) {
-            const uint64_t triangle[3] = {l->key[a], l->key[b], l->key[c]};
-            memcpy(*out++, triangle, sizeof triangle);
-            remove_vertex(l, b);
-            i = c > b ? b : c;  // where c is now
+    struct corner ring[LOOP_MOST];
+    int count = l->count;
+    for (int i = 0; i < count; i++)
+        ring[i] = (struct corner){(uint8_t)i, UNKNOWN};
+    for (int i = 0, fails = 0; count > 3;) {
+        const int next = i + 1 < count ? i + 1 : 0, last = next + 1 < count ? next + 1 : 0;
+        const int a = ring[i].vertex, b = ring[next].vertex, c = ring[last].vertex;
+        if (may_cut(l, &p, &ring[i], b, c)) {
+            put_triangle(l, a, b, c, *out++);
+            ring[i].agreement = ring[i ? i - 1 : count - 1].agreement = UNKNOWN;
+            memmove(ring + next, ring + next + 1, (size_t)(--count - next) * sizeof *ring);
+            i = (last > next ? next : last) % count;  // where c is now
             fails = 0;
         } else {
-            i = b;
-            if (++fails > l->count) {
+            i = next;
+            if (++fails > count) {
                 fails = 0;
                 lose(&p);
             }
         }
     }
-    memcpy(*out, l->key, sizeof *out);
+    put_triangle(l, ring[0].vertex, ring[1].vertex, ring[2].vertex, *out);
 }

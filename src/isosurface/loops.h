@@ -9,9 +9,9 @@ enum { LOOP_MOST = 256 };
 
 struct loop {
     int count;
-    uint64_t key[LOOP_MOST];        // of its vertices
-    struct place place[LOOP_MOST];  // where they are; not of three alone
-    uint8_t faces[LOOP_MOST];       // of the box that each lies on, bits
+    uint64_t key[LOOP_MOST];               // of its vertices
+    const struct place *place[LOOP_MOST];  // where they are; not of three alone
+    uint8_t faces[LOOP_MOST];              // of the box that each lies on, bits
 };
 
 // Triangles by vertices' keys, `count - 2` of them; the loop is used up.

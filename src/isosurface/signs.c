@@ -134,7 +134,7 @@ static void count_layer(void *context, size_t z, int worker)
             for (int w = 0; w < f->g->words; w++) {
                 const uint64_t word = numbering_word(f->n, f->g, axis, y, (int)z, w);
                 if (word)
-                    count += __builtin_popcountll(word);
+                    count += signs_count(word);
             }
             first[axis] = (uint32_t)count;
         }

@@ -45,6 +45,15 @@ static inline uint64_t signs_next(const uint64_t *row, int w, int words)
     return row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : row[w] & (uint64_t)1 << 63);
 }
 
+// Bits that are set. Without the processor's own instruction the compiler would call a function.
+static inline int signs_count(uint64_t word)
+{
+    word -= word >> 1 & 0x5555555555555555;
+    word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
+    word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0f;
+    return (int)(word * 0x0101010101010101 >> 56);
+}
+
 // Which of the 64 edges along `axis` from word `w` of a row on are crossed.
 static inline uint64_t signs_crossed(const struct signs *g, int axis, int y, int z, int w)
 {

@@ -13,6 +13,8 @@
 
 #define NOTHING UINT32_MAX
 
+#define NO_AREA "the mesh has no triangle with an area"
+
 enum {
     FAN = 96,          // most triangles around a point that may go
     VALUES = 8,        // normal, texture place, colour
@@ -31,8 +33,14 @@ struct connect {
     uint32_t *next;           // [3 * triangles]: another corner of the same point
     size_t alive;             // triangles
 };
-// Points are vertices at equal places.
-relume_status connect_create(struct connect *c, const struct relume_mesh *mesh);
+// Of triangles of a mesh's vertices, and the parts that they are of, or NULL. Points are vertices
+// at equal places.
+relume_status connect_create(struct connect *c, const struct relume_mesh *mesh,
+                             uint32_t (*triangle)[3], size_t triangles, const uint32_t *part);
+// Numbers the points of c->vertices vertices into c->point, which has room.
+relume_status connect_number(struct connect *c, const struct relume_mesh *mesh);
+// Whether a triangle has three points.
+bool connect_has_area(const struct connect *c, const uint32_t t[3]);
 void connect_free(struct connect *c);
 
 // What lies around a point: its triangles, and the points across its edges.
@@ -149,7 +157,7 @@ relume_status quadrics_create(struct simplify *s);
 // The error of a point that goes to another, whose place is that of moves->to[0]: a length.
 double quadrics_error(const struct simplify *s, uint32_t point, const struct moves *moves);
 void quadrics_move(struct simplify *s, uint32_t point, uint32_t target, const struct moves *moves);
-size_t quadrics_bytes(const struct simplify *s, size_t points);
+size_t quadrics_bytes(const struct simplify *s, size_t points, size_t vertices);
 
 // Original vertices that have gone, and the triangles that they lie on now.
 struct error {

@@ -30,7 +30,7 @@ static bool is_there(const float a[3], const float b[3])
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-static relume_status number_points(struct connect *c, const struct relume_mesh *mesh)
+relume_status connect_number(struct connect *c, const struct relume_mesh *mesh)
 {
     size_t slots = 16;
     while (slots < 2 * mesh->vertex_count)
@@ -54,7 +54,7 @@ static relume_status number_points(struct connect *c, const struct relume_mesh *
     return RELUME_OK;
 }
 
-static bool has_area(const struct connect *c, const uint32_t t[3])
+bool connect_has_area(const struct connect *c, const uint32_t t[3])
 {
     const uint32_t a = c->point[t[0]], b = c->point[t[1]], d = c->point[t[2]];
     return a != b && b != d && d != a;
@@ -64,7 +64,7 @@ static void link_corners(struct connect *c)
 {
     memset(c->first, 0xff, c->points * sizeof *c->first);
     for (size_t t = 0; t < c->triangles; t++) {
-        if (!has_area(c, c->triangle[t])) {
+        if (!connect_has_area(c, c->triangle[t])) {
             memset(c->triangle[t], 0xff, sizeof c->triangle[t]);
             continue;
         }
@@ -78,18 +78,19 @@ static void link_corners(struct connect *c)
     }
 }
 
-relume_status connect_create(struct connect *c, const struct relume_mesh *mesh)
+relume_status connect_create(struct connect *c, const struct relume_mesh *mesh,
+                             uint32_t (*triangle)[3], size_t triangles, const uint32_t *part)
 {
     *c = (struct connect){
         .vertices = mesh->vertex_count,
-        .triangles = mesh->triangle_count,
-        .triangle = mem_copy(mesh->triangle, mesh->triangle_count, sizeof *c->triangle),
-        .part = mesh->part,
+        .triangles = triangles,
+        .triangle = mem_copy(triangle, triangles, sizeof *c->triangle),
+        .part = part,
         .point = mem_array(mesh->vertex_count, sizeof *c->point),
-        .next = mem_array(3 * mesh->triangle_count, sizeof *c->next),
+        .next = mem_array(3 * triangles, sizeof *c->next),
     };
     relume_status status =
-        c->triangle && c->point && c->next ? number_points(c, mesh) : RELUME_ENOMEM;
+        c->triangle && c->point && c->next ? connect_number(c, mesh) : RELUME_ENOMEM;
     if (!status)
         status = (c->first = mem_array(c->points, sizeof *c->first)) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)

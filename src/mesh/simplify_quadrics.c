@@ -19,10 +19,9 @@ static size_t spread_floats(const struct simplify *s)
     return VALUES_FROM + 4 * (size_t)s->values;
 }
 
-size_t quadrics_bytes(const struct simplify *s, size_t points)
+size_t quadrics_bytes(const struct simplify *s, size_t points, size_t vertices)
 {
-    return points * sizeof *s->quadric +
-           s->mesh->vertex_count * spread_floats(s) * sizeof *s->spread;
+    return points * sizeof *s->quadric + vertices * spread_floats(s) * sizeof *s->spread;
 }
 
 // w (g . p + d)^2

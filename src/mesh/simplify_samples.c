@@ -19,7 +19,7 @@
 
 // ---------------------------------------------------------------- how the surface bends
 
-// The mean square of how fast normals turn along edges is (k1^2 + k2^2) / 2.
+// Of the original. The mean square of how fast normals turn along edges is (k1^2 + k2^2) / 2.
 static void add_bend(const struct simplify *s, uint32_t a, uint32_t b, float *edges)
 {
     const uint32_t at = s->connect.point[a];
@@ -37,9 +37,10 @@ static relume_status find_bends(struct simplify *s)
     float *edges = mem_zeroed(s->connect.points, sizeof *edges);
     if (!edges)
         return RELUME_ENOMEM;
-    for (size_t t = 0; t < s->connect.triangles; t++) {
-        const uint32_t *v = s->connect.triangle[t];
-        for (int k = 0; v[0] != NOTHING && k < 3; k++) {
+    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
+        const uint32_t *v = s->mesh->triangle[t];
+        const bool whole = connect_has_area(&s->connect, v);
+        for (int k = 0; whole && k < 3; k++) {
             add_bend(s, v[k], v[(k + 1) % 3], edges);
             add_bend(s, v[k], v[(k + 2) % 3], edges);
         }

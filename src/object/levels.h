@@ -9,10 +9,16 @@
 struct object_levels;
 void object_levels_free(struct object_levels **levels);
 
-// The level of an object that an eye sees, and how far it is on its way to the next.
+// The level of a part that an eye sees, and how far it is on its way to the next.
 struct level_choice {
     int level, moved;
 };
+
+// As relume_objects_shown, in these levels: [parts], each below objects_levels of it.
+// RELUME_ENOMEM.
+relume_status objects_show(relume_objects **shown, const relume_objects *o,
+                           const struct level_choice *choice, bool rays);
+int objects_levels(const relume_objects *o, int part);
 
 // An object is to be shown in levels whose error is seen within so many pixels. RELUME_ENOMEM.
 struct wanted_levels {

@@ -63,7 +63,6 @@ expect_fail 'no answers' 1 'line 1' - "$RELUME" study analyse study/study.json
 # ---- mesh simplify
 cat >grid.awk <<'END'
 BEGIN {
-    n = 30
     for (j = 0; j <= n; j++) for (i = 0; i <= n; i++) printf "v %g %g %g\n", i / n, j / n, 0.1 * sin(6 * i / n)
     for (j = 0; j < n; j++) for (i = 1; i <= n; i++) {
         a = j * (n + 1) + i
@@ -71,7 +70,7 @@ BEGIN {
     }
 }
 END
-awk -f grid.awk >grid.obj
+awk -v n=30 -f grid.awk >grid.obj
 "$RELUME" mesh simplify grid.obj -o small.ply --error 0.002 --steps steps.csv --json >small.json
 below 'fewer triangles' "$(field small.json triangles)" 500
 below 'within the error' "$(field small.json error)" 0.0020001
@@ -80,6 +79,8 @@ check 'what went where' grep -q '^vertex,onto,error,distance$' steps.csv
 below 'as many as asked for' "$(field n.json triangles)" 101
 expect_fail 'no limit' 2 'how far' no.ply "$RELUME" mesh simplify grid.obj -o no.ply
 expect_fail 'unknown format' 2 'no.xyz' no.xyz "$RELUME" mesh simplify grid.obj -o no.xyz --error 0.01
+awk -v n=70 -f grid.awk >large.obj
+expect_ok 'little memory: in parts' 'in parts of' "$RELUME" mesh simplify large.obj -o parts.ply --error 0.002 --max-memory 900K
 expect_fail 'no memory' 1 'max-memory' no.ply "$RELUME" mesh simplify grid.obj -o no.ply --error 0.01 --max-memory 100k
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 1 2\nf 3 3 3\n' >line.obj
 expect_fail 'no triangles' 1 'no triangle' no.ply "$RELUME" mesh simplify line.obj -o no.ply --error 0.01

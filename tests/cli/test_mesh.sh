@@ -39,6 +39,12 @@ expect_fail 'a size that is none' 2 'expected XxYxZ' x.ply "$RELUME" mesh ball.r
 expect_fail 'a block that is none' 2 'expected 1, 2, 4, 8 or 16' x.ply "$RELUME" mesh ball.raw --size 16x16x16 --threshold 100 --block 3 -o x.ply
 expect_fail 'a format that is none' 2 'ends in .ply, .obj or .glb' x.stl "$RELUME" mesh ball.raw --size 16x16x16 --threshold 100 -o x.stl
 expect_fail 'the input is not replaced' 2 'read' - "$RELUME" mesh ball.ply -o ball.ply
+"$RELUME" mesh ball.raw --size 16x16x16 --threshold 90,100 --block 1,2 -o t.ply --json -q >json
+check 'several thresholds' test -s t.90.1.ply -a -s t.90.2.ply -a -s t.100.2.ply
+"$RELUME" mesh ball.raw --size 16x16x16 --threshold 100 -o one.ply -q && check 'each as alone' cmp one.ply t.100.1.ply
+check 'in one list' test "$(grep -o '"threshold": 1*[09]0' json | wc -l)" = 4
+expect_fail 'a threshold that comes twice' 2 'comes twice' x.ply "$RELUME" mesh ball.raw --size 16x16x16 --threshold 9,9 -o x.ply
+expect_fail 'thresholds that are none' 2 'expected 1 to 64 numbers' x.ply "$RELUME" mesh ball.raw --size 16x16x16 --threshold 9, -o x.ply
 head -c 4096 /dev/zero >zero.raw
 expect_fail 'a constant volume' 1 'all samples are 0' x.ply "$RELUME" mesh zero.raw --size 16x16x16 --threshold 100 -o x.ply
 head -c 300 ball.raw.gz >cut.raw.gz

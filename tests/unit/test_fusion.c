@@ -1,4 +1,5 @@
 // Depth fused to meshes, against the shapes that the depth was made of; places seen by cameras.
+#include "baked/charts.h"
 #include "fusion/field.h"
 #include "fusion/seen.h"
 
@@ -286,6 +287,34 @@ static void test_depth_without_a_surface(void **state)
     witness_destroy(&s);
 }
 
+// A sheet with bumps in it, of which each has sides that face six ways; and a step that faces
+// nobody's way, which stays a chart of its own.
+static void test_small_charts(void **state)
+{
+    (void)state;
+    enum { ACROSS = 24, TRIANGLES = 2 * ACROSS * ACROSS };
+    static struct baked_corner triangle[TRIANGLES][3];
+    static const int corner[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1, 1}, {0, 1}}};
+    struct charts as_they_are, merged;
+    for (int i = 0; i < TRIANGLES; i++)
+        for (int k = 0; k < 3; k++) {
+            const int x = i / 2 % ACROSS + corner[i % 2][k][0];
+            const int y = i / 2 / ACROSS + corner[i % 2][k][1];
+            const bool bump = x % 6 == 3 && y % 6 == 3;
+            const float height = x >= ACROSS / 2 ? 40.0f : 0.0f;
+            memcpy(triangle[i][k].position, (float[]){(float)x, (float)y, height + 1.3f * bump},
+                   sizeof triangle[i][k].position);
+        }
+    assert_int_equal(charts_make(&as_they_are, triangle, TRIANGLES, NULL, 0.0), RELUME_OK);
+    assert_int_equal(charts_make(&merged, triangle, TRIANGLES, NULL, 8.0), RELUME_OK);
+    assert_true(as_they_are.count > 20);
+    assert_int_equal(merged.count, 3);
+    for (int i = 0; i < TRIANGLES; i++)
+        assert_true(merged.of[i] < merged.count && merged.face[i] < 6);
+    charts_free(&as_they_are);
+    charts_free(&merged);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +324,7 @@ int main(void)
         cmocka_unit_test(test_holes),
         cmocka_unit_test(test_a_panorama_of_a_round_room),
         cmocka_unit_test(test_depth_without_a_surface),
+        cmocka_unit_test(test_small_charts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -455,7 +455,7 @@ static void test_dikes_of_every_pattern(void **state)
                         p[axis] = i;
                         p[(axis + 1) % 3] = k & 1;
                         p[(axis + 2) % 3] = k >> 1;
-                        b->row[p[2]][p[1]] |= (uint32_t)sample[i] << p[0];
+                        b->row[p[2] * BLOCK_POINTS + p[1]] |= (uint32_t)sample[i] << p[0];
                     }
                 (void)block_climb(b);
                 for (int l = 0; l <= 3; l++)

@@ -2,6 +2,8 @@
 // level, and as pictures against those of the full mesh.
 #include "in_folder.h"
 
+#include "object/levels.h"
+
 #include <relume/jnd.h>
 #include <relume/object.h>
 
@@ -283,6 +285,154 @@ static void bad_levels_are_refused(void **state)
     }
 }
 
+// ---------------------------------------------------------------- parts
+
+// A torus of three patches with vertices of their own, the last of which meets both others.
+enum { PATCHES = 3 };
+static relume_objects *open_patches(void)
+{
+    FILE *file = fopen(path_of("patches.obj"), "w");
+    relume_objects *o;
+    assert_non_null(file);
+    for (int p = 0, first = 1; p < PATCHES; p++) {
+        const int from = p * ACROSS / PATCHES, to = (p + 1) * ACROSS / PATCHES;
+        fprintf(file, "usemtl patch%d\n", p);
+        for (int j = 0; j <= DOWN; j++)
+            for (int i = from; i <= to; i++) {
+                const double a = 2 * M_PI * (i % ACROSS) / ACROSS, b = 2 * M_PI * (j % DOWN) / DOWN;
+                const double x = cos(a) * cos(b), y = sin(a) * cos(b), z = sin(b);
+                fprintf(file, "v %.9g %.9g %.9g\nvt %.9g %.9g\nvn %.9g %.9g %.9g\n",
+                        cos(a) + x * TUBE, sin(a) + y * TUBE, z * TUBE, i / 9.0 + 20 * p, j / 9.0,
+                        x, y, z);
+            }
+        for (int j = 0; j < DOWN; j++)
+            for (int i = 0; i < to - from; i++) {
+                const int a = first + j * (to - from + 1) + i, b = a + to - from + 1;
+                fprintf(file, "f %d/%d/%d %d/%d/%d %d/%d/%d %d/%d/%d\n", a, a, a, a + 1, a + 1,
+                        a + 1, b + 1, b + 1, b + 1, b, b, b);
+            }
+        first += (DOWN + 1) * (to - from + 1);
+    }
+    fclose(file);
+    write_text("patches.json",
+               "{\"format\": \"relume-objects\", \"version\": 1, \"objects\": [{\"mesh\": "
+               "\"patches.obj\", \"levels\": true, \"parts\": [{\"material\": {\"diffuse\": "
+               "0.5}}]}]}");
+    CHECK_OK(relume_objects_open(&o, path_of("patches.json"), NULL));
+    assert_int_equal(relume_objects_info(o)->parts, PATCHES);
+    return o;
+}
+
+struct edge {
+    float end[2][3];
+};
+
+static int by_ends(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(struct edge));
+}
+
+// The edges of a part, each from its lower end, and +1 or -1 for which way it goes.
+static size_t take_edges(struct edge *edge, const struct relume_objects_info *info, int part)
+{
+    size_t n = 0;
+    for (size_t t = info->part[part].first; t < info->part[part].first + info->part[part].count;
+         t++)
+        for (int k = 0; k < 3; k++, n++)
+            for (int e = 0; e < 2; e++)
+                for (int c = 0; c < 3; c++)
+                    edge[n].end[e][c] =
+                        info->vertices[info->triangles[t][(k + e) % 3]].position[c] + 0.0f;
+    return n;
+}
+
+// Edges that are there more often one way than the other.
+static int open_edges(struct edge *edge, size_t n)
+{
+    int open = 0;
+    qsort(edge, n, sizeof *edge, by_ends);
+    for (size_t i = 0; i < n; i++) {
+        struct edge back;
+        memcpy(back.end[0], edge[i].end[1], sizeof back.end[0]);
+        memcpy(back.end[1], edge[i].end[0], sizeof back.end[1]);
+        size_t first = i, last = i + 1;
+        for (; last < n && !by_ends(&edge[last], &edge[i]); last++) {
+        }
+        const struct edge *twin = bsearch(&back, edge, n, sizeof *edge, by_ends);
+        size_t twins = 0;
+        for (const struct edge *e = twin; e && e >= edge && !by_ends(e, &back); e--)
+            twins++;
+        for (const struct edge *e = twin ? twin + 1 : NULL; e && e < edge + n && !by_ends(e, &back);
+             e++)
+            twins++;
+        open += last - first > twins;
+        i = last - 1;
+    }
+    return open;
+}
+
+// All parts in levels of their own, each moved by some.
+static relume_objects *show_in(const relume_objects *o, const int level[PATCHES], int moved)
+{
+    struct level_choice choice[PATCHES];
+    relume_objects *shown = NULL;
+    for (int p = 0; p < PATCHES; p++)
+        choice[p] = (struct level_choice){
+            level[p], level[p] + 1 < objects_levels(o, p) ? moved * (p + 1) % 256 : 0};
+    CHECK_OK(objects_show(&shown, o, choice, false));
+    return shown;
+}
+
+static void patches_stay_closed_at_all_pairs_of_levels(void **state)
+{
+    (void)state;
+    relume_objects *o = open_patches();
+    struct edge *edge = malloc(6 * ACROSS * DOWN * sizeof *edge);
+    const int levels_of = objects_levels(o, 0);
+    size_t least = 2 * ACROSS * DOWN;
+    int torn = 0;
+    assert_in_range(levels_of, 4, 12);
+    for (int a = 0; a < levels_of; a++)
+        for (int b = 0; b < levels_of; b++) {
+            relume_objects *shown = show_in(o, (int[]){a, b, (a + b) / 2}, 37 * (a + b));
+            relume_objects *one = show_in(o, (int[]){a, a, a}, 0);
+            relume_objects *other = show_in(o, (int[]){b, b, b}, 0);
+            const struct relume_objects_info *info = relume_objects_info(shown);
+            size_t n = 0;
+            for (int p = 0; p < PATCHES; p++)
+                n += take_edges(edge + n, info, p);
+            assert_int_equal(open_edges(edge, n), 0);
+            least = info->triangle_count < least ? info->triangle_count : least;
+            for (size_t i = 0; i < info->vertex_count; i++)
+                assert_true(torus_distance(info->vertices[i].position) < 0.3);
+            // the control: each part as it is where all have its level
+            n = take_edges(edge, relume_objects_info(one), 0);
+            n += take_edges(edge + n, relume_objects_info(other), 1);
+            n += take_edges(edge + n, relume_objects_info(one), 2);
+            torn += open_edges(edge, n) > 0;
+            relume_objects_destroy(&shown);
+            relume_objects_destroy(&one);
+            relume_objects_destroy(&other);
+        }
+    assert_in_range(least, 8, ACROSS * DOWN / 10);
+    assert_in_range(torn, levels_of * (levels_of - 1) / 2, levels_of * (levels_of - 1));
+    free(edge);
+    relume_objects_destroy(&o);
+}
+
+// Near one end of a long thing the other end is coarse.
+static void far_parts_are_coarser(void **state)
+{
+    (void)state;
+    relume_objects *o = open_patches(), *shown = NULL;
+    CHECK_OK(relume_objects_shown(&shown, o, vec3_of(0.8, 1.2, 0), 20 * PIXEL, false));
+    assert_non_null(shown);
+    const struct relume_objects_info *info = relume_objects_info(shown);
+    assert_true(2 * info->part[1].count < info->part[0].count);
+    relume_objects_destroy(&shown);
+    relume_objects_destroy(&o);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -294,6 +444,8 @@ int main(void)
         cmocka_unit_test(what_is_shown_stays),
         cmocka_unit_test(mirrors_are_shown_in_full),
         cmocka_unit_test(bad_levels_are_refused),
+        cmocka_unit_test(patches_stay_closed_at_all_pairs_of_levels),
+        cmocka_unit_test(far_parts_are_coarser),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -372,6 +372,52 @@ static void test_count(void **state)
     relume_mesh_free(&m);
 }
 
+// Vertices of the original, some of them, to the new surface; in diagonals.
+static double some_distance(const struct relume_mesh *from, const struct relume_mesh *to, int step)
+{
+    double worst = 0.0;
+    for (uint32_t v = 0; v < from->vertex_count; v += (uint32_t)step) {
+        double best = INFINITY;
+        for (size_t t = 0; t < to->triangle_count; t++)
+            best = fmin(best, to_triangle(to, to->triangle[t], at(from, v)));
+        worst = fmax(worst, best);
+    }
+    return worst / diagonal_of(from);
+}
+
+// Memory for an eighth: as many triangles but a few, closed, within the same error, and steps that
+// lead there.
+static void test_in_parts(void **state)
+{
+    (void)state;
+    struct surface big = torus_of;
+    big.across = 144, big.down = 96;
+    struct relume_mesh m = make(&big), whole, small;
+    struct relume_simplified r;
+    struct relume_simplify_params p = *relume_simplify_params(.error = 0.004, .jnd = 50);
+    CHECK_OK(relume_mesh_simplify(&whole, NULL, &m, &p));
+    p.memory = 1500000;
+    CHECK_OK(relume_mesh_simplify(&small, &r, &m, &p));
+    assert_true(small.triangle_count != whole.triangle_count);
+    assert_true((double)small.triangle_count < 1.1 * (double)whole.triangle_count);
+    assert_true(is_closed(&small) && r.error <= 0.004 && r.steps > 0);
+    assert_true(some_distance(&m, &small, 29) <= r.error + 1e-6);
+    assert_int_equal(turned_over(&small), 0);
+    for (size_t i = 1; i < r.steps; i++)
+        assert_true(r.step[i].error >= r.step[i - 1].error);
+    free(r.step);
+    relume_mesh_free(&small);
+    p = *relume_simplify_params(.triangles = 700, .memory = 1500000, .no_steps = true);
+    CHECK_OK(relume_mesh_simplify(&small, &r, &m, &p));
+    assert_true(small.triangle_count <= 700 && small.triangle_count >= 690 && is_closed(&small));
+    assert_null(r.step);
+    relume_mesh_free(&small);
+    p.memory = 10000;
+    assert_int_equal(relume_mesh_simplify(&small, NULL, &m, &p), RELUME_ELIMIT);
+    relume_mesh_free(&whole);
+    relume_mesh_free(&m);
+}
+
 // Three leaves at one edge, a triangle of two points, one without a length.
 static void test_broken(void **state)
 {
@@ -418,6 +464,7 @@ int main(void)
         cmocka_unit_test(test_steps),       cmocka_unit_test(test_texture),
         cmocka_unit_test(test_parts),       cmocka_unit_test(test_count),
         cmocka_unit_test(test_broken),      cmocka_unit_test(test_both_ways),
+        cmocka_unit_test(test_in_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

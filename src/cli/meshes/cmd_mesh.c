@@ -72,7 +72,7 @@ static relume_status run(const struct args *args)
 {
     const struct mesh_options *o = (const void *)args;
     const int block = o->blocks.count ? o->blocks.item[0] : 2;
-    if (given(o, &o->volume.threshold))
+    if (o->volume.thresholds.count)
         return mesh_of_volume(args, &o->volume, &o->blocks, o->output, o->json);
     if (seems_volume(o))
         return usage_error("mesh: a volume needs --threshold T: the surface is where samples reach "

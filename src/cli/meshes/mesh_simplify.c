@@ -83,7 +83,8 @@ static relume_status run(const struct args *args)
                                    .distance = o->distance,
                                    .gloss =
                                        given(o, &o->gloss) && o->gloss <= 0.0 ? -1.0 : o->gloss,
-                                   .white = o->white, .quadrics = o->quadrics));
+                                   .white = o->white, .quadrics = o->quadrics,
+                                   .no_steps = !o->steps));
         time = mesh_clock() - start;
     }
     if (!status)

@@ -5,6 +5,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+relume_status take_volume_thresholds(void *thresholds, const struct option *o, const char *text,
+                                     const struct relume_log *log)
+{
+    struct volume_thresholds *const t = thresholds;
+    const char *at = text;
+    for (t->count = 0; t->count < MOST_THRESHOLDS; at++) {
+        char *end;
+        const double value = strtod(at, &end);
+        if (end == at || (*end && *end != ',') || !(fabs(value) <= 1e38))
+            break;
+        t->value[t->count++] = value;
+        at = end;
+        if (!*end)
+            return RELUME_OK;
+    }
+    return say(log, RELUME_EINVAL,
+               "%s: expected 1 to %d numbers, as 80 or 80,95.5, up to 1e38; found '%s'", o->name,
+               MOST_THRESHOLDS, text);
+}
+
 relume_status take_volume_size(void *size, const struct option *o, const char *text,
                                const struct relume_log *log)
 {
@@ -33,22 +53,22 @@ relume_status take_volume_spacing(void *spacing, const struct option *o, const c
                o->name, text);
 }
 
-// "head.ply" and 4: "head.4.ply".
-static char *level_name(const char *output, int block, bool several)
+// "head.ply" and "4": "head.4.ply".
+static char *name_with(const char *output, const char *what)
 {
     const char *dot = strrchr(output, '.');
-    const size_t size = strlen(output) + 16;
+    const int stem = (int)(dot ? dot - output : (ptrdiff_t)strlen(output));
+    const size_t size = strlen(output) + strlen(what) + 2;
     char *name = malloc(size);
-    if (name && several && dot)
-        snprintf(name, size, "%.*s.%d%s", (int)(dot - output), output, block, dot);
-    else if (name)
-        snprintf(name, size, "%s", output);
+    if (name)
+        snprintf(name, size, "%.*s%s%s%s", stem, output, *what ? "." : "", what, output + stem);
     return name;
 }
 
-// The meshes of one call, and their files.
+// The meshes of one threshold, and their files.
 struct set {
     const struct args *args;
+    double threshold;
     int count;
     int block[RELUME_ISOSURFACE_LEVELS];
     char *name[RELUME_ISOSURFACE_LEVELS];
@@ -64,8 +84,11 @@ static relume_status name_levels(struct set *s, const struct ints *blocks, const
         return usage_error("--block: expected at most %d numbers", RELUME_ISOSURFACE_LEVELS);
     relume_status status = RELUME_OK;
     for (int i = 0; i < s->count && !status; i++) {
+        char level[16] = "";
         s->block[i] = blocks->count ? blocks->item[i] : 1;
-        s->name[i] = level_name(output, s->block[i], s->count > 1);
+        if (s->count > 1)
+            snprintf(level, sizeof level, "%d", s->block[i]);
+        s->name[i] = name_with(output, level);
         for (int k = 0; k < i; k++)
             if (s->block[k] == s->block[i])
                 return usage_error("--block: %d comes twice", s->block[i]);
@@ -74,27 +97,50 @@ static relume_status name_levels(struct set *s, const struct ints *blocks, const
     return status;
 }
 
-static relume_status extract(struct set *s, const struct volume_options *o)
+static relume_status name_set(struct set *s, const struct volume_thresholds *t, int i,
+                              const struct ints *blocks, const char *output)
 {
-    relume_volume *volume;
-    relume_status status = relume_volume_open(
-        &volume, s->args->input[0],
-        relume_volume_params(.log = s->args->log,
+    char text[32] = "";
+    s->threshold = t->value[i];
+    for (int k = 0; k < i; k++)
+        if (t->value[k] == t->value[i])
+            return usage_error("--threshold: %g comes twice", t->value[i]);
+    if (t->count > 1)
+        snprintf(text, sizeof text, "%.9g", t->value[i]);
+    char *name = name_with(output, text);
+    const relume_status status = name ? name_levels(s, blocks, name) : RELUME_ENOMEM;
+    free(name);
+    return status;
+}
+
+// Of several thresholds each then looks at the samples near it alone.
+static relume_status open_volume(relume_volume **out, const struct args *args,
+                                 const struct volume_options *o)
+{
+    const relume_status status = relume_volume_open(
+        out, args->input[0],
+        relume_volume_params(.log = args->log,
                              .size = {o->size.side[0], o->size.side[1], o->size.side[2]},
                              .type = o->type, .skip = o->skip,
                              .spacing = {o->spacing.step[0], o->spacing.step[1],
                                          o->spacing.step[2]},
                              .own_spacing = o->spacing.own));
+    return status || o->thresholds.count == 1 ? status : relume_volume_index(*out, args->threads);
+}
+
+static relume_status make_set(struct set *s, const relume_volume *volume)
+{
     struct relume_isosurface_params p =
         *relume_isosurface_params(.log = s->args->log, .threads = s->args->threads);
     memcpy(p.blocks, s->block, sizeof p.blocks);
-    if (!status)
-        status = relume_isosurface(s->mesh, s->report, volume, o->threshold, &p);
-    relume_volume_destroy(&volume);
+    relume_status status = relume_isosurface(s->mesh, s->report, volume, s->threshold, &p);
+    for (int i = 0; i < s->count && !status; i++)
+        status =
+            relume_mesh_write(&s->mesh[i], s->name[i], relume_mesh_params(.log = s->args->log));
     return status;
 }
 
-static void print(const struct set *s, bool json)
+static void print_set(const struct set *s, bool json, bool several, bool first)
 {
     for (int i = 0; i < s->count; i++) {
         const struct mesh_made m = {.output = s->name[i],
@@ -106,28 +152,47 @@ static void print(const struct set *s, bool json)
             mesh_say(s->args, &m);
             continue;
         }
-        printf("%s{", i ? ", " : s->count > 1 ? "{\"meshes\": [" : "");
+        printf("%s{\"threshold\": %.9g, ", first ? several ? "{\"meshes\": [" : "" : ", ",
+               s->threshold);
         mesh_print_json(&m);
         printf("}");
+        first = false;
     }
-    if (json)
-        puts(s->count > 1 ? "]}" : "");
+}
+
+static void free_set(struct set *s)
+{
+    for (int i = 0; i < RELUME_ISOSURFACE_LEVELS; i++) {
+        relume_mesh_free(&s->mesh[i]);
+        free(s->name[i]);
+    }
 }
 
 relume_status mesh_of_volume(const struct args *args, const struct volume_options *o,
                              const struct ints *blocks, const char *output, bool json)
 {
-    struct set s = {.args = args};
-    relume_status status = name_levels(&s, blocks, output);
-    if (!status)
-        status = extract(&s, o);
-    for (int i = 0; i < s.count && !status; i++)
-        status = relume_mesh_write(&s.mesh[i], s.name[i], relume_mesh_params(.log = args->log));
-    if (!status)
-        print(&s, json);
-    for (int i = 0; i < RELUME_ISOSURFACE_LEVELS; i++) {
-        relume_mesh_free(&s.mesh[i]);
-        free(s.name[i]);
+    const struct volume_thresholds *t = &o->thresholds;
+    const bool several = t->count > 1 || blocks->count > 1;
+    relume_volume *volume = NULL;
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < t->count && !status; i++) {  // names first: nothing is done for a wrong one
+        struct set s = {.args = args};
+        status = name_set(&s, t, i, blocks, output);
+        free_set(&s);
     }
+    if (!status)
+        status = open_volume(&volume, args, o);
+    for (int i = 0; i < t->count && !status; i++) {
+        struct set s = {.args = args};
+        status = name_set(&s, t, i, blocks, output);
+        if (!status)
+            status = make_set(&s, volume);
+        if (!status)
+            print_set(&s, json, several, !i);
+        free_set(&s);
+    }
+    if (!status && json)
+        puts(several ? "]}" : "");
+    relume_volume_destroy(&volume);
     return status;
 }

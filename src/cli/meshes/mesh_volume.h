@@ -13,8 +13,14 @@ struct volume_spacing {
     double step[3];
     bool own;
 };
+// "T,...".
+enum { MOST_THRESHOLDS = 64 };
+struct volume_thresholds {
+    int count;
+    double value[MOST_THRESHOLDS];
+};
 struct volume_options {
-    double threshold;
+    struct volume_thresholds thresholds;
     struct volume_size size;
     const char *type;
     struct volume_spacing spacing;
@@ -23,8 +29,9 @@ struct volume_options {
 // Rows of a table of options.
 #define VOLUME_ROWS                                                                                \
     GROUP("volumes"),                                                                              \
-        NUMBER("--threshold", volume.threshold, "T",                                               \
-               "the surface of all samples that are at least T", -1e38, 1e38),                     \
+        OWN("--threshold", volume.thresholds, "T,...",                                             \
+            "the surface of all samples that are at least T; of several in OUT.T.ply each",        \
+            take_volume_thresholds),                                                               \
         OWN("--size", volume.size, "XxYxZ",                                                        \
             "samples of a raw file, x running fastest; default: as its name says",                 \
             take_volume_size),                                                                     \
@@ -36,6 +43,8 @@ struct volume_options {
             "from sample to sample, or 'file': as NRRD and NIfTI say; default: 1,1,1",             \
             take_volume_spacing)
 
+relume_status take_volume_thresholds(void *thresholds, const struct option *o, const char *text,
+                                     const struct relume_log *log);
 relume_status take_volume_size(void *size, const struct option *o, const char *text,
                                const struct relume_log *log);
 relume_status take_volume_spacing(void *spacing, const struct option *o, const char *text,

@@ -1,16 +1,14 @@
-// simplify.c - fewer triangles that look the same: the order in which vertices go
+// simplify_run.c - fewer triangles that look the same: the order in which vertices go
 //
 // The cheapest point by quadrics is tried first, towards each of its neighbours. What it would do
 // is measured (simplify_samples.c); where that is worse than its key it waits under its true error
 // (Guthe 2008, section 10.1). Points around a move are weighed again when their turn comes: they
 // rarely become cheaper.
-#include "mesh/simplify.h"
+#include "mesh/simplify_run.h"
 
 #include "base/log.h"
 #include "base/params.h"
 #include "math/scalar.h"
-
-#include <string.h>
 
 #define PI 3.14159265358979323846
 // An edge is seen to move when it moves by more than this angle.
@@ -24,22 +22,7 @@
 // Between looks at whether to stop.
 enum { PROGRESS_EVERY = 16384 };
 
-struct run {
-    struct simplify s;
-    struct queue queue;
-    struct samples samples;
-    struct fan fan;
-    uint8_t *stale;  // [points]: weigh again
-    struct error most, done;
-    bool last_resort;  // nothing is tested any more
-    size_t target, moves;
-    struct relume_simplify_step *step;  // or NULL
-    size_t steps;
-    bool keep_steps;
-    relume_status status;
-};
-
-static void run_free(struct run *r)
+void run_free(struct run *r)
 {
     struct simplify *s = &r->s;
     connect_free(&s->connect);
@@ -53,6 +36,7 @@ static void run_free(struct run *r)
     mem_free(s->sample_next);
     mem_free(r->samples.landing);
     mem_free(r->stale);
+    mem_free(r->may);
     mem_free(r->step);
 }
 
@@ -129,13 +113,11 @@ static void set_weights(struct simplify *s)
         s->weight[s->values++] = VALUE_WEIGHT;
 }
 
-// What a mesh takes while it becomes smaller, beside itself: an upper bound.
-static size_t bytes_of(const struct simplify *s)
+size_t run_bytes(const struct simplify *s, size_t v, size_t t)
 {
-    const size_t v = s->mesh->vertex_count, t = s->mesh->triangle_count;
-    return quadrics_bytes(s, v) + t * (12 + 12 + 4) +
+    return quadrics_bytes(s, v, v) + t * (12 + 12 + 4) +
            t * (NEAR_CELLS + NEAR_REFERENCES) * sizeof(uint32_t) +
-           v * (4 + 4 + 4 + 4 + 4 + 12 + 1) + (size_t)sizeof(struct relume_simplify_step) * v;
+           v * (4 + 4 + 4 + 4 + 4 + 12 + 1) + sizeof(struct relume_simplify_step) * v;
 }
 
 static void set_limits(struct run *r, const struct relume_simplify_params *p)
@@ -153,35 +135,63 @@ static void set_limits(struct run *r, const struct relume_simplify_params *p)
     r->target = p->triangles;
 }
 
-static relume_status prepare(struct run *r, const struct relume_simplify_params *p)
+relume_status run_settle(struct run *r, const struct relume_simplify_params *p)
 {
     struct simplify *s = &r->s;
+    const double gloss = p->gloss > 0.0 ? p->gloss : p->gloss < 0.0 ? 0.0 : 20.0;
     s->tested = !p->quadrics;
     s->jnd = p->jnd > 0.0 ? p->jnd : USUAL_JND;
     s->white = p->white > 0.0 ? p->white : 200.0;
     s->slide = texture_length(s);
     set_weights(s);
     set_limits(r, p);
-    relume_status status = limits_memory(NULL, bytes_of(s), "simplifying the mesh", p->log);
-    if (!status)
-        status = connect_create(&s->connect, s->mesh);
+    return s->tested ? visible_create(&s->visible, s->jnd, gloss, s->white) : RELUME_OK;
+}
+
+// Vertices that have gone before lie where they lay.
+static relume_status take_piece(struct run *r)
+{
+    const struct piece *piece = r->piece;
+    struct simplify *s = &r->s;
+    r->may = mem_array(s->connect.points, sizeof *r->may);
+    if (!r->may)
+        return RELUME_ENOMEM;
+    for (size_t v = 0; v < s->connect.vertices; v++)
+        r->may[s->connect.point[v]] = piece->may[v];
+    for (size_t i = 0; s->tested && i < piece->samples; i++) {
+        const uint32_t vertex = piece->sample[2 * i], triangle = piece->sample[2 * i + 1];
+        s->sample_next[vertex] = s->sample_first[triangle];
+        s->sample_first[triangle] = vertex;
+    }
+    return RELUME_OK;
+}
+
+relume_status run_prepare(struct run *r)
+{
+    struct simplify *s = &r->s;
+    const struct piece *piece = r->piece;
+    relume_status status =
+        piece ? connect_create(&s->connect, s->mesh, piece->triangle, piece->triangles, piece->part)
+              : connect_create(&s->connect, s->mesh, s->mesh->triangle, s->mesh->triangle_count,
+                               s->mesh->part);
     if (!status)
         status = quadrics_create(s);
     if (!status && s->tested)
         status = samples_create(s);
     if (!status && s->tested && isfinite(r->most.length))
         status = near_create(&s->near, s, r->most.length);
-    if (!status && s->tested)
-        status = visible_create(&s->visible, s->jnd,
-                                p->gloss > 0.0   ? p->gloss
-                                : p->gloss < 0.0 ? 0.0
-                                                 : 20.0,
-                                s->white);
     if (!status)
         status = queue_create(&r->queue, s->connect.points);
     if (!status && !(r->stale = mem_zeroed(s->connect.points, sizeof *r->stale)))
         status = RELUME_ENOMEM;
+    if (!status && piece)
+        status = take_piece(r);
     return status;
+}
+
+static bool may_go(const struct run *r, uint32_t point)
+{
+    return !r->may || r->may[point] != PIECE_STAYS;
 }
 
 // ---------------------------------------------------------------- moves
@@ -248,6 +258,8 @@ static void go(struct run *r, uint32_t point, uint32_t target, const struct move
     connect_move(&r->s.connect, point, &r->fan, target, moves);
     for (int i = 0; i < r->fan.neighbours; i++) {
         const uint32_t p = r->fan.neighbour[i];
+        if (!may_go(r, p))
+            continue;
         r->stale[p] = true;
         if (r->queue.at[p] == NOTHING)  // what could not go may now
             queue_put(&r->queue, p, r->queue.key[p]);
@@ -301,16 +313,18 @@ static bool is_done(const struct run *r)
 static void weigh_all(struct run *r)
 {
     for (uint32_t p = 0; p < r->s.connect.points && !r->status; p++)
-        weigh(r, p);
+        if (!r->may || r->may[p] == PIECE_WAITS)
+            weigh(r, p);
 }
 
-// Until nothing may go any more.
-static void run_down(struct run *r, const struct relume_log *log)
+void run_down(struct run *r, const struct relume_log *log)
 {
     const double from = (double)r->s.connect.alive;
+    weigh_all(r);
     for (size_t i = 1; !is_done(r); i++) {
+        const double done = 1.0 - (double)r->s.connect.alive / from;
         if (i % PROGRESS_EVERY == 0 &&
-            !log_progress(log, "simplify", 1.0 - (double)r->s.connect.alive / from))
+            !log_progress(log, "simplify", r->told[0] + done * (r->told[1] - r->told[0])))
             r->status = RELUME_ECANCEL;
         const uint32_t point = queue_take(&r->queue);
         if (r->stale[point]) {
@@ -322,79 +336,31 @@ static void run_down(struct run *r, const struct relume_log *log)
     }
 }
 
-// ---------------------------------------------------------------- what is left
-
-static void copy_vertex(struct relume_mesh *out, size_t to, const struct relume_mesh *m, size_t i)
+static relume_status run_whole(struct relume_mesh *out, struct run *r, const struct relume_log *log)
 {
-    memcpy(out->position[to], m->position[i], sizeof *out->position);
-    memcpy(out->normal[to], m->normal[i], sizeof *out->normal);
-    if (out->texture)
-        memcpy(out->texture[to], m->texture[i], sizeof *out->texture);
-    if (out->colour)
-        memcpy(out->colour[to], m->colour[i], sizeof *out->colour);
-}
-
-static relume_status copy_names(struct relume_mesh *out, const struct relume_mesh *m)
-{
-    out->picture = m->picture ? mem_text(m->picture) : NULL;
-    if (m->picture && !out->picture)
-        return RELUME_ENOMEM;
-    if (!m->part_name || !m->parts)
-        return RELUME_OK;
-    if (!(out->part_name = mem_zeroed((size_t)m->parts, sizeof *out->part_name)))
-        return RELUME_ENOMEM;
-    out->parts = m->parts;
-    for (int i = 0; i < m->parts; i++)
-        if (!(out->part_name[i] = mem_text(m->part_name[i] ? m->part_name[i] : "")))
-            return RELUME_ENOMEM;
-    return RELUME_OK;
-}
-
-static size_t number_vertices(const struct connect *c, uint32_t *number)
-{
-    size_t n = 0;
-    memset(number, 0xff, c->vertices * sizeof *number);
-    for (size_t t = 0; t < c->triangles; t++)
-        for (int k = 0; c->triangle[t][0] != NOTHING && k < 3; k++)
-            number[c->triangle[t][k]] = 0;
-    for (size_t i = 0; i < c->vertices; i++)
-        if (!number[i])
-            number[i] = (uint32_t)n++;
-    return n;
-}
-
-static relume_status collect(struct relume_mesh *out, const struct run *r)
-{
-    const struct connect *c = &r->s.connect;
-    const struct relume_mesh *m = r->s.mesh;
-    uint32_t *number = mem_array(c->vertices, sizeof *number);
-    if (!number)
-        return RELUME_ENOMEM;
-    const size_t vertices = number_vertices(c, number);
-    out->position = mem_array(vertices, sizeof *out->position);
-    out->normal = mem_array(vertices, sizeof *out->normal);
-    out->texture = m->texture ? mem_array(vertices, sizeof *out->texture) : NULL;
-    out->colour = m->colour ? mem_array(vertices, sizeof *out->colour) : NULL;
-    out->triangle = mem_array(c->alive, sizeof *out->triangle);
-    out->part = m->part ? mem_array(c->alive, sizeof *out->part) : NULL;
-    const bool good = out->position && out->normal && out->triangle &&
-                      (!m->texture || out->texture) && (!m->colour || out->colour) &&
-                      (!m->part || out->part);
-    for (size_t i = 0; good && i < c->vertices; i++)
-        if (number[i] != NOTHING)
-            copy_vertex(out, number[i], m, i);
-    for (size_t t = 0; good && t < c->triangles; t++) {
-        if (c->triangle[t][0] == NOTHING)
-            continue;
-        for (int k = 0; k < 3; k++)
-            out->triangle[out->triangle_count][k] = number[c->triangle[t][k]];
-        if (out->part)
-            out->part[out->triangle_count] = m->part[t];
-        out->triangle_count++;
+    r->status = run_prepare(r);
+    if (!r->status && !r->s.connect.alive)
+        r->status = log_fail(log, RELUME_EUNFIT, NO_AREA);
+    if (!r->status)
+        run_down(r, log);
+    if (!r->status && r->s.connect.alive > r->target && r->target && r->s.tested) {
+        r->last_resort = true;
+        r->s.tested = false;
+        run_down(r, log);
     }
-    out->vertex_count = good ? vertices : 0;
-    mem_free(number);
-    return good ? copy_names(out, m) : RELUME_ENOMEM;
+    return r->status ? r->status : run_collect(out, &r->s.connect, r->s.mesh);
+}
+
+// At once where memory is enough, else in parts.
+static relume_status run_by_size(struct relume_mesh *out, struct run *r,
+                                 const struct relume_simplify_params *p)
+{
+    const struct relume_mesh *m = r->s.mesh;
+    const uint64_t most = limits_or_default(limits_of(NULL, p->log)).max_memory;
+    const size_t memory = p->memory ? p->memory : (size_t)most;
+    return run_bytes(&r->s, m->vertex_count, m->triangle_count) <= memory
+               ? run_whole(out, r, p->log)
+               : run_in_parts(out, r, memory, p->log);
 }
 
 relume_status relume_mesh_simplify(struct relume_mesh *out, struct relume_simplified *report,
@@ -409,25 +375,15 @@ relume_status relume_mesh_simplify(struct relume_mesh *out, struct relume_simpli
     if (!r)
         return RELUME_ENOMEM;
     r->s.mesh = mesh;
-    r->keep_steps = report != NULL;
-    r->status = are_sound(&p) && is_whole(mesh) && find_scale(&r->s) ? RELUME_OK : RELUME_EINVAL;
-    if (!r->status)
-        r->status = prepare(r, &p);
-    if (!r->status && !r->s.connect.alive)
-        r->status = log_fail(p.log, RELUME_EUNFIT, "the mesh has no triangle with an area");
-    if (!r->status) {
-        weigh_all(r);
-        run_down(r, p.log);
-    }
-    if (!r->status && p.triangles > 0 && r->s.connect.alive > p.triangles && r->s.tested) {
-        r->last_resort = true;
-        r->s.tested = false;
-        weigh_all(r);
-        run_down(r, p.log);
-    }
-    if (!r->status)
-        r->status = collect(out, r);
-    if (!r->status && report) {
+    r->told[1] = 1.0;
+    r->keep_steps = report && !p.no_steps;
+    relume_status status =
+        are_sound(&p) && is_whole(mesh) && find_scale(&r->s) ? RELUME_OK : RELUME_EINVAL;
+    if (!status)
+        status = run_settle(r, &p);
+    if (!status)
+        status = run_by_size(out, r, &p);
+    if (!status && report) {
         *report = (struct relume_simplified){
             .triangles = out->triangle_count,
             .vertices = out->vertex_count,
@@ -438,7 +394,6 @@ relume_status relume_mesh_simplify(struct relume_mesh *out, struct relume_simpli
         };
         r->step = NULL;
     }
-    const relume_status status = r->status;
     run_free(r);
     mem_free(r);
     if (status)

@@ -4,6 +4,10 @@
 
 #include <relume/transport.h>
 
+enum { BOUNCES = 2, PATTERN = 4 };  // as relume_render_params; as transport/screen.c
+static const char *const way_names[] = {
+    [BETWEEN_AMBIENT] = "ssao", [BETWEEN_DIRECTIONAL] = "ssdo", [BETWEEN_MICRO] = "micro"};
+
 static void swap(struct target *a, struct target *b)
 {
     const struct target was = *a;
@@ -66,9 +70,8 @@ static relume_status draw(struct renderer *r, const struct frame_request *q,
 
 relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struct frame_request *q,
                                     const struct place *place, const struct relume_light *lights,
-                                    int count, bool directional)
+                                    int count, enum between_way way)
 {
-    enum { SAMPLES = 16, PATTERN = 4 };  // as transport/screen.c
     struct frame_projection projection;
     *drawn = r->with_depth && r->geometry.projection >= RELUME_CYLINDRICAL && r->views == 1 &&
              renderer_projection(&projection, r, q, place);
@@ -84,18 +87,20 @@ relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struc
         status = renderer_find_scene(r, q, *place);
     if (status)
         return status;
-    const int bounces = q->bounces ? q->bounces : 2;
+    const struct relume_transport *like = relume_transport_find(way_names[way]);
+    const int bounces = q->bounces ? q->bounces : BOUNCES, spacing = relume_transport_spacing(like);
     const struct between_view view = {.geometry = &r->geometry,
                                       .panorama_places = &r->place[0],
                                       .scene = &r->scene,
                                       .projection = &projection,
                                       .width = place->width,
                                       .height = place->height,
-                                      .directional = directional,
-                                      .bounces = bounces > 0,
-                                      .on = bounces > 1,
-                                      .samples = q->way_samples ? q->way_samples : SAMPLES,
-                                      .pattern = PATTERN,
+                                      .way = way,
+                                      .bounces = bounces > 0 ? bounces : 0,
+                                      .samples = q->way_samples ? q->way_samples
+                                                                : relume_transport_samples(like),
+                                      .pattern = spacing ? 1 : PATTERN,
+                                      .spacing = spacing,
                                       .sends = count ? 1.0f / (float)count : 0.0f};
     return draw(r, q, place, &view, lights, count);
 }

@@ -49,14 +49,17 @@ relume_status renderer_wait(struct renderer *r)
 // Ways that are passes, too (renderer_between.c).
 static const struct passes {
     const char *way;
-    bool directional;
-} passes[] = {{"ssdo", true}, {"ssao", false}};
+    enum between_way as;
+    bool compute;  // of OpenGL 4.3
+} passes[] = {{"ssdo", BETWEEN_DIRECTIONAL, false},
+              {"ssao", BETWEEN_AMBIENT, false},
+              {"micro", BETWEEN_MICRO, true}};
 
 // NULL: there are none of that way; for any of them (NULL), what stands in for it.
 static const struct passes *passes_of(const struct renderer *r, const char *way)
 {
     for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
-        if (!way || !strcmp(passes[i].way, way))
+        if ((!way || !strcmp(passes[i].way, way)) && (r->gl->compute || !passes[i].compute))
             return &passes[i];
     return NULL;
 }
@@ -182,8 +185,7 @@ static relume_status draw_passes(bool *drawn, struct renderer *r, const struct f
     if (q->timed)
         r->gl->Finish();
     const double start = now_s();
-    const relume_status status =
-        renderer_draw_between(drawn, r, q, place, lights, count, by->directional);
+    const relume_status status = renderer_draw_between(drawn, r, q, place, lights, count, by->as);
     if (q->timed)
         r->gl->Finish();
     *ms = *drawn ? 1e3 * (now_s() - start) : 0.0;

@@ -259,7 +259,9 @@ void between_destroy(struct between *b)
     destroy_targets(b);
     target_destroy(&b->even, b->gl);
     joined_destroy(&b->leaf_lamps, b->gl);
+    point_light_destroy(&b->point_light);
     micro_destroy(&b->micro);
+    ism_destroy(&b->ism);
     card_points_destroy(&b->points);
     captured_mesh_destroy(&b->mesh);
     shadow_map_destroy(&b->captured);
@@ -392,20 +394,32 @@ static relume_status need_white(struct between *b, struct objects_drawer *t,
 }
 
 // Ways that gather from points.
-static bool has_points(const struct between_view *v)
+static bool has_points(enum between_way way)
 {
-    return v->way >= BETWEEN_MICRO;
+    return way >= BETWEEN_MICRO;
 }
 
-static relume_status need_points(struct between *b, const struct objects_drawer *t,
-                                 const struct between_view *v)
+static relume_status need_way(struct between *b, enum between_way way, int samples)
 {
-    if (!has_points(v))
+    relume_status status =
+        b->point_light.gl ? RELUME_OK : point_light_create(&b->point_light, b->gl, b->log);
+    if (!status && way == BETWEEN_MICRO && !b->micro.gl)
+        status = micro_create(&b->micro, b->gl, b->log);
+    if (!status && way == BETWEEN_ISM && !b->ism.gl)
+        status = ism_create(&b->ism, b->gl, b->log);
+    return status || way != BETWEEN_ISM ? status : ism_need(&b->ism, samples);
+}
+
+relume_status between_need(struct between *b, const struct objects_drawer *t,
+                           const struct relume_geometry *geometry, const struct target *places,
+                           enum between_way way, int samples)
+{
+    if (!has_points(way))
         return RELUME_OK;
-    relume_status status = b->micro.gl ? RELUME_OK : micro_create(&b->micro, b->gl, b->log);
+    relume_status status = need_way(b, way, samples);
     if (!status)
-        status = card_points_need(&b->points, b->gl, v->geometry, v->panorama_places, t->objects,
-                                  fingerprint(t), b->log);
+        status = card_points_need(&b->points, b->gl, geometry, places, t->objects, fingerprint(t),
+                                  b->log);
     const struct target *leaf = &b->points.leaf_place;
     if (status || (b->leaf_lamps.count && b->leaf_lamps.target[0].width == leaf->width &&
                    b->leaf_lamps.target[0].height == leaf->height))
@@ -426,7 +440,7 @@ relume_status between_begin(struct between *b, struct objects_drawer *t,
         status = need_white(b, t, v);
     if (status)
         return status;
-    status = need_points(b, t, v);
+    status = between_need(b, t, v->geometry, v->panorama_places, v->way, v->samples);
     if (status)
         return status;
     find_backs(b, t, v);
@@ -475,7 +489,7 @@ static relume_status add_lamp(struct between *b, struct objects_drawer *t,
                     draw_captured, &b->mesh);
     const relume_status status =
         add_lamp_at(b, t, v, number, v->scene, &b->nearest.target[0], &b->by_lamps);
-    if (status || !has_points(v))
+    if (status || !has_points(v->way))
         return status;
     return add_lamp_at(b, t, v, number, &b->points.leaf_place, &b->points.leaf_facing,
                        &b->leaf_lamps);
@@ -549,33 +563,37 @@ static void gather(const struct between *b, const struct objects_drawer *t,
     draw_whole(b, &b->gather, &b->show);
 }
 
-static struct micro_view micro_view(const struct between *b, const struct objects_drawer *t,
-                                    const struct between_view *v)
+static struct points_view points_view(const struct between *b, const struct objects_drawer *t,
+                                      const struct between_view *v)
 {
     const float *eye = v->projection->eye;
-    return (struct micro_view){.points = &b->points,
-                               .centre = v->geometry->center,
-                               .eye = {(double)eye[0], (double)eye[1], (double)eye[2]},
-                               .radius = t->radius,
-                               .samples = v->samples,
-                               .spacing = v->spacing,
-                               .bounces = v->bounces,
-                               .sends = v->sends};
+    return (struct points_view){.points = &b->points,
+                                .centre = v->geometry->center,
+                                .eye = {(double)eye[0], (double)eye[1], (double)eye[2]},
+                                .middle = t->middle,
+                                .radius = t->radius,
+                                .samples = v->samples,
+                                .spacing = v->spacing,
+                                .bounces = v->bounces,
+                                .sends = v->sends};
 }
 
 // The alpha of places: of find_nearest 2 for objects, of the scene 1.
 static void gather_from_points(struct between *b, const struct objects_drawer *t,
                                const struct between_view *v, bool at_objects)
 {
-    const struct micro_view view = micro_view(b, t, v);
-    joined_begin(&b->gathered, b->gl);
-    micro_gather(&b->micro, &view,
-                 &(struct micro_sites){.place = at_objects ? &b->nearest.target[1] : v->scene,
+    const struct points_view view = points_view(b, t, v);
+    const struct points_sites sites = {.place = at_objects ? &b->nearest.target[1] : v->scene,
                                        .facing = &b->nearest.target[at_objects ? 2 : 0],
                                        .kind = at_objects ? 2.0f : 1.0f,
                                        .of_scene = !at_objects,
                                        .without = &b->gathered.target[0],
-                                       .with_objects = &b->gathered.target[1]});
+                                       .with_objects = &b->gathered.target[1]};
+    joined_begin(&b->gathered, b->gl);
+    if (v->way == BETWEEN_ISM)
+        ism_gather(&b->ism, &view, &sites);
+    else
+        micro_gather(&b->micro, &view, &sites);
 }
 
 static void smooth(const struct between *b, const struct between_view *v, bool at_objects)
@@ -645,9 +663,13 @@ static void add_shaded(struct between *b, struct objects_drawer *t)
 static relume_status light_points(struct between *b, const struct objects_drawer *t,
                                   const struct between_view *v, const struct target *panorama)
 {
-    const struct micro_view view = micro_view(b, t, v);
-    return micro_light(&b->micro, &view, panorama, &b->even, &b->leaf_lamps.target[0],
-                       &b->leaf_lamps.target[1]);
+    const struct points_view view = points_view(b, t, v);
+    const struct points_lit lit = {.panorama = panorama,
+                                   .mean = &b->even,
+                                   .let_without = &b->leaf_lamps.target[0],
+                                   .let_with = &b->leaf_lamps.target[1]};
+    return v->way == BETWEEN_ISM ? ism_light(&b->ism, &b->point_light, &view, &lit)
+                                 : micro_light(&b->micro, &b->point_light, &view, &lit);
 }
 
 // What objects have gathered, or else the scene.
@@ -655,7 +677,7 @@ static void gather_at(struct between *b, const struct objects_drawer *t,
                       const struct between_view *v, const struct target *panorama,
                       const struct target *lone, bool at_objects)
 {
-    if (has_points(v))
+    if (has_points(v->way))
         gather_from_points(b, t, v, at_objects);
     else
         gather(b, t, v, panorama, lone, at_objects);
@@ -669,7 +691,7 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
 {
     relume_status status = objects_drawer_light(t, light, 1);
     joined_begin(&b->by_lamps, b->gl);
-    if (has_points(v))
+    if (has_points(v->way))
         joined_begin(&b->leaf_lamps, b->gl);
     for (int i = 0; i < t->light_samples && !status; i++)
         status = add_lamp(b, t, v, i);
@@ -680,7 +702,7 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
     if (status)
         return status;
     find_mean(b, v, panorama);
-    if (has_points(v))
+    if (has_points(v->way))
         status = light_points(b, t, v, panorama);
     else
         show(b, t, v, lone);
@@ -688,7 +710,7 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
         return status;
     gather_at(b, t, v, panorama, lone, true);
     throw_back(b, t, &b->thrown);
-    if (v->bounces > 1 && !has_points(v))
+    if (v->bounces > 1 && !has_points(v->way))
         throw_back(b, t, &b->show);
     gather_at(b, t, v, panorama, lone, false);
     add_scene(b, v, lone, lit, exposure);

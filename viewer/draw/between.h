@@ -10,10 +10,11 @@
 #define VIEWER_BETWEEN_H
 
 #include "draw/objects_drawer.h"
+#include "transport/ism.h"
 #include "transport/micro.h"
 
 // How light is gathered.
-enum between_way { BETWEEN_AMBIENT, BETWEEN_DIRECTIONAL, BETWEEN_MICRO };
+enum between_way { BETWEEN_AMBIENT, BETWEEN_DIRECTIONAL, BETWEEN_MICRO, BETWEEN_ISM };
 
 // Targets that are drawn at once.
 enum { BETWEEN_JOINED = 4 };
@@ -49,7 +50,9 @@ struct between {
     // Of ways that gather from points; made when first needed.
     struct card_points points;
     struct joined leaf_lamps;  // as by_lamps
+    struct point_light point_light;
     struct micro micro;
+    struct ism ism;
 };
 
 // What all passes of a frame know.
@@ -71,6 +74,11 @@ relume_status between_create(struct between *b, const struct gl *gl,
                              const struct relume_geometry *geometry, const struct target *places,
                              const struct relume_log *log);
 void between_destroy(struct between *b);
+// What a way needs besides, of objects in the panorama that sees `places`. RELUME_ESYSTEM,
+// RELUME_ENOMEM.
+relume_status between_need(struct between *b, const struct objects_drawer *drawer,
+                           const struct relume_geometry *geometry, const struct target *places,
+                           enum between_way way, int samples);
 
 // A frame: between_begin, for each light between_light, between_end. `drawer` has the surface of
 // the objects when it has begun; what it has shaded in the end are all lights.

@@ -4,9 +4,20 @@
 
 #include <relume/transport.h>
 
-enum { BOUNCES = 2, PATTERN = 4 };  // as relume_render_params; as transport/screen.c
-static const char *const way_names[] = {
-    [BETWEEN_AMBIENT] = "ssao", [BETWEEN_DIRECTIONAL] = "ssdo", [BETWEEN_MICRO] = "micro"};
+enum { BOUNCES = 2 };  // as relume_render_params
+static const struct {
+    const char *name;
+    int pattern;  // as its `relume_transport` has it
+} ways[] = {[BETWEEN_AMBIENT] = {"ssao", 4},
+            [BETWEEN_DIRECTIONAL] = {"ssdo", 4},
+            [BETWEEN_MICRO] = {"micro", 1},
+            [BETWEEN_ISM] = {"ism", ISM_PATTERN}};
+
+static int samples_of(const struct frame_request *q, enum between_way way)
+{
+    return q->way_samples ? q->way_samples
+                          : relume_transport_samples(relume_transport_find(ways[way].name));
+}
 
 static void swap(struct target *a, struct target *b)
 {
@@ -19,6 +30,13 @@ static relume_status prepare(struct renderer *r, const struct place *place)
 {
     relume_status status = renderer_prepare(&r->scene, r, place->width, place->height);
     return status ? status : renderer_prepare(&r->lit, r, place->width, place->height);
+}
+
+relume_status renderer_need_points(struct renderer *r, const struct frame_request *q,
+                                   enum between_way way)
+{
+    return between_need(&r->between, &r->drawer, &r->geometry, &r->place[0], way,
+                        samples_of(q, way));
 }
 
 relume_status renderer_need_between(struct renderer *r, const struct frame_request *q,
@@ -87,20 +105,19 @@ relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struc
         status = renderer_find_scene(r, q, *place);
     if (status)
         return status;
-    const struct relume_transport *like = relume_transport_find(way_names[way]);
-    const int bounces = q->bounces ? q->bounces : BOUNCES, spacing = relume_transport_spacing(like);
-    const struct between_view view = {.geometry = &r->geometry,
-                                      .panorama_places = &r->place[0],
-                                      .scene = &r->scene,
-                                      .projection = &projection,
-                                      .width = place->width,
-                                      .height = place->height,
-                                      .way = way,
-                                      .bounces = bounces > 0 ? bounces : 0,
-                                      .samples = q->way_samples ? q->way_samples
-                                                                : relume_transport_samples(like),
-                                      .pattern = spacing ? 1 : PATTERN,
-                                      .spacing = spacing,
-                                      .sends = count ? 1.0f / (float)count : 0.0f};
+    const int bounces = q->bounces ? q->bounces : BOUNCES;
+    const struct between_view view = {
+        .geometry = &r->geometry,
+        .panorama_places = &r->place[0],
+        .scene = &r->scene,
+        .projection = &projection,
+        .width = place->width,
+        .height = place->height,
+        .way = way,
+        .bounces = bounces > 0 ? bounces : 0,
+        .samples = samples_of(q, way),
+        .pattern = ways[way].pattern,
+        .spacing = relume_transport_spacing(relume_transport_find(ways[way].name)),
+        .sends = count ? 1.0f / (float)count : 0.0f};
     return draw(r, q, place, &view, lights, count);
 }

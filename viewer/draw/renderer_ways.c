@@ -50,16 +50,17 @@ relume_status renderer_wait(struct renderer *r)
 static const struct passes {
     const char *way;
     enum between_way as;
-    bool compute;  // of OpenGL 4.3
+    bool compute;  // gathers from points, by passes of OpenGL 4.3
 } passes[] = {{"ssdo", BETWEEN_DIRECTIONAL, false},
               {"ssao", BETWEEN_AMBIENT, false},
-              {"micro", BETWEEN_MICRO, true}};
+              {"micro", BETWEEN_MICRO, true},
+              {"ism", BETWEEN_ISM, true}};
 
 // NULL: there are none of that way; for any of them (NULL), what stands in for it.
 static const struct passes *passes_of(const struct renderer *r, const char *way)
 {
     for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
-        if ((!way || !strcmp(passes[i].way, way)) && (r->gl->compute || !passes[i].compute))
+        if ((!way || !strcmp(passes[i].way, way)) && (!passes[i].compute || !r->no_points))
             return &passes[i];
     return NULL;
 }
@@ -105,17 +106,44 @@ static bool wants_passes(const struct renderer *r, const struct frame_request *q
 }
 
 // Where OpenGL cannot do it, as it has said then, the library does.
-static relume_status check_passes(struct renderer *r, const struct frame_request *q,
-                                  const struct place *place)
+static relume_status leave_to_library(struct renderer *r, bool *left, relume_status status)
 {
-    const bool wanted = wants_passes(r, q, q->way) || wants_passes(r, q, q->other_way);
-    const relume_status status = wanted ? renderer_need_between(r, q, place) : RELUME_OK;
     if (status != RELUME_ESYSTEM)
         return status;
     r->log->message(r->log->user, RELUME_NOTE,
                     "light between objects and scene is gathered by the library, not by passes");
-    r->ways_by_library = true;
+    *left = true;
     return RELUME_OK;
+}
+
+static void do_without_compute(struct renderer *r)
+{
+    r->log->message(r->log->user, RELUME_NOTE,
+                    "micro and ism are gathered by the library: passes of theirs need OpenGL 4.3");
+    r->no_points = true;
+}
+
+static relume_status check_points(struct renderer *r, const struct frame_request *q, int way)
+{
+    const struct passes *by = way == NO_WAY ? NULL : passes_of(r, way_name(way));
+    if (!by || !by->compute || !wants_passes(r, q, way))
+        return RELUME_OK;
+    if (r->gl->compute)
+        return leave_to_library(r, &r->no_points, renderer_need_points(r, q, by->as));
+    do_without_compute(r);
+    return RELUME_OK;
+}
+
+static relume_status check_passes(struct renderer *r, const struct frame_request *q,
+                                  const struct place *place)
+{
+    if (!wants_passes(r, q, q->way) && !wants_passes(r, q, q->other_way))
+        return RELUME_OK;
+    relume_status status =
+        leave_to_library(r, &r->ways_by_library, renderer_need_between(r, q, place));
+    if (!status)
+        status = check_points(r, q, q->way);
+    return status || q->ways == APP_SPLIT_NONE ? status : check_points(r, q, q->other_way);
 }
 
 static relume_status ask(struct renderer *r, const struct frame_request *q, int slot, int way,

@@ -22,13 +22,16 @@ struct card_leaf {
 
 static void release_buffers(struct card_points *c)
 {
-    const GLuint buffers[] = {c->node, c->sent, c->leaf, c->block};
-    const GLuint textures[] = {c->node_texels, c->sent_texels};
+    const GLuint buffers[] = {c->node, c->sent, c->leaf, c->block, c->spot[0], c->spot[1]};
+    const GLuint textures[] = {c->node_texels, c->sent_texels, c->spot_texels[0],
+                               c->spot_texels[1]};
     c->gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
     c->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
     target_destroy(&c->leaf_place, c->gl);
     target_destroy(&c->leaf_facing, c->gl);
     c->node = c->sent = c->leaf = c->block = c->node_texels = c->sent_texels = 0;
+    memset(c->spot, 0, sizeof c->spot);
+    memset(c->spot_texels, 0, sizeof c->spot_texels);
     c->of = 0;
 }
 
@@ -156,6 +159,23 @@ static relume_status upload_leaves(struct card_points *c)
     return status;
 }
 
+static relume_status upload_spots(struct card_points *c, int i)
+{
+    const struct relume_points *p = &c->tree[i ? CARD_OBJECTS : CARD_SCENE];
+    float(*texel)[2][4] = calloc(p->spots + 1, sizeof *texel);
+    if (!texel)
+        return RELUME_ENOMEM;
+    for (size_t k = 0; k < p->spots; k++) {
+        memcpy(texel[k][0], p->spot[k].place, sizeof p->spot->place);
+        memcpy(texel[k][1], p->spot[k].normal, sizeof p->spot->normal);
+        texel[k][0][3] = p->spot[k].both ? 1.0f : 0.0f;
+    }
+    c->spot[i] = gl_storage(c->gl, (p->spots + 1) * sizeof *texel, texel);
+    c->spot_texels[i] = as_texels(c, c->spot[i]);
+    free(texel);
+    return RELUME_OK;
+}
+
 static relume_status upload(struct card_points *c)
 {
     const struct relume_points *scene = &c->tree[CARD_SCENE];
@@ -172,6 +192,8 @@ static relume_status upload(struct card_points *c)
     relume_status status = upload_nodes(c, nodes);
     if (!status)
         status = upload_leaves(c);
+    for (int i = 0; i < 2 && !status; i++)
+        status = upload_spots(c, i);
     return status ? status : gl_check(c->gl, "uploading points", c->log);
 }
 

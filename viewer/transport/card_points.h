@@ -19,11 +19,12 @@ struct card_points {
     const struct gl *gl;
     const struct relume_log *log;
     struct relume_points tree[CARD_TREES];
-    uint64_t of;                            // materials that objects show
-    GLuint node, sent, leaf, block;         // of all trees, one behind the other
-    GLuint node_texels, sent_texels;        // the same as textures: three texels for each, two
-    int first[CARD_TREES];                  // node of each
-    int leaves, of_scene;                   // of which so many are the scene's, which come first
+    uint64_t of;                      // materials that objects show
+    GLuint node, sent, leaf, block;   // of all trees, one behind the other
+    GLuint node_texels, sent_texels;  // the same as textures: three texels for each, two
+    GLuint spot[2], spot_texels[2];   // of the scene and the objects: place and normal, two texels
+    int first[CARD_TREES];            // node of each
+    int leaves, of_scene;             // of which so many are the scene's, which come first
     struct target leaf_place, leaf_facing;  // a texel for each leaf; alpha 1 the scene, 2 objects
 };
 

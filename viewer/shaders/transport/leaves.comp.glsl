@@ -2,9 +2,7 @@
 // What leaves send under a light: of the scene what its pixels show, and the part of it that objects leave;
 // of objects what lamps bring and what they have gathered. Twins: light_leaves, light_point.
 layout(local_size_x = 64) in;
-struct Sent {
-    vec4 without, with_objects;
-};
+#include "transport/tree.glsl"
 struct Leaf {
     vec3 returned;  // of even light
     int node;
@@ -24,6 +22,7 @@ uniform sampler2D gathered;                // by leaves
 uniform ivec2 range;                       // first leaf, and behind the last
 uniform int of_scene;                      // so many of all
 uniform ivec2 layout_of;                   // blocks in a row, their side in pixels
+uniform vec4 ball;                         // about the objects
 uniform float sends, returns;              // of what leaves send of their own; of what they return
 
 float sum_of(vec3 rgb)
@@ -52,7 +51,8 @@ void main()
     vec3 left = texelFetch(let_with, at, 0).rgb, own = vec3(0.0);
     if (i >= of_scene) {
         own = returns * leaf[i].returned * (left + texelFetch(gathered, at, 0).rgb) + sends * leaf[i].emitted;
-        sent[leaf[i].node] = Sent(vec4(0.0), vec4(max(own, 0.0), 1.0));
+        own = max(own, 0.0);
+        sent[leaf[i].node] = Sent(vec4(vec3(0.0), sum_of(own) * node[leaf[i].node].area), vec4(own, 1.0));
         return;
     }
     for (int k = leaf[i].begins; k < leaf[i + 1].begins; k++)
@@ -60,5 +60,7 @@ void main()
     float rest = sum_of(texelFetch(mean, ivec2(0), 0).rgb);
     float before = rest + sum_of(texelFetch(let_without, at, 0).rgb), after = rest + sum_of(left);
     float part = before > 0.0 ? after / before : 1.0;
-    sent[leaf[i].node] = Sent(vec4(own, 1.0), vec4(part * own, 1.0));
+    vec3 to = node[leaf[i].node].ball.xyz - ball.xyz;
+    float arrives = sum_of(own) * node[leaf[i].node].area / (dot(to, to) + ball.w * ball.w);
+    sent[leaf[i].node] = Sent(vec4(own, arrives), vec4(part * own, 1.0));
 }

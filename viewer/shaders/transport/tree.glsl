@@ -6,6 +6,6 @@ struct Node {
     float child;  // node of the first of eight children; -1: it is a leaf
 };
 struct Sent {
-    vec4 without, with_objects;
+    vec4 without, with_objects;  // alpha of the first: how bright it is, of nodes the sum
 };
 layout(std430, binding = 0) readonly buffer Nodes { Node node[]; };

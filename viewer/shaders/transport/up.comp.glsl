@@ -16,7 +16,7 @@ void main()
         float weight = node[k].area / node[i].area;
         if (node[k].ball.w < 0.0)
             continue;
-        sum.without += weight * sent[k].without;
+        sum.without += vec4(vec3(weight), 1.0) * sent[k].without;
         sum.with_objects += weight * sent[k].with_objects;
     }
     sent[i] = sum;

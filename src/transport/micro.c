@@ -436,6 +436,7 @@ const struct relume_transport transport_micro = {
     .samples = 64,
     .spacing = 4,
     .pattern = 1,
+    .passes = 43,
     .begin = begin,
     .end = end,
     .gather = gather,

@@ -5,6 +5,8 @@
 #include "draw/renderer_parts.h"
 #include "program/clock.h"
 
+#include <relume/transport.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -46,21 +48,26 @@ relume_status renderer_wait(struct renderer *r)
 
 // ---------------------------------------------------------------- asking
 
-// Ways that are passes, too (renderer_between.c).
+// Ways that are passes, too (renderer_between.c): those of relume_transports that say so.
 static const struct passes {
     const char *way;
     enum between_way as;
-    bool compute;  // gathers from points, by passes of OpenGL 4.3
-} passes[] = {{"ssdo", BETWEEN_DIRECTIONAL, false},
-              {"ssao", BETWEEN_AMBIENT, false},
-              {"micro", BETWEEN_MICRO, true},
-              {"ism", BETWEEN_ISM, true}};
+} passes[] = {{"ssdo", BETWEEN_DIRECTIONAL},
+              {"ssao", BETWEEN_AMBIENT},
+              {"micro", BETWEEN_MICRO},
+              {"ism", BETWEEN_ISM}};
+
+// They gather from points.
+static bool need_compute(const struct passes *p)
+{
+    return relume_transport_passes(relume_transport_find(p->way)) > 33;
+}
 
 // NULL: there are none of that way; for any of them (NULL), what stands in for it.
 static const struct passes *passes_of(const struct renderer *r, const char *way)
 {
     for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
-        if ((!way || !strcmp(passes[i].way, way)) && (!passes[i].compute || !r->no_points))
+        if ((!way || !strcmp(passes[i].way, way)) && !(need_compute(&passes[i]) && r->no_points))
             return &passes[i];
     return NULL;
 }
@@ -126,7 +133,7 @@ static void do_without_compute(struct renderer *r)
 static relume_status check_points(struct renderer *r, const struct frame_request *q, int way)
 {
     const struct passes *by = way == NO_WAY ? NULL : passes_of(r, way_name(way));
-    if (!by || !by->compute || !wants_passes(r, q, way))
+    if (!by || !need_compute(by) || !wants_passes(r, q, way))
         return RELUME_OK;
     if (r->gl->compute)
         return leave_to_library(r, &r->no_points, renderer_need_points(r, q, by->as));

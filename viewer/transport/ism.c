@@ -11,21 +11,9 @@
 enum { USUAL = 64, LEAST = 8, ATLAS = 4096 * 4096 / 4 * 5, ATLAS_WIDE = 4096, POINTS = 4 };
 enum { TEXELS_OF_LIGHT = 4 };
 
-enum {
-    PLACE,
-    FACING,
-    ROOT,
-    LEAF_OF,
-    RANGE,
-    AGAIN,
-    CENTRE,
-    OFF,
-    PATTERN_OF,
-    LIGHTS_OBJECTS,
-    LIGHTS_COUNT
-};
+enum { PLACE, FACING, ROOT, LEAF_OF, RANGE, AGAIN, CENTRE, OFF, LIGHTS_OBJECTS, LIGHTS_COUNT };
 static const char *const lights_uniforms[] = {"place", "facing", "root", "leaf_of", "range",
-                                              "again", "centre", "off",  "pattern", "objects"};
+                                              "again", "centre", "off",  "objects"};
 enum { MAPS_LIGHT, SPOT, SPOTS, AREA, FIRST_MAP, AT_OBJECTS, MAPS_OBJECTS, MAPS_COUNT };
 static const char *const maps_uniforms[] = {"light", "spot",       "spots",  "area",
                                             "first", "at_objects", "objects"};
@@ -191,7 +179,6 @@ static void draw_lights(const struct ism *s, const struct points_view *v, const 
     gl->Uniform4f(at[CENTRE], (float)v->centre.x, (float)v->centre.y, (float)v->centre.z,
                   of_scene ? (float)DEPTH : 0.0f);
     gl->Uniform1f(at[OFF], of_scene ? 0.0f : (float)(SURFACE * v->radius));
-    gl->Uniform1f(at[PATTERN_OF], (float)(ISM_PATTERN * ISM_PATTERN));
     gl->DispatchCompute((GLuint)((count + AT_ONCE - 1) / AT_ONCE), 1, 1);
     points_wait(gl);
 }

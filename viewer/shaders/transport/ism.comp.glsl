@@ -84,9 +84,9 @@ void main()
     } else {
         int step = pattern * pattern, own = at.x % pattern + pattern * (at.y % pattern);
         for (int i = 0; i < lights.y; i++) {
-            float reach = texelFetch(light, 4 * i + 2).w;
-            vec3 to = texelFetch(light, 4 * i).xyz - site.start;
-            if (reach > dot(to, to))
+            vec4 v = texelFetch(light, 4 * i);  // what is far away stands farther off than that
+            vec3 to = v.xyz - site.start;
+            if (float(step) * v.w > PI * dot(to, to))
                 gather_one(bare, full, site, i, 1.0);
             else if (i % step == own)
                 gather_one(bare, full, site, i, float(step));

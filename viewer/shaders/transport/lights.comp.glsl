@@ -16,7 +16,6 @@ uniform ivec2 range;              // first light, and how many
 uniform bool again;
 uniform vec4 centre;              // the eye that captured the scene; how far off it depth may be wrong
 uniform float off;                // where light of objects begins: off its surface
-uniform float pattern;            // so many pixels share the lights
 
 // The child in which `u` lies, which becomes the rest.
 int choose(int first, inout float u)
@@ -52,7 +51,7 @@ void put(int i, int k, int tree, float share)
     float size = node[k].area * share / (far > 0.0 ? dot(to, to) : 1.0);
     vec3 start = at.xyz + max(off, centre.w * length(to)) * normal;
     light[i] = Texels(vec4(start, size), vec4(far > 0.0 ? -normal : normal, far),
-                      vec4(sent[k].without.rgb, far > 0.0 ? 0.0 : pattern * size / PI),
+                      vec4(sent[k].without.rgb, 0.0),
                       vec4(sent[k].with_objects.rgb, float(k)));
 }
 

@@ -4,9 +4,7 @@ struct Virtual {
     float size;   // an area, or a solid angle; 0: it is dark
     vec3 normal;  // of one that is far away the direction to it
     bool far;
-    vec3 without;
-    float reach;  // squared: so near each stands for itself
-    vec3 with_objects;
+    vec3 without, with_objects;
     int node;
 };
 uniform vec4 objects;  // the ball about them

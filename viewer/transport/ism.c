@@ -110,7 +110,7 @@ relume_status ism_need(struct ism *s, int samples)
     while (size > LEAST && lights * size * size > ATLAS)
         size /= 2;
     const int64_t across = ATLAS_WIDE / size, rows = (lights + across - 1) / across * size;
-    if (rows > gl->max_texture || gl->max_texture < ATLAS_WIDE ||
+    if (lights * size * size > ATLAS || rows > gl->max_texture || gl->max_texture < ATLAS_WIDE ||
         lights * TEXELS_OF_LIGHT > gl->max_buffer)
         return say(s->log, RELUME_ESYSTEM,
                    "%d samples are %lld virtual lights, whose shadow maps do not fit into the "
@@ -197,6 +197,7 @@ static float area_of(const struct ism *s, const struct relume_points *p)
 
 static void draw_maps(const struct ism *s, const struct points_view *v, int first, int count)
 {
+    enum { AT_ONCE = 65535 };  // work groups, that any OpenGL has
     const struct gl *gl = s->gl;
     const GLint *at = s->maps.at;
     gl->UseProgram(s->maps.id);
@@ -207,10 +208,12 @@ static void draw_maps(const struct ism *s, const struct points_view *v, int firs
         use_texels(gl, at[SPOT], 1, v->points->spot_texels[i]);
         gl->Uniform2i(at[SPOTS], (int)p->spots, run_of(s, p));
         gl->Uniform1f(at[AREA], area_of(s, p));
-        gl->Uniform1i(at[FIRST_MAP], first);
         gl->Uniform1i(at[AT_OBJECTS], i);
         gl->BindImageTexture(0, s->atlas[i], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-        gl->DispatchCompute((GLuint)count, 1, 1);
+        for (int done = 0; done < count; done += AT_ONCE) {
+            gl->Uniform1i(at[FIRST_MAP], first + done);
+            gl->DispatchCompute((GLuint)(count - done < AT_ONCE ? count - done : AT_ONCE), 1, 1);
+        }
     }
     points_wait(gl);
 }

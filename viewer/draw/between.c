@@ -407,7 +407,9 @@ static relume_status need_way(struct between *b, enum between_way way, int sampl
         status = micro_create(&b->micro, b->gl, b->log);
     if (!status && way == BETWEEN_ISM && !b->ism.gl)
         status = ism_create(&b->ism, b->gl, b->log);
-    return status || way != BETWEEN_ISM ? status : ism_need(&b->ism, samples);
+    if (status)
+        return status;
+    return way == BETWEEN_ISM ? ism_need(&b->ism, samples) : micro_need(&b->micro, samples);
 }
 
 relume_status between_need(struct between *b, const struct objects_drawer *t,

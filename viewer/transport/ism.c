@@ -83,12 +83,13 @@ static relume_status need_programs(struct ism *s, int size)
     program_destroy(&s->maps, s->gl);
     program_destroy(&s->gather, s->gl);
     snprintf(defines, sizeof defines, "#define SIZE %d\n", size);
-    s->size = size;
-    const relume_status status = program_create_compute(&s->maps, s->gl, "transport_maps.comp",
-                                                        defines, maps_uniforms, MAPS_COUNT, s->log);
-    return status ? status
-                  : program_create_compute(&s->gather, s->gl, "transport_ism.comp", defines,
-                                           gather_uniforms, GATHER_COUNT, s->log);
+    relume_status status = program_create_compute(&s->maps, s->gl, "transport_maps.comp", defines,
+                                                  maps_uniforms, MAPS_COUNT, s->log);
+    if (!status)
+        status = program_create_compute(&s->gather, s->gl, "transport_ism.comp", defines,
+                                        gather_uniforms, GATHER_COUNT, s->log);
+    s->size = status ? 0 : size;
+    return status;
 }
 
 static GLuint make_atlas(const struct ism *s, int rows)

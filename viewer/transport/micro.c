@@ -71,14 +71,15 @@ static relume_status make_picture(struct micro *m, int side)
     free(pixel);
     program_destroy(&m->gather, m->gl);
     snprintf(defines, sizeof defines, "#define SIDE %d\n#define PIXELS %d\n", side, pixels);
-    m->side = side;
-    return program_create_compute(&m->gather, m->gl, "transport_micro.comp", defines,
-                                  gather_uniforms, GATHER_COUNT, m->log);
+    const relume_status status = program_create_compute(
+        &m->gather, m->gl, "transport_micro.comp", defines, gather_uniforms, GATHER_COUNT, m->log);
+    m->side = status ? 0 : side;
+    return status;
 }
 
-static relume_status need_picture(struct micro *m, const struct points_view *v)
+relume_status micro_need(struct micro *m, int samples)
 {
-    const int wanted = (int)sqrt((double)v->samples);
+    const int wanted = (int)sqrt((double)samples);
     const int side = wanted < MICRO_LEAST ? MICRO_LEAST : wanted > MICRO_MOST ? MICRO_MOST : wanted;
     return side == m->side ? RELUME_OK : make_picture(m, side);
 }
@@ -118,7 +119,7 @@ static void gather_at_leaves(const struct micro *m, const struct point_light *li
 relume_status micro_light(struct micro *m, struct point_light *light, const struct points_view *v,
                           const struct points_lit *lit)
 {
-    relume_status status = need_picture(m, v);
+    relume_status status = micro_need(m, v->samples);
     if (!status)
         status = point_light_scene(light, v, lit);
     for (int i = 0; i < v->bounces && !status; i++) {

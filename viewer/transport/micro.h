@@ -26,6 +26,8 @@ struct micro {
 relume_status micro_create(struct micro *m, const struct gl *gl, const struct relume_log *log);
 void micro_destroy(struct micro *m);
 
+// Pictures of about so many pixels. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status micro_need(struct micro *m, int samples);
 // Points send what they do under a light. View.samples are pixels of pictures. RELUME_ESYSTEM,
 // RELUME_ENOMEM.
 relume_status micro_light(struct micro *m, struct point_light *light,

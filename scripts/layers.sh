@@ -56,7 +56,7 @@ reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport
 baked:base math geometry image:base coder codebook directions light bake
-object:base math mesh transport frame baked:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport object renderer bake mesh billboards simplify
+object:base math mesh transport frame baked:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport points object renderer bake mesh billboards simplify
 bake:base math mesh baked object:base light surface btf object bake
 tableau:base math geometry mesh transport frame object:base image light relight view slab_set pack frame viewport object renderer exchange rig tableau
 helper:base image mesh:base
@@ -73,10 +73,11 @@ viewer/app:common program:*
 viewer/gl:common program:base image
 viewer/relit:common program app gl:*
 viewer/glare:common program app gl:base image eye psf glare
-viewer/draw:common program app gl relit glare:*
+viewer/transport:common program app gl:*
+viewer/draw:common program app gl relit glare transport:*
 viewer/panel:common program app gl:*
 viewer/window:common program app gl:base
-viewer/session:common program app gl relit glare draw panel window:*
+viewer/session:common program app gl relit glare transport draw panel window:*
 samples::*"
 
 if [ "${1:-}" = --table ]; then

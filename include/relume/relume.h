@@ -37,6 +37,7 @@
 #include <relume/pack.h>
 #include <relume/photograph.h>
 #include <relume/photometric.h>
+#include <relume/points.h>
 #include <relume/psf.h>
 #include <relume/publish.h>
 #include <relume/reflection.h>

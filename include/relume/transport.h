@@ -33,6 +33,9 @@ RELUME_API const char *relume_transport_summary(const struct relume_transport *t
 RELUME_API int relume_transport_samples(const struct relume_transport *transport);
 // Pixels from one that gathers to the next, where nothing else is asked for; 0: always each.
 RELUME_API int relume_transport_spacing(const struct relume_transport *transport);
+// The version of OpenGL, times ten, with which relume-view gathers this way by passes over each
+// frame of a panorama with depth; 0: it has none for it.
+RELUME_API int relume_transport_passes(const struct relume_transport *transport);
 
 #ifdef __cplusplus
 }

@@ -12,6 +12,7 @@ const struct relume_transport transport_ism = {
     .summary = "many virtual lights, each with a small shadow map drawn from points",
     .samples = INSTANT_SAMPLES,
     .pattern = INSTANT_PATTERN,
+    .passes = 43,
     .begin = begin,
     .end = instant_end,
     .gather = instant_gather,

@@ -7,7 +7,7 @@
 // are looked for by a ray; of the paper's rays, which meet discs, these meet the triangles.
 // Points of objects gather in the same way, once for each bounce (Jacobi's iteration).
 #include "transport/cut.h"
-#include "transport/points.h"
+#include "transport/pieces.h"
 #include "transport/warp.h"
 
 #include "base/memory.h"
@@ -16,8 +16,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-enum { SCENE_LEAVES = 1 << 15, OBJECT_LEAVES = 1 << 12 };
-enum { SIDES = 2 };  // of objects: their points, and the backs of those that are lit on both sides
+enum { SIDES = PIECES_SIDES };
 
 struct micro {
     struct cut_view view;
@@ -202,45 +201,6 @@ static void gather(const struct world *w, const struct site *site, take_arrival 
 
 // ---------------------------------------------------------------- the scene's points
 
-// Of each triangle its middle, and of the background each block, so far away that it is in the
-// same direction from everywhere.
-static void put_scene_piece(struct piece *out, const struct world *w, size_t i, double far)
-{
-    const struct scenery *c = w->scenery;
-    const struct mesh *mesh = scenery_mesh(c);
-    const vec3 eye = scenery_eye(c);
-    if (i >= mesh->triangle_count) {
-        vec3 towards;
-        float unused[3];
-        const double angle = scenery_piece(&towards, unused, c, i - mesh->triangle_count, 0.5, 0.5);
-        *out = (struct piece){{0}, {0}};
-        if (!(angle > 0.0))
-            return;
-        vec3_store(out->place, vec3_along(eye, towards, far));
-        vec3_store(out->area, vec3_scale(towards, -angle * far * far));
-        return;
-    }
-    vec3 at[3];
-    mesh_corners(at, mesh, i);
-    const vec3 twice = mesh_twice_area(at);
-    const double side = vec3_dot(twice, vec3_sub(eye, at[0])) < 0.0 ? -0.5 : 0.5;
-    vec3_store(out->place, vec3_scale(vec3_add(vec3_add(at[0], at[1]), at[2]), 1.0 / 3.0));
-    vec3_store(out->area, vec3_scale(twice, side));
-}
-
-static double far_from(const struct world *w)
-{
-    const double FAR = 1000.0;
-    const struct mesh *mesh = scenery_mesh(w->scenery);
-    const vec3 eye = scenery_eye(w->scenery);
-    double most = w->radius;
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        most = fmax(most, vec3_length(vec3_sub(vertex_position(&mesh->vertices[i]), eye)));
-    for (size_t i = 0; i < w->mesh->vertex_count; i++)
-        most = fmax(most, vec3_length(vec3_sub(vertex_position(&w->mesh->vertices[i]), eye)));
-    return FAR * most;
-}
-
 // The background's may be of several pixels.
 static void sent_of_piece(float rgb[3], const struct scenery *c, size_t i)
 {
@@ -307,15 +267,11 @@ static void light_leaves(void *context, size_t item, int worker)
 
 static relume_status build_scene(struct micro *m, const struct world *w)
 {
-    const size_t count = scenery_mesh(w->scenery)->triangle_count + scenery_pieces(w->scenery);
-    struct piece *pieces = mem_array(count ? count : 1, sizeof *pieces);
-    if (!pieces)
-        return RELUME_ENOMEM;
-    const double far = far_from(w);
-    for (size_t i = 0; i < count; i++)
-        put_scene_piece(&pieces[i], w, i, far);
-    const relume_status status =
-        hierarchy_create(&m->scene, pieces, count, SCENE_LEAVES, w->threads);
+    struct piece *pieces;
+    size_t count;
+    relume_status status = pieces_of_scene(&pieces, &count, w->scenery, w->mesh);
+    if (!status)
+        status = hierarchy_create(&m->scene, pieces, count, PIECES_SCENE, w->threads);
     struct lighting_scene l = {w, &m->scene, pieces};
     if (!status) {
         thread_for(w->threads, (m->scene.leaves + AT_ONCE - 1) / AT_ONCE, light_leaves, &l);
@@ -331,18 +287,13 @@ static relume_status build_scene(struct micro *m, const struct world *w)
 static relume_status build_objects(struct micro *m, const struct world *w)
 {
     relume_status status =
-        points_of_objects(&m->points, w->mesh, w->objects, OBJECT_LEAVES, w->threads);
+        points_of_objects(&m->points, w->mesh, w->objects, PIECES_OBJECT, w->threads);
     for (int k = 0; k < 2 && !status; k++) {
-        struct piece *pieces = m->points.count ? mem_zeroed(m->points.count, sizeof *pieces) : NULL;
-        if (m->points.count && !pieces)
-            return RELUME_ENOMEM;
-        for (size_t i = 0; i < m->points.count; i++) {
-            const struct point *p = &m->points.at[i];
-            vec3_store(pieces[i].place, p->place);
-            if (!k || p->both)
-                vec3_store(pieces[i].area, vec3_scale(p->normal, k ? -p->area : p->area));
-        }
-        status = hierarchy_create(&m->side[k], pieces, m->points.count, OBJECT_LEAVES, w->threads);
+        struct piece *pieces;
+        status = pieces_of_points(&pieces, &m->points, k);
+        if (!status)
+            status =
+                hierarchy_create(&m->side[k], pieces, m->points.count, PIECES_OBJECT, w->threads);
         mem_free(pieces);
     }
     return status;
@@ -485,6 +436,7 @@ const struct relume_transport transport_micro = {
     .samples = 64,
     .spacing = 4,
     .pattern = 1,
+    .passes = 43,
     .begin = begin,
     .end = end,
     .gather = gather,

@@ -420,6 +420,12 @@ const struct mesh *scenery_mesh(const struct scenery *c)
     return &c->mesh;
 }
 
+int scenery_blocks(int *across, const struct scenery *c)
+{
+    *across = c->across;
+    return c->block;
+}
+
 void scenery_sent(float rgb[3], const struct scenery *c, size_t triangle, float u, float v)
 {
     const uint32_t *vertex = c->mesh.triangles[triangle].vertex;

@@ -30,6 +30,10 @@ vec3 scenery_eye(const struct scenery *c);
 const struct mesh *scenery_mesh(const struct scenery *c);
 void scenery_sent(float rgb[3], const struct scenery *c, size_t triangle, float u, float v);
 
+// Its vertices are blocks of so many pixels each way, row by row, `*across` of them in each; so are
+// the pieces of the background.
+int scenery_blocks(int *across, const struct scenery *c);
+
 // The background lies in pieces: the solid angle of one, 0 where it is none, what comes from there
 // on average, and the direction of (x, y) of it, 0 to 1.
 size_t scenery_pieces(const struct scenery *c);

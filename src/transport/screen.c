@@ -104,6 +104,7 @@ const struct relume_transport transport_ssao = {
     .samples = SAMPLES,
     .pattern = PATTERN,
     .screen = true,
+    .passes = 33,
     .gather = gather_ambient,
 };
 const struct relume_transport transport_ssdo = {
@@ -112,5 +113,6 @@ const struct relume_transport transport_ssdo = {
     .samples = SAMPLES,
     .pattern = PATTERN,
     .screen = true,
+    .passes = 33,
     .gather = gather_directional,
 };

@@ -258,6 +258,11 @@ void between_destroy(struct between *b)
         program_destroy(programs[i], b->gl);
     destroy_targets(b);
     target_destroy(&b->even, b->gl);
+    joined_destroy(&b->leaf_lamps, b->gl);
+    point_light_destroy(&b->point_light);
+    micro_destroy(&b->micro);
+    ism_destroy(&b->ism);
+    card_points_destroy(&b->points);
     captured_mesh_destroy(&b->mesh);
     shadow_map_destroy(&b->captured);
     light_uniforms_forget(&b->uniforms);
@@ -388,6 +393,42 @@ static relume_status need_white(struct between *b, struct objects_drawer *t,
     return RELUME_OK;
 }
 
+// Ways that gather from points.
+static bool has_points(enum between_way way)
+{
+    return way >= BETWEEN_MICRO;
+}
+
+static relume_status need_way(struct between *b, enum between_way way, int samples)
+{
+    relume_status status =
+        b->point_light.gl ? RELUME_OK : point_light_create(&b->point_light, b->gl, b->log);
+    if (!status && way == BETWEEN_MICRO && !b->micro.gl)
+        status = micro_create(&b->micro, b->gl, b->log);
+    if (!status && way == BETWEEN_ISM && !b->ism.gl)
+        status = ism_create(&b->ism, b->gl, b->log);
+    if (status)
+        return status;
+    return way == BETWEEN_ISM ? ism_need(&b->ism, samples) : micro_need(&b->micro, samples);
+}
+
+relume_status between_need(struct between *b, const struct objects_drawer *t,
+                           const struct relume_geometry *geometry, const struct target *places,
+                           enum between_way way, int samples)
+{
+    if (!has_points(way))
+        return RELUME_OK;
+    relume_status status = need_way(b, way, samples);
+    if (!status)
+        status = card_points_need(&b->points, b->gl, geometry, places, t->objects, fingerprint(t),
+                                  b->log);
+    const struct target *leaf = &b->points.leaf_place;
+    if (status || (b->leaf_lamps.count && b->leaf_lamps.target[0].width == leaf->width &&
+                   b->leaf_lamps.target[0].height == leaf->height))
+        return status;
+    return joined_create(&b->leaf_lamps, b, BETWEEN_JOINED, leaf->width, leaf->height);
+}
+
 relume_status between_begin(struct between *b, struct objects_drawer *t,
                             const struct between_view *v)
 {
@@ -399,6 +440,9 @@ relume_status between_begin(struct between *b, struct objects_drawer *t,
         status = need_targets(b, t, v->width, v->height);
     if (!status)
         status = need_white(b, t, v);
+    if (status)
+        return status;
+    status = between_need(b, t, v->geometry, v->panorama_places, v->way, v->samples);
     if (status)
         return status;
     find_backs(b, t, v);
@@ -414,20 +458,20 @@ static void draw_captured(void *context, const float clip[16])
     captured_mesh_draw(context, clip);
 }
 
-static relume_status add_lamp(struct between *b, struct objects_drawer *t,
-                              const struct between_view *v, int number)
+// Adds a lamp, whose maps are drawn, at those places.
+static relume_status add_lamp_at(struct between *b, const struct objects_drawer *t,
+                                 const struct between_view *v, int number,
+                                 const struct target *place, const struct target *facing,
+                                 const struct joined *onto)
 {
     const struct gl *gl = b->gl;
     const GLint *at = b->lamps.at;
     const struct relume_light light = objects_drawer_light_of(&t->light_sample[number]);
-    objects_drawer_draw_shadow(t, number);
-    shadow_map_fill(&b->captured, &t->light_sample[number], t->middle, CAPTURED_RADII * t->radius,
-                    draw_captured, &b->mesh);
-    gl->BindFramebuffer(GL_FRAMEBUFFER, b->by_lamps.framebuffer);
-    gl->Viewport(0, 0, v->width, v->height);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, onto->framebuffer);
+    gl->Viewport(0, 0, onto->target[0].width, onto->target[0].height);
     gl->UseProgram(b->lamps.id);
-    use(b, at[DRAW_OWN], 0, v->scene);
-    use(b, at[LAMPS_FACING], 1, &b->nearest.target[0]);
+    use(b, at[DRAW_OWN], 0, place);
+    use(b, at[LAMPS_FACING], 1, facing);
     gl_set_vec3(gl, at[LAMPS_CENTRE], v->geometry->center);
     gl->Uniform1i(at[LAMPS_PICTURE], 2);
     const relume_status status = light_uniforms_set(&b->uniforms, at + LAMPS_LIGHT, 2, &light);
@@ -435,8 +479,22 @@ static relume_status add_lamp(struct between *b, struct objects_drawer *t,
         gl_set_vec3(gl, at[LAMPS_LIGHT + LIGHT_AXIS], t->light_sample[number].patch.normal);
     shadow_map_use(&t->shadow, gl, at + LAMPS_SHADOW, 3);
     shadow_map_use(&b->captured, gl, at + LAMPS_CAPTURED, 4);
-    draw_added(b, &b->lamps, &b->show);
+    draw_added(b, &b->lamps, &onto->target[0]);
     return status;
+}
+
+static relume_status add_lamp(struct between *b, struct objects_drawer *t,
+                              const struct between_view *v, int number)
+{
+    objects_drawer_draw_shadow(t, number);
+    shadow_map_fill(&b->captured, &t->light_sample[number], t->middle, CAPTURED_RADII * t->radius,
+                    draw_captured, &b->mesh);
+    const relume_status status =
+        add_lamp_at(b, t, v, number, v->scene, &b->nearest.target[0], &b->by_lamps);
+    if (status || !has_points(v->way))
+        return status;
+    return add_lamp_at(b, t, v, number, &b->points.leaf_place, &b->points.leaf_facing,
+                       &b->leaf_lamps);
 }
 
 static void use_panorama(const struct between *b, const GLint *at, const struct between_view *v,
@@ -497,14 +555,47 @@ static void gather(const struct between *b, const struct objects_drawer *t,
     use(b, at[G_ALL_WITH], 10, &b->by_lamps.target[3]);
     gl_set_vec3(gl, at[G_MIDDLE], t->middle);
     gl->Uniform1i(at[G_AT_OBJECTS], at_objects);
-    gl->Uniform1i(at[G_DIRECTIONAL], v->directional);
-    gl->Uniform1i(at[G_BOUNCES], v->bounces);
+    gl->Uniform1i(at[G_DIRECTIONAL], v->way == BETWEEN_DIRECTIONAL);
+    gl->Uniform1i(at[G_BOUNCES], v->bounces > 0);
     gl->Uniform1i(at[G_SAMPLES], v->samples);
     gl->Uniform1i(at[G_PATTERN], v->pattern);
     gl->Uniform1f(at[G_RADIUS], (float)t->radius);
     gl->UniformMatrix4fv(at[G_CLIP], 1, GL_FALSE, v->projection->clip);
     use_eye(b, at[G_EYE], v);
     draw_whole(b, &b->gather, &b->show);
+}
+
+static struct points_view points_view(const struct between *b, const struct objects_drawer *t,
+                                      const struct between_view *v)
+{
+    const float *eye = v->projection->eye;
+    return (struct points_view){.points = &b->points,
+                                .centre = v->geometry->center,
+                                .eye = {(double)eye[0], (double)eye[1], (double)eye[2]},
+                                .middle = t->middle,
+                                .radius = t->radius,
+                                .samples = v->samples,
+                                .spacing = v->spacing,
+                                .bounces = v->bounces,
+                                .sends = v->sends};
+}
+
+// The alpha of places: of find_nearest 2 for objects, of the scene 1.
+static void gather_from_points(struct between *b, const struct objects_drawer *t,
+                               const struct between_view *v, bool at_objects)
+{
+    const struct points_view view = points_view(b, t, v);
+    const struct points_sites sites = {.place = at_objects ? &b->nearest.target[1] : v->scene,
+                                       .facing = &b->nearest.target[at_objects ? 2 : 0],
+                                       .kind = at_objects ? 2.0f : 1.0f,
+                                       .of_scene = !at_objects,
+                                       .without = &b->gathered.target[0],
+                                       .with_objects = &b->gathered.target[1]};
+    joined_begin(&b->gathered, b->gl);
+    if (v->way == BETWEEN_ISM)
+        ism_gather(&b->ism, &view, &sites);
+    else
+        micro_gather(&b->micro, &view, &sites);
 }
 
 static void smooth(const struct between *b, const struct between_view *v, bool at_objects)
@@ -571,6 +662,30 @@ static void add_shaded(struct between *b, struct objects_drawer *t)
     b->gl->Disable(GL_BLEND);
 }
 
+static relume_status light_points(struct between *b, const struct objects_drawer *t,
+                                  const struct between_view *v, const struct target *panorama)
+{
+    const struct points_view view = points_view(b, t, v);
+    const struct points_lit lit = {.panorama = panorama,
+                                   .mean = &b->even,
+                                   .let_without = &b->leaf_lamps.target[0],
+                                   .let_with = &b->leaf_lamps.target[1]};
+    return v->way == BETWEEN_ISM ? ism_light(&b->ism, &b->point_light, &view, &lit)
+                                 : micro_light(&b->micro, &b->point_light, &view, &lit);
+}
+
+// What objects have gathered, or else the scene.
+static void gather_at(struct between *b, const struct objects_drawer *t,
+                      const struct between_view *v, const struct target *panorama,
+                      const struct target *lone, bool at_objects)
+{
+    if (has_points(v->way))
+        gather_from_points(b, t, v, at_objects);
+    else
+        gather(b, t, v, panorama, lone, at_objects);
+    smooth(b, v, at_objects);
+}
+
 relume_status between_light(struct between *b, struct objects_drawer *t,
                             const struct between_view *v, const struct relume_light *light,
                             const struct target *panorama, const struct target *lone,
@@ -578,6 +693,8 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
 {
     relume_status status = objects_drawer_light(t, light, 1);
     joined_begin(&b->by_lamps, b->gl);
+    if (has_points(v->way))
+        joined_begin(&b->leaf_lamps, b->gl);
     for (int i = 0; i < t->light_samples && !status; i++)
         status = add_lamp(b, t, v, i);
     t->captured = &b->mesh;
@@ -587,14 +704,17 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
     if (status)
         return status;
     find_mean(b, v, panorama);
-    show(b, t, v, lone);
-    gather(b, t, v, panorama, lone, true);
-    smooth(b, v, true);
+    if (has_points(v->way))
+        status = light_points(b, t, v, panorama);
+    else
+        show(b, t, v, lone);
+    if (status)
+        return status;
+    gather_at(b, t, v, panorama, lone, true);
     throw_back(b, t, &b->thrown);
-    if (v->on)
+    if (v->bounces > 1 && !has_points(v->way))
         throw_back(b, t, &b->show);
-    gather(b, t, v, panorama, lone, false);
-    smooth(b, v, false);
+    gather_at(b, t, v, panorama, lone, false);
     add_scene(b, v, lone, lit, exposure);
     add_shaded(b, t);
     return gl_check(b->gl, "light between objects and scene", b->log);

@@ -4,11 +4,17 @@
 // They differ from that file in this: all directions are spread as the cosine (none by what is
 // bright), rays end in the panorama where a march through its depth finds a surface, what is
 // captured throws shadows by maps of the ball about the objects and a little more, and objects
-// return light as their material shows a white sky.
+// return light as their material shows a white sky. Ways that gather from points do so in
+// transport/; lamps, and what becomes of what is gathered, are the same.
 #ifndef VIEWER_BETWEEN_H
 #define VIEWER_BETWEEN_H
 
 #include "draw/objects_drawer.h"
+#include "transport/ism.h"
+#include "transport/micro.h"
+
+// How light is gathered.
+enum between_way { BETWEEN_AMBIENT, BETWEEN_DIRECTIONAL, BETWEEN_MICRO, BETWEEN_ISM };
 
 // Targets that are drawn at once.
 enum { BETWEEN_JOINED = 4 };
@@ -41,6 +47,12 @@ struct between {
     uint64_t white_of;  // materials, 0: not known; seen by
     float white_clip[16];
     int lights;  // that are summed
+    // Of ways that gather from points; made when first needed.
+    struct card_points points;
+    struct joined leaf_lamps;  // as by_lamps
+    struct point_light point_light;
+    struct micro micro;
+    struct ism ism;
 };
 
 // What all passes of a frame know.
@@ -50,8 +62,10 @@ struct between_view {
     const struct target *scene;  // places in the frame
     const struct frame_projection *projection;
     int width, height;
-    bool directional, bounces, on;  // with light off objects, and on from there
+    enum between_way way;
+    int bounces;  // of light off objects
     int samples, pattern;
+    int spacing;  // of ways that gather from points
     float sends;  // of what objects send of their own, under each light
 };
 
@@ -60,6 +74,11 @@ relume_status between_create(struct between *b, const struct gl *gl,
                              const struct relume_geometry *geometry, const struct target *places,
                              const struct relume_log *log);
 void between_destroy(struct between *b);
+// What a way needs besides, of objects in the panorama that sees `places`. RELUME_ESYSTEM,
+// RELUME_ENOMEM.
+relume_status between_need(struct between *b, const struct objects_drawer *drawer,
+                           const struct relume_geometry *geometry, const struct target *places,
+                           enum between_way way, int samples);
 
 // A frame: between_begin, for each light between_light, between_end. `drawer` has the surface of
 // the objects when it has begun; what it has shaded in the end are all lights.

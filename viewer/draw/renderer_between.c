@@ -4,6 +4,21 @@
 
 #include <relume/transport.h>
 
+enum { BOUNCES = 2 };  // as relume_render_params
+static const struct {
+    const char *name;
+    int pattern;  // as its `relume_transport` has it
+} ways[] = {[BETWEEN_AMBIENT] = {"ssao", 4},
+            [BETWEEN_DIRECTIONAL] = {"ssdo", 4},
+            [BETWEEN_MICRO] = {"micro", 1},
+            [BETWEEN_ISM] = {"ism", ISM_PATTERN}};
+
+static int samples_of(const struct frame_request *q, enum between_way way)
+{
+    return q->way_samples ? q->way_samples
+                          : relume_transport_samples(relume_transport_find(ways[way].name));
+}
+
 static void swap(struct target *a, struct target *b)
 {
     const struct target was = *a;
@@ -15,6 +30,13 @@ static relume_status prepare(struct renderer *r, const struct place *place)
 {
     relume_status status = renderer_prepare(&r->scene, r, place->width, place->height);
     return status ? status : renderer_prepare(&r->lit, r, place->width, place->height);
+}
+
+relume_status renderer_need_points(struct renderer *r, const struct frame_request *q,
+                                   enum between_way way)
+{
+    return between_need(&r->between, &r->drawer, &r->geometry, &r->place[0], way,
+                        samples_of(q, way));
 }
 
 relume_status renderer_need_between(struct renderer *r, const struct frame_request *q,
@@ -66,9 +88,8 @@ static relume_status draw(struct renderer *r, const struct frame_request *q,
 
 relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struct frame_request *q,
                                     const struct place *place, const struct relume_light *lights,
-                                    int count, bool directional)
+                                    int count, enum between_way way)
 {
-    enum { SAMPLES = 16, PATTERN = 4 };  // as transport/screen.c
     struct frame_projection projection;
     *drawn = r->with_depth && r->geometry.projection >= RELUME_CYLINDRICAL && r->views == 1 &&
              renderer_projection(&projection, r, q, place);
@@ -84,18 +105,19 @@ relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struc
         status = renderer_find_scene(r, q, *place);
     if (status)
         return status;
-    const int bounces = q->bounces ? q->bounces : 2;
-    const struct between_view view = {.geometry = &r->geometry,
-                                      .panorama_places = &r->place[0],
-                                      .scene = &r->scene,
-                                      .projection = &projection,
-                                      .width = place->width,
-                                      .height = place->height,
-                                      .directional = directional,
-                                      .bounces = bounces > 0,
-                                      .on = bounces > 1,
-                                      .samples = q->way_samples ? q->way_samples : SAMPLES,
-                                      .pattern = PATTERN,
-                                      .sends = count ? 1.0f / (float)count : 0.0f};
+    const int bounces = q->bounces ? q->bounces : BOUNCES;
+    const struct between_view view = {
+        .geometry = &r->geometry,
+        .panorama_places = &r->place[0],
+        .scene = &r->scene,
+        .projection = &projection,
+        .width = place->width,
+        .height = place->height,
+        .way = way,
+        .bounces = bounces > 0 ? bounces : 0,
+        .samples = samples_of(q, way),
+        .pattern = ways[way].pattern,
+        .spacing = relume_transport_spacing(relume_transport_find(ways[way].name)),
+        .sends = count ? 1.0f / (float)count : 0.0f};
     return draw(r, q, place, &view, lights, count);
 }

@@ -35,10 +35,14 @@ void renderer_ways_destroy(struct renderer *r);
 // What they are drawn with, of a panorama with depth. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status renderer_need_between(struct renderer *r, const struct frame_request *request,
                                     const struct place *place);
-// By passes, `directional` or by even light; false in *drawn where there are none for it.
+// What a way needs besides. Likewise.
+relume_status renderer_need_points(struct renderer *r, const struct frame_request *request,
+                                   enum between_way way);
+// By passes, in that way; false in *drawn where there are none for it.
 relume_status renderer_draw_between(bool *drawn, struct renderer *r,
                                     const struct frame_request *request, const struct place *place,
-                                    const struct relume_light *lights, int count, bool directional);
+                                    const struct relume_light *lights, int count,
+                                    enum between_way way);
 // How objects appear in the frame; false where it is not flat.
 bool renderer_projection(struct frame_projection *out, const struct renderer *r,
                          const struct frame_request *request, const struct place *place);

@@ -74,6 +74,7 @@ struct renderer {
     struct target way[EXCHANGER_SLOTS], beside_way;
     bool waits;                         // for finished pictures of it
     bool ways_by_library;               // all of them
+    bool no_points;                     // those that gather from points are the library's, too
     bool with_depth;                    // a panorama
     double passes_ms[EXCHANGER_SLOTS];  // that own passes of a way took in the last frame; 0: there
                                         // are none

@@ -5,6 +5,8 @@
 #include "draw/renderer_parts.h"
 #include "program/clock.h"
 
+#include <relume/transport.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -46,17 +48,26 @@ relume_status renderer_wait(struct renderer *r)
 
 // ---------------------------------------------------------------- asking
 
-// Ways that are passes, too (renderer_between.c).
+// Ways that are passes, too (renderer_between.c): those of relume_transports that say so.
 static const struct passes {
     const char *way;
-    bool directional;
-} passes[] = {{"ssdo", true}, {"ssao", false}};
+    enum between_way as;
+} passes[] = {{"ssdo", BETWEEN_DIRECTIONAL},
+              {"ssao", BETWEEN_AMBIENT},
+              {"micro", BETWEEN_MICRO},
+              {"ism", BETWEEN_ISM}};
+
+// They gather from points.
+static bool need_compute(const struct passes *p)
+{
+    return relume_transport_passes(relume_transport_find(p->way)) > 33;
+}
 
 // NULL: there are none of that way; for any of them (NULL), what stands in for it.
 static const struct passes *passes_of(const struct renderer *r, const char *way)
 {
     for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
-        if (!way || !strcmp(passes[i].way, way))
+        if ((!way || !strcmp(passes[i].way, way)) && !(need_compute(&passes[i]) && r->no_points))
             return &passes[i];
     return NULL;
 }
@@ -102,17 +113,44 @@ static bool wants_passes(const struct renderer *r, const struct frame_request *q
 }
 
 // Where OpenGL cannot do it, as it has said then, the library does.
-static relume_status check_passes(struct renderer *r, const struct frame_request *q,
-                                  const struct place *place)
+static relume_status leave_to_library(struct renderer *r, bool *left, relume_status status)
 {
-    const bool wanted = wants_passes(r, q, q->way) || wants_passes(r, q, q->other_way);
-    const relume_status status = wanted ? renderer_need_between(r, q, place) : RELUME_OK;
     if (status != RELUME_ESYSTEM)
         return status;
     r->log->message(r->log->user, RELUME_NOTE,
                     "light between objects and scene is gathered by the library, not by passes");
-    r->ways_by_library = true;
+    *left = true;
     return RELUME_OK;
+}
+
+static void do_without_compute(struct renderer *r)
+{
+    r->log->message(r->log->user, RELUME_NOTE,
+                    "micro and ism are gathered by the library: passes of theirs need OpenGL 4.3");
+    r->no_points = true;
+}
+
+static relume_status check_points(struct renderer *r, const struct frame_request *q, int way)
+{
+    const struct passes *by = way == NO_WAY ? NULL : passes_of(r, way_name(way));
+    if (!by || !need_compute(by) || !wants_passes(r, q, way))
+        return RELUME_OK;
+    if (r->gl->compute)
+        return leave_to_library(r, &r->no_points, renderer_need_points(r, q, by->as));
+    do_without_compute(r);
+    return RELUME_OK;
+}
+
+static relume_status check_passes(struct renderer *r, const struct frame_request *q,
+                                  const struct place *place)
+{
+    if (!wants_passes(r, q, q->way) && !wants_passes(r, q, q->other_way))
+        return RELUME_OK;
+    relume_status status =
+        leave_to_library(r, &r->ways_by_library, renderer_need_between(r, q, place));
+    if (!status)
+        status = check_points(r, q, q->way);
+    return status || q->ways == APP_SPLIT_NONE ? status : check_points(r, q, q->other_way);
 }
 
 static relume_status ask(struct renderer *r, const struct frame_request *q, int slot, int way,
@@ -182,8 +220,7 @@ static relume_status draw_passes(bool *drawn, struct renderer *r, const struct f
     if (q->timed)
         r->gl->Finish();
     const double start = now_s();
-    const relume_status status =
-        renderer_draw_between(drawn, r, q, place, lights, count, by->directional);
+    const relume_status status = renderer_draw_between(drawn, r, q, place, lights, count, by->as);
     if (q->timed)
         r->gl->Finish();
     *ms = *drawn ? 1e3 * (now_s() - start) : 0.0;

@@ -86,3 +86,12 @@ relume_status gl_check(const struct gl *gl, const char *doing, const struct relu
         return say(log, RELUME_ESYSTEM, "%s: the graphics memory is full", doing);
     return say(log, RELUME_ESYSTEM, "%s: OpenGL error 0x%04x", doing, error);
 }
+
+GLuint gl_storage(const struct gl *gl, size_t bytes, const void *data)
+{
+    GLuint buffer;
+    gl->GenBuffers(1, &buffer);
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+    gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)bytes, data, GL_DYNAMIC_COPY);
+    return buffer;
+}

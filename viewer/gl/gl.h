@@ -87,6 +87,7 @@
 #define GL_COMPUTE_FUNCTIONS(X)                                                                    \
     X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture)                                                 \
     X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                                                   \
+    X(PFNGLDISPATCHCOMPUTEINDIRECTPROC, DispatchComputeIndirect)                                   \
     X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)
 
 struct gl {
@@ -113,5 +114,8 @@ relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
 // RELUME_OK, or what glGetError has to say since it was last asked; a graphics card that was reset
 // has lost everything.
 relume_status gl_check(const struct gl *gl, const char *doing, const struct relume_log *log);
+
+// A buffer for compute passes; `data` may be NULL.
+GLuint gl_storage(const struct gl *gl, size_t bytes, const void *data);
 
 #endif

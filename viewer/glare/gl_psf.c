@@ -10,15 +10,6 @@
 static const double widest_mm = 9;       // of a pupil
 static const double least_light = 1e-3;  // of the pupil; lids that leave less are shut
 
-GLuint gl_storage(const struct gl *gl, size_t bytes, const void *data)
-{
-    GLuint buffer;
-    gl->GenBuffers(1, &buffer);
-    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-    gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)bytes, data, GL_DYNAMIC_COPY);
-    return buffer;
-}
-
 void gl_compute(const struct gl *gl, int width, int height)
 {
     gl->DispatchCompute((GLuint)(width + 15) / 16, (GLuint)(height + 15) / 16, 1);

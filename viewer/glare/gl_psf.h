@@ -30,8 +30,6 @@ void gl_psf_destroy(struct gl_psf *psf, const struct gl *gl);
 relume_status gl_psf_update(struct gl_psf *psf, const struct gl *gl, struct gl_fft *fft,
                             const relume_eye *eye, const struct relume_log *log);
 
-// A buffer for compute passes; `data` may be NULL.
-GLuint gl_storage(const struct gl *gl, size_t bytes, const void *data);
 // Work groups of 16 x 16 over that much, then what they wrote can be read.
 void gl_compute(const struct gl *gl, int width, int height);
 

@@ -6,7 +6,7 @@
 #include "light/light.glsl"
 #include "light_sample.glsl"
 #include "shadow.glsl"
-uniform sampler2D scene, scene_facing;
+uniform sampler2D scene, scene_facing;  // alpha 0: nothing is there
 uniform vec3 centre;                    // the eye that captured it
 uniform sampler2DArrayShadow captured;  // as shadow.glsl has it of the objects
 uniform mat4 captured_clip[6];
@@ -46,7 +46,8 @@ void main()
     float cosine = dot(towards, normal);
     if (cosine <= 0.0)
         discard;
-    float passes = let_through(point.xyz, normal), seen = reached(point.xyz, vec3(0.0));
+    bool held = point.a > 1.5;  // a place of the objects themselves
+    float passes = let_through(point.xyz, normal), seen = reached(point.xyz, held ? normal : vec3(0.0));
     all_without = vec4(cosine * rgb, 1.0);
     all_with = seen * all_without;
     let_without = passes * all_without;

@@ -33,6 +33,8 @@ RELUME_API const char *relume_transport_summary(const struct relume_transport *t
 RELUME_API int relume_transport_samples(const struct relume_transport *transport);
 // Pixels from one that gathers to the next, where nothing else is asked for; 0: always each.
 RELUME_API int relume_transport_spacing(const struct relume_transport *transport);
+// Further cameras that look at the objects, where nothing else is asked for; -1: it has none.
+RELUME_API int relume_transport_cameras(const struct relume_transport *transport);
 
 #ifdef __cplusplus
 }

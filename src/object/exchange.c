@@ -130,6 +130,12 @@ static int spacing_of(const struct relume_render_params *params)
     return own && params->transport_spacing ? params->transport_spacing : own > 1 ? own : 1;
 }
 
+static int cameras_of(const struct relume_render_params *params)
+{
+    const struct relume_transport *t = params->transport;
+    return !t->screen ? 0 : params->transport_cameras ? params->transport_cameras : t->cameras;
+}
+
 relume_status exchange_create(struct exchange **out, const relume_objects *o, int lights,
                               const struct bodies *bodies, const struct scenery *scenery,
                               const struct relume_viewport *viewport,
@@ -153,6 +159,7 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o, in
                            .params = *params,
                            .sends = 1.0f / (float)lights,
                            .spacing = spacing_of(params),
+                           .cameras = cameras_of(params),
                            .eye = relume_viewport_eye(viewport)};
     status = make_layer(&e->scene, width, height);
     if (!status)
@@ -350,7 +357,11 @@ static relume_status gather_at_all_objects(struct exchange *e, int rays)
     if (!status && e->share && e->spacing == 1)
         status = transport_smooth(&e->share, 1, &e->objects.places, &e->objects.normals, e->eye,
                                   SKY_PATTERN, e->params.threads);
-    return status ? status : exchange_over_pixels(e, 1, light_objects);
+    exchange_further_gather(e);
+    if (!status)
+        status = exchange_over_pixels(e, 1, light_objects);
+    exchange_further_show(e);
+    return status;
 }
 
 static relume_status gather(struct exchange *e)
@@ -359,6 +370,8 @@ static relume_status gather(struct exchange *e)
     const int lamps = e->lighting.light_samples + 1, rays = e->world.samples * 4;
     const int few = rays / (e->spacing * e->spacing) + 1;
     relume_status status = e->transport->screen ? exchange_over_pixels(e, lamps, show) : RELUME_OK;
+    if (!status && e->cameras > 0)
+        status = exchange_further_create(e);
     if (!status && e->transport->begin)
         status = e->transport->begin(&e->world, e->params.log);
     if (!status && (e->reflected || e->transport->screen))
@@ -371,6 +384,7 @@ static relume_status gather(struct exchange *e)
         status = smooth_scene(e);
     if (e->transport->end)
         e->transport->end(&e->world);
+    exchange_further_destroy(e);
     return status ? status : exchange_over_pixels(e, lamps, light_scene);
 }
 

@@ -42,6 +42,11 @@ int relume_transport_spacing(const struct relume_transport *transport)
     return transport->spacing;
 }
 
+int relume_transport_cameras(const struct relume_transport *transport)
+{
+    return transport->screen ? transport->cameras : -1;
+}
+
 // The binary digits of i, mirrored at the point (van der Corput).
 static double mirrored(uint32_t i)
 {

@@ -38,6 +38,13 @@ struct screen {
     const float *behind;  // [pixels]: how far off the eye it is open again; NULL: nowhere
 };
 
+// The objects alone from a further camera, along parallel rays.
+struct further {
+    vec3 middle, x, y, z;  // of its picture; unit, z is the way it looks
+    double half;           // it shows so much to each side of the middle
+    struct screen screen;  // `behind` is a depth along z; places of NaN: no object
+};
+
 // What light meets, under one light of the rig.
 struct world {
     const struct scenery *scenery;
@@ -53,11 +60,13 @@ struct world {
     double (*dimmed)(const void *context, vec3 place, vec3 normal, uint64_t key);
     const void *context;
     const struct relume_viewport *viewport;
-    struct screen bare, full;  // without the objects and with them
-    float mean[3];             // scenery_mean
-    double radius;             // of the ball about the objects
-    int samples;               // directions at each site
-    int bounces;               // off objects
+    struct screen bare, full;       // without the objects and with them
+    const struct further *further;  // [furthers]: see what the frame does not
+    int furthers;
+    float mean[3];  // scenery_mean
+    double radius;  // of the ball about the objects
+    int samples;    // directions at each site
+    int bounces;    // off objects
     int threads;
     void *state;  // of the way: what its `begin` has made
 };
@@ -70,6 +79,7 @@ struct relume_transport {
     int spacing;  // sites gather at every so many pixels each way, by default; 0: always at each
     int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
     bool screen;  // needs the frames
+    int cameras;  // further ones, by default
     // NULL: there is nothing to prepare. What a light of the rig needs once before sites gather
     // under it; RELUME_ENOMEM. `end` frees it, and takes a state of NULL.
     relume_status (*begin)(struct world *w, const struct relume_log *log);

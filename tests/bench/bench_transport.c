@@ -4,6 +4,7 @@
 //
 //   bench_transport [FOLDER]      the room is photographed into FOLDER, or found there
 //   bench_transport FOLDER rows   the ways in the Cornell box and the colonnade instead
+//   bench_transport FOLDER cameras  what further cameras gain and take, instead
 //   bench_transport FOLDER glossy  micro's pictures of a glossy ball, even and warped, instead
 #include "bench.h"
 
@@ -114,6 +115,8 @@ struct shot {
 
 static const struct relume_camera unfolded = {.framing = RELUME_FRAME_VIEW};
 
+static int bounces = BOUNCES, cameras;
+
 static struct shot frame_of(relume_pack *pack, const relume_objects *o,
                             const struct relume_transport *way, int samples,
                             const struct relume_camera *camera)
@@ -122,10 +125,10 @@ static struct shot frame_of(relume_pack *pack, const relume_objects *o,
     relume_renderer *renderer;
     bench_check(relume_renderer_create(&renderer, pack, NULL));
     bench_check(relume_renderer_set_lights(renderer, &sun, 1));
-    bench_check(relume_renderer_set_objects(renderer, o,
-                                            relume_render_params(.samples = 2, .transport = way,
-                                                                 .transport_samples = samples,
-                                                                 .bounces = BOUNCES)));
+    bench_check(relume_renderer_set_objects(
+        renderer, o,
+        relume_render_params(.samples = 2, .transport = way, .transport_samples = samples,
+                             .bounces = bounces, .transport_cameras = cameras)));
     const double began = processor_s();
     bench_check(relume_renderer_frame(&f.image, renderer, camera));
     f.seconds = processor_s() - began;
@@ -418,6 +421,91 @@ static void judge_row(const struct row *r)
     relume_pack_destroy(&truth);
 }
 
+// ---------------------------------------------------------------- cameras
+
+static relume_objects *open_heap(void)
+{
+    static const double at[][4] = {
+        {0.3, -0.6, -1.0, 0.4}, {-0.35, -0.75, -1.3, 0.25}, {0.75, -0.8, -1.5, 0.2}};
+    relume_objects *o;
+    FILE *file = fopen(path_of("heap.json"), "w");
+    if (!file || !write_ball_mesh(path_of("ball.obj"), 64, false))
+        bench_check(RELUME_EIO);
+    fputs("{\"format\":\"relume-objects\",\"version\":1,\"objects\":[", file);
+    for (int i = 0; i < 3; i++)
+        fprintf(file,
+                "%s{\"mesh\":\"ball.obj\",\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]},"
+                "\"parts\":[{\"material\":{\"diffuse\":0.8}}]}",
+                i ? "," : "", at[i][3], at[i][0], at[i][1], at[i][2]);
+    fputs("]}", file);
+    bench_check(fclose(file) ? RELUME_EIO : RELUME_OK);
+    bench_check(relume_objects_open(&o, path_of("heap.json"), NULL));
+    return o;
+}
+
+// Table 4.1: seconds by the size of the picture and the number of directions.
+static void time_screens(relume_pack *pack, const relume_objects *o)
+{
+    static const int sizes[][2] = {{1024, 768}, {1200, 960}, {1600, 1200}};
+    static const struct {
+        const struct relume_transport *way;
+        int bounces, cameras;
+    } ways[] = {{&transport_ssao, -1, -1},
+                {&transport_ssdo, -1, -1},
+                {&transport_ssdo, 1, -1},
+                {&transport_ssdo, 1, 4}};
+    puts("\n| size | N | ssao | ssdo | a bounce | 4 cameras |\n|---|---|---|---|---|---|");
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
+        for (int samples = 8; samples <= 16; samples *= 2) {
+            struct relume_camera camera = {.framing = RELUME_FRAME_LOOK};
+            camera.width = sizes[s][0], camera.height = sizes[s][1];
+            printf("| %d x %d | %d |", camera.width, camera.height, samples);
+            for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+                bounces = ways[i].bounces, cameras = ways[i].cameras;
+                struct shot f = frame_of(pack, o, ways[i].way, samples, &camera);
+                printf(" %.2f |", f.seconds);
+                fflush(stdout);
+                relume_image_destroy(&f.image);
+            }
+            puts("");
+        }
+    bounces = BOUNCES, cameras = 0;
+}
+
+// What further cameras gain and take, against paths.
+static void judge_cameras(relume_pack *pack)
+{
+    static const int numbers[] = {0, 1, 2, 4, 8};
+    struct judge j = {.room = pack};
+    for (int heap = 0; heap < 2; heap++) {
+        j.ball = heap ? open_heap() : open_ball(64);
+        struct shot truth = frame_of(pack, j.ball, &transport_path, 1024, &unfolded);
+        bench_check(relume_frame(&j.before, pack, &unfolded, &sun, 1, NULL));
+        j.truth = truth.image;
+        for (int way = 0; way < 2; way++)
+            for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+                cameras = numbers[i] ? numbers[i] : -1;
+                printf("| %s, %s | %d |", heap ? "three balls" : "a ball", way ? "ssdo" : "ssao",
+                       numbers[i]);
+                for (int samples = 8; samples <= 64; samples *= 2) {
+                    struct shot f = frame_of(pack, j.ball, way ? &transport_ssdo : &transport_ssao,
+                                             samples, &unfolded);
+                    printf(" %.4f, %.2f |", difference(&j, &f.image, &j.truth), f.seconds);
+                    relume_image_destroy(&f.image);
+                }
+                puts("");
+                fflush(stdout);
+            }
+        relume_image_destroy(&j.before);
+        relume_image_destroy(&j.truth);
+        relume_objects_destroy(&j.ball);
+    }
+    cameras = 0;
+    j.ball = open_heap();
+    time_screens(pack, j.ball);
+    relume_objects_destroy(&j.ball);
+}
+
 // ---------------------------------------------------------------- glossy
 
 static double processor_of_thread(void)
@@ -563,6 +651,13 @@ int main(int argc, char **argv)
         photograph(&room, "room", "room.exr", HEIGHT, 256, 4);
         j.room = open_pack("room.exr");
         judge_glossy(j.room);
+        relume_pack_destroy(&j.room);
+        return 0;
+    }
+    if (argc > 2 && !strcmp(argv[2], "cameras")) {
+        photograph(&room, "room", "room.exr", HEIGHT, 256, 4);
+        j.room = open_pack("room.exr");
+        judge_cameras(j.room);
         relume_pack_destroy(&j.room);
         return 0;
     }

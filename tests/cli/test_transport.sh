@@ -188,6 +188,12 @@ expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ss
 expect_fail 'without objects' 2 'work only with --objects' x.png "$RELUME" relight room.exr -o x.png --transport path
 expect_fail 'many rays a pixel' 2 'expected 1 to 16 rays' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --samples 17
 expect_fail 'spacing of a way that shares directions' 2 '\-\-spacing works only with --transport micro and path' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport ssdo --spacing 2
+expect_fail 'cameras of a way that has none' 2 '\-\-cameras works only with --transport ssao and ssdo' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport micro --cameras 2
+expect_fail 'many cameras' 2 'cameras' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport ssdo --cameras 17
+for n in 0 1 16; do
+    expect_ok "$n cameras" - "$RELUME" relight room.exr --objects ball.json $look -o cameras-$n.exr --light 'dir 0 1 0' --transport ssdo --cameras $n -q
+done
+differ 'a camera sees more' cameras-0.exr cameras-1.exr
 expect_fail 'far apart' 2 'spacing' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport micro --spacing 17
 expect_fail 'many bounces' 2 'bounces' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport path --bounces 17
 for material in '{"diffuse":1.5}' '{"diffuse":"red"}' '{"diffuse":0.5,"mirror":1}' '{"diffuse":[1,1]}'; do

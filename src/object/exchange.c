@@ -194,8 +194,10 @@ static void site_of(struct site *out, const void *context, const struct trace_hi
     const struct exchange *e = context;
     struct surface_point point;
     objects_point(&point, e->o, hit, direction);
-    *out = (struct site){
-        .position = point.position, .normal = point.normal, .start = point_leave(&point)};
+    *out = (struct site){.position = point.position,
+                         .normal = point.normal,
+                         .start = point_leave(&point),
+                         .shines = exchange_shines(e, point.part)};
 }
 
 static void sent_by(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
@@ -216,6 +218,15 @@ static void sent_by(float rgb[3], const void *context, const struct trace_hit *h
     }
 }
 
+static void returned_by(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
+                        vec3 direction, const struct arrival *arrival)
+{
+    const struct exchange *e = context;
+    struct surface_point point;
+    objects_point(&point, e->o, hit, direction);
+    objects_return(rgb, e->o, &point, origin, arrival);
+}
+
 bool exchange_shines(const struct exchange *e, int part)
 {
     const struct relume_objects_info *info = relume_objects_info(e->o);
@@ -233,6 +244,7 @@ static void begin_world(struct exchange *e)
         .mesh = &e->o->mesh,
         .site = site_of,
         .sent = sent_by,
+        .returned = returned_by,
         .dimmed = exchange_dimmed,
         .context = e,
         .viewport = e->viewport,

@@ -20,6 +20,7 @@ struct site {
     void (*answer)(float rgb[3], const void *context, vec3 towards);
     const void *answers;  // its context
     vec3 mirrored;        // unit; what a mirror there would show
+    bool shines;          // of objects' own: it sends more in some directions than in others
 };
 
 // Light from one direction.
@@ -56,6 +57,9 @@ struct world {
                  vec3 direction);
     void (*sent)(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
                  vec3 direction, uint64_t key, const struct arrival *arrivals, int n);
+    // Of an arrival alone.
+    void (*returned)(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
+                     vec3 direction, const struct arrival *arrival);
     // Which part of what a place of the scene shows is left with the objects before its lamps.
     double (*dimmed)(const void *context, vec3 place, vec3 normal, uint64_t key);
     const void *context;

@@ -9,6 +9,8 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/random.h"
+#include "transport/points.h"
 
 enum { SIDE = 64 };  // pixels
 
@@ -50,6 +52,35 @@ static float depth_behind(const struct exchange *e, const struct further *f, con
                    (objects_hit(&back, e->o, inside, ray->direction) ? back.distance : 0.0));
 }
 
+// From where a place that shines is seen, as often as the cosine is.
+static vec3 eye_before(const struct surface_point *point, double u, double v)
+{
+    const struct point at = {.normal = point->normal};
+    return vec3_add(point->position, points_direction(&at, u, v));
+}
+
+// The camera may see a highlight that others do not: what shines sends its mean.
+static void shade(float rgb[3], const struct exchange *e, const struct surface_point *point,
+                  const struct ray *ray, uint64_t key)
+{
+    enum { DIRECTIONS = 16 };
+    const double GOLDEN = 0.6180339887498949;
+    if (!exchange_shines(e, point->part)) {
+        objects_shade(rgb, e->o, point, ray->origin, &e->lighting);
+        return;
+    }
+    struct random r = random_stream(9, key, 0);
+    const double first = random_next(&r);
+    for (int i = 0; i < DIRECTIONS; i++) {
+        float sent[3];
+        objects_shade(sent, e->o, point,
+                      eye_before(point, (i + random_next(&r)) / DIRECTIONS, first + GOLDEN * i),
+                      &e->lighting);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += sent[c] / DIRECTIONS;
+    }
+}
+
 struct looking {
     struct exchange *e;
     int camera;
@@ -72,7 +103,7 @@ static void look(void *context, size_t row, int worker)
         places_put(&p->places, pixel, point.position);
         places_put(&p->normals, pixel, point.normal);
         p->behind[pixel] = depth_behind(e, f, &ray, &point);
-        objects_shade(p->shown.data + 3 * pixel, e->o, &point, ray.origin, &e->lighting);
+        shade(p->shown.data + 3 * pixel, e, &point, &ray, pixel);
     }
 }
 
@@ -94,8 +125,11 @@ static void gather(void *context, size_t row, int worker)
             objects_mirror_at(e->o, &point))
             continue;
         const int key = x % pattern + pattern * ((int)row % pattern);
-        exchange_gather_at(e, &point, ray.origin, (uint64_t)key, white,
-                           p->returned.data + 3 * pixel);
+        struct random r = random_stream(10, pixel, 0);
+        const double u = random_next(&r);
+        const vec3 eye =
+            exchange_shines(e, point.part) ? eye_before(&point, u, random_next(&r)) : ray.origin;
+        exchange_gather_at(e, &point, eye, (uint64_t)key, white, p->returned.data + 3 * pixel);
     }
 }
 

@@ -247,6 +247,9 @@ struct relume_render_params {
     // pixels around show is no one surface or differs; default: the way's own. Ways whose
     // directions are shared by neighbours gather at each.
     int transport_spacing;
+    // Cameras that look at the objects from other sides than the frame's, at most 16, for ways that
+    // go by what is on the screen; default: the way's own; below 0: none.
+    int transport_cameras;
 };
 #define relume_render_params(...)                                                                  \
     (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})

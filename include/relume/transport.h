@@ -36,6 +36,8 @@ RELUME_API int relume_transport_spacing(const struct relume_transport *transport
 // The version of OpenGL, times ten, with which relume-view gathers this way by passes over each
 // frame of a panorama with depth; 0: it has none for it.
 RELUME_API int relume_transport_passes(const struct relume_transport *transport);
+// Further cameras that look at the objects, where nothing else is asked for; -1: it has none.
+RELUME_API int relume_transport_cameras(const struct relume_transport *transport);
 
 #ifdef __cplusplus
 }

@@ -130,6 +130,12 @@ static int spacing_of(const struct relume_render_params *params)
     return own && params->transport_spacing ? params->transport_spacing : own > 1 ? own : 1;
 }
 
+static int cameras_of(const struct relume_render_params *params)
+{
+    const struct relume_transport *t = params->transport;
+    return !t->screen ? 0 : params->transport_cameras ? params->transport_cameras : t->cameras;
+}
+
 relume_status exchange_create(struct exchange **out, const relume_objects *o, int lights,
                               const struct bodies *bodies, const struct scenery *scenery,
                               const struct relume_viewport *viewport,
@@ -153,6 +159,7 @@ relume_status exchange_create(struct exchange **out, const relume_objects *o, in
                            .params = *params,
                            .sends = 1.0f / (float)lights,
                            .spacing = spacing_of(params),
+                           .cameras = cameras_of(params),
                            .eye = relume_viewport_eye(viewport)};
     status = make_layer(&e->scene, width, height);
     if (!status)
@@ -187,8 +194,10 @@ static void site_of(struct site *out, const void *context, const struct trace_hi
     const struct exchange *e = context;
     struct surface_point point;
     objects_point(&point, e->o, hit, direction);
-    *out = (struct site){
-        .position = point.position, .normal = point.normal, .start = point_leave(&point)};
+    *out = (struct site){.position = point.position,
+                         .normal = point.normal,
+                         .start = point_leave(&point),
+                         .shines = exchange_shines(e, point.part)};
 }
 
 static void sent_by(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
@@ -209,6 +218,15 @@ static void sent_by(float rgb[3], const void *context, const struct trace_hit *h
     }
 }
 
+static void returned_by(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
+                        vec3 direction, const struct arrival *arrival)
+{
+    const struct exchange *e = context;
+    struct surface_point point;
+    objects_point(&point, e->o, hit, direction);
+    objects_return(rgb, e->o, &point, origin, arrival);
+}
+
 bool exchange_shines(const struct exchange *e, int part)
 {
     const struct relume_objects_info *info = relume_objects_info(e->o);
@@ -226,6 +244,7 @@ static void begin_world(struct exchange *e)
         .mesh = &e->o->mesh,
         .site = site_of,
         .sent = sent_by,
+        .returned = returned_by,
         .dimmed = exchange_dimmed,
         .context = e,
         .viewport = e->viewport,
@@ -350,7 +369,11 @@ static relume_status gather_at_all_objects(struct exchange *e, int rays)
     if (!status && e->share && e->spacing == 1)
         status = transport_smooth(&e->share, 1, &e->objects.places, &e->objects.normals, e->eye,
                                   SKY_PATTERN, e->params.threads);
-    return status ? status : exchange_over_pixels(e, 1, light_objects);
+    exchange_further_gather(e);
+    if (!status)
+        status = exchange_over_pixels(e, 1, light_objects);
+    exchange_further_show(e);
+    return status;
 }
 
 static relume_status gather(struct exchange *e)
@@ -359,6 +382,8 @@ static relume_status gather(struct exchange *e)
     const int lamps = e->lighting.light_samples + 1, rays = e->world.samples * 4;
     const int few = rays / (e->spacing * e->spacing) + 1;
     relume_status status = e->transport->screen ? exchange_over_pixels(e, lamps, show) : RELUME_OK;
+    if (!status && e->cameras > 0)
+        status = exchange_further_create(e);
     if (!status && e->transport->begin)
         status = e->transport->begin(&e->world, e->params.log);
     if (!status && (e->reflected || e->transport->screen))
@@ -371,6 +396,7 @@ static relume_status gather(struct exchange *e)
         status = smooth_scene(e);
     if (e->transport->end)
         e->transport->end(&e->world);
+    exchange_further_destroy(e);
     return status ? status : exchange_over_pixels(e, lamps, light_scene);
 }
 

@@ -29,6 +29,8 @@ struct exchange {
     int befores;
     struct layer scene, objects, frame;
     float *behind;  // [pixels]: how far off the eye the backs of objects are
+    int cameras;    // further ones
+    struct further_pictures *further;
     vec3 eye;
     // Of the light in hand.
     struct lighting lighting;
@@ -97,5 +99,19 @@ void exchange_quotient(double part[3], const float shown[3], const struct lit_by
 bool exchange_keeps_lamps(const struct exchange *e);
 // At the pixels that gather, and then between them.
 do_pixel exchange_gather_scene, exchange_gather_objects, exchange_fill_scene, exchange_fill_objects;
+// At a place of the objects as `eye` sees it; what a white surface would gather is added to
+// `white`, what it returns to `returned`.
+void exchange_gather_at(struct exchange *e, const struct surface_point *point, vec3 eye,
+                        uint64_t key, float white[3], float returned[3]);
+
+// ---------------------------------------------------------------- cameras (exchange_further.c)
+
+// Pictures of the objects from further cameras, under the light in hand. Part of e->world until
+// they are destroyed. RELUME_ENOMEM.
+relume_status exchange_further_create(struct exchange *e);
+void exchange_further_destroy(struct exchange *e);
+// Light that is gathered there, and then shown, too.
+void exchange_further_gather(struct exchange *e);
+void exchange_further_show(struct exchange *e);
 
 #endif

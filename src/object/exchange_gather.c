@@ -74,11 +74,12 @@ static void gather_scene(struct exchange *e, int x, int y)
     e->transport->gather(&e->world, &site, arrive_at_scene, &at);
 }
 
-static void gather_at_point(struct exchange *e, const struct surface_point *point,
-                            struct at_objects *at, uint64_t key)
+void exchange_gather_at(struct exchange *e, const struct surface_point *point, vec3 eye,
+                        uint64_t key, float white[3], float returned[3])
 {
-    if (translucent_return(at->returned, &e->lighting, point, at->eye)) {
-        at->white[0] = at->white[1] = at->white[2] = 1.0f;  // has been smoothed below its surface
+    struct at_objects at = {e, point, eye, white, returned};
+    if (translucent_return(returned, &e->lighting, point, eye)) {
+        white[0] = white[1] = white[2] = 1.0f;  // has been smoothed below its surface
         return;
     }
     const struct site site = {.position = point->position,
@@ -86,9 +87,9 @@ static void gather_at_point(struct exchange *e, const struct surface_point *poin
                               .start = point_leave(point),
                               .key = key,
                               .answer = exchange_shines(e, point->part) ? answer_of : NULL,
-                              .answers = at,
-                              .mirrored = mirrored_at(point, at->eye)};
-    e->transport->gather(&e->world, &site, arrive_at_objects, at);
+                              .answers = &at,
+                              .mirrored = mirrored_at(point, eye)};
+    e->transport->gather(&e->world, &site, arrive_at_objects, &at);
 }
 
 // Of a mirror, what is seen in it.
@@ -98,18 +99,18 @@ static void gather_objects(struct exchange *e, int x, int y, const struct surfac
     const double middle[2] = {0.5, 0.5};
     struct surface_point seen = *point;
     struct mirrored mirrored = {.part = {1.0f, 1.0f, 1.0f}};
-    struct at_objects at = {e, &seen, exchange_ray(e, x, y, middle).origin,
-                            e->white.data + 3 * pixel, e->returned.data + 3 * pixel};
+    vec3 eye = exchange_ray(e, x, y, middle).origin;
+    float *returned = e->returned.data + 3 * pixel;
     if (objects_mirror_at(e->o, point)) {
-        mirror_follow(&mirrored, e->o, point, at.eye, &e->lighting);
+        mirror_follow(&mirrored, e->o, point, eye, &e->lighting);
         if (!mirrored.meets)
             return;
         seen = mirrored.point;
-        at.eye = mirrored.from;
+        eye = mirrored.from;
     }
-    gather_at_point(e, &seen, &at, key_of(e, x, y));
+    exchange_gather_at(e, &seen, eye, key_of(e, x, y), e->white.data + 3 * pixel, returned);
     for (int c = 0; c < 3; c++)
-        at.returned[c] *= mirrored.part[c];
+        returned[c] *= mirrored.part[c];
 }
 
 bool exchange_keeps_lamps(const struct exchange *e)

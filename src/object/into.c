@@ -440,10 +440,10 @@ static relume_status draw_over(struct relume_image *out, relume_renderer *render
 
 bool render_params_good(const struct relume_render_params *params)
 {
-    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16, MOST_SPACING = 16 };
+    enum { MOST_SAMPLES = 65536, MOST_BOUNCES = 16, MOST_SPACING = 16, MOST_CAMERAS = 16 };
     return params->transport_samples >= 0 && params->transport_samples <= MOST_SAMPLES &&
            params->bounces <= MOST_BOUNCES && params->transport_spacing >= 0 &&
-           params->transport_spacing <= MOST_SPACING;
+           params->transport_spacing <= MOST_SPACING && params->transport_cameras <= MOST_CAMERAS;
 }
 
 bool render_exchanges(const struct relume_render_params *p)

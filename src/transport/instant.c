@@ -232,7 +232,10 @@ static void gather_at_sender(void *context, size_t i, int worker)
     const size_t c = step_of(on_objects);
     if (c)
         gather_some(b->w, s, &sender->site, s->on_scene + key % c, s->lights, c, take, &arrivals);
-    points_object_sent(sender->sent, b->w, &sender->point, key, room, arrivals.n);
+    if (sender->site.shines)
+        points_object_mean(sender->sent, b->w, &sender->point, key, room, arrivals.n);
+    else
+        points_object_sent(sender->sent, b->w, &sender->point, key, room, arrivals.n);
 }
 
 static void send(const struct bounce *b, struct instant *s, const size_t *number)

@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/random.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -321,25 +322,84 @@ struct lighting_objects {
     struct sent *next;  // [leaves]
 };
 
+// A point that shines sends what leaves it in one direction of the disc, which is another for each
+// point: together they send as much as they should, but alike in all directions.
+struct seen_from {
+    const struct world *w;
+    struct trace_hit hit;
+    vec3 origin, direction;
+};
+
+static void answer(float rgb[3], const void *context, vec3 towards)
+{
+    const struct seen_from *s = context;
+    const struct arrival a = {.towards = towards, .share = 1.0, .with = {1.0f, 1.0f, 1.0f}};
+    s->w->returned(rgb, s->w->context, &s->hit, s->origin, s->direction, &a);
+}
+
+static struct seen_from seen_from_somewhere(const struct world *w, const struct point *p,
+                                            uint64_t key)
+{
+    struct random r = random_stream(8, key, 0);
+    const double u = random_next(&r);
+    const vec3 d = points_direction(p, u, random_next(&r));
+    return (struct seen_from){
+        w, {p->triangle, p->u, p->v, 1.0f, 0}, vec3_add(p->place, d), vec3_scale(d, -1.0)};
+}
+
+// Where the surface returns nothing there are no answers.
+static void add_answer(void *context, const struct arrival *a)
+{
+    double *rgb = context;
+    for (int c = 0; c < 3 && a->answer; c++)
+        rgb[c] += (double)(a->answer[c] * a->with[c]);
+}
+
+static void light_shining(float rgb[3], const struct lighting_objects *l, const struct point *p,
+                          struct site *site)
+{
+    const struct seen_from from = seen_from_somewhere(l->w, p, site->key);
+    double returned[3] = {0.0, 0.0, 0.0};
+    site->answer = answer, site->answers = &from;
+    site->mirrored =
+        vec3_along(from.direction, p->normal, -2.0 * vec3_dot(from.direction, p->normal));
+    gather(l->w, site, add_answer, returned);
+    l->w->sent(rgb, l->w->context, &from.hit, from.origin, from.direction, site->key, NULL, 0);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += (float)returned[c];
+}
+
+static void light_matte(float rgb[3], const struct lighting_objects *l, const struct point *p,
+                        const struct site *site)
+{
+    struct arrived all = {.towards = {0, 0, 0}};
+    struct arrival one = {.share = 1.0};
+    gather(l->w, site, add_arrival, &all);
+    one.towards = vec3_length(all.towards) > 0.0 ? vec3_unit(all.towards) : p->normal;
+    for (int c = 0; c < 3; c++)
+        one.with[c] = (float)all.rgb[c];
+    points_object_sent(rgb, l->w, p, site->key, &one, 1);
+}
+
 static void light_point(const struct lighting_objects *l, size_t leaf)
 {
     const struct hierarchy *h = &l->m->side[l->side];
     struct point p = l->m->points.at[h->order[h->begins[leaf]]];
+    const struct trace_hit hit = {p.triangle, p.u, p.v, 1.0f, 0};
     float at[3], off[3], start[3];
-    struct arrived all = {.towards = {0, 0, 0}};
-    struct arrival one = {.share = 1.0};
+    struct site site;
     p.normal = l->side ? vec3_scale(p.normal, -1.0) : p.normal;
+    l->w->site(&site, l->w->context, &hit, vec3_scale(p.normal, -1.0));
     vec3_store(at, p.place);
     vec3_store(off, p.normal);
     trace_leave(at, off, start);
-    const struct site site = {
-        .position = p.place, .normal = p.normal, .start = vec3_floats(start), .key = leaf};
-    gather(l->w, &site, add_arrival, &all);
-    one.towards = vec3_length(all.towards) > 0.0 ? vec3_unit(all.towards) : p.normal;
-    for (int c = 0; c < 3; c++)
-        one.with[c] = (float)all.rgb[c];
+    site.position = p.place, site.normal = p.normal, site.start = vec3_floats(start);
+    site.key = leaf;
     float *rgb = l->next[leaf].with;
-    points_object_sent(rgb, l->w, &p, leaf, &one, 1);
+    if (site.shines)
+        light_shining(rgb, l, &p, &site);
+    else
+        light_matte(rgb, l, &p, &site);
     for (int c = 0; c < 3; c++)
         rgb[c] = isfinite(rgb[c]) ? fmaxf(rgb[c], 0.0f) : 0.0f;
 }

@@ -189,3 +189,86 @@ void points_object_sent(float rgb[3], const struct world *w, const struct point 
     w->sent(rgb, w->context, &hit, vec3_add(p->place, p->normal), vec3_scale(p->normal, -1.0), key,
             arrivals, n);
 }
+
+// ---------------------------------------------------------------- of what shines
+
+// Of the disc of directions before a point.
+struct disc {
+    vec3 x, y;  // unit
+};
+
+static struct disc disc_of(const struct point *p)
+{
+    const vec3 any = fabs(p->normal.x) < 0.7 ? vec3_of(1, 0, 0) : vec3_of(0, 1, 0);
+    const vec3 x = vec3_unit(vec3_cross(any, p->normal));
+    return (struct disc){x, vec3_cross(p->normal, x)};
+}
+
+vec3 points_direction(const struct point *p, double u, double v)
+{
+    const struct disc disc = disc_of(p);
+    const double off = sqrt(u), turn = 2.0 * M_PI * v;
+    return vec3_along(vec3_along(vec3_scale(disc.x, off * cos(turn)), disc.y, off * sin(turn)),
+                      p->normal, sqrt(1.0 - u));
+}
+
+enum { SIDE = 4, MERGED = SIDE * SIDE };
+
+static int within(double x)
+{
+    const int i = (int)(0.5 * SIDE * (x + 1.0));
+    return i < 0 ? 0 : i < SIDE ? i : SIDE - 1;
+}
+
+// What arrives from one square of the disc becomes one arrival: so that asking the surface for some
+// directions does not take a thousand answers.
+static int merge(struct arrival out[MERGED], const struct point *p, const struct arrival *arrivals,
+                 int n)
+{
+    const struct disc disc = disc_of(p);
+    double sum[MERGED][3] = {{0.0}};
+    vec3 towards[MERGED] = {{0.0, 0.0, 0.0}};
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        const struct arrival *a = &arrivals[i];
+        const int k =
+            within(vec3_dot(a->towards, disc.y)) * SIDE + within(vec3_dot(a->towards, disc.x));
+        for (int c = 0; c < 3; c++)
+            sum[k][c] += a->share * (double)a->with[c];
+        towards[k] = vec3_along(towards[k], a->towards,
+                                a->share * (double)(a->with[0] + a->with[1] + a->with[2]));
+    }
+    for (int k = 0; k < MERGED; k++) {
+        if (!(vec3_length(towards[k]) > 0.0))
+            continue;
+        out[count] = (struct arrival){.towards = vec3_unit(towards[k]), .share = 1.0};
+        for (int c = 0; c < 3; c++)
+            out[count].with[c] = (float)sum[k][c];
+        count++;
+    }
+    return count;
+}
+
+void points_object_mean(float rgb[3], const struct world *w, const struct point *p, uint64_t key,
+                        const struct arrival *arrivals, int n)
+{
+    enum { DIRECTIONS = 32 };
+    const double GOLDEN = 0.6180339887498949;
+    const struct trace_hit hit = {p->triangle, p->u, p->v, 1.0f, 0};
+    struct random r = random_stream(7, key, 0);
+    struct arrival merged[MERGED];
+    const int count = merge(merged, p, arrivals, n);
+    const double first = random_next(&r);
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int i = 0; i < DIRECTIONS; i++) {
+        const vec3 d =
+            points_direction(p, (i + random_next(&r)) / DIRECTIONS, first + GOLDEN * (double)i);
+        float sent[3];
+        w->sent(sent, w->context, &hit, vec3_add(p->place, d), vec3_scale(d, -1.0), key, merged,
+                count);
+        for (int c = 0; c < 3; c++)
+            sum[c] += isfinite(sent[c]) ? fmax((double)sent[c], 0.0) : 0.0;
+    }
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (float)(sum[c] / DIRECTIONS);
+}

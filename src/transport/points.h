@@ -38,5 +38,10 @@ void points_scene_sent(float rgb[3], const struct scenery *c, const struct point
 // `key` chooses among the samples of environments.
 void points_object_sent(float rgb[3], const struct world *w, const struct point *p, uint64_t key,
                         const struct arrival *arrivals, int n);
+// The same, of one that shines: what it sends on average, each direction by its cosine.
+void points_object_mean(float rgb[3], const struct world *w, const struct point *p, uint64_t key,
+                        const struct arrival *arrivals, int n);
+// A direction (unit) before it, as often as the cosine is.
+vec3 points_direction(const struct point *p, double u, double v);
 
 #endif

@@ -27,42 +27,86 @@ static bool pixel_of(size_t *pixel, const struct world *w, vec3 place)
     return true;
 }
 
-// How much of a blocker stands in the way: none where it is as far as the radius.
-static double part_blocked(const struct world *w, const struct screen *screen, size_t pixel,
-                           const struct site *site, vec3 tried)
+// The same of a further camera, where it shows an object.
+static bool pixel_of_further(size_t *pixel, const struct further *f, vec3 place)
+{
+    const struct relume_image *image = f->screen.places;
+    const vec3 off = vec3_sub(place, f->middle);
+    const double x = 0.5 * (1.0 + vec3_dot(off, f->x) / f->half) * image->width,
+                 y = 0.5 * (1.0 + vec3_dot(off, f->y) / f->half) * image->height;
+    if (!(x >= 0.0 && y >= 0.0 && x < image->width && y < image->height))
+        return false;
+    *pixel = (size_t)y * (size_t)image->width + (size_t)x;
+    return !isnan(image->data[3 * *pixel]);
+}
+
+// What stands in the way.
+struct blocker {
+    double part;  // 0: nothing
+    const struct screen *screen;
+    size_t pixel;
+    bool faces;   // the site
+    double away;  // from the place that is tried
+};
+
+// One that is `inside`, at `depth` from its camera: none where it is as far as the radius.
+static void block(struct blocker *out, const struct world *w, const struct screen *screen,
+                  size_t pixel, const struct site *site, vec3 tried, double depth, double front)
 {
     const double BEGIN = 0.7;  // of the radius: from there on blockers fade
-    const vec3 eye = relume_viewport_eye(w->viewport), seen = places_at(screen->places, pixel);
-    const double away = vec3_length(vec3_sub(seen, site->position)) / w->radius;
-    const double depth = vec3_length(vec3_sub(tried, eye));
-    const bool inside = depth > vec3_length(vec3_sub(seen, eye)) &&
-                        !(screen->behind && depth > (double)screen->behind[pixel]);
-    return inside ? 1.0 - smoothstep(BEGIN, 1.0, away) : 0.0;
+    const vec3 seen = places_at(screen->places, pixel), to = vec3_sub(site->position, seen);
+    const bool inside = depth > front && !(screen->behind && depth > (double)screen->behind[pixel]);
+    *out = (struct blocker){
+        .part = inside ? 1.0 - smoothstep(BEGIN, 1.0, vec3_length(to) / w->radius) : 0.0,
+        .screen = screen,
+        .pixel = pixel,
+        .faces = vec3_dot(to, places_at(screen->normals, pixel)) > 0.0,
+        .away = vec3_length(vec3_sub(seen, tried)),
+    };
 }
 
-static void from_pixel(float rgb[3], const struct screen *screen, size_t pixel,
-                       const struct site *site)
+static struct blocker blocker_of(const struct world *w, const struct screen *screen,
+                                 const struct site *site, vec3 tried)
 {
-    const vec3 to = vec3_sub(site->position, places_at(screen->places, pixel));
-    const bool faces = vec3_dot(to, places_at(screen->normals, pixel)) > 0.0;
-    for (size_t c = 0; c < 3; c++)
-        rgb[c] = faces ? fmaxf(screen->shown->data[3 * pixel + c], 0.0f) : 0.0f;
+    const vec3 eye = relume_viewport_eye(w->viewport);
+    struct blocker b = {.part = 0.0};
+    size_t pixel;
+    if (pixel_of(&pixel, w, tried))
+        block(&b, w, screen, pixel, site, tried, vec3_length(vec3_sub(tried, eye)),
+              vec3_length(vec3_sub(places_at(screen->places, pixel), eye)));
+    return b;
 }
 
-// What comes from a direction, as a screen has it.
-static void arrive_from(float rgb[3], const struct world *w, const struct screen *screen,
-                        const struct site *site, const struct look *look, vec3 tried,
+// What the further cameras see there: of several the one whose front the site sees, and of these
+// the nearest.
+static void look_further(struct blocker *b, const struct world *w, const struct site *site,
+                         vec3 tried)
+{
+    for (int i = 0; i < w->furthers; i++) {
+        const struct further *f = &w->further[i];
+        struct blocker other;
+        size_t pixel;
+        if (!pixel_of_further(&pixel, f, tried))
+            continue;
+        block(&other, w, &f->screen, pixel, site, tried, vec3_dot(vec3_sub(tried, f->middle), f->z),
+              vec3_dot(vec3_sub(places_at(f->screen.places, pixel), f->middle), f->z));
+        const bool better =
+            b->part > 0.0 ? other.faces && (!b->faces || other.away < b->away) : true;
+        if (other.part > 0.0 && better)
+            *b = other;
+    }
+}
+
+// What comes from a direction past a blocker, or from it.
+static void arrive_from(float rgb[3], const struct blocker *b, const struct look *look,
                         const float open[3], bool bounces)
 {
-    float sent[3] = {0.0f, 0.0f, 0.0f};
-    size_t pixel;
-    const double part =
-        pixel_of(&pixel, w, tried) ? part_blocked(w, screen, pixel, site, tried) : 0.0;
-    if (part > 0.0 && bounces)
-        from_pixel(sent, screen, pixel, site);
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (float)((1.0 - part) * look->share * (double)open[c] +
-                         part * look->share_nearer * (double)sent[c]);
+    const bool sends = b->part > 0.0 && b->faces && bounces;
+    for (size_t c = 0; c < 3; c++) {
+        const float sent = sends ? fmaxf(b->screen->shown->data[3 * b->pixel + c], 0.0f) : 0.0f;
+        rgb[c] = (float)((1.0 - b->part) * look->share * (double)open[c] +
+                         b->part * look->share_nearer * (double)sent);
+    }
 }
 
 static void gather(const struct world *w, const struct site *site, take_arrival *arrive,
@@ -72,14 +116,18 @@ static void gather(const struct world *w, const struct site *site, take_arrival 
     for (int i = 0; i < w->samples; i++) {
         struct look look;
         transport_look(&look, w, site, i, w->samples);
-        const vec3 tried =
-            vec3_along(site->start, look.towards, w->radius * (1.0 - random_next(&steps)));
+        const double away = w->radius * (1.0 - random_next(&steps));
+        const vec3 tried = vec3_along(site->start, look.towards, away);
         const float *open = directional ? look.scene.sent : w->mean;
         struct arrival a = {.towards = look.towards, .share = 1.0};
         if (!directional)
             look.share = look.share_nearer;
-        arrive_from(a.without, w, &w->bare, site, &look, tried, open, directional);
-        arrive_from(a.with, w, &w->full, site, &look, tried, open, directional && w->bounces > 0);
+        const struct blocker bare = blocker_of(w, &w->bare, site, tried);
+        struct blocker full = blocker_of(w, &w->full, site, tried);
+        if (!(look.scene.distance < away))  // else the scene is before what they see
+            look_further(&full, w, site, tried);
+        arrive_from(a.without, &bare, &look, open, directional);
+        arrive_from(a.with, &full, &look, open, directional && w->bounces > 0);
         arrive(context, &a);
     }
 }
@@ -96,7 +144,8 @@ static void gather_directional(const struct world *w, const struct site *site, t
     gather(w, site, arrive, context, true);
 }
 
-enum { SAMPLES = 16, PATTERN = 4 };
+// Without what blockers send cameras gain nothing (docs/measurements/transport.md).
+enum { SAMPLES = 16, PATTERN = 4, CAMERAS = 4 };
 
 const struct relume_transport transport_ssao = {
     .name = "ssao",
@@ -114,5 +163,6 @@ const struct relume_transport transport_ssdo = {
     .pattern = PATTERN,
     .screen = true,
     .passes = 33,
+    .cameras = CAMERAS,
     .gather = gather_directional,
 };

@@ -47,6 +47,11 @@ int relume_transport_passes(const struct relume_transport *transport)
     return transport->passes;
 }
 
+int relume_transport_cameras(const struct relume_transport *transport)
+{
+    return transport->screen ? transport->cameras : -1;
+}
+
 // The binary digits of i, mirrored at the point (van der Corput).
 static double mirrored(uint32_t i)
 {

@@ -20,6 +20,7 @@ struct site {
     void (*answer)(float rgb[3], const void *context, vec3 towards);
     const void *answers;  // its context
     vec3 mirrored;        // unit; what a mirror there would show
+    bool shines;          // of objects' own: it sends more in some directions than in others
 };
 
 // Light from one direction.
@@ -38,6 +39,13 @@ struct screen {
     const float *behind;  // [pixels]: how far off the eye it is open again; NULL: nowhere
 };
 
+// The objects alone from a further camera, along parallel rays.
+struct further {
+    vec3 middle, x, y, z;  // of its picture; unit, z is the way it looks
+    double half;           // it shows so much to each side of the middle
+    struct screen screen;  // `behind` is a depth along z; places of NaN: no object
+};
+
 // What light meets, under one light of the rig.
 struct world {
     const struct scenery *scenery;
@@ -49,15 +57,20 @@ struct world {
                  vec3 direction);
     void (*sent)(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
                  vec3 direction, uint64_t key, const struct arrival *arrivals, int n);
+    // Of an arrival alone.
+    void (*returned)(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
+                     vec3 direction, const struct arrival *arrival);
     // Which part of what a place of the scene shows is left with the objects before its lamps.
     double (*dimmed)(const void *context, vec3 place, vec3 normal, uint64_t key);
     const void *context;
     const struct relume_viewport *viewport;
-    struct screen bare, full;  // without the objects and with them
-    float mean[3];             // scenery_mean
-    double radius;             // of the ball about the objects
-    int samples;               // directions at each site
-    int bounces;               // off objects
+    struct screen bare, full;       // without the objects and with them
+    const struct further *further;  // [furthers]: see what the frame does not
+    int furthers;
+    float mean[3];  // scenery_mean
+    double radius;  // of the ball about the objects
+    int samples;    // directions at each site
+    int bounces;    // off objects
     int threads;
     void *state;  // of the way: what its `begin` has made
 };
@@ -71,6 +84,7 @@ struct relume_transport {
     int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
     bool screen;  // needs the frames
     int passes;   // OpenGL, times ten, by which relume-view gathers likewise; 0: it cannot
+    int cameras;  // further ones, by default
     // NULL: there is nothing to prepare. What a light of the rig needs once before sites gather
     // under it; RELUME_ENOMEM. `end` frees it, and takes a state of NULL.
     relume_status (*begin)(struct world *w, const struct relume_log *log);

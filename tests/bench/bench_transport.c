@@ -3,7 +3,9 @@
 // the RMS there.
 //
 //   bench_transport [FOLDER]      the room is photographed into FOLDER, or found there
-//   bench_transport FOLDER rows   the ways in the Cornell box and the colonnade instead
+//   bench_transport FOLDER rows [NAME]  the ways in other scenes, or in one of them, instead
+//   bench_transport FOLDER cameras  what further cameras gain and take, instead
+//   bench_transport FOLDER screens  times of ssao and ssdo over sizes of pictures, instead
 //   bench_transport FOLDER glossy  micro's pictures of a glossy ball, even and warped, instead
 #include "bench.h"
 
@@ -114,6 +116,8 @@ struct shot {
 
 static const struct relume_camera unfolded = {.framing = RELUME_FRAME_VIEW};
 
+static int bounces = BOUNCES, cameras;
+
 static struct shot frame_of(relume_pack *pack, const relume_objects *o,
                             const struct relume_transport *way, int samples,
                             const struct relume_camera *camera)
@@ -122,10 +126,10 @@ static struct shot frame_of(relume_pack *pack, const relume_objects *o,
     relume_renderer *renderer;
     bench_check(relume_renderer_create(&renderer, pack, NULL));
     bench_check(relume_renderer_set_lights(renderer, &sun, 1));
-    bench_check(relume_renderer_set_objects(renderer, o,
-                                            relume_render_params(.samples = 2, .transport = way,
-                                                                 .transport_samples = samples,
-                                                                 .bounces = BOUNCES)));
+    bench_check(relume_renderer_set_objects(
+        renderer, o,
+        relume_render_params(.samples = 2, .transport = way, .transport_samples = samples,
+                             .bounces = bounces, .transport_cameras = cameras)));
     const double began = processor_s();
     bench_check(relume_renderer_frame(&f.image, renderer, camera));
     f.seconds = processor_s() - began;
@@ -148,14 +152,23 @@ struct judge {
     relume_objects *ball;
     struct relume_image before, truth;
     struct relume_image touched;  // where this differs from before counts, too; empty: not
+    const bool *left_out;         // [pixels]; NULL: none is
 };
 
 // Whether the ball changes a value.
 static bool counts(const struct judge *j, size_t i)
 {
     const double ENOUGH = 0.02, before = (double)j->before.data[i];
+    if (j->left_out && j->left_out[i / 3])
+        return false;
     return fabs((double)j->truth.data[i] - before) >= ENOUGH ||
            (j->touched.data && fabs((double)j->touched.data[i] - before) >= ENOUGH);
+}
+
+// Else a highlight of metal would be all that counts.
+static double as_displayed(float value)
+{
+    return fmin((double)value, 1.0);
 }
 
 static double difference(const struct judge *j, const struct relume_image *got,
@@ -165,8 +178,9 @@ static double difference(const struct judge *j, const struct relume_image *got,
     for (size_t i = 0; i < 3 * (size_t)j->truth.width * (size_t)j->truth.height; i++) {
         if (!counts(j, i))
             continue;
-        wrong += pow((double)got->data[i] - (double)want->data[i], 2.0);
-        all += pow((double)want->data[i], 2.0);
+        const double wanted = as_displayed(want->data[i]);
+        wrong += pow(as_displayed(got->data[i]) - wanted, 2.0);
+        all += pow(wanted, 2.0);
     }
     return sqrt(wrong / all);
 }
@@ -255,6 +269,14 @@ static double median_of(const struct judge *j, const relume_objects *o, struct i
     return times_median(&t);
 }
 
+// A row of docs/data/transport.csv, which scripts/plot_transport.sh draws.
+static void keep(const char *growth, double size, const char *what, double ms)
+{
+    FILE *file = fopen(path_of("growth.csv"), "a");
+    if (!file || fprintf(file, "%s,%.0f,%s,%.0f\n", growth, size, what, ms) < 0 || fclose(file))
+        bench_check(RELUME_EIO);
+}
+
 static void print_stages(double all)
 {
     double gather = all;
@@ -318,6 +340,8 @@ static void time_growth(const struct judge *j)
         const double all = median_of(j, j->ball, usual, samples, &unfolded);
         printf("| %d |", 64 * samples);
         print_stages(all);
+        keep("lights", 64.0 * samples, "all", 1e3 * all);
+        keep("lights", 64.0 * samples, "maps", 1e3 * seconds[INSTANT_MAPS]);
     }
     puts("\n| points | " STAGES);
     for (size_t points = 256; points <= 16384; points *= 4) {
@@ -326,6 +350,8 @@ static void time_growth(const struct judge *j)
         const double all = median_of(j, j->ball, p, 16, &unfolded);
         printf("| %zu |", points);
         print_stages(all);
+        keep("points of a map", (double)points, "all", 1e3 * all);
+        keep("points of a map", (double)points, "maps", 1e3 * seconds[INSTANT_MAPS]);
     }
     puts("\n| maps | " STAGES);
     for (int size = 32; size <= 256; size *= 2) {
@@ -345,6 +371,8 @@ static void time_growth(const struct judge *j)
             printf("| %d%s |", (int)relume_objects_info(o)->triangle_count,
                    rays ? ", exact shadows" : "");
             print_stages(all);
+            keep("triangles", (double)relume_objects_info(o)->triangle_count,
+                 rays ? "exact shadows" : "all", 1e3 * all);
         }
         relume_objects_destroy(&o);
     }
@@ -352,70 +380,252 @@ static void time_growth(const struct judge *j)
 
 // ---------------------------------------------------------------- other scenes
 
-// A built-in scene, with a ball in it, under a sun.
+static void write_file(const char *name, const char *text)
+{
+    FILE *file = fopen(path_of(name), "w");
+    if (!file || fputs(text, file) < 0 || fclose(file))
+        bench_check(RELUME_EIO);
+}
+
+// As glossy.obj: a ball of metal, of radius 1.
+static void write_glossy_mesh(double roughness)
+{
+    char text[512];
+    snprintf(text, sizeof text, "newmtl own\nKd 0.8 0.8 0.8\nPm 1\nPr %g\n", roughness);
+    write_file("glossy.mtl", text);
+    if (!write_ball_mesh(path_of("ball.obj"), 64, false))
+        bench_check(RELUME_EIO);
+    snprintf(text, sizeof text, "(echo mtllib glossy.mtl; echo usemtl own; cat %s) > %s",
+             path_of("ball.obj"), path_of("glossy.obj"));
+    bench_check(system(text) ? RELUME_EIO : RELUME_OK);
+}
+
+// A built-in scene, with a ball in it, under a sun. With a roughness the ball is of metal, and
+// another one of matte grey lies beside it; the floor may be of glossy paint.
 struct row {
-    const char *scene;
+    const char *name, *scene;
     struct relume_vec3 sun, at;
     double radius;
     int samples;
+    double roughness;
+    bool floor;
 };
 static const struct row rows[] = {
-    {"cornell", {-0.2, 1.0, -0.15}, {0.34, -0.16, -0.54}, 0.25, 1024},
-    {"colonnade", {0.8, 0.7, 0.25}, {1.0, -1.25, -0.72}, 0.35, 256},
+    {"cornell", "cornell", {-0.2, 1.0, -0.15}, {0.34, -0.16, -0.54}, 0.25, 1024, 0.0, false},
+    {"colonnade", "colonnade", {0.8, 0.7, 0.25}, {1.0, -1.25, -0.72}, 0.35, 256, 0.0, false},
+    {"metal", "room", {0.55, 0.75, 0.6}, {0.3, -0.6, -1.0}, 0.4, 512, 0.4, false},
+    {"gloss", "room", {0.55, 0.75, 0.6}, {0.3, -0.6, -1.0}, 0.4, 512, 0.4, true},
 };
 static const struct row *row;
+static const double beside[4] = {-0.4, -0.75, -1.1, 0.25};
+
+static const struct relume_scene_kind *kind_of(const struct row *r)
+{
+    return strcmp(r->scene, room.name) ? relume_scene_find(r->scene) : &room;
+}
+
+static relume_status build_alone(struct relume_scene_builder *b)
+{
+    struct mesh part = {0};
+    if (row->floor) {
+        const struct material paint = {.texture = build_matte(0.5f, 0.5f, 0.5f).texture,
+                                       .f0 = {0.2f, 0.2f, 0.2f},
+                                       .alpha = 0.1f};
+        shape_quad(&part, vec3_of(-2, -0.995, 2), vec3_of(4, 0, 0), vec3_of(0, 0, -4));
+        build_put_exact(b, &part, build_material(b, paint));
+    }
+    return kind_of(row)->build(b);
+}
+
+static struct material material_of_ball(void)
+{
+    const float alpha = (float)(row->roughness * row->roughness);
+    const struct material metal = {
+        .texture = build_matte(0, 0, 0).texture, .f0 = {0.8f, 0.8f, 0.8f}, .alpha = alpha};
+    return row->roughness > 0.0 ? metal : build_matte(ball_grey, ball_grey, ball_grey);
+}
 
 static relume_status build_with_ball(struct relume_scene_builder *b)
 {
     struct mesh part = {0};
     shape_sphere(&part, row->at, row->radius, 64);
-    build_put_exact(b, &part, build_material(b, build_matte(ball_grey, ball_grey, ball_grey)));
-    return relume_scene_find(row->scene)->build(b);
+    build_put_exact(b, &part, build_material(b, material_of_ball()));
+    if (row->roughness > 0.0) {
+        shape_sphere(&part, vec3_of(beside[0], beside[1], beside[2]), beside[3], 64);
+        build_put_exact(b, &part, build_material(b, build_matte(ball_grey, ball_grey, ball_grey)));
+    }
+    return build_alone(b);
+}
+
+static relume_objects *open_balls(void)
+{
+    relume_objects *o;
+    char text[1024];
+    if (!(row->roughness > 0.0))
+        return open_ball_at(64, row->at, row->radius);
+    write_glossy_mesh(row->roughness);
+    snprintf(
+        text, sizeof text,
+        "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"glossy.obj\","
+        "\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]}},{\"mesh\":\"ball.obj\",\"pose\":{"
+        "\"scale\":%g,\"translate\":[%g,%g,%g]},\"parts\":[{\"material\":{\"diffuse\":%g}}]}]}",
+        row->radius, row->at.x, row->at.y, row->at.z, beside[3], beside[0], beside[1], beside[2],
+        (double)ball_grey);
+    write_file("balls.json", text);
+    bench_check(relume_objects_open(&o, path_of("balls.json"), NULL));
+    return o;
+}
+
+// Which pixels show the balls.
+static bool *find_balls(const struct judge *j, const struct row *r)
+{
+    const int width = j->truth.width, height = j->truth.height;
+    const vec3 at[] = {r->at, vec3_of(beside[0], beside[1], beside[2])};
+    const double radius[] = {r->radius, r->roughness > 0.0 ? beside[3] : 0.0};
+    bool *shows = calloc((size_t)width * (size_t)height, sizeof *shows);
+    for (int i = 0; i < width * height; i++) {
+        const vec3 ray = relume_panorama_ray(&relume_pack_info(j->room)->geometry, width, height,
+                                             i % width + 0.5, i / width + 0.5);
+        for (int k = 0; k < 2; k++) {
+            const double sine = 1.05 * radius[k] / vec3_length(at[k]);
+            shows[i] |= vec3_dot(ray, vec3_unit(at[k])) > sqrt(1.0 - sine * sine);
+        }
+    }
+    return shows;
 }
 
 static void judge_row(const struct row *r)
 {
     enum { SIZE = 64 };
     char name[4][64];
-    const struct relume_scene_kind *alone = relume_scene_find(r->scene);
-    struct relume_scene_kind with = *alone;
+    struct relume_scene_kind alone = *kind_of(r), with = alone;
     struct judge j = {.touched = {0}};
     row = r;
     sun.direction = vec3_unit(r->sun);
+    alone.build = build_alone;
     with.build = build_with_ball;
-    snprintf(name[0], sizeof name[0], "%s", r->scene);
-    snprintf(name[1], sizeof name[1], "%s.exr", r->scene);
-    snprintf(name[2], sizeof name[2], "%s-truth", r->scene);
-    snprintf(name[3], sizeof name[3], "%s-truth.exr", r->scene);
-    photograph(alone, name[0], name[1], SIZE, r->samples, 1);
+    snprintf(name[0], sizeof name[0], "%s", r->name);
+    snprintf(name[1], sizeof name[1], "%s.exr", r->name);
+    snprintf(name[2], sizeof name[2], "%s-truth", r->name);
+    snprintf(name[3], sizeof name[3], "%s-truth.exr", r->name);
+    photograph(&alone, name[0], name[1], SIZE, r->samples, 1);
     photograph(&with, name[2], name[3], SIZE, r->samples, 1);
     relume_pack *truth = open_pack(name[3]);
     j.room = open_pack(name[1]);
-    j.ball = open_ball_at(64, r->at, r->radius);
+    j.ball = open_balls();
     bench_check(relume_frame(&j.before, j.room, &unfolded, &sun, 1, NULL));
     bench_check(relume_frame(&j.truth, truth, &unfolded, &sun, 1, NULL));
     struct shot lamps = frame_of(j.room, j.ball, relume_transports[0], 1, &unfolded);
     j.touched = lamps.image;
-    printf("\n%s: without the ball %.4f\n", r->scene, difference(&j, &j.before, &j.truth));
+    bool *balls = find_balls(&j, r);
+    printf("\n%s: without the ball %.4f\n", r->name, difference(&j, &j.before, &j.truth));
     for (const struct relume_transport *const *t = relume_transports; *t; t++)
         for (int samples = 0; samples <= 256; samples += 256) {
             struct shot f = frame_of(j.room, j.ball, *t, samples, &unfolded);
-            printf("| %s | %d | %.4f | %.2f |\n", relume_transport_name(*t), samples,
-                   difference(&j, &f.image, &j.truth), f.seconds);
+            j.left_out = NULL;
+            printf("| %s | %d | %.4f |", relume_transport_name(*t), samples,
+                   difference(&j, &f.image, &j.truth));
+            j.left_out = balls;
+            printf(" %.4f | %.2f |\n", difference(&j, &f.image, &j.truth), f.seconds);
             fflush(stdout);
-            snprintf(name[0], sizeof name[0], "%s-%s-%d.exr", r->scene, relume_transport_name(*t),
+            snprintf(name[0], sizeof name[0], "%s-%s-%d.exr", r->name, relume_transport_name(*t),
                      samples);
             bench_check(relume_image_save(&f.image, path_of(name[0]), NULL));
             relume_image_destroy(&f.image);
         }
-    snprintf(name[2], sizeof name[2], "%s-truth-picture.exr", r->scene);
+    snprintf(name[2], sizeof name[2], "%s-truth-picture.exr", r->name);
     bench_check(relume_image_save(&j.truth, path_of(name[2]), NULL));
     relume_image_destroy(&j.before);
     relume_image_destroy(&j.truth);
     relume_image_destroy(&j.touched);
+    free(balls);
     relume_objects_destroy(&j.ball);
     relume_pack_destroy(&j.room);
     relume_pack_destroy(&truth);
+}
+
+// ---------------------------------------------------------------- cameras
+
+static relume_objects *open_heap(void)
+{
+    static const double at[][4] = {
+        {0.3, -0.6, -1.0, 0.4}, {-0.35, -0.75, -1.3, 0.25}, {0.75, -0.8, -1.5, 0.2}};
+    relume_objects *o;
+    FILE *file = fopen(path_of("heap.json"), "w");
+    if (!file || !write_ball_mesh(path_of("ball.obj"), 64, false))
+        bench_check(RELUME_EIO);
+    fputs("{\"format\":\"relume-objects\",\"version\":1,\"objects\":[", file);
+    for (int i = 0; i < 3; i++)
+        fprintf(file,
+                "%s{\"mesh\":\"ball.obj\",\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]},"
+                "\"parts\":[{\"material\":{\"diffuse\":0.8}}]}",
+                i ? "," : "", at[i][3], at[i][0], at[i][1], at[i][2]);
+    fputs("]}", file);
+    bench_check(fclose(file) ? RELUME_EIO : RELUME_OK);
+    bench_check(relume_objects_open(&o, path_of("heap.json"), NULL));
+    return o;
+}
+
+// Table 4.1: seconds by the size of the picture and the number of directions.
+static void time_screens(relume_pack *pack)
+{
+    relume_objects *o = open_heap();
+    static const int sizes[][2] = {{320, 240}, {640, 480}};
+    static const struct {
+        const struct relume_transport *way;
+        int bounces, cameras;
+    } ways[] = {{&transport_ssao, -1, -1},
+                {&transport_ssdo, -1, -1},
+                {&transport_ssdo, 1, -1},
+                {&transport_ssdo, 1, 4}};
+    puts("\n| size | N | ssao | ssdo | a bounce | 4 cameras |\n|---|---|---|---|---|---|");
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
+        for (int samples = 8; samples <= 16; samples *= 2) {
+            struct relume_camera camera = {.framing = RELUME_FRAME_LOOK};
+            camera.width = sizes[s][0], camera.height = sizes[s][1];
+            printf("| %d x %d | %d |", camera.width, camera.height, samples);
+            for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+                bounces = ways[i].bounces, cameras = ways[i].cameras;
+                struct shot f = frame_of(pack, o, ways[i].way, samples, &camera);
+                printf(" %.2f |", f.seconds);
+                fflush(stdout);
+                relume_image_destroy(&f.image);
+            }
+            puts("");
+        }
+    bounces = BOUNCES, cameras = 0;
+    relume_objects_destroy(&o);
+}
+
+// What further cameras gain and take, against paths.
+static void judge_cameras(relume_pack *pack)
+{
+    static const int numbers[] = {0, 1, 2, 4, 8};
+    struct judge j = {.room = pack};
+    for (int heap = 0; heap < 2; heap++) {
+        j.ball = heap ? open_heap() : open_ball(64);
+        struct shot truth = frame_of(pack, j.ball, &transport_path, 1024, &unfolded);
+        bench_check(relume_frame(&j.before, pack, &unfolded, &sun, 1, NULL));
+        j.truth = truth.image;
+        for (int way = 0; way < 2; way++)
+            for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+                cameras = numbers[i] ? numbers[i] : -1;
+                printf("| %s, %s | %d |", heap ? "three balls" : "a ball", way ? "ssdo" : "ssao",
+                       numbers[i]);
+                for (int samples = 8; samples <= 64; samples *= 2) {
+                    struct shot f = frame_of(pack, j.ball, way ? &transport_ssdo : &transport_ssao,
+                                             samples, &unfolded);
+                    printf(" %.4f, %.2f |", difference(&j, &f.image, &j.truth), f.seconds);
+                    relume_image_destroy(&f.image);
+                }
+                puts("");
+                fflush(stdout);
+            }
+        relume_image_destroy(&j.before);
+        relume_image_destroy(&j.truth);
+        relume_objects_destroy(&j.ball);
+    }
+    cameras = 0;
 }
 
 // ---------------------------------------------------------------- glossy
@@ -477,20 +687,12 @@ static relume_objects *open_glossy_ball(double roughness)
 {
     relume_objects *o;
     char text[512];
-    FILE *file = fopen(path_of("glossy.mtl"), "w");
-    if (!file || fprintf(file, "newmtl own\nKd 0.8 0.8 0.8\nPm 1\nPr %g\n", roughness) < 0 ||
-        fclose(file) || !write_ball_mesh(path_of("ball.obj"), 64, false))
-        bench_check(RELUME_EIO);
-    snprintf(text, sizeof text, "(echo mtllib glossy.mtl; echo usemtl own; cat %s) > %s",
-             path_of("ball.obj"), path_of("glossy.obj"));
-    bench_check(system(text) ? RELUME_EIO : RELUME_OK);
+    write_glossy_mesh(roughness);
     snprintf(text, sizeof text,
              "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"glossy.obj\","
              "\"pose\":{\"scale\":%g,\"translate\":[%g,%g,%g]}}]}",
              ball_radius, ball[0], ball[1], ball[2]);
-    file = fopen(path_of("glossy.json"), "w");
-    if (!file || fputs(text, file) < 0 || fclose(file))
-        bench_check(RELUME_EIO);
+    write_file("glossy.json", text);
     bench_check(relume_objects_open(&o, path_of("glossy.json"), NULL));
     return o;
 }
@@ -566,9 +768,20 @@ int main(int argc, char **argv)
         relume_pack_destroy(&j.room);
         return 0;
     }
+    if (argc > 2 && (!strcmp(argv[2], "cameras") || !strcmp(argv[2], "screens"))) {
+        photograph(&room, "room", "room.exr", HEIGHT, 256, 4);
+        j.room = open_pack("room.exr");
+        if (!strcmp(argv[2], "cameras"))
+            judge_cameras(j.room);
+        else
+            time_screens(j.room);
+        relume_pack_destroy(&j.room);
+        return 0;
+    }
     if (argc > 2) {
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-            judge_row(&rows[i]);
+            if (argc < 4 || !strcmp(argv[3], rows[i].name))
+                judge_row(&rows[i]);
         return 0;
     }
     photograph(&room, "room", "room.exr", HEIGHT, 256, 4);

@@ -25,6 +25,20 @@ expect_ok 'at every pixel' - "$RELUME" relight room.exr --objects ball.json $loo
 check 'nearly the same as at every fourth' sh -c "'$RELUME' compare each.exr micro.exr | awk '/^rms/ { exit !(\$2 > 0 && \$2 < 0.02) }'"
 
 
+# a film, as docs/transport.md has it: as the sun sinks, ball and room darken together
+mkdir film
+awk 'BEGIN { for (i = 0; i < 4; i++) { a = 0.35 + i * 1.05 / 3; print i + 100, sin(a), cos(a), .1 } }' |
+    while read -r n x y z; do
+        "$RELUME" relight room.exr --objects ball.json $look -o film/$n.pfm --light "dir $x $y $z" --transport ssdo -q
+    done
+for n in 100 101 102 103; do
+    tail -n +4 film/$n.pfm | od -An -v -w12 -tf4 | awk '{
+        x = (NR - 1) % 48; y = int((NR - 1) / 48); v = $1 + $2 + $3
+        if (x > 20 && x < 27 && y > 12 && y < 20) { ball += v; n++ } else { room += v; k++ }
+    } END { print ball / n, room / k }'
+done >film.txt
+check 'ball and room darken together' awk 'NR > 1 && !($1 < 0.95 * ball && $2 < 0.95 * room) { exit 1 } { ball = $1; room = $2 } END { exit NR != 4 || !(room > 0) }' film.txt
+
 # small pictures do, also for what shines, here by its own library: they are warped by the material
 expect_ok 'pictures of 8 x 8' - "$RELUME" relight room.exr --objects ball.json $look -o small.exr --light 'dir 0 1 0' --transport micro --samples 64 -q
 check 'are the default' cmp small.exr micro.exr
@@ -195,6 +209,12 @@ expect_fail 'a way that is none' 2 "unknown --transport 'sddo'; did you mean 'ss
 expect_fail 'without objects' 2 'work only with --objects' x.png "$RELUME" relight room.exr -o x.png --transport path
 expect_fail 'many rays a pixel' 2 'expected 1 to 16 rays' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --samples 17
 expect_fail 'spacing of a way that shares directions' 2 '\-\-spacing works only with --transport micro and path' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport ssdo --spacing 2
+expect_fail 'cameras of a way that has none' 2 '\-\-cameras works only with --transport ssao and ssdo' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport micro --cameras 2
+expect_fail 'many cameras' 2 'cameras' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport ssdo --cameras 17
+for n in 0 1 16; do
+    expect_ok "$n cameras" - "$RELUME" relight room.exr --objects ball.json $look -o cameras-$n.exr --light 'dir 0 1 0' --transport ssdo --cameras $n -q
+done
+differ 'a camera sees more' cameras-0.exr cameras-1.exr
 expect_fail 'far apart' 2 'spacing' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport micro --spacing 17
 expect_fail 'many bounces' 2 'bounces' x.png "$RELUME" relight room.exr --objects ball.json -o x.png --transport path --bounces 17
 for material in '{"diffuse":1.5}' '{"diffuse":"red"}' '{"diffuse":0.5,"mirror":1}' '{"diffuse":[1,1]}'; do

@@ -222,6 +222,78 @@ static void points_of_objects_send_what_rays_meet(void **state)
     mesh_free(&m);
 }
 
+// ---------------------------------------------------------------- what shines
+
+static const vec3 highlight = {0.6, 0.0, 0.8};
+static const double exponent = 10.0;
+
+static void send_highlight(float rgb[3], const void *context, const struct trace_hit *hit,
+                           vec3 origin, vec3 direction, uint64_t key,
+                           const struct arrival *arrivals, int n)
+{
+    (void)context, (void)hit, (void)origin, (void)key, (void)arrivals, (void)n;
+    rgb[0] = rgb[1] = rgb[2] = (float)pow(fmax(-vec3_dot(direction, highlight), 0.0), exponent);
+}
+
+static void send_all(float rgb[3], const void *context, const struct trace_hit *hit, vec3 origin,
+                     vec3 direction, uint64_t key, const struct arrival *arrivals, int n)
+{
+    (void)context, (void)hit, (void)origin, (void)direction, (void)key;
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = 0.0f;
+        for (int i = 0; i < n; i++)
+            rgb[c] += (float)arrivals[i].share * arrivals[i].with[c];
+    }
+}
+
+static const struct point upwards = {.normal = {0, 0, 1}, .area = 1.0};
+
+// Of a highlight over the half space, each direction by its cosine; from a fine grid of the disc.
+static void means_are_those_of_all_directions(void **state)
+{
+    (void)state;
+    enum { FINE = 400, POINTS = 200 };
+    const struct world w = {.sent = send_highlight};
+    double want = 0.0, found = 0.0;
+    int n = 0;
+    for (int i = 0; i < FINE * FINE; i++) {
+        const double u = 2.0 * (i % FINE + 0.5) / FINE - 1.0,
+                     v = 2.0 * (i / FINE + 0.5) / FINE - 1.0;
+        if (u * u + v * v < 1.0) {
+            const vec3 d = vec3_of(u, v, sqrt(1.0 - u * u - v * v));
+            want += pow(fmax(vec3_dot(d, highlight), 0.0), exponent);
+            n++;
+        }
+    }
+    for (uint64_t key = 0; key < POINTS; key++) {
+        float mean[3];
+        points_object_mean(mean, &w, &upwards, key, NULL, 0);
+        found += (double)mean[0] / POINTS;
+    }
+    CHECK_NEAR(found, want / n, 0.01 * want / n);
+}
+
+static void arrivals_are_kept(void **state)
+{
+    (void)state;
+    enum { N = 200 };
+    const struct world w = {.sent = send_all};
+    struct arrival arrivals[N];
+    double want = 0.0;
+    for (int i = 0; i < N; i++) {
+        arrivals[i] =
+            (struct arrival){.towards = points_direction(&upwards, (i + 0.5) / N, 0.6180339887 * i),
+                             .share = 1.0 / N,
+                             .with = {(float)(i % 7), 1.0f, 0.0f}};
+        want += i % 7 / (double)N;
+    }
+    float mean[3];
+    points_object_mean(mean, &w, &upwards, 1, arrivals, N);
+    CHECK_NEAR(mean[0], want, 1e-4);
+    CHECK_NEAR(mean[1], 1.0, 1e-4);
+    CHECK_NEAR(mean[2], 0.0, 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +303,8 @@ int main(void)
         cmocka_unit_test(what_has_no_area_has_no_points),
         cmocka_unit_test(points_of_a_scene_lie_on_its_places),
         cmocka_unit_test(points_of_objects_send_what_rays_meet),
+        cmocka_unit_test(means_are_those_of_all_directions),
+        cmocka_unit_test(arrivals_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,7 +22,7 @@ struct relight_options {
     enum relume_interpolation interpolation;
     unsigned pass;
     const struct relume_transport *transport;  // NULL: none
-    int bounces, spacing;
+    int bounces, spacing, cameras;
     bool nearest, alpha, allow_outside, keep_going;
     struct light_options lighting;
     struct develop_options develop;
@@ -140,6 +140,8 @@ static const struct option options[] = {
         "--transport micro, path: gather light at every N-th pixel each way, and at borders; "
         "default: 4 (micro), 1 (path)",
         1, 16),
+    INT("--cameras", cameras, "N",
+        "--transport ssao, ssdo: look at the objects from N further sides, too; default: 4", 0, 16),
     INT("--samples", samples, "N",
         "--objects, scene files: N x N rays a pixel, at most 16; default: 3; with --transport: "
         "directions that light is gathered from at a pixel",
@@ -227,6 +229,8 @@ static relume_status check_pass(const struct relight_options *o)
                            "add --objects FILE");
     if (given(o, &o->spacing) && !(o->transport && relume_transport_spacing(o->transport)))
         return usage_error("--spacing works only with --transport micro and path");
+    if (given(o, &o->cameras) && !(o->transport && relume_transport_cameras(o->transport) >= 0))
+        return usage_error("--cameras works only with --transport ssao and ssdo");
     if (o->samples > MOST_ACROSS && !(o->transport && relume_transport_samples(o->transport)))
         return usage_error("--samples: expected 1 to %d rays along each side of a pixel; found %d",
                            MOST_ACROSS, o->samples);
@@ -267,6 +271,7 @@ static struct relume_render_params render_params(const struct relight_options *o
         .transport_samples = given(o, &o->samples) && gathers ? o->samples : 0,
         .bounces = given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
         .transport_spacing = o->spacing,
+        .transport_cameras = given(o, &o->cameras) && !o->cameras ? -1 : o->cameras,
     };
 }
 
@@ -518,6 +523,8 @@ static relume_status check_scene(const struct relight_options *o)
         return usage_error("--bounces works only with --transport");
     if (given(o, &o->spacing) && !(o->transport && relume_transport_spacing(o->transport)))
         return usage_error("--spacing works only with --transport micro and path");
+    if (given(o, &o->cameras) && !(o->transport && relume_transport_cameras(o->transport) >= 0))
+        return usage_error("--cameras works only with --transport ssao and ssdo");
     if (o->samples > MOST_ACROSS && !(o->transport && relume_transport_samples(o->transport)))
         return usage_error("--samples: expected 1 to %d rays along each side of a pixel; found %d",
                            MOST_ACROSS, o->samples);

@@ -91,8 +91,8 @@ function nodeDirection(row, column, columns, rows, poleY) {
 }
 
 export class NearLamps {
-    constructor(device, scene, basis, changed) {
-        Object.assign(this, { device, scene, basis, changed, table: null, depth: null });
+    constructor(device, scene, basis, told) {
+        Object.assign(this, { device, scene, basis, told, table: null, depth: null });
     }
 
     // Weights by direction, as Relighter.block has them for one.
@@ -130,23 +130,24 @@ export class NearLamps {
         gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
         picture.close();
         this.depth = texture;
-        this.changed();
+        this.told.changed();
     }
 
     // Whether lamps can be shown now; where the surface is loads by and by.
-    ready(failed) {
+    ready() {
         const [view] = this.scene.views;
         this.table = this.table || this.makeTable();
         if (view.depth && !this.loading) {
             this.loading = true;
-            this.loadDepth(view).catch(failed);
+            this.loadDepth(view).catch(this.told.failed);
         }
         return !view.depth || !!this.depth;
     }
 
-    // The lamps that near lights come to.
-    lampsOf(lights) {
-        return lights.flatMap((light) => (light.kind === 'panel' ? patchesOf(light, this.scene.window) : [light]));
+    // Adds near lights to a tile's.
+    addAll(target, tile, lights) {
+        lights.flatMap((light) => (light.kind === 'panel' ? patchesOf(light, this.scene.window) : [light]))
+            .forEach((lamp) => this.add(target, tile, lamp));
     }
 
     // Adds a lamp's light to a tile's.

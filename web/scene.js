@@ -61,6 +61,7 @@ function checkViews(scene) {
         insist(scene.projection !== 'slab' || areNumbers(view.uv, 2), 'a view without its place');
         insist(!view.depth || (Number.isFinite(view.depth_min) && Number.isFinite(view.depth_step)),
                'depth without its range');
+        insist(!view.moving || (areNumbers(view.moving.scale, 8) && areNumbers(view.moving.offset, 8)), 'what moves without its scales');
     }
 }
 

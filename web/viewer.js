@@ -11,7 +11,7 @@ import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
 import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
-import { NearLamps } from './near.js';
+import { More } from './more.js';
 import { readState, writeState } from './state.js';
 import { brightestExposure, measureRange, meterExposure } from './measure.js';
 import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
@@ -60,8 +60,8 @@ export class Viewer {
 
     // A file under lights of its own.
     layerOf(scene, basis, tiles) {
-        tiles.near = tiles.near || new NearLamps(this.device, scene, basis, () => this.invalidate());
-        const relighter = new Relighter(this.device, scene, basis, tiles.near);
+        tiles.more = tiles.more || new More(this.device, scene, basis, this.home, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
+        const relighter = new Relighter(this.device, scene, basis, tiles.more);
         const painter = new Painter(this.device, scene, tiles, relighter, () => this.invalidate());
         const stage = scene.projection === 'planar' ? new Planar(scene, painter)
             : scene.projection === 'slab' ? new Slab(scene, painter, this.device) : new Panorama(scene, painter, this.device);
@@ -292,6 +292,7 @@ export class Viewer {
         const { other } = this.comparison;
         const looks = other ? [own, other] : [own];
         this.painter.complete = true;
+        this.painter.rough = false;
         this.tiles.begin();
         looks.forEach((look, i) => this.drawLook(look, i, looks.length > 1 ? this.target(`shown${i}`) : null));
         this.meter(own);
@@ -308,7 +309,7 @@ export class Viewer {
         if (layer.tiles !== this.tiles)
             layer.tiles.begin();
         if (layer !== this)
-            layer.painter.complete = true;
+            Object.assign(layer.painter, { complete: true, rough: false });
         for (const kind of kinds)
             layer.stage.draw(this.target(`${kind}${index}`), kind, this.camera(layer));
         this.findRange(look);
@@ -326,7 +327,7 @@ export class Viewer {
             this.invalidate();
         if (this.coarser && moving)
             setTimeout(() => this.invalidate(), 260);
-        if (complete && !busy && !this.coarser)
+        if (complete && !busy && !this.coarser && !looks.some(({ layer }) => layer.painter.rough))
             this.waiting.splice(0).forEach((resolve) => resolve());
     }
 

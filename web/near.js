@@ -1,43 +1,71 @@
-// near.js - lamps that stand near a flat picture: each pixel sees them from a direction of its own;
-// after viewer/shaders/near.frag.glsl and src/relight/near_lights.c
-import { patchesOf } from './lights.js';
+// near.js - lamps that stand near: each pixel sees them from a direction of its own; after
+// viewer/shaders/near.frag.glsl and src/relight/near_lights.c
+import { MOST_SIDE, patchSide, patchesOf } from './lights.js';
 import { DECODE, HEAD } from './shaders.js';
-import { decodePicture } from './tiles.js';
-import { loadBytes } from './load.js';
+import { loadPicture } from './tiles.js';
 
 const DOWN = 64;           // rows of the table from the pole to the horizon
 const MOST_DEPTH = 4096;   // pixels a side
 
+// Where the way through a pixel leads: twins of src/geometry/camera.c.
+const RAYS = {
+    cylindrical: `
+    if (disc > 0.0 && at.y >= size.y - disc) {
+        bool lower = at.x >= disc;
+        float up = 1.0 - 2.0 * (at.y - size.y + disc) / disc;
+        return vec3(2.0 * (at.x - (lower ? disc : 0.0)) / disc - 1.0, lower ? window.x : window.y, lower ? -up : up);
+    }
+    return vec3(sin(phi), mix(window.y, window.x, at.y / (size.y - disc)), -cos(phi));`,
+    spherical: `
+    float up = (0.5 - at.y / size.y) * PI;
+    return vec3(cos(up) * sin(phi), sin(up), -cos(up) * cos(phi));`,
+    cube: `
+    const vec3 AHEAD[6] = vec3[6](vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1));
+    const vec3 RIGHT[6] = vec3[6](vec3(0, 0, 1), vec3(0, 0, -1), vec3(1, 0, 0), vec3(1, 0, 0), vec3(-1, 0, 0), vec3(1, 0, 0));
+    const vec3 UP[6] = vec3[6](vec3(0, 1, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(0, 0, -1), vec3(0, 1, 0), vec3(0, 1, 0));
+    int face = clamp(int(at.x / size.y), 0, 5);
+    return AHEAD[face] + (2.0 * (at.x / size.y - float(face)) - 1.0) * RIGHT[face] + (1.0 - 2.0 * at.y / size.y) * UP[face];`,
+};
+const onPlane = `
+    vec3 point = vec3(mix(window.x, window.z, at.x / size.x), mix(window.w, window.y, at.y / size.y), plane);
+    if (parallel > 0.5)
+        eye.xy = point.xy;
+    return point - eye;`;
+
 // One lamp on one tile. The table has, by direction, three planes a texel: layers of red, green and
 // blue for each layer of codes, then the constants and the share that is shown.
-const nearShader = (layers) => `${HEAD}${DECODE}
+const nearShader = (layers, projection) => `${HEAD}${DECODE}
 uniform sampler2DArray codes;
 uniform sampler2DArray table;
 uniform sampler2D depth;
-uniform vec4 window;     // of the picture on z = 0: left, bottom, right, top
+uniform vec4 window;     // of the picture on its plane: left, bottom, right, top; of a cylinder v_min, v_max
 uniform vec2 size;       // pixels of the picture
 uniform vec3 tile;       // its left and top, pixels; pixels a texel
-uniform vec2 inverse;    // 1 / depth of the first code, and a step; a step of 0: the surface is z = 0
-uniform float camera;    // height of the eye
-uniform float perspective, hemisphere, poleY;
+uniform vec2 inverse;    // 1 / depth of the first code, and a step; a step of 0: the surface is the plane
+uniform vec3 from;       // the eye
+uniform float plane, parallel, disc;
+uniform float hemisphere, poleY;
 uniform vec3 lamp, axis, colour;
 uniform float halfAngle; // of a spot, radians; 0: a point
 uniform float fall, patch_;
 out vec4 light;
 const float PI = 3.14159265358979;
 
+vec3 ray_of(inout vec3 eye, vec2 at)
+{
+    float phi = (2.0 * at.x / size.x - 1.0) * PI;${RAYS[projection] || onPlane}
+}
 bool surface_at(out vec3 point)
 {
     vec2 at = tile.xy + tile.z * gl_FragCoord.xy;
-    point = vec3(mix(window.x, window.z, at.x / size.x), mix(window.w, window.y, at.y / size.y), 0.0);
+    vec3 eye = from, ray = ray_of(eye, at);
+    point = eye + ray;
     if (inverse.y == 0.0)
         return true;
     ivec2 most = textureSize(depth, 0) - 1;
     vec2 found = texelFetch(depth, clamp(ivec2(at / size * vec2(most + 1)), ivec2(0), most), 0).rg;
     float code = floor(255.0 * found.r + 0.5) * 256.0 + floor(255.0 * found.g + 0.5);
-    float away = 1.0 / (inverse.x + (code - 1.0) * inverse.y);
-    vec3 eye = vec3(perspective > 0.5 ? vec2(0.0) : point.xy, camera);
-    point = eye + away * normalize(point - eye);
+    point = eye + normalize(ray) / (inverse.x + (code - 1.0) * inverse.y);
     return code > 0.0;
 }
 
@@ -92,7 +120,7 @@ function nodeDirection(row, column, columns, rows, poleY) {
 
 export class NearLamps {
     constructor(device, scene, basis, told) {
-        Object.assign(this, { device, scene, basis, told, table: null, depth: null });
+        Object.assign(this, { device, scene, basis, told, table: null, depths: new Map() });
     }
 
     // Weights by direction, as Relighter.block has them for one.
@@ -120,46 +148,59 @@ export class NearLamps {
     }
 
     async loadDepth(view) {
-        const { gl } = this.device, { width, height } = this.scene, scale = Math.min(1, MOST_DEPTH / Math.max(width, height));
-        const bytes = await loadBytes(`${this.scene.base}${view.name}/depth.png`);
-        const picture = await decodePicture(bytes, 'image/png', scale < 1 ? {
-            resizeWidth: Math.max(1, Math.round(width * scale)), resizeHeight: Math.max(1, Math.round(height * scale)), resizeQuality: 'pixelated' } : {});
-        const texture = this.device.texture(gl.NEAREST);
+        const { gl } = this.device, { width, height } = this.scene, picture = await loadPicture(this.scene, view, false);
+        const scale = Math.min(1, MOST_DEPTH / Math.max(width, height)), texture = this.device.texture(gl.NEAREST);
+        const small = scale === 1 ? picture : await createImageBitmap(picture, { resizeWidth: Math.max(1, Math.round(width * scale)),
+            resizeHeight: Math.max(1, Math.round(height * scale)), resizeQuality: 'pixelated', premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+        gl.bindTexture(gl.TEXTURE_2D, texture);
         gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
         gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
-        picture.close();
-        this.depth = texture;
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, small);
+        this.depths.set(view.name, texture);
         this.told.changed();
     }
 
-    // Whether lamps can be shown now; where the surface is loads by and by.
-    ready() {
-        const [view] = this.scene.views;
+    // Whether lamps can be shown in a view now; where its surface is loads by and by.
+    ready(name) {
+        const view = this.scene.views.find((v) => v.name === name);
         this.table = this.table || this.makeTable();
-        if (view.depth && !this.loading) {
-            this.loading = true;
+        if (view.depth && !this.depths.has(name)) {
+            this.depths.set(name, null);
             this.loadDepth(view).catch(this.told.failed);
         }
-        return !view.depth || !!this.depth;
+        return !view.depth || !!this.depths.get(name);
     }
 
     // Adds near lights to a tile's.
     addAll(target, tile, lights) {
-        lights.flatMap((light) => (light.kind === 'panel' ? patchesOf(light, this.scene.window) : [light]))
-            .forEach((lamp) => this.add(target, tile, lamp));
+        lights.flatMap((light) => this.lampsOf(light)).forEach((lamp) => this.add(target, tile, lamp));
+    }
+
+    // The lamps that a near light comes to.
+    lampsOf(light) {
+        return light.kind !== 'panel' ? [light] : patchesOf(light, this.scene.window ? patchSide(light, this.scene.window) : MOST_SIDE);
+    }
+
+    // How the file is seen by a view: uniforms.
+    seenBy(view) {
+        const { window: w, slab, panorama } = this.scene;
+        if (w)
+            return { window: [...w.min, ...w.max], from: [0, 0, w.camera_z], plane: 0, parallel: w.camera === 'perspective' ? 0 : 1 };
+        if (slab)
+            return { window: [...slab.st_min, ...slab.st_max], from: [...view.uv, slab.uv_plane_z], plane: slab.st_plane_z, parallel: 0 };
+        return { window: [panorama.v_min || 0, panorama.v_max || 0, 0, 0], from: panorama.center, disc: panorama.discs || 0 };
     }
 
     // Adds a lamp's light to a tile's.
     add(target, tile, lamp) {
-        const { scene, device } = this, { window: w, layers } = scene, [view] = scene.views, step = 2 ** tile.level;
-        const program = device.program(`near ${layers}`, () => nearShader(layers));
+        const { scene, device } = this, { layers, projection } = scene, step = 2 ** tile.level, view = scene.views.find((v) => v.name === tile.view);
+        const program = device.program(`near ${layers} ${projection}`, () => nearShader(layers, projection));
         device.begin(target, { clear: false, add: 'rgb' });
         program.set({
-            codes: { texture: tile.codes, array: true }, table: { texture: this.table, array: true }, depth: { texture: this.depth },
-            window: [w.min[0], w.min[1], w.max[0], w.max[1]], size: [scene.width, scene.height],
+            codes: { texture: tile.codes, array: true }, table: { texture: this.table, array: true }, depth: { texture: this.depths.get(view.name) || null },
+            ...this.seenBy(view), size: [scene.width, scene.height],
             tile: [tile.x * scene.tile * step, tile.y * scene.tile * step, step],
-            inverse: view.depth ? [view.depth_min, view.depth_step] : [0, 0], camera: w.camera_z, perspective: w.camera === 'perspective' ? 1 : 0,
+            inverse: view.depth ? [view.depth_min, view.depth_step] : [0, 0],
             hemisphere: scene.basis.hemispherical ? 1 : 0, poleY: scene.basis.pole === 'y' ? 1 : 0, curve: { int: scene.curve }, gamma: scene.gamma,
             lamp: lamp.position, axis: lamp.axis || [0, 0, -1], colour: lamp.rgb, halfAngle: lamp.half || 0, fall: lamp.nofall ? 0 : 1, patch_: lamp.kind === 'patch' ? 1 : 0,
         });
@@ -168,6 +209,6 @@ export class NearLamps {
 
     close() {
         this.device.gl.deleteTexture(this.table);
-        this.device.gl.deleteTexture(this.depth);
+        this.depths.forEach((texture) => this.device.gl.deleteTexture(texture));
     }
 }

@@ -58,7 +58,7 @@ export class Painter {
     textureOf(tile, kind) {
         const done = kind === 'light' ? this.relighter.isLit(tile) : tile.surface;
         this.rough = this.rough || (kind === 'light' && this.relighter.isRough(tile));
-        if (!done && (this.allowed <= 0 || (kind === 'light' && !this.relighter.ready()))) {
+        if (!done && (this.allowed <= 0 || (kind === 'light' && !this.relighter.ready(tile)))) {
             const older = kind === 'light' && this.relighter.older(tile);
             this.complete = false;
             return older ? older.texture : null;

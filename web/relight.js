@@ -106,9 +106,9 @@ export class Relighter {
     }
 
     // Whether tiles can be lit now.
-    ready() {
+    ready(tile) {
         const parts = !this.lamps.length || this.more.gone || this.more.need();
-        return parts === true || (!!parts && parts.near.ready());
+        return parts === true || (!!parts && parts.near.ready(tile.view));
     }
 
     drawBatch(target, tile, batch, i) {

@@ -74,8 +74,8 @@ function checkGeometry(scene) {
            (slab && areNumbers([slab.uv_plane_z, slab.st_plane_z]) && areNumbers(slab.st_min, 2) &&
             areNumbers(slab.st_max, 2)), 'no slab');
     const panorama = scene.panorama;
-    insist(scene.projection !== 'cylindrical' ||
-           (panorama && panorama.v_max > panorama.v_min), 'no panorama');
+    insist(flat || slab || (panorama && areNumbers(panorama.center, 3) &&
+           (scene.projection !== 'cylindrical' || panorama.v_max > panorama.v_min)), 'no panorama');
 }
 
 // A scene: what scene.json has, with `transform`, `mean`, `scale` and `offset` as floats, `base` (the
@@ -103,5 +103,6 @@ export function checkScene(scene, address) {
     scene.mean = floatsOf(scene.mean, 3 * scene.functions, 'mean');
     scene.layers = Math.ceil(scene.planes / 3);
     scene.base = new URL('.', address).href;
+    scene.takesLamps = !!scene.window || scene.views.every((view) => view.depth);  // that stand near
     return scene;
 }

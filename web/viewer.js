@@ -206,7 +206,7 @@ export class Viewer {
 
     // Shows what a line says; what it does not name is as the page opens.
     setState(line) {
-        const { values, lights, others, problem } = readState(line, this.projection === 'planar');
+        const { values, lights, others, problem } = readState(line, this.scene.takesLamps);
         this.metering = false;
         this.reset();
         Object.assign(this, { others });

@@ -5,11 +5,13 @@
 import { Failure, loadBytes } from './load.js';
 import { decodePicture, loadPicture, partsOf } from './tiles.js';
 import { pixelsOf } from './views.js';
-import { glossShader, shadowShader, traceShader } from './movingshaders.js';
+import { patchesOf } from './lights.js';
+import { glossShader, nearShadowShader, shadowShader, traceShader } from './movingshaders.js';
 
 const NUMBERS = 8, GLOSS_SHINE = 6;
 const LEAST_WEIGHT = 1e-4, PHOTOGRAPH = 0.9999, AROUND = 4;  // as src/shadow/around.c
 const [PARALLEL, EYE, CYLINDER, SPHERE] = [0, 1, 2, 3];
+const PATCHES = 4;  // a side of near areas, as src/shadow/shadows.c
 const TILE = 8, MARGIN = 2, DEEPEST = 16, BACKGROUND = 1e30;  // as src/shadow/stage.c
 const MOST_STAGES = 16, MOST_STAGE_BYTES = 384 << 20, MOST_REACHED_BYTES = 128 << 20;
 
@@ -278,18 +280,36 @@ export class Moving {
         }
     }
 
-    // Adds a light to `lit`, which draw(target) relights alone: { direction, colour, around }.
-    add(lit, tile, { direction, colour, around }, draw) {
-        const view = this.views.get(tile.view), { gamma } = this.scene, curve = this.scene.between === 'linear' ? 1 : this.scene.curve;
-        const relit = this.target('relit', tile.width, tile.height);
+    // What of a tile and its view all shaders take that add to a picture of one light, which draw(target) makes.
+    shown(tile, view, draw) {
+        const { gamma, between, curve } = this.scene, relit = this.target('relit', tile.width, tile.height), { origin, grain } = this.placeOf(tile);
+        this.device.begin(relit);
         draw(relit);
-        const shown = { relit: { texture: relit.texture }, colours: { texture: view.colours }, matte: { texture: view.matte },
-                        towards: direction, rgb: colour, ...this.placeOf(tile), level: tile.level, curve: { int: curve }, gamma };
-        delete shown.most;
+        return { relit: { texture: relit.texture }, colours: { texture: view.colours }, matte: { texture: view.matte }, origin, grain,
+                 level: tile.level, curve: { int: between === 'linear' ? 1 : curve }, gamma };
+    }
+
+    // Adds a light to `lit`: { direction, colour, around }.
+    add(lit, tile, { direction, colour, around }, draw) {
+        const view = this.views.get(tile.view), shown = this.shown(tile, view, draw);
         const own = this.gloss ? this.glossOf(around) : this.shadowOf(tile, view, direction, around);
         const program = this.device.program(`moves ${this.gloss}`, this.gloss ? glossShader : shadowShader);
         this.device.begin(lit, { clear: false, add: 'rgb' });
-        program.set({ ...shown, ...own });
+        program.set({ ...shown, ...own, towards: direction, rgb: colour });
+        program.draw();
+    }
+
+    // The same of a light that stands near; `near`: what knows how lamps send (near.js).
+    addNear(lit, tile, light, near, draw) {
+        const { gl } = this.device, view = this.views.get(tile.view), { rays, eye } = view.stage, shown = this.shown(tile, view, draw);
+        const lamps = light.kind === 'panel' ? patchesOf(light, PATCHES) : [light], { lights } = this.scene.basis, own = this.stageOf(view);
+        const program = this.device.program(`moves near ${rays}`, () => nearShadowShader(rays));
+        this.directions = this.directions || this.texture(lights.length / 3, 1, gl.RGBA32F,
+            Float32Array.from({ length: 4 * lights.length / 3 }, (_, i) => (i % 4 < 3 ? lights[3 * Math.floor(i / 4) + i % 4] : 0)));
+        this.device.begin(lit, { clear: false, add: 'rgb' });
+        program.set({ ...shown, ...own, ...near.sent(lamps[0]), ...near.triangleSet(), lights: { texture: this.directions }, eye, lamps: { int: lamps.length } });
+        gl.uniform3fv(program.at('lampAt'), lamps.flatMap((lamp) => lamp.position));
+        gl.uniform3fv(program.at('lampColour'), lamps.flatMap((lamp) => lamp.rgb));
         program.draw();
     }
 
@@ -316,6 +336,6 @@ export class Moving {
     close() {
         this.views.forEach((view) => this.dropView(view));
         [...this.reached.values(), ...this.scratch.values()].forEach((target) => this.device.drop(target));
-        this.device.gl.deleteTexture(this.lights || null);
+        [this.lights, this.directions].forEach((texture) => this.device.gl.deleteTexture(texture || null));
     }
 }

@@ -1,10 +1,13 @@
 // movingshaders.js - shadows and highlights that move, on the graphics card; twins of
 // viewer/shaders/moving and of src/shadow
+import { ARRIVING, TRIANGLES } from './near.js';
 import { DECODE, HEAD } from './shaders.js';
 
+// A pixel of a reduced picture is so many of the view's wide.
+const GRAIN = 'uniform float grain;\n';
+
 // Rays through the depth of a view; after viewer/shaders/moving/stage.glsl.
-export const stageShader = (rays) => `
-const int RAYS = ${rays}, PARALLEL = 0, EYE = 1, CYLINDER = 2;
+const stageShader = (rays) => `${GRAIN}const int RAYS = ${rays}, PARALLEL = 0, EYE = 1, CYLINDER = 2;
 const int TILE = 8, MOST_STEPS = 65536;
 const float STEP = 0.7, START = 1.0, NEAR = 0.25, SAME = 12.0, BACKGROUND = 1e30;
 uniform sampler2D surface;  // how far, how thick
@@ -110,8 +113,6 @@ bool stage_reaches(vec3 point, vec3 d, float distance)
     }
     return true;
 }
-// Of a reduced picture a pixel is \`grain\` of the view's wide.
-uniform float grain;
 bool quarter_reached(ivec2 at, int quarter, vec3 d, float distance)
 {
     vec3 point;
@@ -145,9 +146,8 @@ const SHOWN = `
 uniform sampler2D relit;
 uniform sampler2D colours;
 uniform sampler2D matte;
-uniform vec3 towards, rgb;
 uniform vec2 origin;
-uniform float grain, level;
+uniform float level;
 out vec4 light;
 vec3 encode(vec3 l)
 {
@@ -162,6 +162,9 @@ vec4 model_at(sampler2D model)
 {
     return textureLod(model, grain * (gl_FragCoord.xy + origin) / vec2(textureSize(model, 0)), level);
 }
+`;
+const SHOW = `
+uniform vec3 towards, rgb;
 void show(vec3 more)
 {
     vec3 shown = texelFetch(relit, ivec2(gl_FragCoord.xy), 0).rgb;
@@ -170,7 +173,7 @@ void show(vec3 more)
 `;
 
 // A light whose shadows move: of the matte surface's colour, a and b.
-export const shadowShader = () => `${HEAD}${DECODE}${SHOWN}
+export const shadowShader = () => `${HEAD}${DECODE}${GRAIN}${SHOWN}${SHOW}
 uniform sampler2D arrives, reached0, reached1, reached2, reached3;
 uniform vec4 captured0, captured1, captured2, captured3;  // direction, weight
 // Edges are known to a pixel, and as soft as that.
@@ -189,7 +192,7 @@ void main()
 }`;
 
 // A light whose highlights move; after viewer/shaders/moving/gloss.frag.glsl.
-export const glossShader = () => `${HEAD}${DECODE}${SHOWN}
+export const glossShader = () => `${HEAD}${DECODE}${GRAIN}${SHOWN}${SHOW}
 uniform sampler2D lights;  // of each captured light: direction, weight
 uniform int around;
 vec3 gloss_shown(vec4 colour, vec4 pixel, vec3 from)
@@ -213,4 +216,57 @@ void main()
         between += from.w * encode(gloss_shown(colour, pixel, from.xyz));
     }
     show(pixel.w > 0.0 ? pixel.w * (gloss_shown(colour, pixel, towards) - decode(between)) : vec3(0.0));
+}`;
+
+// A near light whose shadows move, of one lamp or of 4 x 4 patches; after viewer/shaders/moving/near.frag.glsl.
+const MOST_PATCHES = 16;
+export const nearShadowShader = (rays) => `${HEAD}${DECODE}${stageShader(rays)}${SHOWN}${ARRIVING}${TRIANGLES}
+uniform sampler2D lights;  // of each captured light: direction
+uniform vec3 eye;
+uniform vec3 lampAt[${MOST_PATCHES}], lampColour[${MOST_PATCHES}];
+uniform int lamps;
+const int ASKED = 16;      // captured lights that a pixel remembers
+ivec2 at;
+vec4 m;
+int asked[ASKED], remembered;
+float answer[ASKED];
+float matte_under(vec3 from) { return max(m.x + dot(m.yzw, from), 0.0); }
+float know(int index)
+{
+    for (int i = 0; i < remembered; i++)
+        if (asked[i] == index)
+            return answer[i];
+    vec3 from = texelFetch(lights, ivec2(index, 0), 0).xyz;
+    float known = quarters_reached(at, from, BACKGROUND) * matte_under(from);
+    if (remembered < ASKED) {
+        asked[remembered] = index;
+        answer[remembered++] = known;
+    }
+    return known;
+}
+void main()
+{
+    at = ivec2(gl_FragCoord.xy + origin);
+    m = model_at(matte);
+    remembered = 0;
+    vec3 colour = model_at(colours).rgb, relit_ = texelFetch(relit, ivec2(gl_FragCoord.xy), 0).rgb, lit = vec3(0.0), between = vec3(0.0), point;
+    bool seen = colour != vec3(0.0) && stage_point(point, min(grain * (vec2(at) + 0.5), vec2(textureSize(surface, 0)) - 0.01));
+    for (int i = 0; i < lamps && seen; i++) {
+        vec3 towards, weight, codes = vec3(0.0);
+        float sent, away = distance(lampAt[i], eye + point);
+        ivec3 node;
+        if (!sends(towards, sent, lampAt[i], eye + point) || sent <= 0.0)
+            continue;
+        vec4 from = texture(taken, table_place(towards));
+        triangles_find(node, weight, from.xyz);
+        for (int k = 0; k < 3; k++)
+            if (weight[k] > 0.0)
+                codes += weight[k] * encode(colour * know(node[k]));
+        float reached = lamps == 1 ? quarters_reached(at, towards, away) : quarter_reached(at, (i + i / 4) & 3, towards, away) ? 1.0 : 0.0;
+        vec3 arriving = sent * from.a * lampColour[i];
+        lit += arriving * colour * reached * matte_under(normalize(from.xyz));
+        between += arriving * decode(codes);
+    }
+    vec3 rest = relit_ - between;
+    light = vec4(max((RAYS >= CYLINDER ? max(rest, 0.0) : rest) + lit, min(relit_, 0.0)), 1.0);
 }`;

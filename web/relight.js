@@ -130,7 +130,7 @@ export class Relighter {
         alone.forEach((light) => moving.add(lit, tile, light, (target) =>
             light.batches.forEach((batch, i) => this.drawBatch(target, tile, batch, i))));
         if (this.lamps.length && this.more.parts)
-            this.more.parts.near.addAll(lit, tile, this.lamps);
+            this.more.parts.near.addAll(lit, tile, this.lamps, moving);
         lit.version = `${this.version}${moving ? ' moved' : ''}`;
         return lit;
     }

@@ -78,6 +78,16 @@ export class Basis {
         return basis;
     }
 
+    // Of such a basis: its triangles, nodes and inverse each, 12 numbers.
+    triangles() {
+        const core = this.core, most = 4 * this.captured + 64, out = core.core_room(48 * most), n = core.core_triangles(this.handle, out, most);
+        const found = new Float32Array(core.memory.buffer, out, 12 * Math.max(n, 0)).slice();
+        core.core_free(out);
+        if (n < 0)
+            throw new Failure('out of memory');
+        return found;
+    }
+
     // Of such a basis: the pictures that it blends, [{ light, direction, weight }].
     around(direction, least = 0) {
         const { weights } = this.weights(direction), { lights } = this.scene.basis, out = [];

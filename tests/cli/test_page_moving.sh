@@ -41,17 +41,22 @@ lone() { # file, direction, more of the state, options, limit
 } >orders.txt
 lone box '0.2 0.3 0.8' '' '' 1
 lone box '-0.62 0.55 0.56' '' '' 1
+near() { snap "$1" 1 "light=$(echo "$2" | tr ' ' ,)$3" "$4" "$2"; } # file, light, more of the state, options
+near box 'point 0.3 0.6 1.4' '' ''
+near box 'area 0.2 0.5 1.2 0.2 0 0 0 -0.2 0.05 rgb 9 9 9' '' ''
 {
     echo 'size 80 80'
     show site/pot.html
 } >>orders.txt
 lone pot '0.6 0.3 0.5' '&eye=0.1,0,3' '--size 80x80 --eye 0.1,0,3' 1
+near pot 'point 0.6 0.5 1' '&eye=0.1,0,3' '--size 80x80 --eye 0.1,0,3'
 {
     echo 'size 96 48'
     show site/room.html
 } >>orders.txt
 # a picture of 40 rows, enlarged twice
 lone room '0.3 0.8 0.3' '&pan=30&tilt=10&zoom=1' '--size 96x48 --pan 30 --tilt 10' 1.5
+near room 'point 0.5 0.8 0.3 rgb 5 5 5' '&pan=30&tilt=10&zoom=1' '--size 96x48 --pan 30 --tilt 10'
 {
     echo 'size 48 48'
     show site/coin.html

@@ -144,6 +144,24 @@ EXPORT const double *core_from(const struct core *core)
     return core->from;
 }
 
+// The triangles of captured lights whose pictures a table interpolates, at most `most`: of each the
+// nodes, -1 for none, and relume_weight_triangle.inverse, out[12 n]. -1 without memory.
+EXPORT int core_triangles(const struct core *core, float *out, int most)
+{
+    relume_weight_grid *grid = NULL;
+    if (relume_weight_grid_create(&grid, core->coder, NULL))
+        return -1;
+    const struct relume_weight_grid_info *info = relume_weight_grid_info(grid);
+    const int n = info->triangles < most ? info->triangles : most;
+    for (int t = 0; t < n; t++, out += 12) {
+        for (int i = 0; i < 3; i++)
+            out[i] = (float)info->triangle[t].node[i];
+        memcpy(out + 3, info->triangle[t].inverse, sizeof info->triangle[t].inverse);
+    }
+    relume_weight_grid_destroy(&grid);
+    return n;
+}
+
 // The captured lights, at most as many as core_open had, that stand for an environment: out[6 n],
 // direction and colour. `rgb` is a lat-long map. -1 without memory.
 EXPORT int core_environment(const struct core *core, float *rgb, int width, int height,

@@ -13,6 +13,7 @@ int core_functions(const struct core *core);
 int core_turn(struct core *core, const float *transform, const float *mean, int planes);
 double core_weights(struct core *core, double x, double y, double z, float *out);
 const double *core_from(const struct core *core);
+int core_triangles(const struct core *core, float *out, int most);
 int core_environment(const struct core *core, float *rgb, int width, int height, double rotate_deg,
                      double *out);
 

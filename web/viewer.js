@@ -408,11 +408,12 @@ export class Viewer {
 
     // Into a target, or onto the canvas.
     present(look, index, target) {
-        const lamps = lampsOf(look.lights), program = this.device.program('present', presentShader), { gl } = this.device;
+        const lamps = lampsOf(look.lights), pass = PASSES.indexOf(look.pass), { gl } = this.device;
+        const program = this.device.program(`present ${pass}`, () => presentShader(pass));
         const of = (kind) => ({ texture: this.target(`${needsNormals(look.pass) ? kind : 'light'}${index}`).texture });
         this.device.begin(target);
         program.set({
-            light: of('light'), normals: of('normals'), albedos: of('albedo'), pass: { int: PASSES.indexOf(look.pass) },
+            light: of('light'), normals: of('normals'), albedos: of('albedo'),
             tone: { int: TONES_BY_NAME.indexOf(look.tone) }, exposure: 2 ** look.exposure, ground: GROUND,
             scale: look.memo.range, count: { int: lamps.length }, lampSum: sumOf(lamps), radius: Math.max(4 * (this.scale() || 1), 1),
         });

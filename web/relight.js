@@ -15,6 +15,8 @@ export class Relighter {
         this.version = 0;
         this.batches = [];
         this.buffer = device.gl.createBuffer();
+        // lights whose numbers have room in a block: few of many planes on telephones
+        this.most = Math.max(1, Math.floor(device.gl.getParameter(device.gl.MAX_UNIFORM_BLOCK_SIZE) / (16 * (3 * scene.layers + 2))));
         this.samples = null;
         this.count = 0;
     }
@@ -77,7 +79,7 @@ export class Relighter {
 
     batchesOf(lights) {
         const sums = this.scene.curve === 1 && lights.length ? this.joined(lights) : lights;
-        return this.blocks(sums, SIZES.find((size) => size >= Math.min(sums.length, MOST_LIGHTS)));
+        return this.blocks(sums, SIZES.filter((size) => size <= this.most).find((size, i, sizes) => size >= sums.length || i + 1 === sizes.length));
     }
 
     // The same where shadows or highlights move: lights between captured ones are shown one by one.
@@ -146,16 +148,18 @@ export class Relighter {
     // The light that a tile has, which may be that of before.
     older(tile) { return tile.lit[this.key]; }
 
+    get mostSamples() { return Math.min(MOST_SAMPLES, this.most); }
+
     // The captured lights that normals are found by, spread evenly over their list.
     samplesBlock() {
         if (this.samples)
             return this.samples;
-        const all = this.scene.basis.lights, n = all.length / 3, count = Math.min(n, MOST_SAMPLES), picked = [];
+        const all = this.scene.basis.lights, n = all.length / 3, count = Math.min(n, this.mostSamples), picked = [];
         for (let i = 0; i < count; i++) {
             const at = 3 * Math.floor((i + 0.5) * n / count), direction = all.slice(at, at + 3);
             picked.push({ weights: this.basis.weights(direction).weights, colour: direction });
         }
-        [this.samples] = this.blocks(picked, MOST_SAMPLES);
+        [this.samples] = this.blocks(picked, this.mostSamples);
         return this.samples;
     }
 
@@ -170,7 +174,7 @@ export class Relighter {
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, surface.albedo, 0);
         gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
         this.device.begin(surface);
-        this.draw(this.device.program(`normals ${this.scene.layers}`, () => normalShader(this.scene.layers)), tile, this.samplesBlock());
+        this.draw(this.device.program(`normals ${this.scene.layers}`, () => normalShader(this.scene.layers, this.mostSamples)), tile, this.samplesBlock());
         tile.surface = surface;
         return surface;
     }

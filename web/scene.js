@@ -56,11 +56,14 @@ function checkLevels(scene) {
 
 function checkViews(scene) {
     insist(Array.isArray(scene.views) && isWhole(scene.views.length, 1, 65536), 'views');
+    insist([undefined, 'shadows', 'highlights'].includes(scene.moves), 'what moves');
+    insist(scene.moves !== 'shadows' || scene.projection !== 'cube', 'shadows that move in a cube');
     for (const view of scene.views) {
         insist(typeof view.name === 'string' && /^[A-Za-z0-9_-]+$/.test(view.name), 'a view without a name');
         insist(scene.projection !== 'slab' || areNumbers(view.uv, 2), 'a view without its place');
         insist(!view.depth || (Number.isFinite(view.depth_min) && Number.isFinite(view.depth_step)),
                'depth without its range');
+        insist(scene.moves !== 'shadows' || view.depth, 'shadows that move without depth');
         insist(!view.moving || (areNumbers(view.moving.scale, 8) && areNumbers(view.moving.offset, 8)), 'what moves without its scales');
     }
 }

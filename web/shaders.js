@@ -73,11 +73,11 @@ void main()
 }
 
 // Normals and albedo of a tile by robust photometric stereo; after src/math/lambert.c.
-export const normalShader = (layers) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, MOST_SAMPLES)}
+export const normalShader = (layers, samples) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, samples)}
 layout(location = 0) out vec4 normal;
 layout(location = 1) out vec4 albedo;
 const int ROUNDS = 5;
-float sampled[${MOST_SAMPLES}], share[${MOST_SAMPLES}];
+float sampled[${samples}], share[${samples}];
 
 vec3 direction(int i) { return weight[i * STRIDE + 3 * LAYERS + 1].xyz; }
 

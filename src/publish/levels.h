@@ -11,7 +11,7 @@
 #include "publish/site.h"
 
 enum { LEVELS_TILE = 512, LEVELS_MOST = 24 };
-// Without a wish, and by one or where shadows move: what fades between captured lights hides less.
+// Without a wish, of linear files whose shadows stay, and of others.
 enum { PUBLISH_USUAL_PLANES = 45, PUBLISH_MOST_PLANES = 90 };
 
 // How all views of a file are coded.

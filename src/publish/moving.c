@@ -69,19 +69,32 @@ static relume_status encode(struct moving *m, struct sheet_result *sheets,
     return status;
 }
 
+// Where one goes on without what is damaged, whether there is a sound model.
+static relume_status find_sound(bool *sound, relume_pack *pack, int view)
+{
+    relume_shadows *shadows = NULL;
+    const relume_status status = relume_pack_shadows(&shadows, pack, view);
+    *sound = shadows != NULL;
+    relume_shadows_destroy(&shadows);
+    return status;
+}
+
 relume_status moving_write(struct moving *out, const struct site *site, const char *name,
                            relume_pack *pack, int view)
 {
     enum { SHEETS = (MOVING_NUMBERS + SHEET_PLANES - 1) / SHEET_PLANES };
     const bool gloss = relume_pack_info(pack)->has_gloss;
     struct sheet_result sheets[SHEETS] = {{.bytes = NULL}};
-    struct relume_image model;
+    struct relume_image model = {0};
+    bool sound = true;
     uint8_t *bytes = NULL;
     size_t size = 0;
     char *path = mem_format("%s/moving.bin", name);
     *out = (struct moving){.there = false};
-    relume_status status =
-        gloss ? relume_pack_gloss(&model, pack, view) : relume_pack_shadow(&model, pack, view);
+    relume_status status = site->params->keep_going ? find_sound(&sound, pack, view) : RELUME_OK;
+    if (!status && sound)
+        status =
+            gloss ? relume_pack_gloss(&model, pack, view) : relume_pack_shadow(&model, pack, view);
     out->there = !status && model.data;
     if (!status && !path)
         status = RELUME_ENOMEM;

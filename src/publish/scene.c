@@ -294,7 +294,9 @@ static relume_status allocate(struct scene *s)
     s->minimum = mem_array(n, sizeof *s->minimum);
     s->maximum = mem_array(n, sizeof *s->maximum);
     s->levels = (struct levels){.planes = (int)n,
-                                .count = levels_count(info->width, info->height, info->views),
+                                // so many planes are large at a size that is small for few
+                                .count = levels_count(info->width, info->height, info->views) +
+                                         (n > PUBLISH_USUAL_PLANES),
                                 .minimum = s->minimum,
                                 .maximum = s->maximum,
                                 .scale = mem_zeroed(n, sizeof *s->levels.scale),
@@ -324,10 +326,12 @@ static relume_status find_components(struct scene *s, enum source_kind kind)
 {
     const struct relume_publish_params *p = s->site->params;
     struct plan *plan = &s->common.plan;
-    const bool moves = relume_pack_info(s->pack)->has_shadow;
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    // of linear light more planes of 8 bits are more noise
+    const bool many = info->has_shadow || info->domain != RELUME_DOMAIN_LINEAR;
     const relume_status status = common_find(&s->common, s->pack, kind,
                                              p->coefficients ? p->coefficients
-                                             : moves         ? PUBLISH_MOST_PLANES
+                                             : many          ? PUBLISH_MOST_PLANES
                                                              : PUBLISH_USUAL_PLANES,
                                              p->threads, s->site->log);
     if (!status && !p->coefficients && plan->planes > USUAL_PLANES &&

@@ -14,6 +14,11 @@ for file in box pot room coin; do
 done
 "$RELUME" publish faded.exr -o still -q || exit 1
 check 'nothing of files where nothing moves' [ -z "$(find still/faded -name 'moving*')" ]
+cp coin.exr hurt.exr
+printf 'these bytes are damaged' | dd of=hurt.exr bs=1 seek=$(($(wc -c <coin.exr) - 700)) conv=notrunc 2>dd.txt
+expect_fail 'a damaged model' 1 'hurt.exr: view0000.highlights;' hurt "$RELUME" publish hurt.exr -o hurt -q
+check 'without it, where one goes on' "$RELUME" publish hurt.exr -o hurt -q --keep-going
+check 'it is not there' sh -c '! grep -q "\"moving\"" hurt/hurt/scene.json'
 
 if ! [ "$node" ] || ! [ "$browser" ]; then
     skip 'what moves in a browser' 'no chromium and node; make deps-web installs them'

@@ -98,7 +98,9 @@ VIEWER_C := $(wildcard src/program/*.c viewer/*/*.c)
 VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 # What `relume publish` puts into every site; the core is compiled by make web
 WEB_OBJECT := $(wildcard web/object*.js)
-WEB_JS   := $(filter-out $(WEB_OBJECT),$(wildcard web/*.js))
+# ... what pages load when a file or a lamp needs it (web/more.js)
+WEB_MORE := web/near.js $(wildcard web/moving*.js)
+WEB_JS   := $(filter-out $(WEB_OBJECT) $(WEB_MORE),$(wildcard web/*.js))
 # ... of which pages of objects have these, and nothing else
 WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js marks.js noteindex.js notepanel.js notes.js overlay.js pointer.js shaders.js \
               state.js wasm.js)
@@ -230,10 +232,14 @@ $B/obj/src/kernel/lsq_eigen_%.o: src/kernel/lsq_eigen.cpp | $(DEPS)
 	$(Q)$(CXX) $(CXX17) -Iinclude -Isrc $(own_flags) $(CXXFLAGS) -c -o $@ $<
 
 # The web viewer is modules in the tree, one classic script in a site, and bytes in the library.
-$B/web/relume.js: scripts/join-web.sh $(WEB_JS)
+$B/web/relume.js: scripts/join-web.sh $(WEB_JS) $(WEB_MORE)
 	@mkdir -p $(@D)
 	$(call say,GEN)
-	$(Q)scripts/join-web.sh $(WEB_JS) > $@
+	$(Q)scripts/join-web.sh --more $(WEB_MORE) -- $(WEB_JS) > $@
+$B/web/relume-more.js: scripts/join-web.sh $(WEB_MORE)
+	@mkdir -p $(@D)
+	$(call say,GEN)
+	$(Q)scripts/join-web.sh --part $(WEB_MORE) > $@
 $B/web/relume-object.js: scripts/join-web.sh $(WEB_OBJECT) $(WEB_SHARED)
 	@mkdir -p $(@D)
 	$(call say,GEN)
@@ -242,7 +248,7 @@ $B/web/core.js: $(WEB_CORE)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q){ printf 'relume.putCore("'; base64 -w0 $<; printf '");\n'; } > $@
-$B/obj/web/assets.c: scripts/embed-web.sh $B/web/relume.js $B/web/relume-object.js $B/web/core.js $(WEB_CORE) $(WEB_OPEN) $(WEB_CSS)
+$B/obj/web/assets.c: scripts/embed-web.sh $B/web/relume.js $B/web/relume-more.js $B/web/relume-object.js $B/web/core.js $(WEB_CORE) $(WEB_OPEN) $(WEB_CSS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q)scripts/embed-web.sh $(foreach f,$(filter-out scripts/%,$^),$(notdir $f)=$f) > $@

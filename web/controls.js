@@ -89,7 +89,8 @@ export class Controls {
         this.remove = button('remove', 'Remove this light (Delete)', () => actions.removeLight());
         this.counter = make('output', { 'aria-label': 'Light' });
         const lens = viewer.isSlab ? this.lens() : [];
-        const distance = viewer.projection === 'planar' ? [labelled('Distance', this.distance)] : [];
+        const { panorama } = viewer.scene, around = panorama && Math.hypot(...panorama.center) > 0;  // lamps are moved around the origin
+        const distance = viewer.scene.takesLamps && !around ? [labelled('Distance', this.distance)] : [];
         const planet = viewer.isPanorama ? [this.planet()] : [];
         this.node = make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
             this.ball.node,

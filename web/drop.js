@@ -53,6 +53,12 @@ class LocalFile {
         return new ImageData(new Uint8ClampedArray(data.buffer), width, height);
     }
 
+    // What shadows or highlights of a view move by, eight numbers a pixel.
+    async model(view) {
+        const { width, height } = this.scene, size = 32 * width * height;
+        return new Float32Array((await this.ask('model', { view: this.indexOf(view.name), size })).buffer);
+    }
+
     indexOf(name) { return +name.slice(1); }
 
     close() { this.worker.terminate(); }
@@ -65,7 +71,7 @@ export async function openFile(file, home) {
         const bytes = await loadBytes(new URL('relume-open.wasm', home).href);
         const opened = await local.ask('open', { bytes, from: file }), scene = JSON.parse(opened.json);
         local.scene = checkScene(scene, document.baseURI);
-        Object.assign(scene, { local, halves: !opened.bytes, leftOut: opened.leftOut });
+        Object.assign(scene, { local, halves: !opened.bytes });
         return scene;
     } catch (error) {
         local.close();

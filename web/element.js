@@ -81,10 +81,10 @@ export class RelumeView extends HTMLElement {
 
     // What visitors should know of it.
     sayOpened() {
-        const { title, leftOut } = this.opened;
+        const { title } = this.opened;
         if (this.trouble)
             return this.say(`A part of the picture cannot be shown: ${this.trouble}.`);
-        return this.say(`${title} was read by this browser and sent nowhere.${leftOut && ` Its ${leftOut} stay between the captured lights here; in relume they move.`}`);
+        return this.say(`${title} was read by this browser and sent nowhere.`);
     }
 
     // A still picture and a sentence.

@@ -8,7 +8,7 @@
 export const MOST_LIGHTS_OF_A_STATE = 64;
 export const RADIANS = Math.PI / 180;
 const SIDE = 4;  // places of a soft light, across and down
-const MOST_SIDE = 8;  // patches of a panel, likewise
+export const MOST_SIDE = 8;  // patches of a panel, likewise
 
 export const unit = (v) => {
     const length = Math.hypot(...v);
@@ -77,12 +77,17 @@ function nodesOf(n) {
     });
 }
 
-// The patches that a panel comes to over a picture of `window`: { kind, position, axis, rgb }.
-export function patchesOf(light, window) {
-    const across = cross(light.u, light.v), half = Math.max(Math.hypot(...light.u), Math.hypot(...light.v));
+// How many patches a side of a panel over a picture of `window` needs.
+export function patchSide(light, window) {
+    const half = Math.max(Math.hypot(...light.u), Math.hypot(...light.v));
     const clamp = (x, low, high) => Math.min(Math.max(x, low), high), [x, y, z] = light.position;
     const away = Math.hypot(x - clamp(x, window.min[0], window.max[0]), y - clamp(y, window.min[1], window.max[1]), z);
-    const nodes = nodesOf(clamp(Math.ceil(1 + 3.5 / Math.asinh(Math.max(away, 1e-9 * half) / half)), 1, MOST_SIDE));
+    return clamp(Math.ceil(1 + 3.5 / Math.asinh(Math.max(away, 1e-9 * half) / half)), 1, MOST_SIDE);
+}
+
+// The patches that a panel comes to: { kind, position, axis, rgb }.
+export function patchesOf(light, side) {
+    const across = cross(light.u, light.v), nodes = nodesOf(side);
     return nodes.flatMap(([a, i]) => nodes.map(([b, j]) => ({
         kind: 'patch', position: light.position.map((p, c) => p + a * light.u[c] + b * light.v[c]), axis: unit(across),
         rgb: light.rgb.map((value) => value * i * j * Math.hypot(...across) / Math.PI),

@@ -1,6 +1,7 @@
 // main.js - window.relume: what twins call, and what a page can ask of its first picture
 import { put } from './load.js';
 import { putCore } from './wasm.js';
+import { putMore } from './more.js';
 import { isRelume, openFile } from './drop.js';
 import { RelumeView } from './element.js';
 
@@ -47,6 +48,7 @@ function takeFiles(input) {
 window.relume = {
     put,
     putCore,
+    putMore,
     open: (file) => openFirst(file).then(() => undefined),  // a promise: a File from a disk is shown
     ready,                                     // a promise: the first picture is drawn
     idle: () => (first() ? first().idle() : ready),  // ... and at full detail

@@ -1,51 +1,64 @@
-// near.js - lamps that stand near a flat picture: each pixel sees them from a direction of its own;
-// after viewer/shaders/near.frag.glsl and src/relight/near_lights.c
-import { patchesOf } from './lights.js';
+// near.js - lamps that stand near: each pixel sees them from a direction of its own; after
+// viewer/shaders/near.frag.glsl and src/relight/near_lights.c
+import { MOST_SIDE, patchSide, patchesOf } from './lights.js';
 import { DECODE, HEAD } from './shaders.js';
-import { decodePicture } from './tiles.js';
-import { loadBytes } from './load.js';
+import { loadPicture } from './tiles.js';
 
 const DOWN = 64;           // rows of the table from the pole to the horizon
 const MOST_DEPTH = 4096;   // pixels a side
 
-// One lamp on one tile. The table has, by direction, three planes a texel: layers of red, green and
-// blue for each layer of codes, then the constants and the share that is shown.
-const nearShader = (layers) => `${HEAD}${DECODE}
-uniform sampler2DArray codes;
-uniform sampler2DArray table;
-uniform sampler2D depth;
-uniform vec4 window;     // of the picture on z = 0: left, bottom, right, top
-uniform vec2 size;       // pixels of the picture
-uniform vec3 tile;       // its left and top, pixels; pixels a texel
-uniform vec2 inverse;    // 1 / depth of the first code, and a step; a step of 0: the surface is z = 0
-uniform float camera;    // height of the eye
-uniform float perspective, hemisphere, poleY;
-uniform vec3 lamp, axis, colour;
+// Where the way through a pixel leads: twins of src/geometry/camera.c.
+const RAYS = {
+    cylindrical: `
+    if (disc > 0.0 && at.y >= size.y - disc) {
+        bool lower = at.x >= disc;
+        float up = 1.0 - 2.0 * (at.y - size.y + disc) / disc;
+        return vec3(2.0 * (at.x - (lower ? disc : 0.0)) / disc - 1.0, lower ? window.x : window.y, lower ? -up : up);
+    }
+    return vec3(sin(phi), mix(window.y, window.x, at.y / (size.y - disc)), -cos(phi));`,
+    spherical: `
+    float up = (0.5 - at.y / size.y) * PI;
+    return vec3(cos(up) * sin(phi), sin(up), -cos(up) * cos(phi));`,
+    cube: `
+    const vec3 AHEAD[6] = vec3[6](vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1));
+    const vec3 RIGHT[6] = vec3[6](vec3(0, 0, 1), vec3(0, 0, -1), vec3(1, 0, 0), vec3(1, 0, 0), vec3(-1, 0, 0), vec3(1, 0, 0));
+    const vec3 UP[6] = vec3[6](vec3(0, 1, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(0, 0, -1), vec3(0, 1, 0), vec3(0, 1, 0));
+    int face = clamp(int(at.x / size.y), 0, 5);
+    return AHEAD[face] + (2.0 * (at.x / size.y - float(face)) - 1.0) * RIGHT[face] + (1.0 - 2.0 * at.y / size.y) * UP[face];`,
+};
+const onPlane = `
+    vec3 point = vec3(mix(window.x, window.z, at.x / size.x), mix(window.w, window.y, at.y / size.y), plane);
+    if (parallel > 0.5)
+        eye.xy = point.xy;
+    return point - eye;`;
+
+// What a lamp sends to a point, and where light from a direction is taken from.
+export const ARRIVING = `
+uniform vec3 axis;
 uniform float halfAngle; // of a spot, radians; 0: a point
-uniform float fall, patch_;
-out vec4 light;
+uniform float fall, patch_, hemisphere, poleY;
+uniform sampler2D taken;  // by direction: where light from there is taken from, and the share that is shown
 const float PI = 3.14159265358979;
-
-bool surface_at(out vec3 point)
+vec3 pole_from(vec3 world) { return poleY > 0.5 ? vec3(-world.z, world.x, world.y) : world; }
+bool sends(out vec3 towards, out float sent, vec3 from, vec3 point)
 {
-    vec2 at = tile.xy + tile.z * gl_FragCoord.xy;
-    point = vec3(mix(window.x, window.z, at.x / size.x), mix(window.w, window.y, at.y / size.y), 0.0);
-    if (inverse.y == 0.0)
-        return true;
-    ivec2 most = textureSize(depth, 0) - 1;
-    vec2 found = texelFetch(depth, clamp(ivec2(at / size * vec2(most + 1)), ivec2(0), most), 0).rg;
-    float code = floor(255.0 * found.r + 0.5) * 256.0 + floor(255.0 * found.g + 0.5);
-    float away = 1.0 / (inverse.x + (code - 1.0) * inverse.y);
-    vec3 eye = vec3(perspective > 0.5 ? vec2(0.0) : point.xy, camera);
-    point = eye + away * normalize(point - eye);
-    return code > 0.0;
+    towards = from - point;
+    float away = length(towards);
+    if (away < 1e-6)
+        return false;
+    towards /= away;
+    sent = fall > 0.5 ? 1.0 / (away * away) : 1.0;
+    if (halfAngle > 0.0)
+        sent *= 1.0 - smoothstep(0.9 * halfAngle, halfAngle, atan(length(cross(towards, axis)), -dot(towards, axis)));
+    if (patch_ > 0.5)
+        sent = hemisphere > 0.5 && pole_from(towards).z < 0.0 ? 0.0 : sent * max(-dot(towards, axis), 0.0);
+    return true;
 }
-
 // Twin: relume_weight_grid_place.
 vec2 table_place(vec3 world)
 {
-    vec3 d = poleY > 0.5 ? vec3(-world.z, world.x, world.y) : world;
-    vec2 whole = vec2(textureSize(table, 0).xy);
+    vec3 d = pole_from(world);
+    vec2 whole = vec2(textureSize(taken, 0));
     float rows = hemisphere > 0.5 ? whole.y : 0.5 * whole.y;
     bool below = d.z < 0.0;
     float theta = atan(length(d.xy), below && hemisphere > 0.5 ? 0.0 : abs(d.z));
@@ -53,33 +66,97 @@ vec2 table_place(vec3 world)
     float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * (whole.x - 1.0);
     return (vec2(column, below && hemisphere < 0.5 ? whole.y - 1.0 - row : row) + 0.5) / whole;
 }
+`;
 
-void main()
+// The triangle of captured lights around a direction; after viewer/shaders/light/triangles.glsl.
+export const TRIANGLES = `
+uniform sampler2D triangles;  // rows of a corner each: of the inverse, and its light
+uniform int triangleCount;
+void triangles_find(out ivec3 node, out vec3 share, vec3 world)
 {
-    vec3 point;
-    light = vec4(0.0, 0.0, 0.0, 1.0);
-    if (!surface_at(point))
-        return;
-    vec3 towards = lamp - point;
-    float away = length(towards);
-    if (away < 1e-6)
-        return;
-    towards /= away;
-    float sent = fall > 0.5 ? 1.0 / (away * away) : 1.0;
-    if (halfAngle > 0.0)
-        sent *= 1.0 - smoothstep(0.9 * halfAngle, halfAngle, atan(length(cross(towards, axis)), -dot(towards, axis)));
-    if (patch_ > 0.5)
-        sent = hemisphere > 0.5 && (poleY > 0.5 ? towards.y : towards.z) < 0.0 ? 0.0 : sent * max(-dot(towards, axis), 0.0);
-    vec2 at = table_place(towards);
-    vec4 constant = texture(table, vec3(at, float(${3 * layers})));
-    vec3 value = constant.rgb;
+    vec3 d = pole_from(world), corner = vec3(-1.0);
+    float best = -1e30;
+    for (int t = 0; t < triangleCount && best < -1e-6; t++) {
+        vec4 row[3] = vec4[3](texelFetch(triangles, ivec2(0, t), 0), texelFetch(triangles, ivec2(1, t), 0), texelFetch(triangles, ivec2(2, t), 0));
+        vec3 found = vec3(dot(row[0].xyz, d), dot(row[1].xyz, d), dot(row[2].xyz, d));
+        float least = min(found.x, min(found.y, found.z));
+        if (least > best) {
+            best = least;
+            share = found;
+            corner = vec3(row[0].w, row[1].w, row[2].w);
+        }
+    }
+    vec3 says = vec3(greaterThanEqual(corner, vec3(0.0)));
+    share = max(share, 0.0) * says;
+    float sum = share.x + share.y + share.z;
+    share = sum > 0.0 ? share / sum : says / max(says.x + says.y + says.z, 1.0);
+    node = ivec3(max(corner, 0.0));
+}
+`;
+
+// One lamp on one tile. The table has, by direction, three planes a texel: layers of red, green and
+// blue for each layer of codes, then the constants. `between`: it has them by captured light, between which
+// light is blended.
+const nearShader = (layers, projection, between) => `${HEAD}${DECODE}
+uniform sampler2DArray codes;
+uniform sampler2DArray table;
+uniform sampler2D depth;
+uniform vec4 window;     // of the picture on its plane: left, bottom, right, top; of a cylinder v_min, v_max
+uniform vec2 size;       // pixels of the picture
+uniform vec3 tile;       // its left and top, pixels; pixels a texel
+uniform vec2 inverse;    // 1 / depth of the first code, and a step; a step of 0: the surface is the plane
+uniform vec3 from;       // the eye
+uniform float plane, parallel, disc;
+uniform vec3 lamp, colour;
+out vec4 light;
+${ARRIVING}
+
+vec3 ray_of(inout vec3 eye, vec2 at)
+{
+    float phi = (2.0 * at.x / size.x - 1.0) * PI;${RAYS[projection] || onPlane}
+}
+bool surface_at(out vec3 point)
+{
+    vec2 at = tile.xy + tile.z * gl_FragCoord.xy;
+    vec3 eye = from, ray = ray_of(eye, at);
+    point = eye + ray;
+    if (inverse.y == 0.0)
+        return true;
+    ivec2 most = textureSize(depth, 0) - 1;
+    vec2 found = texelFetch(depth, clamp(ivec2(at / size * vec2(most + 1)), ivec2(0), most), 0).rg;
+    float code = floor(255.0 * found.r + 0.5) * 256.0 + floor(255.0 * found.g + 0.5);
+    point = eye + normalize(ray) / (inverse.x + (code - 1.0) * inverse.y);
+    return code > 0.0;
+}
+
+${between ? TRIANGLES : ''}
+vec3 value_at(vec2 at)
+{
+    vec3 value = texture(table, vec3(at, float(${3 * layers}))).rgb;
     for (int j = 0; j < ${layers}; j++) {
         vec3 code = texelFetch(codes, ivec3(gl_FragCoord.xy, j), 0).rgb;
         value += vec3(dot(code, texture(table, vec3(at, float(3 * j))).rgb),
                       dot(code, texture(table, vec3(at, float(3 * j + 1))).rgb),
                       dot(code, texture(table, vec3(at, float(3 * j + 2))).rgb));
     }
-    light = vec4(sent * constant.a * colour * decode(value), 1.0);
+    return decode(value);
+}
+
+void main()
+{
+    vec3 point, towards;
+    float sent;
+    light = vec4(0.0, 0.0, 0.0, 1.0);
+    if (!surface_at(point) || !sends(towards, sent, lamp, point))
+        return;
+    vec2 at = table_place(towards);
+    vec4 from = texture(taken, at);
+    ${between ? `vec3 value = vec3(0.0), share;
+    ivec3 node;
+    triangles_find(node, share, from.xyz);
+    for (int i = 0; i < 3; i++)
+        value += share[i] > 0.0 ? share[i] * value_at((vec2(node[i], 0) + 0.5) / vec2(textureSize(table, 0).xy)) : vec3(0.0);` : 'vec3 value = value_at(at);'}
+    light = vec4(sent * from.a * colour * value, 1.0);
 }`;
 
 // Directions of a table's rows and columns; twin of node_direction of src/relight/directions.c.
@@ -91,82 +168,144 @@ function nodeDirection(row, column, columns, rows, poleY) {
 }
 
 export class NearLamps {
-    constructor(device, scene, basis, changed) {
-        Object.assign(this, { device, scene, basis, changed, table: null, depth: null });
+    constructor(device, scene, basis, told) {
+        Object.assign(this, { device, scene, basis, told, table: null, taken: null, triangles: null, depths: new Map(), between: scene.between === 'linear' });
     }
 
-    // Weights by direction, as Relighter.block has them for one.
-    makeTable() {
-        const { gl } = this.device, { scene, basis } = this, { planes, layers, scale, offset } = scene;
-        const { hemispherical, pole } = scene.basis, rows = hemispherical ? DOWN + 1 : 2 * DOWN + 2, columns = 4 * DOWN + 1;
-        const texels = new Float32Array(4 * rows * columns * (3 * layers + 1)), layer = 4 * rows * columns;
-        for (let i = 0; i < rows * columns; i++) {
-            const { share, weights } = basis.weights(nodeDirection(Math.floor(i / columns), i % columns, columns, rows, pole === 'y'));
-            for (let c = 0; c < 3; c++) {
-                let constant = weights[c * (planes + 1) + planes];
-                for (let k = 0; k < planes; k++) {
-                    const w = weights[c * (planes + 1) + k];
-                    constant += w * offset[k];
-                    texels[layer * (3 * Math.floor(k / 3) + c) + 4 * i + k % 3] = 255 * w * scale[k];
-                }
-                texels[layer * 3 * layers + 4 * i + c] = constant;
+    // Weights of one column and row of a table, as Relighter.block has them for one.
+    putWeights(texels, i, size, weights) {
+        const { planes, layers, scale, offset } = this.scene, layer = 4 * size;
+        for (let c = 0; c < 3; c++) {
+            let constant = weights[c * (planes + 1) + planes];
+            for (let k = 0; k < planes; k++) {
+                const w = weights[c * (planes + 1) + k];
+                constant += w * offset[k];
+                texels[layer * (3 * Math.floor(k / 3) + c) + 4 * i + k % 3] = 255 * w * scale[k];
             }
-            texels[layer * 3 * layers + 4 * i + 3] = share;
+            texels[layer * 3 * layers + 4 * i + c] = constant;
         }
-        const texture = this.device.texture(gl.LINEAR, gl.TEXTURE_2D_ARRAY);
-        gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA16F, columns, rows, 3 * layers + 1);
-        gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, columns, rows, 3 * layers + 1, gl.RGBA, gl.FLOAT, texels);
+    }
+
+    // What directions are to the file: tables of weights, and of where light is taken from.
+    makeTables() {
+        const { scene, basis } = this, { hemispherical, pole, lights } = scene.basis, depth = 3 * scene.layers + 1;
+        const rows = hemispherical ? DOWN + 1 : 2 * DOWN + 2, columns = 4 * DOWN + 1, n = rows * columns, captured = lights.length / 3;
+        const size = this.between ? captured : n, texels = new Float32Array(4 * size * depth), taken = new Float32Array(4 * n);
+        for (let i = 0; i < n; i++) {
+            const { share, from, weights } = basis.weights(nodeDirection(Math.floor(i / columns), i % columns, columns, rows, pole === 'y'));
+            taken.set([...from, share], 4 * i);
+            if (!this.between)
+                this.putWeights(texels, i, n, weights);
+        }
+        for (let i = 0; this.between && i < captured; i++)
+            this.putWeights(texels, i, captured, basis.weights(lights.slice(3 * i, 3 * i + 3)).weights);
+        this.taken = this.upload(columns, rows, taken);
+        this.table = this.upload(...(this.between ? [captured, 1] : [columns, rows]), texels, depth);
+    }
+
+    upload(width, height, texels, depth) {
+        const { gl } = this.device, kind = depth ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D, texture = this.device.texture(gl.LINEAR, kind);
+        if (depth) {
+            gl.texStorage3D(kind, 1, gl.RGBA16F, width, height, depth);
+            gl.texSubImage3D(kind, 0, 0, 0, 0, width, height, depth, gl.RGBA, gl.FLOAT, texels);
+        } else {
+            gl.texStorage2D(kind, 1, gl.RGBA16F, width, height);
+            gl.texSubImage2D(kind, 0, 0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
+        }
         return texture;
     }
 
+    // Uniforms of the triangles of captured lights.
+    triangleSet() {
+        if (!this.triangles) {
+            const { gl } = this.device, found = this.basis.pictures({ interpolant: 'delaunay' }).triangles(), n = found.length / 12;
+            const texels = new Float32Array(12 * Math.max(n, 1));
+            for (let t = 0; t < n; t++)
+                for (let i = 0; i < 3; i++)
+                    texels.set([...found.subarray(12 * t + 3 + 3 * i, 12 * t + 6 + 3 * i), found[12 * t + i]], 12 * t + 4 * i);
+            this.triangles = this.device.texture(gl.NEAREST);
+            this.triangleCount = n;
+            gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, 3, Math.max(n, 1));
+            gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 3, Math.max(n, 1), gl.RGBA, gl.FLOAT, texels);
+        }
+        return { triangles: { texture: this.triangles }, triangleCount: { int: this.triangleCount } };
+    }
+
+    // Uniforms of what a lamp sends.
+    sent(lamp) {
+        const { hemispherical, pole } = this.scene.basis;
+        return { taken: { texture: this.taken }, hemisphere: hemispherical ? 1 : 0, poleY: pole === 'y' ? 1 : 0, axis: lamp.axis || [0, 0, -1],
+                 halfAngle: lamp.half || 0, fall: lamp.nofall ? 0 : 1, patch_: lamp.kind === 'patch' ? 1 : 0 };
+    }
+
     async loadDepth(view) {
-        const { gl } = this.device, { width, height } = this.scene, scale = Math.min(1, MOST_DEPTH / Math.max(width, height));
-        const bytes = await loadBytes(`${this.scene.base}${view.name}/depth.png`);
-        const picture = await decodePicture(bytes, 'image/png', scale < 1 ? {
-            resizeWidth: Math.max(1, Math.round(width * scale)), resizeHeight: Math.max(1, Math.round(height * scale)), resizeQuality: 'pixelated' } : {});
-        const texture = this.device.texture(gl.NEAREST);
+        const { gl } = this.device, { width, height } = this.scene, picture = await loadPicture(this.scene, view, false);
+        const scale = Math.min(1, MOST_DEPTH / Math.max(width, height)), texture = this.device.texture(gl.NEAREST);
+        const small = scale === 1 ? picture : await createImageBitmap(picture, { resizeWidth: Math.max(1, Math.round(width * scale)),
+            resizeHeight: Math.max(1, Math.round(height * scale)), resizeQuality: 'pixelated', premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+        gl.bindTexture(gl.TEXTURE_2D, texture);
         gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
         gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
-        picture.close();
-        this.depth = texture;
-        this.changed();
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, small);
+        this.depths.set(view.name, texture);
+        this.told.changed();
     }
 
-    // Whether lamps can be shown now; where the surface is loads by and by.
-    ready(failed) {
-        const [view] = this.scene.views;
-        this.table = this.table || this.makeTable();
-        if (view.depth && !this.loading) {
-            this.loading = true;
-            this.loadDepth(view).catch(failed);
+    // Whether lamps can be shown in a view now; where its surface is loads by and by.
+    ready(name) {
+        const view = this.scene.views.find((v) => v.name === name);
+        if (!this.table)
+            this.makeTables();
+        if (view.depth && !this.depths.has(name)) {
+            this.depths.set(name, null);
+            this.loadDepth(view).catch(this.told.failed);
         }
-        return !view.depth || !!this.depth;
+        return !view.depth || !!this.depths.get(name);
     }
 
-    // The lamps that near lights come to.
-    lampsOf(lights) {
-        return lights.flatMap((light) => (light.kind === 'panel' ? patchesOf(light, this.scene.window) : [light]));
+    // Adds near lights to a tile's, whose shadows `moving` moves, if anything does.
+    addAll(target, tile, lights, moving) {
+        for (const light of lights) {
+            const draw = (into) => this.lampsOf(light).forEach((lamp) => this.add(into, tile, lamp));
+            if (moving && !moving.gloss)
+                moving.addNear(target, tile, light, this, draw);
+            else
+                draw(target);
+        }
+    }
+
+    // The lamps that a near light comes to.
+    lampsOf(light) {
+        return light.kind !== 'panel' ? [light] : patchesOf(light, this.scene.window ? patchSide(light, this.scene.window) : MOST_SIDE);
+    }
+
+    // How the file is seen by a view: uniforms.
+    seenBy(view) {
+        const { window: w, slab, panorama } = this.scene;
+        if (w)
+            return { window: [...w.min, ...w.max], from: [0, 0, w.camera_z], plane: 0, parallel: w.camera === 'perspective' ? 0 : 1 };
+        if (slab)
+            return { window: [...slab.st_min, ...slab.st_max], from: [...view.uv, slab.uv_plane_z], plane: slab.st_plane_z, parallel: 0 };
+        return { window: [panorama.v_min || 0, panorama.v_max || 0, 0, 0], from: panorama.center, disc: panorama.discs || 0 };
     }
 
     // Adds a lamp's light to a tile's.
     add(target, tile, lamp) {
-        const { scene, device } = this, { window: w, layers } = scene, [view] = scene.views, step = 2 ** tile.level;
-        const program = device.program(`near ${layers}`, () => nearShader(layers));
+        const { scene, device } = this, { layers, projection } = scene, step = 2 ** tile.level, view = scene.views.find((v) => v.name === tile.view);
+        const program = device.program(`near ${layers} ${projection} ${this.between}`, () => nearShader(layers, projection, this.between));
         device.begin(target, { clear: false, add: 'rgb' });
         program.set({
-            codes: { texture: tile.codes, array: true }, table: { texture: this.table, array: true }, depth: { texture: this.depth },
-            window: [w.min[0], w.min[1], w.max[0], w.max[1]], size: [scene.width, scene.height],
+            codes: { texture: tile.codes, array: true }, table: { texture: this.table, array: true }, depth: { texture: this.depths.get(view.name) || null },
+            ...this.seenBy(view), size: [scene.width, scene.height],
             tile: [tile.x * scene.tile * step, tile.y * scene.tile * step, step],
-            inverse: view.depth ? [view.depth_min, view.depth_step] : [0, 0], camera: w.camera_z, perspective: w.camera === 'perspective' ? 1 : 0,
-            hemisphere: scene.basis.hemispherical ? 1 : 0, poleY: scene.basis.pole === 'y' ? 1 : 0, curve: { int: scene.curve }, gamma: scene.gamma,
-            lamp: lamp.position, axis: lamp.axis || [0, 0, -1], colour: lamp.rgb, halfAngle: lamp.half || 0, fall: lamp.nofall ? 0 : 1, patch_: lamp.kind === 'patch' ? 1 : 0,
+            inverse: view.depth ? [view.depth_min, view.depth_step] : [0, 0],
+            curve: { int: scene.curve }, gamma: scene.gamma, lamp: lamp.position, colour: lamp.rgb, ...this.sent(lamp), ...(this.between ? this.triangleSet() : {}),
         });
         program.draw([0, 0, 1, 1]);
     }
 
     close() {
-        this.device.gl.deleteTexture(this.table);
-        this.device.gl.deleteTexture(this.depth);
+        [this.table, this.taken, this.triangles].forEach((texture) => this.device.gl.deleteTexture(texture));
+        this.depths.forEach((texture) => this.device.gl.deleteTexture(texture));
     }
 }

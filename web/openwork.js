@@ -57,11 +57,14 @@ export function readFiles() {
             opened = core.open_file(place(file.name), file.size);
             if (!opened || textAt(core.open_why(opened)))
                 fail();
-            return { json: textAt(core.open_scene(opened)), bytes: !!core.open_is_bytes(opened),
-                     leftOut: textAt(core.open_left_out(opened)) };
+            return { json: textAt(core.open_scene(opened)), bytes: !!core.open_is_bytes(opened) };
         },
         tile({ view, level, x, y, size }) {
             const at = core.open_tile(opened, view, level, x, y);
+            return at ? bytesAt(at, size).slice() : fail();
+        },
+        model({ view, size }) {
+            const at = core.open_model(opened, view);
             return at ? bytesAt(at, size).slice() : fail();
         },
         picture({ view, mask, size }) {

@@ -14,6 +14,7 @@ export class Painter {
         Object.assign(this, { device, scene, tiles, relighter, changed });
         this.masks = new Map();
         this.complete = true;
+        this.rough = false;       // shadows and highlights will move that do not yet
         this.allowed = Infinity;  // pixels that may be relit in this frame
     }
 
@@ -56,7 +57,8 @@ export class Painter {
     // What a tile shows; null when that would take too long in this frame. Old light is better than none.
     textureOf(tile, kind) {
         const done = kind === 'light' ? this.relighter.isLit(tile) : tile.surface;
-        if (!done && (this.allowed <= 0 || (kind === 'light' && !this.relighter.ready(this.tiles.failed)))) {
+        this.rough = this.rough || (kind === 'light' && this.relighter.isRough(tile));
+        if (!done && (this.allowed <= 0 || (kind === 'light' && !this.relighter.ready(tile)))) {
             const older = kind === 'light' && this.relighter.older(tile);
             this.complete = false;
             return older ? older.texture : null;

@@ -6,14 +6,17 @@ const SIZES = [1, 2, 4, 8, MOST_LIGHTS];  // lights of a batch: few shaders
 let relighters = 0;
 
 export class Relighter {
-    // `near`: for lamps that stand near (near.js).
-    constructor(device, scene, basis, near) {
-        Object.assign(this, { device, scene, basis, near });
+    // `more`: for lamps that stand near, and for what moves between captured lights (more.js).
+    constructor(device, scene, basis, more) {
+        Object.assign(this, { device, scene, basis, more });
         this.lamps = [];
+        this.moved = null;
         this.key = relighters++;  // of its pictures of tiles
         this.version = 0;
         this.batches = [];
         this.buffer = device.gl.createBuffer();
+        // lights whose numbers have room in a block: few of many planes on telephones
+        this.most = Math.max(1, Math.floor(device.gl.getParameter(device.gl.MAX_UNIFORM_BLOCK_SIZE) / (16 * (3 * scene.layers + 2))));
         this.samples = null;
         this.count = 0;
     }
@@ -54,15 +57,39 @@ export class Relighter {
     }
 
     setLights(lights) {
-        this.lamps = this.near.lampsOf(lights.filter(isNear));
-        const plain = spread(lights.filter((light) => !isNear(light)), this.basis).map((light) => {
-            const { share, weights } = this.basis.weights(light.direction);
-            return { weights, colour: light.rgb.map((v) => share * v) };
+        this.lamps = lights.filter(isNear);
+        this.plain = spread(lights.filter((light) => !isNear(light)), this.basis).map((light) => {
+            const { share, from, weights } = this.basis.weights(light.direction), colour = light.rgb.map((v) => share * v);
+            return { direction: from, colour, parts: this.partsOf(from, weights, colour) };
         });
-        this.count = plain.length;
-        const sums = this.scene.curve === 1 ? this.joined(plain) : plain;
-        this.batches = this.blocks(sums, SIZES.find((size) => size >= Math.min(sums.length, MOST_LIGHTS)));
+        this.count = this.plain.length;
+        this.batches = this.batchesOf(this.plain.flatMap((light) => light.parts));
+        this.moved = null;
         this.version++;
+    }
+
+    // What a light is relit by: where planes are coded of what is linear between captured lights, by these.
+    partsOf(direction, weights, colour) {
+        if (this.scene.between !== 'linear')
+            return [{ weights, colour }];
+        this.pictures = this.pictures || this.basis.pictures({ interpolant: 'delaunay' });
+        return this.pictures.around(direction).map((a) => (
+            { weights: this.basis.weights(a.direction).weights, colour: colour.map((v) => v * a.weight) }));
+    }
+
+    batchesOf(lights) {
+        const sums = this.scene.curve === 1 && lights.length ? this.joined(lights) : lights;
+        return this.blocks(sums, SIZES.filter((size) => size <= this.most).find((size, i, sizes) => size >= sums.length || i + 1 === sizes.length));
+    }
+
+    // The same where shadows or highlights move: lights between captured ones are shown one by one.
+    movedBy(moving) {
+        if (!this.moved) {
+            const all = this.plain.map((light) => ({ ...light, around: moving.around(light.direction) })), still = all.filter((l) => !l.around.length);
+            this.moved = { batches: this.batchesOf(still.flatMap((l) => l.parts)),
+                           alone: all.filter((l) => l.around.length).map((l) => ({ ...l, batches: this.batchesOf(l.parts) })) };
+        }
+        return this.moved;
     }
 
     bind(program, batch) {
@@ -81,41 +108,58 @@ export class Relighter {
     }
 
     // Whether tiles can be lit now.
-    ready(failed) { return !this.lamps.length || this.near.ready(failed); }
+    ready(tile) {
+        const parts = !this.lamps.length || this.more.gone || this.more.need();
+        return parts === true || (!!parts && parts.near.ready(tile.view));
+    }
+
+    drawBatch(target, tile, batch, i) {
+        const { layers } = this.scene;
+        const program = this.device.program(`relight ${layers} ${batch.most}`, () => relightShader(layers, batch.most));
+        this.device.begin(target, { clear: i === 0, add: i > 0 && 'rgb' });
+        this.draw(program, tile, batch);
+    }
 
     // The tile's light, up to date.
     lit(tile) {
         if (this.isLit(tile))
             return tile.lit[this.key];
-        const { layers } = this.scene;
         const lit = tile.lit[this.key] = tile.lit[this.key] || this.device.target(tile.width, tile.height);
-        this.batches.forEach((batch, i) => {
-            const program = this.device.program(`relight ${layers} ${batch.most}`, () => relightShader(layers, batch.most));
-            this.device.begin(lit, { clear: i === 0, add: i > 0 && 'rgb' });
-            this.draw(program, tile, batch);
-        });
-        if (!this.batches.length)
+        const moving = this.more.movingOf(tile.view), { batches, alone } = moving ? this.movedBy(moving) : { batches: this.batches, alone: [] };
+        batches.forEach((batch, i) => this.drawBatch(lit, tile, batch, i));
+        if (!batches.length)
             this.device.begin(lit);
-        this.lamps.forEach((lamp) => this.near.add(lit, tile, lamp));
-        lit.version = this.version;
+        alone.forEach((light) => moving.add(lit, tile, light, (target) =>
+            light.batches.forEach((batch, i) => this.drawBatch(target, tile, batch, i))));
+        if (this.lamps.length && this.more.parts)
+            this.more.parts.near.addAll(lit, tile, this.lamps, moving);
+        lit.version = `${this.version}${moving ? ' moved' : ''}`;
         return lit;
     }
 
-    isLit(tile) { return !!tile.lit[this.key] && tile.lit[this.key].version === this.version; }
+    // Lit, but shadows and highlights will move that do not yet.
+    isRough(tile) { return this.more.awaits(tile.view) && !(tile.lit[this.key] && tile.lit[this.key].version === `${this.version} moved`); }
+
+    isLit(tile) {
+        const lit = tile.lit[this.key];
+        return !!lit && (lit.version === `${this.version} moved` || (lit.version === `${this.version}` && !this.more.movingOf(tile.view)));
+    }
 
     // The light that a tile has, which may be that of before.
     older(tile) { return tile.lit[this.key]; }
+
+    get mostSamples() { return Math.min(MOST_SAMPLES, this.most); }
 
     // The captured lights that normals are found by, spread evenly over their list.
     samplesBlock() {
         if (this.samples)
             return this.samples;
-        const all = this.scene.basis.lights, n = all.length / 3, count = Math.min(n, MOST_SAMPLES), picked = [];
+        const all = this.scene.basis.lights, n = all.length / 3, count = Math.min(n, this.mostSamples), picked = [];
         for (let i = 0; i < count; i++) {
             const at = 3 * Math.floor((i + 0.5) * n / count), direction = all.slice(at, at + 3);
             picked.push({ weights: this.basis.weights(direction).weights, colour: direction });
         }
-        [this.samples] = this.blocks(picked, MOST_SAMPLES);
+        [this.samples] = this.blocks(picked, this.mostSamples);
         return this.samples;
     }
 
@@ -130,7 +174,7 @@ export class Relighter {
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, surface.albedo, 0);
         gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
         this.device.begin(surface);
-        this.draw(this.device.program(`normals ${this.scene.layers}`, () => normalShader(this.scene.layers)), tile, this.samplesBlock());
+        this.draw(this.device.program(`normals ${this.scene.layers}`, () => normalShader(this.scene.layers, this.mostSamples)), tile, this.samplesBlock());
         tile.surface = surface;
         return surface;
     }

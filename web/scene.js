@@ -56,11 +56,15 @@ function checkLevels(scene) {
 
 function checkViews(scene) {
     insist(Array.isArray(scene.views) && isWhole(scene.views.length, 1, 65536), 'views');
+    insist([undefined, 'shadows', 'highlights'].includes(scene.moves), 'what moves');
+    insist(scene.moves !== 'shadows' || scene.projection !== 'cube', 'shadows that move in a cube');
     for (const view of scene.views) {
         insist(typeof view.name === 'string' && /^[A-Za-z0-9_-]+$/.test(view.name), 'a view without a name');
         insist(scene.projection !== 'slab' || areNumbers(view.uv, 2), 'a view without its place');
         insist(!view.depth || (Number.isFinite(view.depth_min) && Number.isFinite(view.depth_step)),
                'depth without its range');
+        insist(scene.moves !== 'shadows' || view.depth, 'shadows that move without depth');
+        insist(!view.moving || (areNumbers(view.moving.scale, 8) && areNumbers(view.moving.offset, 8)), 'what moves without its scales');
     }
 }
 
@@ -73,8 +77,8 @@ function checkGeometry(scene) {
            (slab && areNumbers([slab.uv_plane_z, slab.st_plane_z]) && areNumbers(slab.st_min, 2) &&
             areNumbers(slab.st_max, 2)), 'no slab');
     const panorama = scene.panorama;
-    insist(scene.projection !== 'cylindrical' ||
-           (panorama && panorama.v_max > panorama.v_min), 'no panorama');
+    insist(flat || slab || (panorama && areNumbers(panorama.center, 3) &&
+           (scene.projection !== 'cylindrical' || panorama.v_max > panorama.v_min)), 'no panorama');
 }
 
 // A scene: what scene.json has, with `transform`, `mean`, `scale` and `offset` as floats, `base` (the
@@ -102,5 +106,6 @@ export function checkScene(scene, address) {
     scene.mean = floatsOf(scene.mean, 3 * scene.functions, 'mean');
     scene.layers = Math.ceil(scene.planes / 3);
     scene.base = new URL('.', address).href;
+    scene.takesLamps = !!scene.window || scene.views.every((view) => view.depth);  // that stand near
     return scene;
 }

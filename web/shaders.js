@@ -73,11 +73,11 @@ void main()
 }
 
 // Normals and albedo of a tile by robust photometric stereo; after src/math/lambert.c.
-export const normalShader = (layers) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, MOST_SAMPLES)}
+export const normalShader = (layers, samples) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, samples)}
 layout(location = 0) out vec4 normal;
 layout(location = 1) out vec4 albedo;
 const int ROUNDS = 5;
-float sampled[${MOST_SAMPLES}], share[${MOST_SAMPLES}];
+float sampled[${samples}], share[${samples}];
 
 vec3 direction(int i) { return weight[i * STRIDE + 3 * LAYERS + 1].xyz; }
 
@@ -611,11 +611,12 @@ export const TONES_BY_NAME = ['linear', 'reinhard', 'filmic', 'gamma'];
 
 // Exposure, pass, tone and the sRGB curve over the page's ground; after src/analysis/enhance.c and
 // src/post/tone.c. Lights here are those that passes enhance: direction, colour.
-export const presentShader = () => `${HEAD}${LUMINANCE}
+// A shader for each pass: software renderers take long to make one of all.
+export const presentShader = (pass) => `${HEAD}${LUMINANCE}
+const int pass = ${pass};
 uniform sampler2D light;
 uniform sampler2D normals;
 uniform sampler2D albedos;
-uniform int pass;
 uniform float exposure;
 uniform vec3 ground;
 uniform vec4 scale;       // low, high, pivot, scale of relume_pass_range

@@ -6,7 +6,7 @@ const MOST_BYTES = 512 << 20;  // of textures
 const MOST_LOADING = 8;
 
 // The pictures of a .bin file.
-function partsOf(bytes, count, address) {
+export function partsOf(bytes, count, address) {
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     const damaged = () => new Failure(`${address.split('/').slice(-2).join('/')} is damaged`);
     if (bytes.length < 4 + 4 * count || view.getUint32(0, true) !== count)
@@ -45,7 +45,7 @@ export class Tiles {
         this.bytes = 0;
         this.clock = 0;
         this.received = 0;
-        this.near = null;  // what lamps near this file need (near.js)
+        this.more = null;  // what only some files and lights need (more.js)
     }
 
     columns(level) { return Math.ceil(this.scene.levels[level].width / this.scene.tile); }
@@ -57,7 +57,7 @@ export class Tiles {
         let tile = this.tiles.get(key);
         if (!tile) {
             const { width, height } = this.scene.levels[level], size = this.scene.tile;
-            tile = { key, level, x, y, width: Math.min(size, width - x * size), height: Math.min(size, height - y * size),
+            tile = { key, view, level, x, y, width: Math.min(size, width - x * size), height: Math.min(size, height - y * size),
                      state: 'new', codes: null, lit: [], surface: null };
             this.tiles.set(key, tile);
         }
@@ -171,7 +171,7 @@ export class Tiles {
     close() {
         for (const tile of [...this.tiles.values()])
             this.drop(tile);
-        if (this.near)
-            this.near.close();
+        if (this.more)
+            this.more.close();
     }
 }

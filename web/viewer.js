@@ -11,7 +11,7 @@ import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
 import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
-import { NearLamps } from './near.js';
+import { More } from './more.js';
 import { readState, writeState } from './state.js';
 import { brightestExposure, measureRange, meterExposure } from './measure.js';
 import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
@@ -60,8 +60,8 @@ export class Viewer {
 
     // A file under lights of its own.
     layerOf(scene, basis, tiles) {
-        tiles.near = tiles.near || new NearLamps(this.device, scene, basis, () => this.invalidate());
-        const relighter = new Relighter(this.device, scene, basis, tiles.near);
+        tiles.more = tiles.more || new More(this.device, scene, basis, this.home, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
+        const relighter = new Relighter(this.device, scene, basis, tiles.more);
         const painter = new Painter(this.device, scene, tiles, relighter, () => this.invalidate());
         const stage = scene.projection === 'planar' ? new Planar(scene, painter)
             : scene.projection === 'slab' ? new Slab(scene, painter, this.device) : new Panorama(scene, painter, this.device);
@@ -206,7 +206,7 @@ export class Viewer {
 
     // Shows what a line says; what it does not name is as the page opens.
     setState(line) {
-        const { values, lights, others, problem } = readState(line, this.projection === 'planar');
+        const { values, lights, others, problem } = readState(line, this.scene.takesLamps);
         this.metering = false;
         this.reset();
         Object.assign(this, { others });
@@ -292,6 +292,7 @@ export class Viewer {
         const { other } = this.comparison;
         const looks = other ? [own, other] : [own];
         this.painter.complete = true;
+        this.painter.rough = false;
         this.tiles.begin();
         looks.forEach((look, i) => this.drawLook(look, i, looks.length > 1 ? this.target(`shown${i}`) : null));
         this.meter(own);
@@ -308,7 +309,7 @@ export class Viewer {
         if (layer.tiles !== this.tiles)
             layer.tiles.begin();
         if (layer !== this)
-            layer.painter.complete = true;
+            Object.assign(layer.painter, { complete: true, rough: false });
         for (const kind of kinds)
             layer.stage.draw(this.target(`${kind}${index}`), kind, this.camera(layer));
         this.findRange(look);
@@ -326,7 +327,7 @@ export class Viewer {
             this.invalidate();
         if (this.coarser && moving)
             setTimeout(() => this.invalidate(), 260);
-        if (complete && !busy && !this.coarser)
+        if (complete && !busy && !this.coarser && !looks.some(({ layer }) => layer.painter.rough))
             this.waiting.splice(0).forEach((resolve) => resolve());
     }
 
@@ -407,11 +408,12 @@ export class Viewer {
 
     // Into a target, or onto the canvas.
     present(look, index, target) {
-        const lamps = lampsOf(look.lights), program = this.device.program('present', presentShader), { gl } = this.device;
+        const lamps = lampsOf(look.lights), pass = PASSES.indexOf(look.pass), { gl } = this.device;
+        const program = this.device.program(`present ${pass}`, () => presentShader(pass));
         const of = (kind) => ({ texture: this.target(`${needsNormals(look.pass) ? kind : 'light'}${index}`).texture });
         this.device.begin(target);
         program.set({
-            light: of('light'), normals: of('normals'), albedos: of('albedo'), pass: { int: PASSES.indexOf(look.pass) },
+            light: of('light'), normals: of('normals'), albedos: of('albedo'),
             tone: { int: TONES_BY_NAME.indexOf(look.tone) }, exposure: 2 ** look.exposure, ground: GROUND,
             scale: look.memo.range, count: { int: lamps.length }, lampSum: sumOf(lamps), radius: Math.max(4 * (this.scale() || 1), 1),
         });

@@ -67,7 +67,38 @@ export class Basis {
         return basis;
     }
 
+    // Of the captured pictures themselves, which an interpolant blends.
+    pictures({ interpolant, parameter = [] }) {
+        const b = this.scene.basis, n = b.lights.length / 3, transform = new Float32Array(3 * n * n), basis = new Basis();
+        for (let i = 0; i < 3 * n; i++)
+            transform[i * n + i % n] = 1;
+        basis.core = this.core;
+        basis.begin({ basis: { ...b, name: 'table', interpolant, parameter, coefficients: n }, functions: n, planes: n, transform, mean: new Float32Array(3 * n) });
+        this.beside.push(basis);
+        return basis;
+    }
+
+    // Of such a basis: its triangles, nodes and inverse each, 12 numbers.
+    triangles() {
+        const core = this.core, most = 4 * this.captured + 64, out = core.core_room(48 * most), n = core.core_triangles(this.handle, out, most);
+        const found = new Float32Array(core.memory.buffer, out, 12 * Math.max(n, 0)).slice();
+        core.core_free(out);
+        if (n < 0)
+            throw new Failure('out of memory');
+        return found;
+    }
+
+    // Of such a basis: the pictures that it blends, [{ light, direction, weight }].
+    around(direction, least = 0) {
+        const { weights } = this.weights(direction), { lights } = this.scene.basis, out = [];
+        for (let i = 0; i < lights.length / 3; i++)
+            if (Math.abs(weights[i]) > least)
+                out.push({ light: i, direction: lights.slice(3 * i, 3 * i + 3), weight: weights[i] });
+        return out;
+    }
+
     begin(scene) {
+        Object.assign(this, { scene, beside: [] });
         const core = this.core, b = scene.basis;
         const given = [placeText(core, b.name), placeText(core, b.interpolant || ''),
                        place(core, new Float64Array(4).map((_, i) => b.parameter[i] || 0)),
@@ -86,10 +117,12 @@ export class Basis {
         this.out = core.core_room(4 * this.size);
     }
 
-    // { share, weights }: [3][planes + 1], the last of each three being a constant.
+    // { share, from, weights }: [3][planes + 1], the last of each three being a constant; `from`: the direction
+    // whose weights they are, where light from beyond the captured lights is shown by one at their border.
     weights(direction) {
-        const share = this.core.core_weights(this.handle, ...direction, this.out);
-        return { share, weights: new Float32Array(this.core.memory.buffer, this.out, this.size).slice() };
+        const share = this.core.core_weights(this.handle, ...direction, this.out), at = this.core.core_from(this.handle);
+        const from = [...new Float64Array(this.core.memory.buffer, at, 3)];
+        return { share, from, weights: new Float32Array(this.core.memory.buffer, this.out, this.size).slice() };
     }
 
     // Lights that stand for a lat-long map: [{ direction, rgb }].
@@ -106,6 +139,7 @@ export class Basis {
     }
 
     close() {
+        this.beside.forEach((basis) => basis.close());
         if (this.handle)
             this.core.core_close(this.handle);
         this.handle = 0;

@@ -34,8 +34,8 @@ struct relume_publish_params {
     // and "files": an object whose members, by the files' names without folder and ending, have
     // these members again. What is given above counts more.
     const char *metadata;
-    int coefficients;        // planes, at most 45; default: up to 27, as many as are worth their
-                             // bytes
+    int coefficients;        // planes, at most 90; default: up to 27 or 90 (45 of linear files
+                             // whose shadows stay), as many as are worth their bytes
     int quality;             // [1, 100]; default: so high, 95 or more, that no error is seen
     double psnr_db;          // expected against the file's own pictures
     double bytes_per_pixel;  // of all views at full size, about

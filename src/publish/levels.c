@@ -4,7 +4,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "exchange/sheet.h"
 #include "image/jpeg.h"
 #include "math/scalar.h"
 
@@ -74,8 +73,7 @@ static relume_status keep_codes(const struct level *l, const struct relume_rect 
     return status;
 }
 
-// The file of a tile, of the pictures in `sheet`.
-static relume_status join(const struct sheet_result *sheet, int sheets, uint8_t **out, size_t *size)
+relume_status levels_join(const struct sheet_result *sheet, int sheets, uint8_t **out, size_t *size)
 {
     size_t at = 4 + 4 * (size_t)sheets;
     *size = at;
@@ -121,7 +119,7 @@ static void encode_tile(void *context, size_t item, int worker)
             say_scales(l->how, SHEET_PLANES * i, &result[i]);
     }
     if (!status)
-        status = join(result, sheets, &l->bytes[item], &l->size[item]);
+        status = levels_join(result, sheets, &l->bytes[item], &l->size[item]);
     for (int i = 0; result && i < sheets; i++)
         mem_free(result[i].bytes);
     mem_free(result);

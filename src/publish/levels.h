@@ -6,11 +6,13 @@
 #ifndef PUBLISH_LEVELS_H
 #define PUBLISH_LEVELS_H
 
+#include "exchange/sheet.h"
 #include "foreign/planes.h"
 #include "publish/site.h"
 
 enum { LEVELS_TILE = 512, LEVELS_MOST = 24 };
-enum { PUBLISH_MOST_PLANES = 45 };
+// Without a wish, of linear files whose shadows stay, and of others.
+enum { PUBLISH_USUAL_PLANES = 45, PUBLISH_MOST_PLANES = 90 };
 
 // How all views of a file are coded.
 struct levels {
@@ -33,5 +35,8 @@ relume_status levels_write(const struct site *site, const char *name, const stru
 // The same of level 0 alone, of which nothing is written.
 relume_status levels_try(const struct planes *p, const struct levels *l, uint64_t *bytes,
                          uint8_t *codes);
+// The file of a tile, of the pictures of some sheets; the caller frees it. RELUME_ENOMEM.
+relume_status levels_join(const struct sheet_result *sheet, int sheets, uint8_t **out,
+                          size_t *size);
 
 #endif

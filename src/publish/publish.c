@@ -98,15 +98,6 @@ static relume_status open_file(relume_pack **pack, const char *path,
     return status;
 }
 
-// What the page does not show as relume does.
-static void say_left_out(const struct site *site, const struct relume_pack_info *info)
-{
-    if (info->has_shadow || info->has_gloss)
-        log_line(site->log, RELUME_NOTE,
-                 "%s stay between the captured lights on the page; in relume they move",
-                 info->has_shadow ? "shadows" : "highlights");
-}
-
 static relume_status write_all(struct scene *s, struct page *page, const char *path,
                                const char *site_title)
 {
@@ -151,7 +142,6 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
         status = page_write(&here, page, site_title);
     } else if (!status) {
         report.views = relume_pack_info(s.pack)->views;
-        say_left_out(&here, relume_pack_info(s.pack));
         status = write_all(&s, page, w->files[i], site_title);
     }
     scene_free(&s);

@@ -29,6 +29,8 @@ enum { USUAL_PLANES = 27, CORRECTIONS = 8, TRIAL_PIXELS = 1 << 17 };
 // Linear light of so high a dynamic range that 8 bits show less than this of it is coded first, and
 // ends at white.
 #define POOR_DB 28.0
+// Nor may it show less than this where shadows move, which hides no errors.
+#define POOR_MOVING_DB 44.0
 // Nor does it become finer than this without anybody\'s wish.
 #define USUAL_FINER 2.0
 #define USUAL_SLACK 0.8  // measured values are rounded to 8 bits
@@ -260,6 +262,8 @@ static relume_status write_views(struct scene *s, struct planes *middle, uint64_
                 levels_write(s->site, name, is_middle ? middle : &view, &s->levels, bytes, NULL);
         if (!status)
             status = layers_write(&s->layers[i], s->site, name, s->pack, i);
+        if (!status)
+            status = moving_write(&s->moving[i], s->site, name, s->pack, i);
         planes_free(is_middle ? middle : &view);
         if (!status && !log_progress(s->site->log, "tiles", (i + 1.0) / views))
             status = RELUME_ECANCEL;
@@ -286,16 +290,19 @@ static relume_status allocate(struct scene *s)
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const size_t n = (size_t)s->common.plan.planes;
     s->layers = mem_zeroed((size_t)info->views, sizeof *s->layers);
+    s->moving = mem_zeroed((size_t)info->views, sizeof *s->moving);
     s->minimum = mem_array(n, sizeof *s->minimum);
     s->maximum = mem_array(n, sizeof *s->maximum);
     s->levels = (struct levels){.planes = (int)n,
-                                .count = levels_count(info->width, info->height, info->views),
+                                // so many planes are large at a size that is small for few
+                                .count = levels_count(info->width, info->height, info->views) +
+                                         (n > PUBLISH_USUAL_PLANES),
                                 .minimum = s->minimum,
                                 .maximum = s->maximum,
                                 .scale = mem_zeroed(n, sizeof *s->levels.scale),
                                 .offset = mem_zeroed(n, sizeof *s->levels.offset),
                                 .threads = s->site->params->threads};
-    return s->layers && s->minimum && s->maximum && s->levels.scale && s->levels.offset
+    return s->layers && s->moving && s->minimum && s->maximum && s->levels.scale && s->levels.offset
                ? RELUME_OK
                : RELUME_ENOMEM;
 }
@@ -303,12 +310,14 @@ static relume_status allocate(struct scene *s)
 static void forget(struct scene *s)
 {
     mem_free(s->layers);
+    mem_free(s->moving);
     mem_free(s->minimum);
     mem_free(s->maximum);
     mem_free(s->levels.scale);
     mem_free(s->levels.offset);
     common_free(&s->common);
     s->layers = NULL;
+    s->moving = NULL;
     s->minimum = s->maximum = NULL;
     s->levels = (struct levels){0};
 }
@@ -317,9 +326,14 @@ static relume_status find_components(struct scene *s, enum source_kind kind)
 {
     const struct relume_publish_params *p = s->site->params;
     struct plan *plan = &s->common.plan;
-    const relume_status status = common_find(
-        &s->common, s->pack, kind, p->coefficients ? p->coefficients : PUBLISH_MOST_PLANES,
-        p->threads, s->site->log);
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    // of linear light more planes of 8 bits are more noise
+    const bool many = info->has_shadow || info->domain != RELUME_DOMAIN_LINEAR;
+    const relume_status status = common_find(&s->common, s->pack, kind,
+                                             p->coefficients ? p->coefficients
+                                             : many          ? PUBLISH_MOST_PLANES
+                                                             : PUBLISH_USUAL_PLANES,
+                                             p->threads, s->site->log);
     if (!status && !p->coefficients && plan->planes > USUAL_PLANES &&
         decibels(lost_from(plan, USUAL_PLANES) / 3.0) >= USUAL_DB + USUAL_MARGIN)
         common_keep(&s->common, USUAL_PLANES);
@@ -344,7 +358,9 @@ relume_status scene_write(struct scene *s)
     uint64_t bytes[LEVELS_MOST] = {0};
     struct planes middle = {0};
     relume_status status = prepare(s, SOURCE_WHOLE, &middle);
-    if (!status && s->report->linear && s->report->psnr_db < POOR_DB) {
+    const double poor =
+        s->usual && relume_pack_info(s->pack)->has_shadow ? POOR_MOVING_DB : POOR_DB;
+    if (!status && s->report->linear && s->report->psnr_db < poor) {
         planes_free(&middle);
         forget(s);
         s->usual = false;

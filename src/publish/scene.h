@@ -6,6 +6,7 @@
 #include "publish/details.h"
 #include "publish/layers.h"
 #include "publish/levels.h"
+#include "publish/moving.h"
 #include "publish/site.h"
 
 #include <stdio.h>
@@ -21,6 +22,7 @@ struct scene {
     struct common common;
     struct levels levels;
     struct layers *layers;      // [views]
+    struct moving *moving;      // [views]
     double *minimum, *maximum;  // [planes]
     bool usual;                 // the step is that of nobody's wish
     int first_level;

@@ -5,6 +5,7 @@
 #include "math/base64.h"
 
 #include <relume/coder.h>
+#include <string.h>
 
 // Little-endian on every machine that the library runs on.
 static void put_floats(FILE *f, const char *key, const float *v, size_t n)
@@ -61,6 +62,17 @@ static void put_levels(FILE *f, const struct scene *s)
     fprintf(f, "],\n  \"first_level\": %d,\n", s->first_level);
 }
 
+static void put_moving(FILE *f, const struct moving *m)
+{
+    fputs(", \"moving\": {\"scale\": [", f);
+    for (int i = 0; i < MOVING_NUMBERS; i++)
+        fprintf(f, "%s%.9g", i ? ", " : "", (double)m->scale[i]);
+    fputs("], \"offset\": [", f);
+    for (int i = 0; i < MOVING_NUMBERS; i++)
+        fprintf(f, "%s%.9g", i ? ", " : "", (double)m->offset[i]);
+    fputs("]}", f);
+}
+
 static void put_views(FILE *f, const struct scene *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
@@ -72,9 +84,21 @@ static void put_views(FILE *f, const struct scene *s)
         if (s->layers[i].depth)
             fprintf(f, ", \"depth\": true, \"depth_min\": %.9g, \"depth_step\": %.9g",
                     s->layers[i].depth_min, s->layers[i].depth_step);
+        if (s->moving[i].there)
+            put_moving(f, &s->moving[i]);
         fprintf(f, "%s}", s->layers[i].mask ? ", \"mask\": true" : "");
     }
     fputs("\n  ]\n", f);
+}
+
+// Whether planes are coded while the file blends the pictures of neighbouring lights in linear
+// light.
+static bool is_linear_between(const struct scene *s)
+{
+    const struct relume_coder_info *info = relume_coder_info(s->common.raw);
+    return relume_pack_info(s->pack)->domain == RELUME_DOMAIN_LINEAR &&
+           s->common.source.coding.curve != RELUME_CURVE_LINEAR && info->interpolant &&
+           !strcmp(info->interpolant->name, "delaunay");
 }
 
 void scene_print_json(FILE *f, const struct scene *s)
@@ -89,6 +113,8 @@ void scene_print_json(FILE *f, const struct scene *s)
     geometry_print(f, &info->geometry);
     relume_transfer_text(c->source.coding, transfer, sizeof transfer);
     fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
+    if (is_linear_between(s))
+        fputs("  \"between\": \"linear\",\n", f);
     put_basis(f, c);
     fprintf(f, "  \"functions\": %d, \"planes\": %d,\n", c->functions, s->levels.planes);
     put_floats(f, "transform", c->transform, 3 * (size_t)s->levels.planes * functions);
@@ -96,6 +122,8 @@ void scene_print_json(FILE *f, const struct scene *s)
     put_numbers(f, "scale", s->levels.scale, s->levels.planes);
     put_numbers(f, "offset", s->levels.offset, s->levels.planes);
     put_levels(f, s);
+    if (info->has_shadow || info->has_gloss)
+        fprintf(f, "  \"moves\": \"%s\",\n", info->has_shadow ? "shadows" : "highlights");
     put_views(f, s);
     fputs("}\n", f);
 }

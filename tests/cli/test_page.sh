@@ -92,6 +92,8 @@ ask "(v => { v.keep(); v.set('pass', 'colour'); v.compare('difference'); return 
 eye=0.1,-0.1,$(awk 'match($0, /"uv_plane_z": *[0-9.-]+/) { sub(/.*: */, "", $0); print $0 + 0; exit }' RS=, site/pot/scene.json)
 snap pot "light=dir,0,0,1&eye=$eye" "--size 96x96 --eye $eye" --light 'dir 0 0 1'
 snap pot "light=dir,0.5,0.3,0.7&eye=$eye" "--size 96x96 --eye $eye" --light 'dir 0.5 0.3 0.7'
+lamp() { snap "$1" "light=$(echo "$2" | tr ' ' ,)$3" "$4" --light "$2"; }
+lamp pot 'point 0.6 0.5 1' "&eye=$eye" "--size 96x96 --eye $eye"
 {
     echo 'size 128 64'
     show site/room.html
@@ -103,6 +105,7 @@ ask "($view.panel.begin('line'), 0)"
 { echo 'drag 70 20 70 20'; echo 'drag 110 44 110 44'; echo 'key Enter'; } >>orders.txt
 ask "(window.relume.setState('pan=200&projection=planet&zoom=0.5'), [[70, 20], [110, 44]].forEach(p => $view.viewer.toPicture(p)), window.relume.setState('pan=30&tilt=10&zoom=1'), ['turned', ...$view.panel.notes.all[0].places.map(p => $view.viewer.toCanvas(p).map(x => Math.round(10 * x) / 10))])"
 echo "write room.page.json $view.panel.notes.toText()" >>orders.txt
+lamp room 'point 0.5 0.8 0.3' '&pan=30&tilt=10&zoom=1&exposure=3' '--size 128x64 --pan 30 --tilt 10 --exposure 3'
 ask "(document.body.append(document.querySelector('relume-view')), document.querySelector('relume-view').ready.then(() => 'put elsewhere'))"
 ask "(document.querySelector('relume-view').controls.node.remove(), new Promise(done => setTimeout(done, 200)))"
 snap room 'light=dir,0.5,0.5,0.7&projection=planet' '--size 128x64 --projection planet' --light 'dir 0.5 0.5 0.7'

@@ -114,6 +114,9 @@ table() { # file
     ask "(URL.createObjectURL = (blob) => { window.table = blob.text(); return '#'; }, 0)"
     echo "write page_$1.csv (async (view, panel) => { panel.choose(panel.notes.all[0]); await panel.profile(); panel.profiled.querySelector('button').click(); return window.table; })(document.querySelector('relume-view'), document.querySelector('relume-view').panel)" >>orders.txt
 }
+# as of a file without depth
+sed -i 's/"depth": true, //' site/pot/scene.json
+{ printf 'relume.put("pot/scene.json", "'; base64 -w0 site/pot/scene.json; printf '");\n'; } >site/pot/scene.json.js
 show site/pot.html >>orders.txt
 ask "window.relume.setState('light=point,0,0,1') || ['slab', document.querySelector('relume-view').status.textContent]"
 echo 'state light=dir,0,0,1' >>orders.txt
@@ -192,5 +195,5 @@ says 'near lamps come back in the state' '^"exposure=-0.5&light=area,0.3,0.2,0.8
 # a point of 0.5 has a quarter of the value; half an angle of 30 degrees, pi / (4 tan^2 30) = 2.35619
 says 'sliders bring a light near, make it soft and take it away, as bright' '^\["sliders","light=point,0,0.3,0.4,rgb,0.25,0.25,0.25","light=area,0,0.3,0.4,[-0-9.,]*,rgb,2.35619,2.35619,2.35619","light=area,0,0.6,0.8,[-0-9.,]*,rgb,2.35619,2.35619,2.35619","light=point,0,0.6,0.8","light=dir,0,0.6,0.8"\]'
 says 'lamps that cannot be are left out' '^\["nofall","light=point,1,1,1,rgb,1,2,3,nofall"\]'
-says 'a slab has no near lamps, which is said' '^\["slab","This link asks for what cannot be shown \(light\); the rest of it is\."\]'
+says 'a slab without depth has no near lamps, which is said' '^\["slab","This link asks for what cannot be shown \(light\); the rest of it is\."\]'
 finish

@@ -26,6 +26,7 @@ struct core {
     int functions, planes;  // F, K
     float *turned;          // [3][K + 1][F]: T, then the mean
     float *raw;             // [3][F], what the coder answers
+    double from[3];         // the direction that was asked for last, as the coder takes it
 };
 
 // Memory for the page to write into.
@@ -122,18 +123,43 @@ static double dot(const float *a, const float *b, int n)
 
 // out[3][K + 1]: the weights of the planes, then the constant, for light from (x, y, z), of any
 // length but 0. Returns the share of the light that is shown (relume_coder_clamp).
-EXPORT double core_weights(const struct core *core, double x, double y, double z, float *out)
+EXPORT double core_weights(struct core *core, double x, double y, double z, float *out)
 {
     const double length = sqrt(x * x + y * y + z * z);
     struct relume_vec3 from;
     const double share = relume_coder_clamp(
         &from, core->coder, (struct relume_vec3){x / length, y / length, z / length});
     float constant[3];
+    memcpy(core->from, (double[3]){from.x, from.y, from.z}, sizeof core->from);
     relume_coder_weights(core->coder, from, core->raw, constant);
     for (int i = 0; i < 3 * (core->planes + 1); i++)
         out[i] = (float)dot(core->turned + (size_t)i * (size_t)core->functions, core->raw,
                             core->functions);
     return share;
+}
+
+// x, y, z.
+EXPORT const double *core_from(const struct core *core)
+{
+    return core->from;
+}
+
+// The triangles of captured lights whose pictures a table interpolates, at most `most`: of each the
+// nodes, -1 for none, and relume_weight_triangle.inverse, out[12 n]. -1 without memory.
+EXPORT int core_triangles(const struct core *core, float *out, int most)
+{
+    relume_weight_grid *grid = NULL;
+    if (relume_weight_grid_create(&grid, core->coder, NULL))
+        return -1;
+    const struct relume_weight_grid_info *info = relume_weight_grid_info(grid);
+    const int n = info->triangles < most ? info->triangles : most;
+    for (int t = 0; t < n; t++, out += 12) {
+        for (int i = 0; i < 3; i++)
+            out[i] = (float)info->triangle[t].node[i];
+        memcpy(out + 3, info->triangle[t].inverse, sizeof info->triangle[t].inverse);
+    }
+    relume_weight_grid_destroy(&grid);
+    return n;
 }
 
 // The captured lights, at most as many as core_open had, that stand for an environment: out[6 n],

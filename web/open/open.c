@@ -189,7 +189,8 @@ static relume_status describe(struct opened *o)
     const struct relume_coder_info *coder = relume_coder_info(info->coder);
     relume_status status = functions_coder(&s->common.raw, coder, &o->log);
     s->layers = mem_zeroed((size_t)info->views, sizeof *s->layers);
-    if (!status && !s->layers)
+    s->moving = mem_zeroed((size_t)info->views, sizeof *s->moving);
+    if (!status && !(s->layers && s->moving))
         status = RELUME_ENOMEM;
     for (int i = 0; !status && i < info->views; i++)
         s->layers[i] = (struct layers){.depth = info->has_depth, .mask = info->has_mask};
@@ -242,12 +243,6 @@ EXPORT int open_is_bytes(const struct opened *o)
     return o->bytes;
 }
 
-EXPORT const char *open_left_out(const struct opened *o)
-{
-    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
-    return info->has_shadow ? "shadows" : info->has_gloss ? "highlights" : "";
-}
-
 EXPORT void open_close(struct opened *o)
 {
     relume_pack_destroy(&o->scene.pack);
@@ -257,6 +252,7 @@ EXPORT void open_close(struct opened *o)
     mem_free(o->scene.levels.scale);
     mem_free(o->scene.levels.offset);
     mem_free(o->scene.layers);
+    mem_free(o->scene.moving);
     text_free(&o->json);
     mem_free(o->out);
     mem_free(o);
@@ -409,4 +405,21 @@ EXPORT const void *open_picture(struct opened *o, int view, int mask)
         status = pixels ? RELUME_ENOMEM : RELUME_EDAMAGED;
     relume_image_destroy(&image);
     return fine(o, status) ? out : NULL;
+}
+
+// ---------------------------------------------------------------- what moves
+
+EXPORT const float *open_model(struct opened *o, int view)
+{
+    struct relume_image model;
+    relume_status status = relume_pack_info(o->scene.pack)->has_gloss
+                               ? relume_pack_gloss(&model, o->scene.pack, view)
+                               : relume_pack_shadow(&model, o->scene.pack, view);
+    const size_t n = (size_t)model.width * (size_t)model.height * MOVING_NUMBERS;
+    mem_free(o->out);
+    o->out = status || !model.data ? NULL : mem_copy(model.data, n, sizeof *model.data);
+    if (!status && !o->out)
+        status = RELUME_ENOMEM;
+    relume_image_destroy(&model);
+    return fine(o, status) ? o->out : NULL;
 }

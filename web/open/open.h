@@ -18,14 +18,15 @@ const char *open_why(const struct opened *o);
 const char *open_scene(const struct opened *o);
 // Whether tiles hold bytes; else they hold halves.
 int open_is_bytes(const struct opened *o);
-// What stays between the captured lights in pages: "shadows", "highlights" or "".
-const char *open_left_out(const struct opened *o);
 // [layers][height][width][4] of a tile of a level, and [height][width][4] of a mask or a depth
 // (layers.h). It stays until the next call. NULL: open_why.
 const void *open_tile(struct opened *o, int view, int level, int x, int y);
 const void *open_picture(struct opened *o, int view, int mask);
 // depth_min and depth_step of the last depth.
 const double *open_range(const struct opened *o);
+// [height][width][8]: what shadows or highlights of a view move by (relume/shadow.h), of files
+// where scene.json says that they do.
+const float *open_model(struct opened *o, int view);
 void open_close(struct opened *o);
 
 #endif

@@ -38,7 +38,7 @@ static const struct option options[] = {
     NUMBER("--bytes-per-pixel", bytes_per_pixel, "B", "size at full resolution, not exceeded",
            0.001, 100),
     INT("--coefficients", coefficients, "K", "planes; default: up to 27, as many as are worth it",
-        1, 45),
+        1, 90),
     GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
     KEEP_GOING_OPTION,

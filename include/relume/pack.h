@@ -207,7 +207,8 @@ RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
 // The coder that needs the fewest bytes for `encode`'s psnr_db, or reproduces the captured lights
 // best in its bytes_per_pixel: principal components, or where shadows are hard the captured images
 // themselves (`table`), as tried on one view. `coder` may fix the interpolant, and the number of
-// components: then it is these. It works in the display domain, which is what to encode in. Errors of relume_coder_decide and relume_encode.
+// components: then it is these. It works in the display domain, which is what to encode in. Errors
+// of relume_coder_decide and relume_encode.
 RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,
                                                const struct relume_coder_params *coder,
                                                const struct relume_pack_encode_params *encode);

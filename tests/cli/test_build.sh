@@ -29,7 +29,7 @@ fi
 
 # ---------------------------------------------------------------- WebAssembly in the tree
 for module in core open; do
-    if (cd "$TOP" && sha256sum -c --quiet web/$module/sources.txt) >sums.txt 2>&1; then
+    if (cd "$TOP" && scripts/web-sources.sh --check web/$module/relume-$module.wasm) >sums.txt 2>&1; then
         ok "web/$module is made of the sources in the tree"
     else
         not_ok "web/$module is made of the sources in the tree" "run 'make web' and commit what it makes; $(head -n 5 sums.txt)"

@@ -64,7 +64,7 @@ for c in $commands; do helps "$c" | options | cases "$c:"; done
 for c in $commands; do
     words=$(tasks "$c" | tr '\n' ' ')
     # a command that runs by itself takes files as well
-    case $("$relume" "$c" --help | head -n 1) in *' -o '*) files='-f ' ;; *) files= ;; esac
+    case $("$relume" "$c" --help | sed -n 1p) in *' -o '*) files='-f ' ;; *) files= ;; esac
     [ -z "$words" ] || echo "        $c:$c) COMPREPLY=(\$(compgen ${files}-W \"$words\" -- \"\$word\")); return ;;"
 done
 echo "        synth:synth) COMPREPLY=(\$(compgen -W \"$scenes\" -- \"\$word\")); return ;;"

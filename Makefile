@@ -90,8 +90,9 @@ OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/
 STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/multiview/stitch.cpp)
 # The program in which foreign files are read (src/base/helper.h); it lies beside the modules
 HELPER_C := $(wildcard src/helper/*.c)
-# The tool for all processes of an MPI launcher, built where one is (make deps-mpi)
-MPI_C    := $(if $(shell command -v mpicc),$(wildcard src/mpi/*.c))
+# The tool for all processes of an MPI launcher, built where one is (make deps-mpi); some packages
+# bring mpicc without the header
+MPI_C    := $(if $(shell echo 'int mpi;' | mpicc -include mpi.h -fsyntax-only -x c - 2>/dev/null && echo there),$(wildcard src/mpi/*.c))
 # src/program is what the tool and the viewer share.
 CLI_C    := $(wildcard src/program/*.c src/cli/*.c src/cli/*/*.c)
 VIEWER_C := $(wildcard src/program/*.c viewer/*/*.c)

@@ -570,7 +570,7 @@ static relume_objects *open_heap(void)
 static void time_screens(relume_pack *pack)
 {
     relume_objects *o = open_heap();
-    static const int sizes[][2] = {{320, 240}, {640, 480}};
+    static const int sizes[][2] = {{320, 240}, {512, 384}, {1024, 768}};
     static const struct {
         const struct relume_transport *way;
         int bounces, cameras;

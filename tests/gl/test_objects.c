@@ -634,7 +634,7 @@ static void baked_objects_agree(void **state)
         assert_int_equal(relume_objects_open(&o, path_of("matte.json"), NULL), RELUME_OK);
         assert_int_equal(
             relume_bake(&b, o,
-                        relume_bake_params(.width = TEST_SANITIZED ? 12 : 24, .side = way[i].side,
+                        relume_bake_params(.width = TEST_SANITIZED ? 16 : 24, .side = way[i].side,
                                            .coefficients = 9, .clusters = 5, .components = 3,
                                            .bounces = 1, .rays = 8, .per_view = way[i].per_view)),
             RELUME_OK);

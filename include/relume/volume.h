@@ -66,6 +66,11 @@ struct relume_volume_info {
 };
 RELUME_API struct relume_volume_info relume_volume_info(const relume_volume *volume);
 
+// The threshold that parts its samples into two kinds whose means are far apart and that vary
+// little in themselves, as air and body (Otsu 1979); by a histogram of at most 1024 values. Above
+// `min`, below `max`, and between two samples where they are whole numbers.
+RELUME_API double relume_volume_threshold(const relume_volume *volume);
+
 // Find which part of the volume has which values, once, for many thresholds: surfaces then look at
 // the samples near them alone (span space: Livnat, Shen, Johnson 1996). RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_volume_index(relume_volume *volume, int threads);

@@ -66,8 +66,7 @@ static bool is_within(double value, double most)
 static bool are_sound(const struct relume_simplify_params *p)
 {
     return is_within(p->error, 1.0) && is_within(p->jnd, 100.0) && is_within(p->distance, 1e6) &&
-           p->gloss <= 1000.0 && is_within(p->white, 1e6) &&
-           (p->error > 0.0 || p->triangles || p->jnd > 0.0);
+           p->gloss <= 1000.0 && is_within(p->white, 1e6);
 }
 
 // The middle and the diagonal of the mesh; false when it is a point or not finite.

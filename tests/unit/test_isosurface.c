@@ -368,6 +368,55 @@ static void test_spacing_stretches_places_and_turns_normals(void **state)
 
 // ---------------------------------------------------------------- no surface
 
+// The sum of squares within both kinds, in two passes.
+static double within(const uint8_t *sample, int count, double threshold)
+{
+    double mean[2] = {0}, sum = 0.0;
+    int n[2] = {0};
+    for (int i = 0; i < count; i++) {
+        mean[sample[i] >= threshold] += sample[i];
+        n[sample[i] >= threshold]++;
+    }
+    if (!n[0] || !n[1])
+        return INFINITY;
+    for (int k = 0; k < 2; k++)
+        mean[k] /= n[k];
+    for (int i = 0; i < count; i++) {
+        const double d = sample[i] - mean[sample[i] >= threshold];
+        sum += d * d;
+    }
+    return sum;
+}
+
+static double threshold_of(const void *sample, const char *type)
+{
+    relume_volume *volume;
+    assert_int_equal(
+        relume_volume_from(&volume, sample, relume_volume_params(.size = {10, 9, 8}, .type = type)),
+        RELUME_OK);
+    const double threshold = relume_volume_threshold(volume);
+    relume_volume_destroy(&volume);
+    return threshold;
+}
+
+// No other threshold leaves kinds that vary less; between two kinds it is in the middle.
+static void test_the_threshold_of_two_kinds(void **state)
+{
+    (void)state;
+    uint8_t sample[720];
+    float far[720];
+    for (int i = 0; i < 720; i++) {
+        sample[i] = (uint8_t)(90.0f + (i % 3 ? 30.0f : 110.0f) * (0.5f + noise(0, 0, 0)));
+        far[i] = i % 5 ? -2.0f : 6.0f;
+    }
+    const double found = threshold_of(sample, "u8");
+    double best = INFINITY;
+    for (int t = 1; t < 256; t++)
+        best = fmin(best, within(sample, 720, t - 0.5));
+    assert_true(within(sample, 720, found) <= best * (1.0 + 1e-9));
+    assert_true(fabs(threshold_of(far, "f32") - 2.0) < 8.0 / 1023);
+}
+
 static void test_thresholds_beyond_the_values(void **state)
 {
     (void)state;
@@ -580,6 +629,7 @@ int main(void)
         cmocka_unit_test(test_threads_and_indices_change_nothing),
         cmocka_unit_test(test_types_agree),
         cmocka_unit_test(test_spacing_stretches_places_and_turns_normals),
+        cmocka_unit_test(test_the_threshold_of_two_kinds),
         cmocka_unit_test(test_thresholds_beyond_the_values),
         cmocka_unit_test(test_memory_that_runs_out),
     };

@@ -4,6 +4,7 @@
 
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 struct mesh_options {
     struct args args;
@@ -60,23 +61,23 @@ static bool ends_in(const char *name, const char *const *endings)
     return false;
 }
 
-// What is a volume by its name, or by the options that only volumes have.
+// What is a volume by its name, a folder of slices, or by the options that only volumes have.
 static bool seems_volume(const struct mesh_options *o)
 {
     static const char *const endings[] = {".raw", ".nrrd", ".nhdr", ".nii", ".gz",
                                           ".hdr", ".tif",  ".tiff", NULL};
-    return o->volume.size.side[0] || o->volume.type || ends_in(o->args.input[0], endings);
+    struct stat s;
+    return o->volume.thresholds.count || o->volume.size.side[0] || o->volume.type ||
+           ends_in(o->args.input[0], endings) ||
+           (!stat(o->args.input[0], &s) && S_ISDIR(s.st_mode));
 }
 
 static relume_status run(const struct args *args)
 {
     const struct mesh_options *o = (const void *)args;
     const int block = o->blocks.count ? o->blocks.item[0] : 2;
-    if (o->volume.thresholds.count)
-        return mesh_of_volume(args, &o->volume, &o->blocks, o->output, o->json);
     if (seems_volume(o))
-        return usage_error("mesh: a volume needs --threshold T: the surface is where samples reach "
-                           "T");
+        return mesh_of_volume(args, &o->volume, &o->blocks, o->output, o->json);
     if (!ends_in(args->input[0], (const char *const[]){".exr", NULL}))
         return convert(o);
     if (o->blocks.count > 1)

@@ -20,7 +20,9 @@ static const struct option options[] = {
     FLAG("--json", json, "triangles, vertices, errors and seconds as one JSON object"),
     GROUP("how far"),
     NUMBER("--error", error, "E",
-           "most distance from the original, in diagonals of its box: 0.001 is 0.1 %", 1e-9, 1),
+           "most distance from the original, in diagonals of its box: 0.001 is 0.1 %; default: "
+           "what is not seen from --distance",
+           1e-9, 1),
     INT("--triangles", triangles, "N", "as many triangles, or a few less", 1, 2147483647),
     NUMBER("--jnd", jnd, "J", "shading changes by about J noticeable steps at most; default: 4",
            0.01, 100),
@@ -67,8 +69,6 @@ static relume_status run(const struct args *args)
     struct relume_mesh mesh = {0}, small = {0};
     struct relume_simplified done = {0};
     double time = 0.0;
-    if (!(o->error > 0.0) && !(o->jnd > 0.0) && !o->triangles)
-        return usage_error("how far? Give --error, --triangles or --jnd");
     if (o->quadrics && o->jnd > 0.0)
         return usage_error("--quadrics tests nothing of what is seen; leave out --jnd");
     relume_status status = relume_mesh_check(o->output, p);
@@ -100,7 +100,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command mesh_task_simplify = {
-    COMMAND("mesh simplify", "MODEL -o OUT --error E|--triangles N|--jnd J [OPTION ...]",
+    COMMAND("mesh simplify", "MODEL -o OUT [--error E] [--triangles N] [--jnd J] [OPTION ...]",
             "fewer triangles that look the same",
             "relume mesh simplify statue.ply -o small.glb --error 0.001", 1, 1),
 };

@@ -125,7 +125,20 @@ static relume_status open_volume(relume_volume **out, const struct args *args,
                              .spacing = {o->spacing.step[0], o->spacing.step[1],
                                          o->spacing.step[2]},
                              .own_spacing = o->spacing.own));
-    return status || o->thresholds.count == 1 ? status : relume_volume_index(*out, args->threads);
+    return status || o->thresholds.count < 2 ? status : relume_volume_index(*out, args->threads);
+}
+
+// Where none is given: which, said.
+static void choose_threshold(struct volume_thresholds *t, const struct args *args,
+                             const relume_volume *volume)
+{
+    const struct relume_volume_info info = relume_volume_info(volume);
+    t->count = 1;
+    t->value[0] = relume_volume_threshold(volume);
+    announce(args, RELUME_NOTE,
+             "%s: samples are %.6g to %.6g and fall into two kinds at %.6g; --threshold takes "
+             "another value",
+             args->input[0], (double)info.min, (double)info.max, t->value[0]);
 }
 
 static relume_status make_set(struct set *s, const relume_volume *volume)
@@ -171,20 +184,23 @@ static void free_set(struct set *s)
 relume_status mesh_of_volume(const struct args *args, const struct volume_options *o,
                              const struct ints *blocks, const char *output, bool json)
 {
-    const struct volume_thresholds *t = &o->thresholds;
-    const bool several = t->count > 1 || blocks->count > 1;
+    struct volume_thresholds t = o->thresholds;
+    const bool several = t.count > 1 || blocks->count > 1;
     relume_volume *volume = NULL;
     relume_status status = RELUME_OK;
-    for (int i = 0; i < t->count && !status; i++) {  // names first: nothing is done for a wrong one
+    // Names first: nothing is done for a wrong one.
+    for (int i = 0; i < (t.count ? t.count : 1) && !status; i++) {
         struct set s = {.args = args};
-        status = name_set(&s, t, i, blocks, output);
+        status = name_set(&s, &t, i, blocks, output);
         free_set(&s);
     }
     if (!status)
         status = open_volume(&volume, args, o);
-    for (int i = 0; i < t->count && !status; i++) {
+    if (!status && !t.count)
+        choose_threshold(&t, args, volume);
+    for (int i = 0; i < t.count && !status; i++) {
         struct set s = {.args = args};
-        status = name_set(&s, t, i, blocks, output);
+        status = name_set(&s, &t, i, blocks, output);
         if (!status)
             status = make_set(&s, volume);
         if (!status)

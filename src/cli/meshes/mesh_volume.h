@@ -30,7 +30,8 @@ struct volume_options {
 #define VOLUME_ROWS                                                                                \
     GROUP("volumes"),                                                                              \
         OWN("--threshold", volume.thresholds, "T,...",                                             \
-            "the surface of all samples that are at least T; of several in OUT.T.ply each",        \
+            "the surface of all samples that are at least T; of several in OUT.T.ply each; "       \
+            "default: where samples fall into two kinds (Otsu)",                                   \
             take_volume_thresholds),                                                               \
         OWN("--size", volume.size, "XxYxZ",                                                        \
             "samples of a raw file, x running fastest; default: as its name says",                 \

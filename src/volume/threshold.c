@@ -13,9 +13,9 @@ static int bins_of(const relume_volume *v)
 static void count(uint64_t *histogram, int bins, const relume_volume *v)
 {
     const size_t samples = volume_at(v, 0, 0, v->size[2]);
-    const float scale = (float)(bins - 1) / (v->max - v->min);
+    const double scale = (bins - 1) / ((double)v->max - (double)v->min);
     for (size_t i = 0; i < samples; i++)
-        histogram[(int)((volume_sample(v, i) - v->min) * scale + 0.5f)]++;
+        histogram[(int)(((double)volume_sample(v, i) - (double)v->min) * scale + 0.5)]++;
 }
 
 double relume_volume_threshold(const relume_volume *v)

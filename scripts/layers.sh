@@ -56,7 +56,7 @@ reflect:base math kernel:base reflection
 scene:base math image geometry mesh:base image directions capture btf scene
 transport:base math mesh:base image capture view viewport transport
 baked:base math geometry image:base coder codebook directions light bake
-object:base math mesh transport frame baked:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport points object renderer bake mesh billboards simplify
+object:base math mesh transport frame baked:base image capture light relight view slab_set pack frame viewport btf btf_environment surface reflection transport points object renderer bake mesh billboards simplify exchange
 bake:base math mesh baked object:base light surface btf object bake
 tableau:base math geometry mesh transport frame object:base image light relight view slab_set pack frame viewport object renderer exchange rig tableau
 helper:base image mesh:base

@@ -55,12 +55,14 @@ struct relume_objects_params {
 // or g-BRDFs as .exr; parts without one show what their mesh's file says. What a mesh lacks is
 // made, with a warning: normals, texture coordinates (from the three axes). An input status with a
 // sentence, RELUME_ENOMEM, RELUME_ESYSTEM when Embree or the reader of a format is missing. A baked
-// object (.exr) is opened as the only one.
+// object (.exr) or a model is opened as the only one, as relume_objects_of_mesh does without
+// materials.
 RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
                                                 const struct relume_objects_params *params);
-// One mesh, all of it of the first of `count` materials (0: as its file says), its texture repeated
-// `repeat` times (0: 1) in each direction; `mesh` NULL: a cushion, which shows all of a sample from
-// many sides. Likewise.
+// One mesh, all of it of the first of `count` materials (0: as its file says,
+// what it says nothing of in matte grey, with a note), its texture
+// repeated `repeat` times (0: 1) in each direction; `mesh` NULL: a cushion, which shows all of a
+// sample from many sides. Likewise.
 RELUME_RESULT relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
                                                    const char *const *materials, int count,
                                                    double repeat,

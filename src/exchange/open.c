@@ -65,6 +65,8 @@ static enum relume_kind kind_of_json(const char *head, size_t n, const char *pat
 enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log)
 {
     static const char *const foreign[] = {".ptm", ".lptm", ".rti", ".hsh", NULL};
+    static const char *const models[] = {".obj", ".ply", ".gltf", ".glb", ".fbx",
+                                         ".dae", ".stl", ".3ds",  ".off", NULL};
     static const char *const photographs[] = {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", NULL};
     char head[HEAD];
     const enum input_kind kind = input_kind(path, log);
@@ -78,6 +80,8 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
         return RELUME_KIND_CAPTURE;
     if (path_ends(path, ".btf"))
         return RELUME_KIND_MATERIAL;
+    if (is_among(path, models))
+        return RELUME_KIND_MODEL;
     FILE *f = input_open(path, log);
     const size_t n = f ? fread(head, 1, HEAD, f) : 0;
     if (f)
@@ -102,9 +106,9 @@ enum relume_kind relume_kind_of(const char *path)
 
 const char *relume_kind_name(enum relume_kind kind)
 {
-    static const char *const names[] = {"relume file",   "RTI of another format",
-                                        "capture",       "picture",
-                                        "nothing known", "measured material"};
+    static const char *const names[] = {"relume file", "RTI of another format", "capture",
+                                        "picture",     "nothing known",         "measured material",
+                                        "3D model"};
     return names[kind];
 }
 
@@ -193,6 +197,11 @@ static relume_status convert(enum relume_kind kind, const char *path, const char
                         "%s: this is a measured material; see it with 'relume-view %s', work with "
                         "it by 'relume btf'",
                         path, path);
+    case RELUME_KIND_MODEL:
+        return log_fail(p->log, RELUME_EFORMAT,
+                        "%s: this is a 3D model; see it with 'relume-view %s', or make what pages "
+                        "show of it: relume bake %s -o OUT.exr",
+                        path, path, path);
     case RELUME_KIND_FOREIGN:
         return relume_import(path, out,
                              relume_import_params(.log = p->log, .limits = p->limits,

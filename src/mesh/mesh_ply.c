@@ -1,8 +1,8 @@
 // mesh_ply.c - the Stanford polygon format (Turk 1994): ascii, binary little and big endian
 //
 // A header declares elements and their properties; the body holds them in that order. Positions,
-// normals, texture coordinates and colours of `vertex` and the index list of `face` are used, the
-// rest is read past.
+// normals, texture coordinates and colours of `vertex`, the index list of `face` and the comment
+// TextureFile are used, the rest is read past.
 #include "base/log.h"
 #include "base/memory.h"
 #include "mesh/mesh_file.h"
@@ -180,8 +180,16 @@ static bool header_line(struct ply *p, char *line, size_t room)
     return true;
 }
 
+// As MeshLab names the texture of the whole.
+static relume_status take_picture(struct ply *p, const char *name)
+{
+    p->out->picture = mesh_beside(p->path, name);
+    return p->out->picture ? RELUME_OK : RELUME_ENOMEM;
+}
+
 static relume_status read_header(struct ply *p)
 {
+    static const char picture[] = "comment TextureFile ";
     char line[1024];
     if (!header_line(p, line, sizeof line) || strcmp(line, "ply"))
         return bad(p, "not a PLY file");
@@ -193,6 +201,8 @@ static relume_status read_header(struct ply *p)
             break;
         if (!strncmp(line, "format ", 7))
             status = read_format(p, line);
+        else if (!strncmp(line, picture, strlen(picture)) && !p->out->picture)
+            status = take_picture(p, line + strlen(picture));
         else if (!strncmp(line, "element ", 8))
             status = read_element(p, line);
         else if (!strncmp(line, "property ", 9))

@@ -8,21 +8,6 @@
 
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
-
-// Beside model.obj: model.png, model.jpg.
-static char *picture_beside(const char *path)
-{
-    static const char *const extensions[] = {"png", "jpg", "jpeg", "PNG", "JPG", NULL};
-    const char *dot = strrchr(path, '.');
-    for (const char *const *e = extensions; *e; e++) {
-        char *name = mem_format("%.*s.%s", (int)(dot - path), path, *e);
-        if (!name || !access(name, R_OK))
-            return name;
-        mem_free(name);
-    }
-    return NULL;
-}
 
 // Embree takes places below 1.84e18, so that their squares are floats; anything larger is a broken
 // file.
@@ -65,6 +50,16 @@ static relume_status read_own(struct mesh_file *out, const char *path, bool obj,
     return status;
 }
 
+// Of a file that names a picture, but no materials.
+static relume_status cover(struct mesh_file *out)
+{
+    if (!out->picture || !out->has_uv || out->look[0].given)
+        return RELUME_OK;
+    out->look[0] = mesh_look_white();
+    out->look[0].picture = mesh_file_picture(out, out->picture);
+    return out->look[0].picture < 0 ? RELUME_ENOMEM : RELUME_OK;
+}
+
 relume_status mesh_read(struct mesh_file *out, const char *path, const struct relume_log *log)
 {
     *out = (struct mesh_file){.has_uv = false};
@@ -76,8 +71,8 @@ relume_status mesh_read(struct mesh_file *out, const char *path, const struct re
         status = check(out, path, log);
     if (!status && !out->parts && mesh_file_part(out, "all") < 0)
         status = RELUME_ENOMEM;
-    if (!status && out->has_uv && !out->picture)
-        out->picture = picture_beside(path);
+    if (!status && ply)
+        status = cover(out);
     if (status)
         mesh_file_free(out);
     return status;

@@ -253,6 +253,8 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
     relume_status status = mesh_read(&file, path, log);
     if (!status)
         status = complete(&file, standing, path, log);
+    if (!status && standing->bare)
+        objects_plain_look(&file, path, log);
     if (!status)
         status = add_parts(o, &file, standing, path, params);
     for (int i = 0; i < standing->coverings && !status; i++)

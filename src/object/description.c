@@ -6,6 +6,7 @@
 #include "mesh/mesh_read.h"
 #include "object/object.h"
 
+#include <relume/exchange.h>
 #include <string.h>
 
 enum { VERSION = 1, MOST_OBJECTS = 4096, MOST_COVERINGS = 1024 };
@@ -336,6 +337,8 @@ relume_status relume_objects_open(relume_objects **out, const char *path,
     *out = NULL;
     if (objects_named_exr(path))
         return open_baked(out, path, &own);
+    if (relume_kind_of(path) == RELUME_KIND_MODEL)
+        return relume_objects_of_mesh(out, path, NULL, 0, 0.0, &own);
     relume_status status = jvalue_load(&root, path, own.log);
     if (!status)
         status = jvalue_check_format(root, path, "relume-objects", VERSION, own.log);
@@ -356,7 +359,7 @@ relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
     relume_objects *o = mem_zeroed(1, sizeof *o);
     const double times = repeat != 0.0 ? repeat : 1.0;
     struct covering c = {.material = count ? 0 : -1, .repeat = {times, times}};
-    struct standing s = {.frame = frame_world, .covering = &c, .coverings = 1};
+    struct standing s = {.frame = frame_world, .covering = &c, .coverings = 1, .bare = !count};
     relume_status status = o ? RELUME_OK : RELUME_ENOMEM;
     *out = NULL;
     for (int i = 0, number; i < count && !status; i++)

@@ -75,6 +75,8 @@ relume_status objects_take_model(struct relume_object_material *m, relume_btf_fi
 relume_status objects_own_look(relume_objects *o, const struct mesh_file *file, int part,
                                const char *path, int *number,
                                const struct relume_objects_params *params);
+// Parts of which it says nothing become matte grey, with a note.
+void objects_plain_look(struct mesh_file *file, const char *path, const struct relume_log *log);
 
 // A mirror of that reflectance. RELUME_ELIMIT with a sentence, RELUME_ENOMEM.
 relume_status objects_mirror(relume_objects *o, const float reflectance[3], int *number,
@@ -107,6 +109,7 @@ struct standing {
     double levels;      // pixels that an error of fewer triangles may be seen as; 0: all of them
     struct covering *covering;
     int coverings;
+    bool bare;  // what nobody gives a material is matte grey
 };
 // Add a mesh file. An input status, RELUME_ENOMEM.
 relume_status objects_add(relume_objects *o, const char *path, struct standing *standing,

@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+static const float PLAIN_GREY = 0.6f;  // linear
+
 // Metal as smooth as this mirrors.
 static const float MIRROR_METAL = 0.95f, MIRROR_ROUGHNESS = 0.1f;
 
@@ -183,6 +185,20 @@ static relume_status add(relume_objects *o, const struct mesh_file *file, int pa
         status = add_skin(m, &pictures, &look, params);
     forget_pictures(&pictures);
     return status;
+}
+
+void objects_plain_look(struct mesh_file *file, const char *path, const struct relume_log *log)
+{
+    struct mesh_look grey = mesh_look_white();
+    bool any = false;
+    grey.colour[0] = grey.colour[1] = grey.colour[2] = PLAIN_GREY;
+    for (int i = 0; i < file->parts && !file->colour; i++)
+        if (!file->look[i].given) {
+            file->look[i] = grey;
+            any = true;
+        }
+    if (any)
+        log_line(log, RELUME_NOTE, "%s: names no material; shown in matte grey", path);
 }
 
 relume_status objects_own_look(relume_objects *o, const struct mesh_file *file, int part,

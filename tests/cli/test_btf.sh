@@ -256,4 +256,13 @@ check 'is another' sh -c "'$RELUME' compare cpu.exr white.exr | awk '/max_abs/ {
 sed '/^v /s/ [01] [01] [01]$//' colours.obj >bare.obj
 sed 's/colours/bare/' colours.json >bare.json
 expect_fail 'a mesh of no colour' 1 "bare.obj: part 'all' has no material, here or in the description" x.png "$RELUME" btf render bare.json -o x.png
+# ---- a model alone is an object; what its file says nothing of is grey
+"$RELUME" btf render colours.obj -o alone.exr --eye 0,0,4 --picture 48x48 2>err
+check 'a model alone shows its own colours' cmp alone.exr cpu.exr
+"$RELUME" btf render bare.obj -o grey.exr --eye 0,0,4 --picture 48x48 --light 'dir 0 0 1' 2>err
+check 'without colours it is grey, said' grep -q 'bare.obj: names no material; shown in matte grey' err
+"$RELUME" btf render white.json -o white.exr --eye 0,0,4 --picture 48x48 --light 'dir 0 0 1 rgb .6 .6 .6' -q
+below 'that is 0.6 of white' "$("$RELUME" compare white.exr grey.exr | sed -n 's/^max_abs *//p')" 1e-3
+expect_ok 'in relume-view' - "$VIEWER" bare.obj --eye 0,0,4 --size 16x16 --offscreen gl.exr
+expect_fail 'what a page shows of it is said' 1 'relume bake bare.obj -o OUT.exr' site "$RELUME" publish bare.obj -o site
 finish

@@ -83,10 +83,15 @@ check 'materials name the picture' grep -qx 'map_Kd box.png' painted/box.mtl
 below 'in the light that is asked for' "$(psnr painted/box.png painted/dark.png)" 20
 "$RELUME" mesh painted/box.obj -o painted/box.glb -q
 check 'glTF holds it' grep -qa 'image/png' painted/box.glb
+"$RELUME" mesh painted/box.obj -o painted/named.ply -q && "$RELUME" mesh painted/named.ply -o painted/again.glb -q
+check 'PLY names it, and is read so' grep -qa 'image/png' painted/again.glb
+cp painted/box.png card.png
 expect_fail 'too few texels for all charts' 1 'too small for [0-9]+ charts' x.obj "$RELUME" mesh box.exr -o x.obj --texture 16
 check 'and nothing beside it' test ! -e x.png -a ! -e x.mtl
 expect_fail 'a texture without colours' 2 'expected one of them' x.obj "$RELUME" mesh box.exr -o x.obj --texture 64 --no-colours
 printf 'v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\n' >card.obj
+"$RELUME" mesh card.obj -o card.glb -q
+check 'a picture that nobody names is no texture' sh -c '! grep -qa image/png card.glb'
 card='{"mesh": "card.obj", "parts": [{"material": {"diffuse": 0.8}}]}'
 printf '{"format": "relume-objects", "version": 1, "objects": [%s]}' "$card" >open.json
 printf '{"format": "relume-objects", "version": 1, "objects": [%s, {"mesh": "painted/box.obj"}]}' "$card" >shut.json

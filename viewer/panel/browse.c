@@ -13,8 +13,8 @@
 
 bool browse_opens(const char *name)
 {
-    static const char *const endings[] = {".exr", ".ptm", ".rti",  ".hsh", ".hdr",
-                                          ".pfm", ".lp",  ".json", NULL};
+    static const char *const endings[] = {".exr",  ".ptm", ".rti", ".hsh",  ".hdr", ".pfm", ".lp",
+                                          ".json", ".obj", ".ply", ".gltf", ".glb", NULL};
     const char *dot = strrchr(name, '.');
     for (int i = 0; dot && endings[i]; i++)
         if (!strcasecmp(dot, endings[i]))

@@ -56,8 +56,9 @@ bool session_is_description(const char *path)
 {
     const char *dot = strrchr(path, '.');
     const enum relume_kind kind = relume_kind_of(path);
-    return dot && !strcmp(dot, ".json") && kind != RELUME_KIND_CAPTURE &&
-           kind != RELUME_KIND_FOREIGN;
+    return kind == RELUME_KIND_MODEL ||
+           (dot && !strcmp(dot, ".json") && kind != RELUME_KIND_CAPTURE &&
+            kind != RELUME_KIND_FOREIGN);
 }
 
 bool session_is_objects(const char *path)

@@ -160,7 +160,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_bake = {
-    COMMAND("bake", "OBJECTS.json -o OUT.exr [OPTION ...]",
+    COMMAND("bake", "OBJECTS.json|MODEL -o OUT.exr [OPTION ...]",
             "compute the light on objects beforehand: shadows, light from surface to surface",
             "relume bake cow.json -o cow.exr --bounces 3", 1, 1),
 };

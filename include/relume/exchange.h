@@ -40,6 +40,7 @@ enum relume_kind {
     RELUME_KIND_UNKNOWN,     // nothing there, or a folder of something else
     RELUME_KIND_MATERIAL,    // a BTF, a model of one (a g-BRDF also as .exr) or a surface: btf.h
     RELUME_KIND_MODEL,       // a 3D model, by its ending: mesh.h
+    RELUME_KIND_BAKED,       // an object with its light: bake.h
 };
 // By its first bytes and its name, without reading more.
 RELUME_API enum relume_kind relume_kind_of(const char *path);

@@ -87,6 +87,9 @@ const char *judgement(double psnr_db);
 // The file that `relume encode CAPTURE -o OUTPUT` makes, and what it says.
 relume_status encode_as_usual(const struct args *args, const char *capture, const char *output);
 
+// What a baked object is: facts on stdout, as lines or JSON.
+void print_baked(const char *file, const relume_baked *baked, bool json);
+
 // Whether a file is one part of several ('relume join').
 bool is_part(struct relume_pack_part *out, const char *path);
 

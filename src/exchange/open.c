@@ -44,7 +44,8 @@ static enum relume_kind kind_of_folder(const char *path, const struct relume_log
 }
 
 enum { HEAD = 4096 };
-static const char exr_magic[] = "\x76\x2f\x31\x01", gbrdf[] = "gbrdfVersion";
+static const char exr_magic[] = "\x76\x2f\x31\x01", gbrdf[] = "gbrdfVersion",
+                  baked[] = "bakedVersion";
 
 static bool is_among(const char *path, const char *const *endings)
 {
@@ -90,6 +91,8 @@ enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log
         return kind_of_json(head, n, path);
     if (n > 4 && !memcmp(head, exr_magic, 4) && memmem(head, n, gbrdf, sizeof gbrdf))
         return RELUME_KIND_MATERIAL;
+    if (n > 4 && !memcmp(head, exr_magic, 4) && memmem(head, n, baked, sizeof baked))
+        return RELUME_KIND_BAKED;
     if (n > 4 && !memcmp(head, exr_magic, 4))
         return picture_head_is_relume(head, n)     ? RELUME_KIND_RELUME
                : relume_capture_is_olat(path, log) ? RELUME_KIND_CAPTURE
@@ -108,7 +111,7 @@ const char *relume_kind_name(enum relume_kind kind)
 {
     static const char *const names[] = {"relume file", "RTI of another format", "capture",
                                         "picture",     "nothing known",         "measured material",
-                                        "3D model"};
+                                        "3D model",    "baked object"};
     return names[kind];
 }
 
@@ -201,6 +204,11 @@ static relume_status convert(enum relume_kind kind, const char *path, const char
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: this is a 3D model; see it with 'relume-view %s', or make what pages "
                         "show of it: relume bake %s -o OUT.exr",
+                        path, path, path);
+    case RELUME_KIND_BAKED:
+        return log_fail(p->log, RELUME_EFORMAT,
+                        "%s: this is a baked object; see it with 'relume-view %s', draw it with "
+                        "'relume btf render %s -o OUT.png', put it into a scene with --objects",
                         path, path, path);
     case RELUME_KIND_FOREIGN:
         return relume_import(path, out,

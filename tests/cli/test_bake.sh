@@ -27,6 +27,13 @@ objects '"baked":"fixed.exr"' >fixed.json
 "$RELUME" btf render fixed.json -o a.exr --picture 32x32 --light 'dir 0 1 1' -q
 "$RELUME" btf render fixed.json -o b.exr --picture 32x32 --light 'dir 0 0 1' -q
 check 'stays' cmp a.exr b.exr
+"$RELUME" info fixed.exr --json >info.json
+sed -i 's/, "error".*//' info.json made.json # kept as a float
+check 'info says what bake said' cmp info.json made.json
+check 'and in lines' sh -c "'$RELUME' info any.exr | grep -q '^light *any; sh, 36 coefficients'"
+for f in any.exr alone.json; do "$VIEWER" $f --size 16x16 --offscreen $f.png; done
+check 'relume-view opens it, too' cmp any.exr.png alone.json.png
+expect_fail 'it is not relit by itself' 1 'this is a baked object' x.png "$RELUME" relight any.exr -o x.png
 
 "$RELUME" synth attic -q -o room --projection spherical --size 32 --lights 6 --samples 1
 "$RELUME" encode -q room -o room.exr --shadows no

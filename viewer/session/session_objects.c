@@ -56,7 +56,7 @@ bool session_is_description(const char *path)
 {
     const char *dot = strrchr(path, '.');
     const enum relume_kind kind = relume_kind_of(path);
-    return kind == RELUME_KIND_MODEL ||
+    return kind == RELUME_KIND_MODEL || kind == RELUME_KIND_BAKED ||
            (dot && !strcmp(dot, ".json") && kind != RELUME_KIND_CAPTURE &&
             kind != RELUME_KIND_FOREIGN);
 }

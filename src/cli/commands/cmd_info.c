@@ -238,6 +238,17 @@ static relume_status tell_scene(const struct info_options *o)
     return status;
 }
 
+static relume_status tell_baked(const struct info_options *o)
+{
+    relume_baked *baked = NULL;
+    const relume_status status =
+        relume_baked_open(&baked, o->args.input[0], &o->args.limits, o->args.log);
+    if (!status)
+        print_baked(o->args.input[0], baked, o->json);
+    relume_baked_destroy(&baked);
+    return status;
+}
+
 // ---------------------------------------------------------------- the command
 
 static relume_status run(const struct args *args)
@@ -246,6 +257,8 @@ static relume_status run(const struct args *args)
     const char *path = o->args.input[0];
     if (relume_tableau_is(path))
         return tell_scene(o);
+    if (relume_baked_is_file(path, &o->args.limits))
+        return tell_baked(o);
     struct relume_pack_part part;
     if (is_part(&part, path)) {
         print_part(&part, o->json);
@@ -271,7 +284,7 @@ static relume_status run(const struct args *args)
 const struct command command_info = {
     COMMAND(
         "info", "FILE [--json]",
-        "show what a file holds: a relume file, scene file, .ptm, .rti, web folder, capture, HDR "
-        "picture",
+        "show what a file holds: a relume file, scene file, baked object, .ptm, .rti, web folder, "
+        "capture, HDR picture",
         "relume info statue.exr --json", 1, 1),
 };

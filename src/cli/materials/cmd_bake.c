@@ -86,29 +86,57 @@ static relume_status find_wanted(struct wanted *w, const struct bake_options *o)
 static void tell(const struct bake_options *o, const relume_baked *baked)
 {
     const struct relume_baked_info *i = relume_baked_info(baked);
-    if (!o->json) {
+    if (o->json)
+        print_baked(o->output, baked, true);
+    else
         announce(&o->args, RELUME_NOTE,
                  "%s: %zu texels of %d x %d, %d view%s, %d clusters of %d components, %.2f MB; "
                  "error of the compression %.1f %%",
                  o->output, i->texels, i->width, i->height, i->side * i->side,
                  relume_plural(i->side * i->side), i->clusters, i->components,
                  (double)i->bytes * 1e-6, 100.0 * i->error);
-        return;
-    }
+}
+
+static const char *basis_of(const struct relume_baked_info *i)
+{
+    return i->fixed ? "fixed" : i->cube ? "haar" : i->basis->name;
+}
+
+static void print_json(const char *file, const struct relume_baked_info *i)
+{
     printf("{\"file\": ");
-    json_text(stdout, o->output);
+    json_text(stdout, file);
     printf(", \"fixed\": %s, \"basis\": \"%s\", \"coefficients\": %d, \"width\": %d, \"height\": "
            "%d, \"texels\": %zu, \"views\": %d, \"clusters\": %d, \"components\": %d, "
            "\"per_view\": %s, \"bounces\": %d, \"triangles\": %zu, \"bytes\": %llu, \"error\": ",
-           i->fixed ? "true" : "false",
-           i->fixed  ? "fixed"
-           : i->cube ? "haar"
-                     : i->basis->name,
-           i->coefficients, i->width, i->height, i->texels, i->side * i->side, i->clusters,
-           i->components, i->per_view ? "true" : "false", i->bounces, i->triangles,
-           (unsigned long long)i->bytes);
+           i->fixed ? "true" : "false", basis_of(i), i->coefficients, i->width, i->height,
+           i->texels, i->side * i->side, i->clusters, i->components, i->per_view ? "true" : "false",
+           i->bounces, i->triangles, (unsigned long long)i->bytes);
     json_number(stdout, i->error);
     printf("}\n");
+}
+
+void print_baked(const char *file, const relume_baked *baked, bool json)
+{
+    const struct relume_baked_info *i = relume_baked_info(baked);
+    if (json) {
+        print_json(file, i);
+        return;
+    }
+    printf("source        baked object, of %zu triangle%s\n", i->triangles,
+           relume_plural((int64_t)i->triangles));
+    if (i->fixed)
+        printf("light         fixed\n");
+    else
+        printf("light         any; %s, %d coefficient%s\n", basis_of(i), i->coefficients,
+               relume_plural(i->coefficients));
+    printf("bounces       %d\n", i->bounces);
+    printf("texels        %zu of %d x %d\n", i->texels, i->width, i->height);
+    printf("views         %d\n", i->side * i->side);
+    printf("compression   %d cluster%s of %d component%s; error %.1f %%\n", i->clusters,
+           relume_plural(i->clusters), i->components, relume_plural(i->components),
+           100.0 * i->error);
+    printf("in memory     %.2f MB\n", (double)i->bytes * 1e-6);
 }
 
 static relume_status bake(relume_baked **out, const relume_objects *objects,

@@ -1,18 +1,22 @@
-// fuzz_manifest.c - capture.json and .lp files made of noise
+// fuzz_manifest.c - capture.json, .lp files and EXRs of light stages made of noise
 #include "fuzz.h"
 
 #include <relume/directions.h>
+#include <relume/exchange.h>
 
 static const struct relume_limits limits = {
     .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
 
 static const char *const words[] = {
-    "format",    "version",   "transfer", "projection", "lights", "directions", "intensities",
-    "positions", "window",    "slab",     "panorama",   "views",  "images",     "depth",
-    "mask",      "uv",        "slabs",    "axes",       "origin", "camera",     "planar",
-    "cube",      "gamma:2.2", "v0-0.exr", "null",       "[",      "]",          "{",
-    "}",         ",",         "1e308",    "-0",         "\"",     "\\u0000",    "\n",
-    " ",         "nan",       NULL};
+    "format",     "version",     "transfer",  "projection",  "lights",
+    "directions", "intensities", "positions", "window",      "slab",
+    "panorama",   "views",       "images",    "depth",       "mask",
+    "uv",         "slabs",       "axes",      "origin",      "camera",
+    "planar",     "cube",        "gamma:2.2", "v0-0.exr",    "null",
+    "[",          "]",           "{",         "}",           ",",
+    "1e308",      "-0",          "\"",        "\\u0000",     "\n",
+    " ",          "nan",         "chlist",    "light0000.R", "olat.directions",
+    "v3f",        NULL};
 
 static bool open_as(struct fuzz *f, const char *name, struct bytes b, bool skip)
 {
@@ -45,13 +49,35 @@ static bool open_as(struct fuzz *f, const char *name, struct bytes b, bool skip)
 static bool one(struct fuzz *f, struct bytes b)
 {
     const bool json = memchr(b.data, '{', b.size < 4 ? b.size : 4) != NULL;
+    const bool exr = b.data[0] == 0x76;
     fuzz_store(f->path, b);
-    return open_as(f, json ? "capture.json" : "lights.lp", b, b.data[b.size - 1] % 2);
+    return open_as(f,
+                   exr    ? "stage.exr"
+                   : json ? "capture.json"
+                          : "lights.lp",
+                   b, b.data[b.size - 1] % 2);
 }
 
 static struct bytes text(const char *t)
 {
     return (struct bytes){(uint8_t *)strdup(t), strlen(t)};
+}
+
+// A layer for each light, of the capture in a folder.
+static struct bytes stage(const char *folder)
+{
+    char path[128];
+    relume_pack *pack;
+    snprintf(path, sizeof path, "%s/capture.json", folder);
+    relume_status status = relume_open(&pack, path, relume_open_params(.threads = 1));
+    if (status)
+        abort();
+    snprintf(path, sizeof path, "%s/stage.exr", folder);
+    status = relume_export(pack, path, RELUME_EXCHANGE_OLAT, NULL, NULL);
+    relume_pack_destroy(&pack);
+    if (status)
+        abort();
+    return fuzz_load(path);
 }
 
 int main(int argc, char **argv)
@@ -70,6 +96,7 @@ int main(int argc, char **argv)
                   f.folder);
     fuzz_add(&f, fuzz_load(path));
     fixture_write(&plain, f.folder);
+    fuzz_add(&f, stage(f.folder));
     fuzz_add(&f, text("3\nv0-0.exr 0 0 1\nv0-1.exr 1 0 1\nv0-2.exr 0 1 1\n"));
     fuzz_add(&f, text("\xef\xbb\xbf"
                       "2\r\nC:\\a b\\V0-0.EXR 0,5 0 1\r\n\r\nv0-1.exr .1 2 3 \r\n"));

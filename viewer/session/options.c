@@ -217,10 +217,9 @@ static const struct option options[] = {
 void options_help(void)
 {
     puts("usage: relume-view [FILE] [OPTION ...]\n\n"
-         "Look at a relume file in a window, under any light and from other viewpoints; at a "
-         "measured\n"
-         "material on a mesh, or on a cushion; at a scene file; at a folder of maps. Without FILE\n"
-         "the window says how to open one.\n\n"
+         "Look at a relume file in a window, under any light and from other viewpoints; at a\n"
+         "measured material on a mesh or a cushion, a 3D model, a baked object, a scene file, a\n"
+         "folder of maps. Without FILE the window says how to open one.\n\n"
          "options:");
     options_print(options, NULL, 22);
     puts("\n"

@@ -65,8 +65,9 @@ struct moves {
 // The vertices alone. False where they have no one way to go.
 bool connect_moves(const struct connect *c, uint32_t point, const struct fan *fan, uint32_t target,
                    struct moves *moves);
+// `there` becomes the fan of that neighbour.
 bool connect_may_move(struct connect *c, uint32_t point, const struct fan *fan, int i,
-                      struct moves *moves);
+                      struct moves *moves, struct fan *there);
 // Neighbours that a point may go to at all.
 bool connect_is_target(const struct fan *fan, int i);
 void connect_move(struct connect *c, uint32_t point, const struct fan *fan, uint32_t target,
@@ -87,14 +88,15 @@ static inline uint32_t moved(const struct moves *m, uint32_t vertex)
 // ---------------------------------------------------------------- what is seen of shading
 
 // How far away turned normals are seen: a table over their angle.
-enum { VISIBLE_ANGLES = 256 };
+enum { VISIBLE_ANGLES = 128, VISIBLE_MASKERS = 48 };
 struct visible {
-    double reach[VISIBLE_ANGLES + 1];  // at angles of PI (k / 256)^2, times the curvature
+    // finest pattern that is seen, cycles a degree, at angles of PI (k / 128)^2 and maskers
+    float finest[VISIBLE_MASKERS + 1][VISIBLE_ANGLES + 1];
 };
 relume_status visible_create(struct visible *v, double jnd, double gloss, double white);
-// The distance up to which a normal that is `angle` off is seen where the surface bends by
-// `curvature`, 1 / diagonal; infinite where it is seen from any distance.
-double visible_distance(const struct visible *v, double angle, double curvature);
+// The finest pattern, cycles a degree, in which normals that are `angle` off are seen where those
+// of the original vary by `masker`; 0 where none is.
+double visible_finest(const struct visible *v, double angle, double masker);
 
 // ---------------------------------------------------------------- the original surface
 
@@ -129,7 +131,10 @@ struct simplify {
     float *spread;          // [vertices][quadric_floats]: of values
 
     bool tested;             // and not by quadrics alone
-    float *curvature;        // [points]: sqrt(k1^2 + k2^2), 1 / diagonal
+    float *area;             // [vertices]: of the original about them
+    float (*shown)[3];       // [vertices]: normals as they are now, of any length
+    bool fits;               // they may change
+    const uint8_t *stays;    // [points]: whose normals may not; NULL: none
     float *spacing;          // [points]: of edges, diagonals
     uint32_t *sample_first;  // [triangles]: original vertices that lie there
     uint32_t *sample_next;   // [vertices]
@@ -152,6 +157,11 @@ static inline vec3 normal_of(const struct simplify *s, uint32_t vertex)
     return vec3_of((double)n[0], (double)n[1], (double)n[2]);
 }
 
+static inline vec3 shown_of(const struct simplify *s, uint32_t vertex)
+{
+    return vec3_floats(s->shown[vertex]);
+}
+
 // Quadrics of all points and vertices. RELUME_ENOMEM.
 relume_status quadrics_create(struct simplify *s);
 // The error of a point that goes to another, whose place is that of moves->to[0]: a length.
@@ -166,18 +176,40 @@ struct error {
 };
 struct landing {
     uint32_t vertex, triangle;
+    uint32_t corner[3];
+    float weight[3];
+    int8_t fit[3];  // which of samples.fit its corners are, or -1
+};
+struct fitted {
+    uint32_t vertex;
+    int group;  // the first of those that share a normal
+    float normal[3];
 };
 struct samples {
     size_t count, room;
     struct landing *landing;
+    size_t own;   // the first ones lie on triangles that change
+    double area;  // of all triangles around the target
+    int fitted;   // vertices at the target
+    struct fitted fit[FAN];
 };
-relume_status samples_create(struct simplify *s);
+// `shown`: normals as they are now, or NULL: the original's.
+relume_status samples_create(struct simplify *s, float (*shown)[3]);
 // What a move would do, at the vertices that have gone around there and those that go; gives up
-// beyond `most`. False when memory is short.
+// beyond `most`. `there` is the fan of the target. False when memory is short.
 bool samples_try(const struct simplify *s, struct samples *to, struct error *error,
-                 const struct fan *fan, uint32_t target, const struct moves *moves,
-                 const struct error *most);
+                 const struct fan *fan, const struct fan *there, uint32_t target,
+                 const struct moves *moves, const struct error *most);
 void samples_move(struct simplify *s, const struct samples *to, const struct fan *fan);
+// Normals of a point that stays, once more. False when memory is short.
+bool samples_refit(struct simplify *s, struct samples *to, const struct fan *fan, uint32_t point);
+
+// A vertex at the target is one of to->fit; after the last one, landings are told.
+void look_at_vertex(const struct simplify *s, struct samples *to, uint32_t vertex);
+void look_begin(struct samples *to);
+void look_fit(const struct simplify *s, struct samples *to);
+// Up to where somebody sees that normals around the target are not those of the original.
+double look_distance(const struct simplify *s, const struct samples *to);
 
 // ---------------------------------------------------------------- what comes next
 

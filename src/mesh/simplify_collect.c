@@ -3,10 +3,13 @@
 
 #include <string.h>
 
-static void copy_vertex(struct relume_mesh *out, size_t to, const struct relume_mesh *m, size_t i)
+static void copy_vertex(struct relume_mesh *out, size_t to, const struct relume_mesh *m,
+                        float (*shown)[3], size_t i)
 {
     memcpy(out->position[to], m->position[i], sizeof *out->position);
     memcpy(out->normal[to], m->normal[i], sizeof *out->normal);
+    if (shown && memcmp(shown[i], m->normal[i], sizeof *shown))
+        vec3_store(out->normal[to], vec3_unit(vec3_floats(shown[i])));
     if (out->texture)
         memcpy(out->texture[to], m->texture[i], sizeof *out->texture);
     if (out->colour)
@@ -44,7 +47,7 @@ static size_t number_vertices(const struct connect *c, uint32_t *number)
 }
 
 relume_status run_collect(struct relume_mesh *out, const struct connect *c,
-                          const struct relume_mesh *m)
+                          const struct relume_mesh *m, float (*shown)[3])
 {
     uint32_t *number = mem_array(c->vertices, sizeof *number);
     if (!number)
@@ -61,7 +64,7 @@ relume_status run_collect(struct relume_mesh *out, const struct connect *c,
                       (!m->part || out->part);
     for (size_t i = 0; good && i < c->vertices; i++)
         if (number[i] != NOTHING)
-            copy_vertex(out, number[i], m, i);
+            copy_vertex(out, number[i], m, shown, i);
     for (size_t t = 0; good && t < c->triangles; t++) {
         if (c->triangle[t][0] == NOTHING)
             continue;

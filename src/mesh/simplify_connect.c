@@ -211,23 +211,22 @@ bool connect_moves(const struct connect *c, uint32_t point, const struct fan *fa
 }
 
 bool connect_may_move(struct connect *c, uint32_t point, const struct fan *fan, int i,
-                      struct moves *moves)
+                      struct moves *moves, struct fan *there)
 {
     const uint32_t target = fan->neighbour[i];
-    struct fan there;
     int common = 0;
     if (!connect_is_target(fan, i) || fan->triangles <= fan->shared[i] ||
         !connect_moves(c, point, fan, target, moves))
         return false;
-    connect_fan(c, target, &there);
-    for (int a = 0; a < there.neighbours; a++) {
-        if (there.shared[a] > 2)
+    connect_fan(c, target, there);
+    for (int a = 0; a < there->neighbours; a++) {
+        if (there->shared[a] > 2)
             return false;
         for (int b = 0; b < fan->neighbours; b++)
-            common += there.neighbour[a] == fan->neighbour[b];
+            common += there->neighbour[a] == fan->neighbour[b];
     }
-    return !there.too_many && common == fan->shared[i] &&
-           there.triangles + fan->triangles - 2 * fan->shared[i] <= FAN;
+    return !there->too_many && common == fan->shared[i] &&
+           there->triangles + fan->triangles - 2 * fan->shared[i] <= FAN;
 }
 
 void connect_move(struct connect *c, uint32_t point, const struct fan *fan, uint32_t target,

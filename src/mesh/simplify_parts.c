@@ -46,6 +46,7 @@ struct parts {
     size_t bytes, taken;
     uint32_t (*triangle)[3];               // as they are now; gone: NOTHING
     uint32_t *sample_first, *sample_next;  // vertices that have gone, by triangles
+    float (*shown)[3];                     // [vertices]: normals as they are now
     uint32_t *point;                       // [vertices]
     uint32_t *owner;                       // [points]: a cell, SHARED, NOTHING
     uint32_t *local;                       // [vertices]: in the piece
@@ -82,7 +83,7 @@ static relume_status make_room(struct parts *p)
 {
     const struct relume_mesh *m = p->run->s.mesh;
     const size_t t = m->triangle_count, v = m->vertex_count;
-    p->bytes = (6 * t + 6 * v) * sizeof(uint32_t) + (size_t)12 * 4096;
+    p->bytes = (6 * t + 9 * v) * sizeof(uint32_t) + (size_t)13 * 4096;
     p->memory = scratch_map(NULL, p->bytes);
     if (!p->memory)
         return log_fail(p->log, RELUME_EIO,
@@ -93,6 +94,7 @@ static relume_status make_room(struct parts *p)
     p->now.triangle = take(p, t);
     p->original.triangle = take(p, t);
     p->sample_next = take(p, v);
+    p->shown = take(p, 3 * v);
     p->point = take(p, v);
     p->owner = take(p, v);
     p->local = take(p, v);
@@ -141,6 +143,7 @@ static relume_status begin(struct parts *p)
         p->alive += whole;
     }
     memset(p->sample_first, 0xff, m->triangle_count * sizeof *p->sample_first);
+    memcpy(p->shown, m->normal, m->vertex_count * sizeof *p->shown);
     memset(p->local, 0xff, m->vertex_count * sizeof *p->local);
     for (size_t i = 0; i < p->points; i++)
         p->waits[i] = 1;
@@ -368,6 +371,7 @@ static void copy_vertices(struct work *w)
         const uint32_t v = w->vertex.item[i], point = p->point[v];
         memcpy(to->position[i], m->position[v], sizeof *to->position);
         memcpy(to->normal[i], m->normal[v], sizeof *to->normal);
+        memcpy(w->piece.shown[i], p->shown[v], sizeof *p->shown);
         if (m->texture)
             memcpy(to->texture[i], m->texture[v], sizeof *to->texture);
         if (m->colour)
@@ -406,12 +410,13 @@ static relume_status make_piece(struct work *w)
     piece->triangles = triangles;
     piece->triangle = mem_array(triangles, sizeof *piece->triangle);
     piece->part = m->part ? mem_array(triangles, sizeof *piece->part) : NULL;
+    piece->shown = mem_array(vertices, sizeof *piece->shown);
     piece->may = mem_array(vertices, sizeof *piece->may);
     piece->sample = w->sample.item;
     piece->samples = w->sample.count / 2;
     if (!piece->mesh.position || !piece->mesh.normal || (m->texture && !piece->mesh.texture) ||
         (m->colour && !piece->mesh.colour) || !piece->mesh.triangle || !piece->triangle ||
-        (m->part && !piece->part) || !piece->may)
+        (m->part && !piece->part) || !piece->shown || !piece->may)
         return RELUME_ENOMEM;
     copy_vertices(w);
     copy_triangles(p, &w->triangle, (const uint32_t(*)[3])p->triangle, piece->triangle);
@@ -446,9 +451,14 @@ static void keep_triangles(struct work *w, const struct run *r)
             *first = w->vertex.item[v];
         }
     }
-    for (size_t i = 0; i < w->vertex.count; i++)
-        if (w->piece.may[i] != PIECE_STAYS)
-            p->waits[p->point[w->vertex.item[i]]] = 0;
+    for (size_t i = 0; i < w->vertex.count; i++) {
+        const uint32_t v = w->vertex.item[i];
+        if (w->piece.may[i] == PIECE_STAYS)
+            continue;
+        p->waits[p->point[v]] = 0;
+        if (r->s.shown)
+            memcpy(p->shown[v], r->s.shown[i], sizeof *p->shown);
+    }
 }
 
 static relume_status keep_steps(const struct work *w, const struct run *r)
@@ -470,6 +480,7 @@ static void free_work(struct work *w)
     relume_mesh_free(&w->piece.mesh);
     mem_free(w->piece.triangle);
     mem_free(w->piece.part);
+    mem_free(w->piece.shown);
     mem_free(w->piece.may);
     for (size_t i = 0; i < w->vertex.count; i++)
         w->parts->local[w->vertex.item[i]] = NOTHING;
@@ -587,7 +598,7 @@ relume_status run_in_parts(struct relume_mesh *out, struct run *r, size_t memory
                                   .triangles = m->triangle_count,
                                   .triangle = p.triangle,
                                   .alive = p.alive};
-        status = run_collect(out, &c, m);
+        status = run_collect(out, &c, m, p.shown);
     }
     if (p.memory)
         scratch_unmap(p.memory, p.bytes);

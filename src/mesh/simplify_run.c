@@ -18,9 +18,9 @@
 // Seen where one looks for it: at 1 few triangles of a scan could go.
 #define USUAL_JND 4.0
 // Errors below this share of the most are as good as none.
-#define FINE_SHARE 0.5
+#define FINE_SHARE 0.95
 // Between looks at whether to stop.
-enum { PROGRESS_EVERY = 16384 };
+enum { PROGRESS_EVERY = 16384, FIT_ROUNDS = 3 };
 
 void run_free(struct run *r)
 {
@@ -29,7 +29,8 @@ void run_free(struct run *r)
     queue_free(&r->queue);
     mem_free(s->quadric);
     mem_free(s->spread);
-    mem_free(s->curvature);
+    mem_free(s->area);
+    mem_free(s->shown);
     mem_free(s->spacing);
     near_free(&s->near);
     mem_free(s->sample_first);
@@ -37,6 +38,7 @@ void run_free(struct run *r)
     mem_free(r->samples.landing);
     mem_free(r->stale);
     mem_free(r->may);
+    mem_free(r->stays);
     mem_free(r->step);
 }
 
@@ -116,7 +118,7 @@ size_t run_bytes(const struct simplify *s, size_t v, size_t t)
 {
     return quadrics_bytes(s, v, v) + t * (12 + 12 + 4) +
            t * (NEAR_CELLS + NEAR_REFERENCES) * sizeof(uint32_t) +
-           v * (4 + 4 + 4 + 4 + 4 + 12 + 1) + sizeof(struct relume_simplify_step) * v;
+           v * (4 + 4 + 4 + 4 + 4 + 12 + 2 + 12) + sizeof(struct relume_simplify_step) * v;
 }
 
 static void set_limits(struct run *r, const struct relume_simplify_params *p)
@@ -157,6 +159,11 @@ static relume_status take_piece(struct run *r)
         return RELUME_ENOMEM;
     for (size_t v = 0; v < s->connect.vertices; v++)
         r->may[s->connect.point[v]] = piece->may[v];
+    if (!(r->stays = mem_array(s->connect.points, sizeof *r->stays)))
+        return RELUME_ENOMEM;
+    for (uint32_t p = 0; p < s->connect.points; p++)
+        r->stays[p] = r->may[p] == PIECE_STAYS;
+    s->stays = r->stays;
     for (size_t i = 0; s->tested && i < piece->samples; i++) {
         const uint32_t vertex = piece->sample[2 * i], triangle = piece->sample[2 * i + 1];
         s->sample_next[vertex] = s->sample_first[triangle];
@@ -176,7 +183,7 @@ relume_status run_prepare(struct run *r)
     if (!status)
         status = quadrics_create(s);
     if (!status && s->tested)
-        status = samples_create(s);
+        status = samples_create(s, piece ? piece->shown : NULL);
     if (!status && s->tested && isfinite(r->most.length))
         status = near_create(&s->near, s, r->most.length);
     if (!status)
@@ -274,6 +281,7 @@ static void try_point(struct run *r, uint32_t point)
     enum { CHOICES = 6 };
     struct choice choice[CHOICES];
     struct moves moves;
+    struct fan there;
     double least = INFINITY;
     const double key = (double)r->queue.key[point], fine = FINE_SHARE * r->most.length;
     const double allowed = fmax(key * (1.0 + 1e-6), isfinite(fine) ? fine : 0.0);
@@ -281,9 +289,9 @@ static void try_point(struct run *r, uint32_t point)
     for (int i = 0; i < n; i++) {
         const uint32_t target = r->fan.neighbour[choice[i].neighbour];
         struct error error;
-        if (!connect_may_move(&r->s.connect, point, &r->fan, choice[i].neighbour, &moves))
+        if (!connect_may_move(&r->s.connect, point, &r->fan, choice[i].neighbour, &moves, &there))
             continue;
-        if (!samples_try(&r->s, &r->samples, &error, &r->fan, target, &moves, &r->most)) {
+        if (!samples_try(&r->s, &r->samples, &error, &r->fan, &there, target, &moves, &r->most)) {
             r->status = RELUME_ENOMEM;
             return;
         }
@@ -316,6 +324,17 @@ static void weigh_all(struct run *r)
             weigh(r, p);
 }
 
+// Normals of all that stays, each in turn: moves have done theirs alone.
+static void refit(struct run *r)
+{
+    for (int round = 0; round < FIT_ROUNDS; round++)
+        for (uint32_t p = 0; p < r->s.connect.points && !r->status; p++) {
+            connect_fan(&r->s.connect, p, &r->fan);
+            if (!r->fan.too_many && !samples_refit(&r->s, &r->samples, &r->fan, p))
+                r->status = RELUME_ENOMEM;
+        }
+}
+
 void run_down(struct run *r, const struct relume_log *log)
 {
     const double from = (double)r->s.connect.alive;
@@ -333,6 +352,8 @@ void run_down(struct run *r, const struct relume_log *log)
         connect_fan(&r->s.connect, point, &r->fan);
         try_point(r, point);
     }
+    if (!r->status && r->s.tested && r->s.fits)
+        refit(r);
 }
 
 static relume_status run_whole(struct relume_mesh *out, struct run *r, const struct relume_log *log)
@@ -347,7 +368,7 @@ static relume_status run_whole(struct relume_mesh *out, struct run *r, const str
         r->s.tested = false;
         run_down(r, log);
     }
-    return r->status ? r->status : run_collect(out, &r->s.connect, r->s.mesh);
+    return r->status ? r->status : run_collect(out, &r->s.connect, r->s.mesh, r->s.shown);
 }
 
 // At once where memory is enough, else in parts.
@@ -376,6 +397,7 @@ relume_status relume_mesh_simplify(struct relume_mesh *out, struct relume_simpli
     r->s.mesh = mesh;
     r->told[1] = 1.0;
     r->keep_steps = report && !p.no_steps;
+    r->s.fits = !r->keep_steps;
     relume_status status =
         are_sound(&p) && is_whole(mesh) && find_scale(&r->s) ? RELUME_OK : RELUME_EINVAL;
     if (!status)

@@ -14,6 +14,7 @@ struct piece {
     uint32_t (*triangle)[3];  // [triangles]: as they are now
     uint32_t *part;           // of these; NULL: all are of one
     size_t triangles, own;    // behind the first `own` are those of other pieces
+    float (*shown)[3];        // [vertices]: normals as they are now; NULL: the mesh's
     uint8_t *may;             // [vertices]: enum piece_vertex
     uint32_t *sample;         // [samples][2]: a vertex that has gone, and the triangle it lies on
     size_t samples;
@@ -28,6 +29,7 @@ struct run {
     struct fan fan;
     uint8_t *stale;  // [points]: weigh again
     uint8_t *may;    // [points]: enum piece_vertex; NULL: all wait
+    uint8_t *stays;  // [points]: of a piece
     struct error most, done;
     bool last_resort;  // nothing is tested any more
     size_t target, moves;
@@ -47,9 +49,10 @@ void run_free(struct run *r);
 // What a mesh takes while it becomes smaller, beside itself: an upper bound.
 size_t run_bytes(const struct simplify *s, size_t vertices, size_t triangles);
 
-// The triangles that are left of a mesh.
+// The triangles that are left of a mesh. `shown`: normals in place of its own, of any length; or
+// NULL.
 relume_status run_collect(struct relume_mesh *out, const struct connect *c,
-                          const struct relume_mesh *m);
+                          const struct relume_mesh *m, float (*shown)[3]);
 
 // The whole run, in pieces that take at most `memory` bytes each; what waits is in a file without a
 // name. Sets r->done, r->last_resort and r->step.

@@ -7,11 +7,11 @@
 // which only turns the phases of m, so that a degree's amplitude holds for all of its azimuths; of
 // elevations the largest counts.
 //
-// A harmonic of degree l turned by `angle` differs by at most a sqrt(2 - 2 cos(l angle)); on a
-// surface of principal curvatures k1, k2 it has l sqrt(k1^2 + k2^2) / 2 pi cycles per length. It is
-// seen where difference * C(f) reaches the threshold that part of its own amplitude sets by
-// masking. From farther away f is higher: the largest distance of all degrees and channels counts.
-// Where C has a second root nearby, nearer than its peak, that is passed over.
+// A harmonic of degree l turned by `angle` differs by at most a sqrt(2 - 2 cos(l angle)); those of
+// all degrees add up as squares. How fine the pattern is is told by the mesh (simplify_look.c). It
+// is seen where difference * C(f) reaches the threshold that the original's own pattern, as fine as
+// that, sets by masking. From farther away f is higher: the finest of all channels counts. Where C
+// has a second root nearby, nearer than its peak, that is passed over.
 #include "mesh/simplify.h"
 
 #include "math/lsq.h"
@@ -37,10 +37,12 @@ enum {
 #define AMBIENT   0.02
 // Against samples, so that the fit is as good as the samples are.
 #define PENALTY 1e-4
-// What of a harmonic's amplitude, over all ways that a surface can be turned, stands beside a place
-// and masks there. With all of it what was called 1 JND was 3 to 5 in pictures; with a tenth it is
-// 0.7 to 1.6 (docs/measurements/simplification.md).
-#define MASKER_SHARE 0.1
+// Shading is steepest where light grazes the surface; what is found in pictures is so many times
+// the mean over all directions.
+#define STRONGEST 1.8
+// What of the original's own differences around a place masks there. Of 0.05 to 1 tried, 0.15 to
+// 0.3 took the fewest triangles at equal pictures.
+#define MASKER_SHARE 0.2
 
 struct fit {
     double normal[NORMALS][3];
@@ -104,19 +106,29 @@ static double amplitude_of(const double *coefficients, int degree)
     return sqrt(sum * (2 * degree + 1) / (4.0 * PI));
 }
 
-// From how far a harmonic's turn is seen, times the curvature; 0 where it is not.
-static double reach_of(enum relume_opponent channel, double amplitude, int degree, double angle,
-                       double jnd)
+// The shading's difference where its normal is `angle` off, of all degrees.
+static double difference(const double amplitude[DEGREE + 1], double angle)
+{
+    double sum = 0.0;
+    for (int l = 1; l <= DEGREE; l++) {
+        const double a = amplitude[l];
+        sum += a * a * (2.0 - 2.0 * cos(fmin(l * angle, PI)));
+    }
+    return sqrt(sum);
+}
+
+static double finest_of(enum relume_opponent channel, double seen, double masker, double jnd)
 {
     const double peak = channel == RELUME_OPPONENT_WHITE ? relume_jnd_sensitivity(channel, 3.43)
                                                          : relume_jnd_sensitivity(channel, 0.0);
-    const double turn = fmin(degree * angle, PI);
-    const double difference = amplitude * sqrt(2.0 - 2.0 * cos(turn));
-    const double threshold = jnd * relume_jnd_threshold(MASKER_SHARE * amplitude * peak);
-    const double finest =
-        difference > 0.0 ? relume_jnd_finest(channel, threshold / difference) : 0.0;
-    // cycles per degree = distance * pi / 180 * degree * curvature / (2 pi)
-    return finest * 360.0 / degree;
+    double low = 0.0, high = peak;
+    if (seen * peak < jnd * relume_jnd_threshold(masker * peak))
+        return 0.0;
+    for (int i = 0; i < 40; i++) {
+        const double c = 0.5 * (low + high);
+        *(seen * c < jnd * relume_jnd_threshold(masker * c) ? &low : &high) = c;
+    }
+    return relume_jnd_finest(channel, high);
 }
 
 relume_status visible_create(struct visible *v, double jnd, double gloss, double white)
@@ -132,23 +144,26 @@ relume_status visible_create(struct visible *v, double jnd, double gloss, double
             *a = fmax(*a, amplitude_of(f->right[i], l));
         }
     memset(v, 0, sizeof *v);
-    for (int k = 1; !status && k <= VISIBLE_ANGLES; k++) {
-        const double angle = PI * k * k / (VISIBLE_ANGLES * VISIBLE_ANGLES);
-        v->reach[k] = v->reach[k - 1];
-        for (int c = 0; c < RELUME_OPPONENTS; c++)
-            for (int l = 1; l <= DEGREE; l++)
-                v->reach[k] = fmax(
-                    v->reach[k], reach_of((enum relume_opponent)c, amplitude[c][l], l, angle, jnd));
-    }
+    for (int j = 0; !status && j <= VISIBLE_MASKERS; j++)
+        for (int k = 1; k <= VISIBLE_ANGLES; k++) {
+            const double angle = PI * k * k / (VISIBLE_ANGLES * VISIBLE_ANGLES);
+            const double masker = PI * j * j / (VISIBLE_MASKERS * VISIBLE_MASKERS);
+            double most = (double)v->finest[j][k - 1];
+            for (int c = 0; c < RELUME_OPPONENTS; c++)
+                most = fmax(most, finest_of((enum relume_opponent)c,
+                                            STRONGEST * difference(amplitude[c], angle),
+                                            MASKER_SHARE * difference(amplitude[c], masker), jnd));
+            v->finest[j][k] = (float)most;
+        }
     mem_free(f);
     return status;
 }
 
-// The next angle of the table that is no smaller.
-double visible_distance(const struct visible *v, double angle, double curvature)
+double visible_finest(const struct visible *v, double angle, double masker)
 {
-    const int k = (int)ceil(VISIBLE_ANGLES * sqrt(fmin(angle / PI, 1.0)));
-    if (!(v->reach[k] > 0.0))
-        return 0.0;
-    return curvature > 0.0 ? v->reach[k] / curvature : (double)INFINITY;
+    const double k = VISIBLE_ANGLES * sqrt(fmin(angle / PI, 1.0));
+    const int j = (int)floor(VISIBLE_MASKERS * sqrt(fmin(masker / PI, 1.0)));
+    const int i = (int)k < VISIBLE_ANGLES ? (int)k : VISIBLE_ANGLES - 1;
+    const double t = k - i;
+    return (1.0 - t) * (double)v->finest[j][i] + t * (double)v->finest[j][i + 1];
 }

@@ -217,9 +217,9 @@ static void test_what_counts(void **state)
 {
     (void)state;
     static const struct relume_simplify_params tries[] = {
-        {.error = 0.002, .jnd = 0.25},
-        {.error = 0.01, .jnd = 0.25},
-        {.error = 0.01, .jnd = 4},
+        {.error = 0.002, .jnd = 2},
+        {.error = 0.01, .jnd = 2},
+        {.error = 0.01, .jnd = 8},
     };
     struct relume_mesh m = make(&torus_of), small;
     size_t last = m.triangle_count;
@@ -238,18 +238,79 @@ static void test_visible(void **state)
     struct visible matte, glossy;
     CHECK_OK(visible_create(&matte, 1.0, 0.0, 200.0));
     CHECK_OK(visible_create(&glossy, 1.0, 60.0, 200.0));
-    CHECK_NEAR(visible_distance(&matte, 0.0, 5.0), 0.0, 0.0);
-    assert_true(isinf(visible_distance(&matte, 0.5, 0.0)));
+    CHECK_NEAR(visible_finest(&matte, 0.0, 0.0), 0.0, 0.0);
     double last = 0.0;
     bool glossier = false;
     for (double a = 0.0; a < 1.0; a += 0.01) {
-        const double d = visible_distance(&matte, a, 5.0);
-        assert_true(d >= last);
-        CHECK_NEAR(visible_distance(&matte, a, 10.0), 0.5 * d, 1e-9 * d);
-        glossier |= visible_distance(&glossy, a, 5.0) > d;
-        last = d;
+        const double f = visible_finest(&matte, a, 0.2);
+        assert_true(f >= last);  // larger differences are seen in finer patterns
+        assert_true(visible_finest(&matte, a, 0.5) <= f);  // and less in rough surroundings
+        glossier |= visible_finest(&glossy, a, 0.2) > f;
+        last = f;
     }
-    assert_true(glossier && last > 1.0);
+    assert_true(glossier && last > 10.0 && last < 60.0);
+}
+
+// The mean angle between normals of the original and those shown where it lies, degrees.
+static double turned(const struct relume_mesh *m, const struct relume_mesh *small)
+{
+    double sum = 0.0;
+    for (uint32_t v = 0; v < m->vertex_count; v++) {
+        double least = INFINITY, w[3];
+        vec3 shown = vec3_of(0, 0, 1);
+        for (size_t t = 0; t < small->triangle_count; t++) {
+            const uint32_t *c = small->triangle[t];
+            const vec3 p[3] = {at(small, c[0]), at(small, c[1]), at(small, c[2])};
+            nearest_place(p, at(m, v), w);
+            vec3 there = vec3_of(0, 0, 0), n = there;
+            for (int k = 0; k < 3; k++) {
+                there = vec3_along(there, p[k], w[k]);
+                n = vec3_along(n, vec3_floats(small->normal[c[k]]), w[k]);
+            }
+            const double off = vec3_length(vec3_sub(there, at(m, v)));
+            if (off < least) {
+                least = off;
+                shown = vec3_unit(n);
+            }
+        }
+        sum += vec3_angle(shown, vec3_floats(m->normal[v])) * 180.0 / 3.14159265358979;
+    }
+    return sum / m->vertex_count;
+}
+
+// A sheet whose normals tremble: those of the vertices that are left are means of what has gone.
+// With steps they stay those of the original, and show it worse.
+static void test_fitted_normals(void **state)
+{
+    (void)state;
+    struct relume_mesh m = make(&plane_of), fitted, kept;
+    struct relume_simplified r;
+    uint32_t seed = 1;
+    for (uint32_t v = 0; v < m.vertex_count; v++) {
+        float *n = m.normal[v];
+        for (int k = 0; k < 2; k++) {
+            seed = seed * 1664525u + 1013904223u;
+            n[k] = 0.2f * ((float)(seed >> 8) / 16777216.0f - 0.5f);
+        }
+        vec3_store(n, vec3_unit(vec3_floats(n)));
+    }
+    const struct relume_simplify_params p = {.error = 0.01, .jnd = 100};
+    CHECK_OK(relume_mesh_simplify(&fitted, NULL, &m, &p));
+    CHECK_OK(relume_mesh_simplify(&kept, &r, &m, &p));
+    assert_true(fitted.triangle_count < m.triangle_count / 10);
+    for (uint32_t v = 0; v < fitted.vertex_count; v++)
+        CHECK_NEAR(vec3_length(vec3_floats(fitted.normal[v])), 1.0, 1e-6);
+    assert_true(turned(&m, &fitted) < 0.9 * turned(&m, &kept));
+    for (uint32_t v = 0; v < kept.vertex_count; v++) {
+        uint32_t same = 0;
+        while (same < m.vertex_count && memcmp(m.normal[same], kept.normal[v], sizeof *m.normal))
+            same++;
+        assert_true(same < m.vertex_count);
+    }
+    free(r.step);
+    relume_mesh_free(&fitted);
+    relume_mesh_free(&kept);
+    relume_mesh_free(&m);
 }
 
 // A step sends a vertex onto another; where the last ones lead are the triangles that are left.
@@ -458,12 +519,12 @@ static void test_broken(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plane),       cmocka_unit_test(test_torus),
-        cmocka_unit_test(test_what_counts), cmocka_unit_test(test_visible),
-        cmocka_unit_test(test_steps),       cmocka_unit_test(test_texture),
-        cmocka_unit_test(test_parts),       cmocka_unit_test(test_count),
-        cmocka_unit_test(test_broken),      cmocka_unit_test(test_both_ways),
-        cmocka_unit_test(test_in_parts),
+        cmocka_unit_test(test_plane),          cmocka_unit_test(test_torus),
+        cmocka_unit_test(test_what_counts),    cmocka_unit_test(test_visible),
+        cmocka_unit_test(test_fitted_normals), cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_texture),        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_count),          cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_both_ways),      cmocka_unit_test(test_in_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

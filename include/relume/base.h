@@ -72,6 +72,9 @@ enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 
 // The ending of a counted noun: "" for 1, else "s".
 RELUME_API const char *relume_plural(int64_t n);
+// What a file's name stands between on a command line that somebody may copy: "" or a quotation
+// mark. Thread-safety: safe.
+RELUME_API const char *relume_name_quotes(const char *name);
 // The name in a NULL-terminated list that somebody most likely meant who typed `given`; NULL when
 // none is near.
 RELUME_API const char *relume_name_nearest(const char *given, const char *const *names);

@@ -83,6 +83,7 @@ struct relume_photograph_params {
     bool codes;  // keep code values, 1 is full scale, as the camera's response made them; turned
                  // but neither linearised nor brought to other primaries
     bool not_turned;  // leave the orientation alone
+    int orientation;  // turn by this one, 1 to 8, in place of what the camera noted; 0: its own
 };
 #define relume_photograph_params(...)                                                              \
     (&(const struct relume_photograph_params){RELUME_SIZED(relume_photograph_params), __VA_ARGS__})

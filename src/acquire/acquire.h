@@ -31,6 +31,7 @@ enum { SHOT_SMALL = 168 };
 
 // Warnings that many photographs may share.
 enum acquire_alike {
+    ALIKE_TURNED,
     ALIKE_SATURATED,
     ALIKE_BLACK,
     ALIKE_SCENE,
@@ -53,7 +54,8 @@ struct acquisition {
     outdir *dir;
     int shots;
     struct shot *shot;
-    int width, height;          // of the photographs
+    int width, height;  // of the photographs
+    int orientation;    // of the first, which all have: the camera stands still; 0: none yet
     struct relume_image first;  // that others are aligned to; empty unless params.align
     struct relume_image gain;   // that evens out the light, of one flat field; empty: none yet
     struct relume_image grey;   // sum of what photographs show in params.white
@@ -80,6 +82,11 @@ void acquire_say_alike(struct acquisition *s);
 __attribute__((format(printf, 3, 4))) relume_status acquire_drop(struct acquisition *s, int i,
                                                                  const char *format, ...);
 
+// One photograph of the camera that stands still, turned as the first is. `notes` may be NULL. An
+// input status.
+relume_status acquire_load(struct relume_image *out, struct relume_exif *notes,
+                           const struct acquisition *s, const char *path,
+                           struct relume_transfer transfer);
 // Read all photographs into the folder; an input status.
 relume_status acquire_read(struct acquisition *s);
 relume_status acquire_check_size(const struct acquisition *s, const struct relume_image *image,

@@ -14,10 +14,7 @@ static relume_status make_gain(const struct acquisition *s, struct relume_image 
     struct relume_image flat;
     struct relume_falloff falloff;
     *gain = (struct relume_image){0};
-    relume_status status =
-        relume_photograph_load(&flat, NULL, path,
-                               relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                        .transfer = s->p.transfer));
+    relume_status status = acquire_load(&flat, NULL, s, path, s->p.transfer);
     if (!status)
         status = acquire_check_size(s, &flat, path, s->width, s->height);
     if (!status)

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"
+#include "image/photograph.h"
 
 #include <relume/directions.h>
 #include <stdio.h>
@@ -59,10 +60,8 @@ relume_status acquire_load_balls(struct relume_image *out, const struct acquisit
 {
     const bool own = s->shot[i].ball_path && s->p.ball_transfer.curve != RELUME_CURVE_AUTO;
     struct relume_exif notes;
-    const relume_status status = relume_photograph_load(
-        out, &notes, ball_photo(&s->shot[i]),
-        relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                 .transfer = own ? s->p.ball_transfer : s->p.transfer));
+    const relume_status status = acquire_load(out, &notes, s, ball_photo(&s->shot[i]),
+                                              own ? s->p.ball_transfer : s->p.transfer);
     if (!status)
         acquire_correct(s, out, notes.floats);
     return status;
@@ -515,6 +514,24 @@ static void take_lights(struct acquisition *s, const struct relume_captured_ligh
     s->has_intensities = list->intensity != NULL;
 }
 
+// Directions that came with the files of the photographs are those of the picture as it lies there.
+static void turn_lights(struct acquisition *s)
+{
+    for (int i = 0; i < s->shots; i++) {
+        struct shot *shot = &s->shot[i];
+        double d[] = {shot->direction.x, shot->direction.y};
+        double p[] = {shot->position.x, shot->position.y};
+        photograph_turn_vector(d, s->orientation);
+        photograph_turn_vector(p, s->orientation);
+        shot->direction = vec3_of(d[0], d[1], shot->direction.z);
+        shot->position = vec3_of(p[0], p[1], shot->position.z);
+    }
+    if (s->orientation > 1)
+        log_line(s->p.log, RELUME_NOTE,
+                 "%s: its lights are turned with the photographs (EXIF orientation %d)",
+                 s->p.lights, s->orientation);
+}
+
 static relume_status lights_from_file(struct acquisition *s)
 {
     struct relume_captured_lights list = {0};
@@ -533,6 +550,8 @@ static relume_status lights_from_file(struct acquisition *s)
                      s->p.lights, list.count, relume_plural(list.count), s->p.photograph_count);
     if (!status)
         take_lights(s, &list, order);
+    if (!status && matched)
+        turn_lights(s);
     mem_free(order);
     relume_captured_lights_destroy(&list);
     return status;

@@ -124,6 +124,42 @@ relume_status acquire_check_size(const struct acquisition *s, const struct relum
                     path, image->width, image->height, width, height);
 }
 
+// What a camera that looks down notes of its orientation is chance.
+relume_status acquire_load(struct relume_image *out, struct relume_exif *notes,
+                           const struct acquisition *s, const char *path,
+                           struct relume_transfer transfer)
+{
+    struct relume_photograph_params p =
+        *relume_photograph_params(.log = s->p.log, .limits = s->p.limits, .transfer = transfer);
+    struct relume_exif own = {0};
+    notes = notes ? notes : &own;
+    const relume_status status = relume_photograph_load(out, notes, path, &p);
+    if (status || !s->orientation || notes->orientation == s->orientation)
+        return status;
+    const bool across = (notes->orientation >= 5) != (s->orientation >= 5);
+    if (s->width != (across ? out->height : out->width) ||
+        s->height != (across ? out->width : out->height))
+        return RELUME_OK;  // turned by another program
+    relume_image_destroy(out);
+    p.orientation = s->orientation;
+    return relume_photograph_load(out, notes, path, &p);
+}
+
+static relume_status warn_of_orientation(struct acquisition *s, const struct shot *shot)
+{
+    if (!s->orientation) {
+        s->orientation = shot->notes.orientation;
+        return RELUME_OK;
+    }
+    if (shot->notes.orientation == s->orientation)
+        return RELUME_OK;
+    return acquire_warn_alike(
+        s, ALIKE_TURNED, 1.0,
+        "%s: its EXIF orientation is not that of the first photograph; ignored, "
+        "because the camera stands still",
+        shot->path);
+}
+
 static relume_status take_ball(struct acquisition *s, int i)
 {
     struct relume_image image;
@@ -142,6 +178,8 @@ static relume_status take(struct acquisition *s, int i, struct relume_image *ima
     relume_status status = acquire_check_size(s, image, shot->path, s->width, s->height);
     if (!status && shot->ball_path)
         status = take_ball(s, i);
+    if (!status)
+        status = warn_of_orientation(s, shot);
     if (status)
         return status;
     s->width = image->width;
@@ -170,10 +208,7 @@ relume_status acquire_read(struct acquisition *s)
         struct relume_image image;
         struct shot *shot = &s->shot[i];
         snprintf(shot->name, sizeof shot->name, "light%04d.exr", done);
-        status =
-            relume_photograph_load(&image, &shot->notes, shot->path,
-                                   relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                            .transfer = s->p.transfer));
+        status = acquire_load(&image, &shot->notes, s, shot->path, s->p.transfer);
         if (!status)
             status = take(s, i, &image);
         relume_image_destroy(&image);

@@ -52,3 +52,10 @@ int name_find(const char *name, const char *const *names, size_t count)
             return (int)i;
     return -1;
 }
+
+const char *relume_name_quotes(const char *name)
+{
+    static const char plain[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789/._-+,:@%";
+    return !name[strspn(name, plain)] ? "" : strchr(name, '\'') ? "\"" : "'";
+}

@@ -157,8 +157,10 @@ relume_status outfile_check(const char *target, const char *path, const struct r
     struct stat s;
     if (stat(target, &s))
         return RELUME_OK;
-    errno = S_ISDIR(s.st_mode) ? EISDIR : 0;
-    if (errno || access(target, W_OK))
+    if (S_ISDIR(s.st_mode))
+        return log_fail(log, RELUME_EIO,
+                        "%s: cannot be written; a folder has this name; expected a file", path);
+    if (access(target, W_OK))
         return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, strerror(errno));
     return input_refuse(target, path, log);
 }

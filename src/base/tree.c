@@ -205,6 +205,28 @@ char *tree_only(const char *folder, const char *ending)
     return NULL;
 }
 
+char *tree_only_below(const char *folder, const char *ending)
+{
+    char *found = NULL;
+    int n = 0;
+    DIR *dir = opendir(folder);
+    for (const struct dirent *e; dir && (e = readdir(dir));) {
+        char *path = *e->d_name != '.' ? mem_format("%s/%s", folder, e->d_name) : NULL;
+        char *only = path ? tree_only(path, ending) : NULL;
+        mem_free(path);
+        if (only && n++ == 0)
+            found = only;
+        else
+            mem_free(only);
+    }
+    if (dir)
+        closedir(dir);
+    if (n == 1)
+        return found;
+    mem_free(found);
+    return NULL;
+}
+
 // ---------------------------------------------------------------- disk
 
 bool tree_sync(const char *path)

@@ -45,6 +45,8 @@ void tree_list_free(struct tree_list *list);
 // The only entry of a folder whose name ends in `ending`, upper and lower case alike: a new string,
 // the folder's path before it. NULL when there is none, or more than one.
 char *tree_only(const char *folder, const char *ending);
+// The same of all folders in it together.
+char *tree_only_below(const char *folder, const char *ending);
 
 // To disk. False with errno.
 bool tree_sync(const char *path);

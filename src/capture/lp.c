@@ -1,4 +1,4 @@
-// lp.c - the light position files of RTI: a count, then "name x y z" a line
+// lp.c - the light position files of RTI: a count, which some leave out, then "name x y z" a line
 #include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -115,6 +115,14 @@ static relume_status read_text(char **out, const char *path, const struct relume
     return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
+// Whether a line is the count and nothing else.
+static bool parse_count(const char *line, long *out)
+{
+    char *end;
+    *out = strtol(line, &end, 10);
+    return end != line && !*end && *out > 0;
+}
+
 static relume_status parse_lines(struct draft *d, char *text, const char *path,
                                  const struct relume_limits *limits, const struct relume_log *log)
 {
@@ -128,8 +136,8 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
     if (!d->directions || !d->positions || !images || !d->view)
         return RELUME_ENOMEM;
 
-    long stated = -1;
-    int n = 0, number = 0;
+    long stated = 0;
+    int n = 0, number = 0, filled = 0;
     char *save = NULL;
     for (char *line = text; line; line = save) {
         save = strchr(line, '\n');
@@ -139,22 +147,16 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
         line = trim(line);
         if (!*line)
             continue;
-        if (stated < 0) {
-            char *end;
-            stated = strtol(line, &end, 10);
-            if (end == line || *end || stated < 1)
-                return log_fail(log, RELUME_EFORMAT,
-                                "%s: line %d; expected the number of lights, found '%.60s'", path,
-                                number, line);
+        if (!filled++ && parse_count(line, &stated))
             continue;
-        }
         const char *name;
         struct relume_vec3 v;
         char shown[64];
         snprintf(shown, sizeof shown, "%s", line);
         if (!parse_light(line, &name, &v))
-            return log_fail(log, RELUME_EFORMAT, "%s: line %d; expected 'image x y z', found '%s'",
-                            path, number, shown);
+            return log_fail(log, RELUME_EFORMAT,
+                            "%s: line %d; expected %s'image x y z', found '%s'", path, number,
+                            filled == 1 ? "the number of lights or " : "", shown);
         d->positions[n] = v;
         if (!direction_normalise(&v))
             return log_fail(log, RELUME_EFORMAT,
@@ -172,7 +174,7 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
     if (n > limits_or_default(limits).max_lights)
         return log_fail(log, RELUME_ELIMIT, "%s: %d lights; expected at most %d", path, n,
                         limits_or_default(limits).max_lights);
-    if (stated != n)
+    if (filled > n && stated != n)
         log_line(log, RELUME_WARNING,
                  "%s: its first line promises %ld lights; found %d, which are used", path, stated,
                  n);
@@ -222,10 +224,40 @@ static int by_name(const struct dirent **a, const struct dirent **b)
     return strverscmp((*a)->d_name, (*b)->d_name);
 }
 
-// The file that a listed name means: the path itself, else its base name in the folder in any case.
-// A path that leaves the folder is `refused` where only that exists.
+static bool is_separator(char c)
+{
+    return c == '/' || c == '\\';
+}
+
+static const char *listed_name(const char *listed)
+{
+    const char *name = listed + strlen(listed);
+    while (name > listed && !is_separator(name[-1]))
+        name--;
+    return name;
+}
+
+// In a project of RTIBuilder the list and its photographs lie in two folders side by side:
+// "C:\\...\\jpeg-exports\\a.jpg" is also "../jpeg-exports/a.jpg". NULL when it is not.
+static char *find_beside(struct draft *d, const char *folder, const char *listed,
+                         const struct relume_log *log)
+{
+    const char *name = listed_name(listed), *end = name - 1, *start = end;
+    if (name == listed)
+        return NULL;
+    while (start > listed && !is_separator(start[-1]))
+        start--;
+    if (start == end || *start == '.')
+        return NULL;
+    char *path = arena_format(&d->arena, "%s/../%.*s/%s", folder, (int)(end - start), start, name);
+    return path && input_exists(path, log) ? path : NULL;
+}
+
+// The file that a listed name means: the path itself, else its base name in the folder in any case,
+// else the same in the folder beside. A path that leaves the folder, and `project`, which holds it,
+// is `refused` where only that exists.
 static char *find_file(struct draft *d, const char *folder, const char *listed,
-                       struct dirent *const *files, int file_count,
+                       struct dirent *const *files, int file_count, bool project,
                        const struct relume_capture_params *p, bool *refused)
 {
     char *path = listed[0] == '/' ? arena_text(&d->arena, listed)
@@ -234,21 +266,21 @@ static char *find_file(struct draft *d, const char *folder, const char *listed,
     *refused = exists && !p->allow_outside && leaves_folder(listed);
     if (!path || (exists && !*refused))
         return path;
-    const char *slash = strrchr(listed, '/');
-    const char *backslash = strrchr(listed, '\\');
-    const char *last = slash > backslash ? slash : backslash;
-    const char *base = last ? last + 1 : listed;
+    const char *base = listed_name(listed);
     for (int exact = 1; exact >= 0; exact--)
         for (int i = 0; i < file_count; i++)
             if (exact ? !strcmp(files[i]->d_name, base) : !strcasecmp(files[i]->d_name, base)) {
                 *refused = false;
                 return arena_format(&d->arena, "%s/%s", folder, files[i]->d_name);
             }
-    return path;
+    char *beside = find_beside(d, folder, listed, p->log);
+    if (beside)
+        *refused = !p->allow_outside && !project;
+    return beside ? beside : path;
 }
 
 static relume_status resolve(struct draft *d, const char *path, const char *folder,
-                             struct dirent *const *files, int file_count,
+                             struct dirent *const *files, int file_count, bool project,
                              const struct relume_capture_params *p)
 {
     const struct relume_log *log = p->log;
@@ -258,7 +290,7 @@ static relume_status resolve(struct draft *d, const char *path, const char *fold
     for (int i = 0; i < d->m.lights; i++) {
         const char *listed = images[i];
         bool refused;
-        images[i] = find_file(d, folder, listed, files, file_count, p, &refused);
+        images[i] = find_file(d, folder, listed, files, file_count, project, p, &refused);
         if (!images[i])
             return RELUME_ENOMEM;
         if (refused)
@@ -287,7 +319,7 @@ static relume_status resolve(struct draft *d, const char *path, const char *fold
     return RELUME_OK;
 }
 
-relume_status lp_resolve(struct draft *draft, const char *path,
+relume_status lp_resolve(struct draft *draft, const char *path, bool project,
                          const struct relume_capture_params *params)
 {
     char *copy = mem_text(path);
@@ -303,7 +335,7 @@ relume_status lp_resolve(struct draft *draft, const char *path,
         return status;
     }
     const int file_count = found > 0 ? found : 0;
-    const relume_status status = resolve(draft, path, folder, files, file_count, params);
+    const relume_status status = resolve(draft, path, folder, files, file_count, project, params);
     for (int i = 0; i < file_count; i++)
         mem_free_libc(files[i]);
     mem_free_libc(files);

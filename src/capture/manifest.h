@@ -28,8 +28,8 @@ relume_status lp_read(struct draft *out, const char *path, const struct relume_l
                       const struct relume_log *log);
 // Replace the names by existing paths (docs/user-guide: "Names decide"); missing files stay as
 // they are when `skip_missing`. Names that leave the folder mean their base name in it, unless
-// `allow_outside`.
-relume_status lp_resolve(struct draft *draft, const char *path,
+// `allow_outside`; in a `project`, also a file of a folder beside it.
+relume_status lp_resolve(struct draft *draft, const char *path, bool project,
                          const struct relume_capture_params *params);
 
 // A capture.json; paths are made relative to the working folder.

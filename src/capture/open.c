@@ -11,47 +11,48 @@
 #include <string.h>
 #include <unistd.h>
 
-// The description in a folder: its capture.json, else its only .lp file.
-static relume_status find_description(char **out, const char *folder, const struct relume_log *log)
+// The description in a folder: its capture.json, else its only .lp file. NULL: none, or no memory.
+static char *own_description(const char *folder, const struct relume_log *log)
 {
-    char *path = *out = mem_format("%s/capture.json", folder);
-    if (!path)
-        return RELUME_ENOMEM;
-    if (input_exists(path, log))
-        return RELUME_OK;
+    char *path = mem_format("%s/capture.json", folder);
+    if (path && input_exists(path, log))
+        return path;
     mem_free(path);
-    *out = tree_only(folder, ".lp");
-    if (*out)
-        return RELUME_OK;
-    return log_fail(log, RELUME_EFORMAT,
-                    "%s: no capture.json and no single .lp file in this folder; give the .lp file, "
-                    "or make a capture of photographs first: relume capture %s -o DIR",
-                    folder, folder);
+    return tree_only(folder, ".lp");
 }
 
-// Whether `path` is a folder without one.
-static relume_status lacks_description(bool *out, const char *path, const struct relume_log *log)
+// The same, else the only .lp file in one of its folders: this one is a project.
+static relume_status find_description(char **out, const char *folder, const struct relume_log *log)
 {
-    char *found = NULL;
-    struct relume_log silent = log ? *log : (struct relume_log){0};
-    silent.message = NULL;
-    const relume_status status =
-        input_kind(path, log) == INPUT_FOLDER ? find_description(&found, path, &silent) : RELUME_OK;
+    *out = own_description(folder, log);
+    if (!*out)
+        *out = tree_only_below(folder, ".lp");
+    if (*out)
+        return RELUME_OK;
+    const char *q = relume_name_quotes(folder);
+    return log_fail(log, RELUME_EFORMAT,
+                    "%s: no capture.json and no single .lp file in this folder; give the .lp file, "
+                    "or make a capture of photographs first: relume capture %s%s%s -o DIR",
+                    folder, q, folder, q);
+}
+
+static bool lacks_description(const char *path, const struct relume_log *log)
+{
+    if (input_kind(path, log) != INPUT_FOLDER)
+        return false;
+    char *found = own_description(path, log);
+    const bool lacks = !found;
     mem_free(found);
-    *out = status != RELUME_OK;
-    return status == RELUME_ENOMEM ? status : RELUME_OK;
+    return lacks;
 }
 
 static relume_status read_description(relume_capture *c, const char *path,
                                       const struct relume_capture_params *p)
 {
-    bool lacks;
-    const relume_status known = lacks_description(&lacks, path, p->log);
-    if (known)
-        return known;
-    if (lacks && olat_is_folder(path, p->log))
+    if (lacks_description(path, p->log) && olat_is_folder(path, p->log))
         return olat_read_folder(&c->draft, &c->path, path, p->log);
-    if (input_kind(path, p->log) == INPUT_FOLDER) {
+    const bool folder = input_kind(path, p->log) == INPUT_FOLDER;
+    if (folder) {
         const relume_status status = find_description(&c->path, path, p->log);
         if (status)
             return status;
@@ -63,7 +64,7 @@ static relume_status read_description(relume_capture *c, const char *path,
     if (!picture_has_extension(c->path, ".lp"))
         return manifest_read(&c->draft, c->path, p);
     const relume_status status = lp_read(&c->draft, c->path, p->limits, p->log);
-    return status ? status : lp_resolve(&c->draft, c->path, p);
+    return status ? status : lp_resolve(&c->draft, c->path, folder, p);
 }
 
 // Keep only the lights for which `keep` holds, in every array that is indexed by light.

@@ -37,10 +37,13 @@ static enum relume_kind kind_of_folder(const char *path, const struct relume_log
     if (holds(path, "btf.json", log) || holds(path, "model.json", log) ||
         holds(path, "surface.json", log))
         return RELUME_KIND_MATERIAL;
-    char *lp = holds(path, "capture.json", log) ? NULL : tree_only(path, ".lp");
-    const bool capture = lp || holds(path, "capture.json", log);
+    if (holds(path, "capture.json", log) || relume_capture_is_olat(path, log))
+        return RELUME_KIND_CAPTURE;
+    char *lp = tree_only(path, ".lp");
+    if (!lp)
+        lp = tree_only_below(path, ".lp");
     mem_free(lp);
-    return capture || relume_capture_is_olat(path, log) ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
+    return lp ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
 }
 
 enum { HEAD = 4096 };
@@ -184,11 +187,12 @@ static relume_status unknown(const char *path, const struct relume_open_params *
                         "%s: tiles of WebRTI (info.xml), which relume does not read; expected the "
                         ".ptm or .rti that they were made from",
                         path);
+    const char *q = relume_name_quotes(path);
     return log_fail(
         p->log, RELUME_EFORMAT,
         "%s: a folder without capture.json, info.json or a single .lp file; if it holds "
-        "photographs, make a capture of them first: relume capture %s -o DIR",
-        path, path);
+        "photographs, make a capture of them first: relume capture %s%s%s -o DIR",
+        path, q, path, q);
 }
 
 static relume_status convert(enum relume_kind kind, const char *path, const char *out,

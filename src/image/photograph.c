@@ -77,6 +77,16 @@ static size_t place_in_file(int orientation, int x, int y, int width, int height
     return (size_t)v[orientation - 1] * (size_t)width + (size_t)u[orientation - 1];
 }
 
+void photograph_turn_vector(double xy[2], int orientation)
+{
+    const double x = xy[0], y = xy[1];
+    const double u[] = {x, -x, -x, x, -y, y, y, -y}, v[] = {y, y, -y, -y, -x, -x, x, x};
+    if (orientation >= 1 && orientation <= 8) {
+        xy[0] = u[orientation - 1];
+        xy[1] = v[orientation - 1];
+    }
+}
+
 static relume_status turn(struct relume_image *image, int orientation)
 {
     struct relume_image upright;
@@ -164,8 +174,11 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_exi
         status = read_pixels(out, path, reader, from, p.log);
     if (!status && follow)
         follow_profile(out, profile);
-    if (!status && !p.not_turned && notes->orientation > 1)
-        status = turn(out, notes->orientation);
+    const int orientation = p.orientation ? p.orientation : notes->orientation;
+    if (!status && !p.not_turned && orientation > 1)
+        status = turn(out, orientation);
+    notes->width = out->width;
+    notes->height = out->height;
     if (status)
         relume_image_destroy(out);
     mem_free(profile);

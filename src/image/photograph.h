@@ -8,4 +8,8 @@
 relume_status photograph_notes(struct relume_exif *out, const char *path,
                                const struct relume_limits *limits, const struct relume_log *log);
 
+// A vector of the picture as it lies in the file, x to the right and y up, in the one that is shown
+// upright.
+void photograph_turn_vector(double xy[2], int orientation);
+
 #endif

@@ -257,14 +257,6 @@ static void look_below(struct below *b, const char *folder, const struct relume_
         mem_free_libc(entry);
 }
 
-// What stands in quotes on a command line.
-static const char *quote(const char *path)
-{
-    static const char plain[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789/._-+,:@%";
-    return path[strspn(path, plain)] ? "'" : "";
-}
-
 // Some that only have names of masks and normals are none here either.
 static relume_status check_below(const struct gathering *g, const char *folder)
 {
@@ -279,7 +271,7 @@ static relume_status check_below(const struct gathering *g, const char *folder)
     look_below(&b, folder, p->log);
     relume_status status = RELUME_OK;
     if (b.most > count) {
-        const char *q = quote(b.folder), *lights = p->command && list->lights ? list->lights : "";
+        const char *q = relume_name_quotes(b.folder), *lights = p->command && list->lights ? list->lights : "";
         char here[32] = "no photographs", more[32] = "";
         if (count)
             snprintf(here, sizeof here, "%d photograph%s", count, relume_plural(count));

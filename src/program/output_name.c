@@ -44,6 +44,10 @@ relume_status floats_name(const struct relume_log *log, const char *option, cons
 relume_status relume_name(const struct relume_log *log, const char *option, const char *path)
 {
     const char *ending = name_ending(path);
+    if (!strcmp(path, "-"))
+        return say(log, RELUME_EINVAL,
+                   "%s: %s: expected the name of a file; /dev/stdout writes into a pipe", option,
+                   path);
     if (!*ending || !strcasecmp(ending, ".exr") || !strcasecmp(ending, ".part"))
         return RELUME_OK;
     return say(log, RELUME_EINVAL,

@@ -89,7 +89,7 @@ check 'and no other' test "$(wc -l <err.txt)" -eq 1
 
 # ---- an output that cannot be made is refused before the work
 mkdir taken && echo mine >taken/mine
-expect_fail 'a relume file under the name of a folder' 3 'taken: cannot be written; Is a directory' - \
+expect_fail 'a relume file under the name of a folder' 3 'taken: cannot be written; a folder has this name' - \
     timeout 5 "$RELUME" encode photos/second.lp -o taken
 for command in 'btf fit corduroy' 'btf tile corduroy' 'synth --btf corduroy' 'synth box'; do # the first three took 40 s
     expect_fail "$command into a folder of others" 2 'taken: already exists; expected a new or empty folder, or --force' - \

@@ -16,5 +16,7 @@ relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3
 
 void say_next(const struct args *args, const char *dir, const char *what)
 {
-    announce(args, RELUME_NOTE, "%s: %s; next: relume encode %s -o FILE.exr", dir, what, dir);
+    const char *q = relume_name_quotes(dir);
+    announce(args, RELUME_NOTE, "%s: %s; next: relume encode %s%s%s -o FILE.exr", dir, what, q, dir,
+             q);
 }

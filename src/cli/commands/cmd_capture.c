@@ -485,8 +485,9 @@ static void print_json(const struct job *job)
 
 static void say_made(const struct capture_options *o, const struct relume_acquisition *s)
 {
+    const char *q = relume_name_quotes(o->output);
     double sigma = 0.0;
-    char directions[64] = "", positions[64] = "", next[160] = "";
+    char directions[64] = "", positions[64] = "", next[4200] = "";
     for (int i = 0; i < s->lights; i++)
         sigma += s->photo[i].sigma_deg / s->lights;
     if (sigma > 0.0)
@@ -495,7 +496,8 @@ static void say_made(const struct capture_options *o, const struct relume_acquis
         snprintf(positions, sizeof positions, ", positions to about %.1f %%",
                  100.0 * s->position_error);
     if (!o->encode)
-        snprintf(next, sizeof next, "; next: relume encode %.100s -o FILE.exr", o->output);
+        snprintf(next, sizeof next, "; next: relume encode %s%.4096s%s -o FILE.exr", q, o->output,
+                 q);
     announce(&o->args, RELUME_NOTE, "%s: %d lights%s%s; see report.html there%s", o->output,
              s->lights, directions, positions, next);
 }

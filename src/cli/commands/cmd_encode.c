@@ -189,6 +189,39 @@ static double bytes_of(const relume_capture *capture, const char *path)
     return !stat(path, &file) && S_ISREG(file.st_mode) ? (double)file.st_size / pixels : 0.0;
 }
 
+// From which on a newcomer should know of coding with loss: bytes a pixel, and the photographs'
+// own.
+static const double LARGE = 4.0, LARGER = 1.5;
+
+// Of the photographs' own files; 0 when one of them is none.
+static double bytes_of_photographs(const relume_capture *capture)
+{
+    struct stat file;
+    double sum = 0.0;
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    for (int v = 0; v < m->views; v++)
+        for (int i = 0; i < m->lights; i++) {
+            if (stat(m->view[v].images[i], &file) || !S_ISREG(file.st_mode))
+                return 0.0;
+            sum += (double)file.st_size;
+        }
+    return sum;
+}
+
+// What somebody should know who did not ask for a size.
+static void say_size(char text[128], const relume_capture *capture, const char *output, double each)
+{
+    struct stat file;
+    const double before = bytes_of_photographs(capture);
+    const double now = stat(output, &file) ? 0.0 : (double)file.st_size;
+    if (before > 0.0 && now > LARGER * before)
+        snprintf(text, 128,
+                 "; %.1f times the size of your photographs: --psnr %g makes it much smaller",
+                 now / before, RELUME_USUAL_DB);
+    else if (each > LARGE)
+        snprintf(text, 128, "; with --psnr %g it is several times smaller", RELUME_USUAL_DB);
+}
+
 // What was asked for with --psnr or --bytes-per-pixel and cannot be had.
 static void say_out_of_reach(char text[96], const struct request *r, double psnr_db, double bytes,
                              bool one)
@@ -213,9 +246,6 @@ static double both_errors(double a, double b)
     return -10.0 * log10(pow(10.0, -0.1 * a) + pow(10.0, -0.1 * b));
 }
 
-// Bytes a pixel from which on a newcomer should know of coding with loss.
-static const double LARGE = 4.0;
-
 static void say_result(const struct args *args, const relume_capture *capture,
                        const relume_coder *coder, const struct relume_encode_report *report,
                        const struct request *r)
@@ -236,7 +266,7 @@ static void say_result(const struct args *args, const relume_capture *capture,
                  judgement(report->psnr_db));
         return;
     }
-    char bytes[48] = "", unseen[64] = "", more[96] = "";
+    char bytes[48] = "", unseen[64] = "", more[128] = "";
     const double each = bytes_of(capture, r->output);
     const bool one = info->lights == 1;
     const bool single = one && relume_capture_manifest(capture)->views == 1;
@@ -251,9 +281,8 @@ static void say_result(const struct args *args, const relume_capture *capture,
     if (short_of && !one && !r->coder.coefficients)
         snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
                  info->coefficients);
-    else if (r->decide && !is_coded(r) && each > LARGE)
-        snprintf(more, sizeof more, "; with --psnr %g it is several times smaller",
-                 RELUME_USUAL_DB);
+    else if (r->decide && !is_coded(r))
+        say_size(more, capture, r->output, each);
     announce(args, RELUME_NOTE,
              "%s: reproduces your photograph%s at %.1f dB PSNR (differences %s) with %d "
              "coefficient%s%s, "

@@ -122,7 +122,11 @@ export class RelumeView extends HTMLElement {
             },
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
-            drawn: () => this.overlay && this.overlay.draw(),
+            drawn: (alone) => {
+                if (this.overlay && !alone)
+                    this.overlay.pin();
+                return this.overlay && this.overlay.draw();
+            },
         });
         await viewer.open(this.source.href, this.opened);
         if (!this.isConnected || !this.root.contains(viewer.canvas))

@@ -80,7 +80,7 @@ export class RelumeObject extends HTMLElement {
     async open() {
         const viewer = new ObjectViewer(this.canvas, RelumeObject.home, {
             changed: () => this.controls && this.show(),
-            drawn: () => this.drawOver(),
+            drawn: (alone) => this.drawOver(alone),
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
         });
@@ -126,12 +126,15 @@ export class RelumeObject extends HTMLElement {
         }
     }
 
-    drawOver() {
+    // `alone`: the picture is wanted without notes.
+    drawOver(alone) {
         const { overlay, viewer } = this;
         if (!overlay)
             return;
-        if (overlay.drawing || (overlay.shown && overlay.notes.all.some((note) => note.places.length)))
+        if (overlay.drawing || (overlay.shown && overlay.placed().length))
             viewer.measure();
+        if (!alone)
+            overlay.pin();
         overlay.draw();
     }
 

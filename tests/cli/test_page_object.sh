@@ -132,6 +132,11 @@ ask "['touched', window.relume.getState()]"
 echo 'state light=dir,0,0,1&eye=0,0,9' >>orders.txt
 echo 'touch 54 48 34 48 74 48 94 48' >>orders.txt
 ask "['pinched', window.relume.getState()]"
+# very many notes: those in front are drawn on the card, without a stroke on the canvas; those behind are not
+item="(n, x, y, z) => ({ id: 'm' + n, type: 'Annotation', body: { value: 'm' + n }, target: { selector: { type: 'PointSelector', x, y, z } } })"
+ask "($view.status.remove(), $view.overlay.context.stroke = () => { window.strokes = (window.strokes || 0) + 1; }, $view.panel.choose(null), $view.panel.notes.read({ type: 'AnnotationPage', items: Array.from({ length: 200 }, (_, i) => ($item)(i, i % 2 ? 0.4 : 0, 0, i % 2 ? -0.9165 : 1)) }), window.relume.setState('light=dir,0,0,1&eye=0,0,9'), window.relume.idle().then(() => window.relume.idle()).then(() => { window.before = window.strokes; $view.viewer.turn(0.5, 0); $view.viewer.turn(-0.5, 0); return new Promise(done => setTimeout(done, 500)); }).then(() => ['many', window.strokes === undefined || window.strokes - window.before, $view.overlay.isPinned, $view.viewer.toCanvas([0.4, 0, 0.9165]).map(Math.round)]))"
+echo 'shot many.png' >>orders.txt
+echo 'snap alone.png' >>orders.txt
 open shiny
 snap shiny 'light=dir,0,1,1' --light 'dir 0 1 1'
 snap shiny 'light=dir,1,0.2,1&eye=2,1,2' --eye 2,1,2 --light 'dir 1 0.2 1'
@@ -182,8 +187,17 @@ near() { # two pictures, a pixel of both
         split(a, p, " "); split(b, q, " "); for (c = 1; c <= 3; c++) { d = p[c] - q[c]; bad = bad || d > 0.01 || d < -0.01 }
         print a, "and", b; exit bad || !(p[1] > 0.01) }'
 }
+near_colour() { # picture, pixel, its linear colour
+    awk -v a="$("$mkimage" read $1 $2 $3)" -v b="$4 $5 $6" 'BEGIN { split(a, p, " "); split(b, q, " ")
+        for (c = 1; c <= 3; c++) { d = p[c] - q[c]; bad = bad || d > 0.1 || d < -0.1 } print a; exit bad }'
+}
+not() { ! "$@"; }
 check 'beside each other this object is at the left' near slider.png page1.png 50 44
 check 'and the other one at the right' near slider.png other.png 78 44
+says 'very many notes are drawn by the card' '^\["many",(0|true),true,\[76,48\]\]'
+check '... those in front are seen' near_colour many.png 60 44 0.807 0.552 0.144
+check '... those behind are not' near many.png alone.png 72 44
+check '... and no picture that is saved has them' not near many.png alone.png 60 44
 expect_ok 'what a page saved comes back' '1 new note' "$RELUME" notes any.exr --import saved.json
 check 'with its place, text and light' grep -q '^n6 *line .* made <here>' out.txt
 if [ "$python" ]; then

@@ -123,6 +123,11 @@ if [ -e "$axe" ]; then
 else
     skip 'pages are accessible' 'no axe-core; make deps-web gets it'
 fi
+echo "open file://$work/site/dome.html" >>orders.txt
+# a phone: all that is touched is large and within the window; a button shows the rest
+small="(all => [all.length, all.filter(b => b.width < 44 || b.height < 44 || b.left < 0 || b.right > innerWidth).length, document.documentElement.scrollWidth])([...$view.root.querySelectorAll('.strip button, .strip select, .strip input')].map(b => b.getBoundingClientRect()).filter(b => b.width > 0))"
+echo 'size 360 640' >>orders.txt
+ask "new Promise(done => setTimeout(done, 300)).then(() => ['narrow', ...$small, $view.root.querySelector('.unfold').click(), ...$small, $view.root.querySelector('.unfold').getAttribute('aria-expanded')])"
 # pages that cannot be shown
 for page in dome pot room; do
     echo "open file://$work/bad/$page.html" >>orders.txt
@@ -164,6 +169,7 @@ check 'page and viewer find the same places of a panorama, and the tool keeps bo
 says 'two looks are compared' '^"difference"'
 says 'without WebGL2 there is a still picture and a sentence' '^\["Only a still picture can be shown: this browser has no WebGL2\.",true,"'
 [ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'
+says 'on a phone all controls are at hand and large enough' '^\["narrow",11,0,360,null,19,0,360,"true"\]'
 says 'a view that is put elsewhere opens again' '^"put elsewhere"'
 says 'a newer file says so' '^\["Only a still picture can be shown: this file was published by a newer relume .format 9.*",true\]'
 says 'a missing tile is said' '^\["Only a still picture can be shown: room/v0/0_0_0.bin is missing\."'

@@ -152,6 +152,10 @@ if [ -e "$axe" ]; then
     ask "new Promise(done => { const script = document.createElement('script'); script.src = 'axe.js'; script.onload = done; document.head.append(script); })"
     ask "axe.run().then(found => 'axe ' + found.violations.filter(v => ['serious', 'critical'].includes(v.impact)).map(v => v.id))"
 fi
+# a phone: all that is touched is large and within the window; a button shows the rest
+small="(all => [all.length, all.filter(b => b.width < 44 || b.height < 44 || b.left < 0 || b.right > innerWidth).length, document.documentElement.scrollWidth])([...$view.root.querySelectorAll('.strip button, .strip select, .strip input')].map(b => b.getBoundingClientRect()).filter(b => b.width > 0))"
+echo 'size 360 640' >>orders.txt
+ask "new Promise(done => setTimeout(done, 300)).then(() => ['narrow', ...$small, $view.root.querySelector('.unfold').click(), ...$small, $view.root.querySelector('.unfold').getAttribute('aria-expanded')])"
 echo 'size 128 96' >>orders.txt
 for page in any shiny fixed; do
     echo "open file://$work/bad/$page.html" >>orders.txt
@@ -178,6 +182,7 @@ says 'a finger turns it' '^\["touched","eye=-[0-9.]+,0,[-0-9.]+&light=dir,0,0,1"
 says 'two fingers enlarge it' '^\["pinched","eye=0,0,9&at=[-0-9.e]+,0,3&light=dir,0,0,1"\]'
 says 'a server has all that it asks for' '^asked any/object.bin$'
 check '... and is not asked for more' sh -c "! grep '^asked .* missing' said.txt | grep -v favicon"
+says 'on a phone all controls are at hand and large enough' '^\["narrow",11,0,360,null,16,0,360,"true"\]'
 says 'keys open the notes' '^\["keys",false,"Point"\]'
 [ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'
 below 'a kept look stays' "$("$mkimage" codediff kept.png page1.png)" 0.01

@@ -411,9 +411,7 @@ export class RelumeObject extends HTMLElement {
     key(event, onBall = false) {
         if (event.ctrlKey || event.metaKey || event.altKey)
             return;
-        if (this.panel.isDrawing && ['Enter', 'Escape'].includes(event.key)) {
-            if (event.key === 'Enter') this.panel.end();
-            else this.panel.cancel();
+        if (this.panel.key(event)) {
             event.preventDefault();
             return;
         }

@@ -7,6 +7,7 @@ const MARK = '#e8c46a', SHADE = 'rgba(0, 0, 0, .65)';
 const BAR = [80, 200];  // its length, CSS pixels
 const MOST_LABELS = 60;
 const BESIDE = 50;      // what of a note beside the screen is drawn, CSS pixels
+const CROSS = [3, 11];  // from where to where it reaches, CSS pixels
 const REST = 300;       // milliseconds
 
 // Lengths of scale bars: 1, 2 and 5.
@@ -164,6 +165,17 @@ export class Overlay {
         return true;
     }
 
+    // Where keys would take a place.
+    drawCross(x, y) {
+        const { context } = this;
+        context.beginPath();
+        for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+            context.moveTo(x + CROSS[0] * dx, y + CROSS[0] * dy);
+            context.lineTo(x + CROSS[1] * dx, y + CROSS[1] * dy);
+        }
+        this.stroke(context, '#fff', 1.6);
+    }
+
     drawDrawing() {
         const { context, drawing } = this;
         if (!drawing)
@@ -172,6 +184,8 @@ export class Overlay {
         this.path(context, at, drawing.kind === 'polygon');
         this.stroke(context, '#fff', 2);
         at.forEach(([x, y]) => { context.beginPath(); context.arc(x, y, 3.5, 0, 7); this.stroke(context, '#fff', 1.5); });
+        if (drawing.cross)
+            this.drawCross(...drawing.cross);
         if (at.length > 1)
             this.label(context, this.notes.sayLength(drawing.length()), ...at[at.length - 1]);
         return true;

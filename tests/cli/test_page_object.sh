@@ -132,11 +132,23 @@ ask "['touched', window.relume.getState()]"
 echo 'state light=dir,0,0,1&eye=0,0,9' >>orders.txt
 echo 'touch 54 48 34 48 74 48 94 48' >>orders.txt
 ask "['pinched', window.relume.getState()]"
+# a line by keys alone: from the middle to 20 pixels beside it
+ask "($view.panel.choose(null), window.relume.setState('light=dir,0,0,1&eye=0,0,9'), window.relume.idle().then(() => ($view.panel.begin('line'), 0)))"
+echo 'key Space ArrowRight ArrowRight Space Enter' >>orders.txt
+ask "(n => ['by keys', n.kind, n.places.length, n.places[0].map(x => +x.toFixed(2)), Math.round($view.viewer.toCanvas(n.places[1])[0])])($view.panel.notes.all[$view.panel.notes.all.length - 1])"
 # very many notes: those in front are drawn on the card, without a stroke on the canvas; those behind are not
 item="(n, x, y, z) => ({ id: 'm' + n, type: 'Annotation', body: { value: 'm' + n }, target: { selector: { type: 'PointSelector', x, y, z } } })"
 ask "($view.status.remove(), $view.overlay.context.stroke = () => { window.strokes = (window.strokes || 0) + 1; }, $view.panel.choose(null), $view.panel.notes.read({ type: 'AnnotationPage', items: Array.from({ length: 200 }, (_, i) => ($item)(i, i % 2 ? 0.4 : 0, 0, i % 2 ? -0.9165 : 1)) }), window.relume.setState('light=dir,0,0,1&eye=0,0,9'), window.relume.idle().then(() => window.relume.idle()).then(() => { window.before = window.strokes; $view.viewer.turn(0.5, 0); $view.viewer.turn(-0.5, 0); return new Promise(done => setTimeout(done, 500)); }).then(() => ['many', window.strokes === undefined || window.strokes - window.before, $view.overlay.isPinned, $view.viewer.toCanvas([0.4, 0, 0.9165]).map(Math.round)]))"
 echo 'shot many.png' >>orders.txt
 echo 'snap alone.png' >>orders.txt
+# in a page of one's own, by the element that pictures have
+cat >site/own.html <<'END'
+<!DOCTYPE html><script src="relume/relume.js" defer></script><relume-view src="any/object.json" state="eye=0,0,9&light=dir,0,3,4" style="position:fixed;inset:0;height:auto;min-height:0"></relume-view>
+END
+echo "open file://$work/site/own.html" >>orders.txt
+ask "(v => v.idle().then(() => (v.object.controls.node.remove(), new Promise(done => setTimeout(done, 200)))).then(() => ['embedded', v.getState(), v.object.tagName, v.viewer || null]))(document.querySelector('relume-view'))"
+echo 'state light=dir,0,1,1' >>orders.txt
+echo 'snap embedded.png' >>orders.txt
 open shiny
 snap shiny 'light=dir,0,1,1' --light 'dir 0 1 1'
 snap shiny 'light=dir,1,0.2,1&eye=2,1,2' --eye 2,1,2 --light 'dir 1 0.2 1'
@@ -199,6 +211,9 @@ near_colour() { # picture, pixel, its linear colour
 not() { ! "$@"; }
 check 'beside each other this object is at the left' near slider.png page1.png 50 44
 check 'and the other one at the right' near slider.png other.png 78 44
+says 'keys alone draw a line' '^\["by keys","line",2,\[0,0,(0\.9[89]|1)\],84\]'
+says '<relume-view> shows an object too' '^\["embedded","eye=0,0,9&light=dir,0,0.6,0.8","RELUME-OBJECT",null\]'
+below '... as its page does' "$("$mkimage" codediff embedded.png page1.png)" 0.01
 says 'very many notes are drawn by the card' '^\["many",(0|true),true,\[76,48\]\]'
 check '... those in front are seen' near_colour many.png 60 44 0.807 0.552 0.144
 check '... those behind are not' near many.png alone.png 72 44

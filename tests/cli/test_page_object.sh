@@ -30,7 +30,15 @@ expect_ok 'a ruler sets its scale' - "$RELUME" notes any.exr --ruler n3 --length
 check '... in millimetres' grep -q '^n3 *line *56.5685 mm' out.txt
 expect_fail 'a place without depth' 2 "expected places as 'X,Y,Z X,Y,Z'" - "$RELUME" notes any.exr --add 'point 1,2'
 expect_fail 'a place far away' 2 'lies far beside the object' - "$RELUME" notes any.exr --add 'point 1,2,99'
-expect_fail 'no overlay of an object' 2 'any.exr is an object' - "$RELUME" notes any.exr --to svg -o notes.svg
+expect_ok 'an overlay of a picture of it' - "$RELUME" notes any.exr --to svg -o notes.svg --eye 0,0,9 --picture 128x96
+check 'has what is in front, where the picture has it' sh -c "grep -q '<circle cx=.64. cy=.48.' notes.svg && grep -q '<g id=.n4.><path' notes.svg && ! grep -q 'id=.n2.' notes.svg"
+check '... with lengths of the object, escaped' sh -c "grep -q '&#60;b&#62;front' notes.svg"
+expect_ok 'from behind' - "$RELUME" notes any.exr --to svg -o back.svg --eye 0,0,-9
+check '... what is in front is hidden' sh -c "grep -q 'id=.n2.' back.svg && ! grep -q 'id=.n1.' back.svg"
+# of a ball of radius 1, over a chord as long as the square root of 2, towards the eye: 0.35
+expect_ok 'the surface over a line' - "$RELUME" notes any.exr --profile n3 -o profile.csv --eye 3,3,3
+check '... is that of a ball' awk -F, 'NR > 1 && $5 + 0 > most { most = $5 } END { print most; exit !(most > 0.3 && most < 0.352 && NR == 257) }' profile.csv
+expect_fail 'a profile of a point' 2 "note 'n1' is a point; expected a line" - "$RELUME" notes any.exr --profile n1 -o lost.csv
 expect_fail 'its notes lie beside it' 2 'any.exr is an object' - "$RELUME" notes any.exr --embed
 cp any.notes.json fixed.notes.json
 sed -i 's/"max": \[[^,]*/"max": [3/' fixed.notes.json

@@ -41,6 +41,7 @@ const ICONS = {
     link: 'M10 14a4 4 0 0 0 6 0l3-3a4 4 0 0 0-6-6l-1 1M14 10a4 4 0 0 0-6 0l-3 3a4 4 0 0 0 6 6l1-1',
     save: 'M12 4v11M7 11l5 5 5-5M5 20h14',
     note: 'M5 4h14v12H10l-4 4v-4H5zM8 8h8M8 12h5',
+    more: 'M4 7h16M4 12h16M4 17h16M8 5v4M16 10v4M10 15v4',
     help: 'M9 9a3 3 0 1 1 4 3c-1 .5-1 1-1 2M12 18v.5',
     lamp: 'M12 3a6 6 0 0 1 3 11v3H9v-3a6 6 0 0 1 3-11M10 20h4',
     move: 'M12 3v18M3 12h18M12 3l-2 3M12 3l2 3M12 21l-2-3M12 21l2-3M3 12l3-2M3 12l3 2M21 12l-3-2M21 12l-3 2',
@@ -54,6 +55,14 @@ export function icon(name) {
 
 export function button(name, title, act) {
     return make('button', { type: 'button', title, 'aria-label': title, onclick: act }, icon(name));
+}
+
+// Where the strip is narrow it shows what is in reach of this button's groups ("rest") when it is pressed.
+export function unfolder(strip) {
+    const node = button('more', 'More settings', () => node.setAttribute('aria-expanded', strip().classList.toggle('open')));
+    node.className = 'unfold';
+    node.setAttribute('aria-expanded', false);
+    return node;
 }
 
 export function labelled(text, control) {
@@ -97,11 +106,11 @@ export class Controls {
             make('div', { class: 'group' },
                 make('div', { class: 'row' }, this.mode, this.counter, button('add', 'Another light (N)', () => actions.addLight()),
                      this.remove, this.colour),
-                make('div', { class: 'row' }, labelled('Strength', this.strength), labelled('Soft', this.softness), ...distance)),
-            make('div', { class: 'group' },
+                make('div', { class: 'row rest' }, labelled('Strength', this.strength), labelled('Soft', this.softness), ...distance)),
+            make('div', { class: 'group rest' },
                 make('div', { class: 'row' }, labelled('Show', this.pass), labelled('Highlights', this.tone)),
                 make('div', { class: 'row' }, labelled('Exposure', this.exposure), ...lens, ...planet)),
-            make('div', { class: 'group' },
+            make('div', { class: 'group rest' },
                 make('div', { class: 'row' }, labelled('Compare', this.way)),
                 make('div', { class: 'row' }, make('button', { type: 'button', class: 'word', title: 'Keep this look to compare with (K)',
                                                               onclick: () => actions.keep() }, 'Keep this look'), this.divide)),
@@ -111,7 +120,7 @@ export class Controls {
                      button('note', 'Notes and measures (M)', () => actions.toggleNotes())),
                 make('div', { class: 'row' }, button('link', 'Copy a link to this view (C)', () => actions.copyLink()),
                      button('save', 'Save this picture (S)', () => actions.save()),
-                     button('help', 'Keys (?)', () => actions.help()))));
+                     button('help', 'Keys (?)', () => actions.help()), unfolder(() => this.node))));
         this.show();
     }
 

@@ -7,7 +7,7 @@ import { COMPARISONS } from './compare.js';
 import { readEnvironment } from './hdr.js';
 import { isRelume, openFile } from './drop.js';
 import { moved, reshaped } from './lights.js';
-import { Failure, loadJson } from './load.js';
+import { Failure, addScript, loadJson } from './load.js';
 import { Notes } from './notes.js';
 import { NotePanel } from './notepanel.js';
 import { Overlay } from './overlay.js';
@@ -31,6 +31,8 @@ export class RelumeView extends HTMLElement {
 
     connectedCallback() {
         this.root = this.shadowRoot || this.attachShadow({ mode: 'open' });
+        if (!this.opened && /\/object\.json$/.test(this.source.pathname))
+            return this.showObject();
         this.canvas = make('canvas', { 'aria-hidden': 'true' });
         this.over = make('canvas', { 'aria-hidden': 'true' });
         this.poster = make('img', { class: 'poster', alt: '', hidden: true });
@@ -41,7 +43,21 @@ export class RelumeView extends HTMLElement {
         this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeView.home).href }),
                          this.frame);
         this.ready = new Promise((resolve) => { this.isReady = resolve; });
-        this.open().catch((error) => this.fail(error));
+        return this.open().catch((error) => this.fail(error));
+    }
+
+    // An object has an element of its own (object.js), which lies in this one then.
+    showObject() {
+        const script = new URL('relume-object.js', RelumeView.home).href;
+        const made = customElements.get('relume-object') ? Promise.resolve() : addScript(script);
+        const given = [...this.attributes].filter(({ name }) => ['src', 'state', 'poster', 'title', 'compare'].includes(name));
+        this.ready = made.then(() => {
+            this.object = make('relume-object', { style: 'min-height:0', ...Object.fromEntries(given.map(({ name, value }) => [name, value])) });
+            if (this.first !== undefined)
+                this.object.setState(this.first);
+            this.root.replaceChildren(this.object);
+            return this.object.ready;
+        }, () => this.root.replaceChildren('relume/relume-object.js is missing.'));
     }
 
     disconnectedCallback() {
@@ -53,8 +69,10 @@ export class RelumeView extends HTMLElement {
             this.first = this.getState();  // for when it is put elsewhere in the page
             this.viewer.close();
         }
+        if (this.object)
+            this.first = this.object.getState();
         this.root.replaceChildren();
-        this.viewer = this.controls = null;
+        this.viewer = this.controls = this.object = null;
     }
 
     get source() { return new URL(this.getAttribute('src') || '', document.baseURI); }
@@ -122,7 +140,11 @@ export class RelumeView extends HTMLElement {
             },
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
-            drawn: () => this.overlay && this.overlay.draw(),
+            drawn: (alone) => {
+                if (this.overlay && !alone)
+                    this.overlay.pin();
+                return this.overlay && this.overlay.draw();
+            },
         });
         await viewer.open(this.source.href, this.opened);
         if (!this.isConnected || !this.root.contains(viewer.canvas))
@@ -202,18 +224,21 @@ export class RelumeView extends HTMLElement {
     // Before the file is open the line waits.
     setState(line) {
         this.first = line;
-        if (this.viewer)
-            this.viewer.setState(line);
+        if (this.shown)
+            this.shown.setState(line);
     }
 
-    getState() { return this.viewer ? this.viewer.getState() : this.first || ''; }
+    // The viewer, or an object's element.
+    get shown() { return this.object || this.viewer; }
+
+    getState() { return this.shown ? this.shown.getState() : this.first || ''; }
 
     async idle() {
         await this.ready;
-        return this.viewer ? this.viewer.idle() : undefined;
+        return this.shown ? this.shown.idle() : undefined;
     }
 
-    snapshot() { return this.viewer.snapshot(); }
+    snapshot() { return this.shown.snapshot(); }
 
     // ------------------------------------------------------------ what can be done
 
@@ -435,9 +460,7 @@ export class RelumeView extends HTMLElement {
     key(event) {
         if (event.ctrlKey || event.metaKey || event.altKey)
             return;
-        if (this.panel.isDrawing && ['Enter', 'Escape'].includes(event.key)) {
-            if (event.key === 'Enter') this.panel.end();
-            else this.panel.cancel();
+        if (this.panel.key(event)) {
             event.preventDefault();
             return;
         }

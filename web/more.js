@@ -9,7 +9,7 @@ export function putMore(make) {
     given = make(window.relume.shared);
 }
 
-function loadMore(home) {
+export function loadMore(home) {
     promise = promise || addScript(new URL('relume-more.js', home).href).then(() => given, () => {
         throw new Failure('relume/relume-more.js is missing');
     });

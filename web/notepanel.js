@@ -5,11 +5,15 @@ import { measureNote } from './notes.js';
 const SHOWN = 200;  // of the list at once
 const FEWEST = { point: 1, line: 2, polygon: 3 };
 const KINDS = { point: 'Point', line: 'Line', polygon: 'Area', view: 'View' };
+const BY_KEYS = 'By keys: arrows move a cross, the space bar takes its place.';
 const HOW = {
-    point: 'Click on a place of the picture.',
-    line: 'Click from place to place; Enter ends the line. Of three places the middle one shows its angle.',
-    polygon: 'Click around an area; Enter closes it.',
+    point: `Click on a place of the picture. ${BY_KEYS}`,
+    line: `Click from place to place; Enter ends the line. Of three places the middle one shows its angle. ${BY_KEYS}`,
+    polygon: `Click around an area; Enter closes it. ${BY_KEYS}`,
 };
+const A_STEP = 10;  // of the cross, CSS pixels; with Shift one
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const SAID = 400;   // milliseconds after the cross has moved
 
 export class NotePanel {
     // `to`: draw(), say(text), go(state), focus() on the picture, profile(note, notes), a promise of
@@ -148,6 +152,47 @@ export class NotePanel {
     }
 
     get isDrawing() { return !!this.overlay.drawing; }
+
+    // Keys while a note is drawn; true: it was one of these.
+    key({ key, shiftKey }) {
+        const acts = { Enter: () => (this.overlay.drawing.kind === 'point' ? this.mark() : this.end()), Escape: () => this.cancel(),
+                       ' ': () => this.mark(), Backspace: () => { this.overlay.drawing.places.pop(); this.to.draw(); } };
+        if (!this.isDrawing || !(acts[key] || WAYS[key]))
+            return false;
+        if (WAYS[key])
+            this.moveCross(WAYS[key].map((v) => v * (shiftKey ? 1 : A_STEP)));
+        else
+            acts[key]();
+        return true;
+    }
+
+    // The cross stands in the middle at first.
+    cross() {
+        const { drawing, canvas } = this.overlay;
+        drawing.cross = drawing.cross || [canvas.clientWidth / 2, canvas.clientHeight / 2];
+        return drawing.cross;
+    }
+
+    crossed() { return this.viewer.toPicture(this.cross().map((v) => v * this.overlay.ratio)); }
+
+    moveCross(by) {
+        const { drawing, canvas } = this.overlay, most = [canvas.clientWidth, canvas.clientHeight];
+        drawing.cross = this.cross().map((v, c) => Math.min(Math.max(v + by[c], 0), most[c]));
+        this.to.draw();
+        clearTimeout(this.saying);
+        this.saying = setTimeout(() => {
+            const place = this.isDrawing && this.crossed();
+            if (this.isDrawing)
+                this.to.say(place ? `The cross is at ${place.map((v) => +v.toPrecision(4)).join(', ')}.` : 'The cross is beside it.');
+        }, SAID);
+    }
+
+    mark() {
+        const { drawing } = this.overlay;
+        this.click(this.crossed());
+        if (this.isDrawing && drawing.places.length)
+            this.to.say(`Place ${drawing.places.length} of the ${KINDS[drawing.kind].toLowerCase()}, ${this.notes.sayLength(drawing.length() || 0)} so far; Enter ends it.`);
+    }
 
     click(place) {
         const { drawing } = this.overlay;

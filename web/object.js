@@ -1,7 +1,7 @@
 // object.js - <relume-object src="…/object.json">: a baked object that can be turned and relit
 import { Ball, directionOf, placeOf, sayDirection } from './ball.js';
 import { COMPARISONS } from './compare.js';
-import { WAY_NAMES, button, colourOf, handOut, hexOf, labelled, make, select, slider } from './controls.js';
+import { WAY_NAMES, button, colourOf, handOut, hexOf, labelled, make, select, slider, unfolder } from './controls.js';
 import { RADIANS } from './lights.js';
 import { Failure, loadJson, put } from './load.js';
 import { NotePanel } from './notepanel.js';
@@ -80,7 +80,7 @@ export class RelumeObject extends HTMLElement {
     async open() {
         const viewer = new ObjectViewer(this.canvas, RelumeObject.home, {
             changed: () => this.controls && this.show(),
-            drawn: () => this.drawOver(),
+            drawn: (alone) => this.drawOver(alone),
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
         });
@@ -126,12 +126,15 @@ export class RelumeObject extends HTMLElement {
         }
     }
 
-    drawOver() {
+    // `alone`: the picture is wanted without notes.
+    drawOver(alone) {
         const { overlay, viewer } = this;
         if (!overlay)
             return;
-        if (overlay.drawing || (overlay.shown && overlay.notes.all.some((note) => note.places.length)))
+        if (overlay.drawing || (overlay.shown && overlay.placed().length))
             viewer.measure();
+        if (!alone)
+            overlay.pin();
         overlay.draw();
     }
 
@@ -219,18 +222,19 @@ export class RelumeObject extends HTMLElement {
         const lights = [this.ball.node, make('div', { class: 'group' },
             make('div', { class: 'row' }, this.mode, this.counter, button('add', 'Another light (N)', () => this.addLight()),
                  button('remove', 'Remove this light (Delete)', () => this.removeLight()), this.colour),
-            make('div', { class: 'row' }, labelled('Strength', this.strength), labelled('Soft', this.softness)))];
+            make('div', { class: 'row rest' }, labelled('Strength', this.strength), labelled('Soft', this.softness)))];
         this.controls = { node: make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
             ...(fixed ? [] : lights),
-            make('div', { class: 'group' }, make('div', { class: 'row' }, labelled('Exposure', this.exposure))),
-            make('div', { class: 'group' },
+            make('div', { class: 'group rest' }, make('div', { class: 'row' }, labelled('Exposure', this.exposure))),
+            make('div', { class: 'group rest' },
                 make('div', { class: 'row' }, labelled('Compare', this.way)),
                 make('div', { class: 'row' }, make('button', { type: 'button', class: 'word', title: 'Keep this look to compare with (K)',
                                                               onclick: () => this.keep() }, 'Keep this look'), this.divider)),
             make('div', { class: 'group tools' },
                 make('div', { class: 'row' }, button('fit', 'The whole object (0)', () => this.fit()), button('screen', 'Full screen (F)', () => this.fullScreen()),
                      button('note', 'Notes and measures (M)', () => this.toggleNotes())),
-                make('div', { class: 'row' }, button('link', 'Copy a link to this view (C)', () => this.copyLink()), button('save', 'Save this picture (S)', () => this.save()), button('help', 'Keys (?)', () => this.help())))) };
+                make('div', { class: 'row' }, button('link', 'Copy a link to this view (C)', () => this.copyLink()), button('save', 'Save this picture (S)', () => this.save()), button('help', 'Keys (?)', () => this.help()),
+                     unfolder(() => this.controls.node)))) };
         this.frame.append(this.controls.node);
         this.showMode();
         this.show();
@@ -407,9 +411,7 @@ export class RelumeObject extends HTMLElement {
     key(event, onBall = false) {
         if (event.ctrlKey || event.metaKey || event.altKey)
             return;
-        if (this.panel.isDrawing && ['Enter', 'Escape'].includes(event.key)) {
-            if (event.key === 'Enter') this.panel.end();
-            else this.panel.cancel();
+        if (this.panel.key(event)) {
             event.preventDefault();
             return;
         }

@@ -3,6 +3,7 @@ import { Device } from './gl.js';
 import { cross, unit } from './lights.js';
 import { ObjectComparison } from './objectcompare.js';
 import { ObjectModel, minus, product } from './objectmodel.js';
+import { Pins } from './pins.js';
 import { TONES_BY_NAME } from './shaders.js';
 import { objectPresentShader } from './objectshaders.js';
 import { readState, writeState } from './state.js';
@@ -13,6 +14,32 @@ const SLOW_FRAME = 90, REST_OF_MOVING = 250;  // milliseconds
 const FIRST_EYE = [0, 0.6, 1.8];  // from the middle, in diagonals of the box, as 'relume btf render' looks
 const MOST_DISTANCES = 512;       // pixels a side
 const BEHIND = 0.01;              // diagonals: what lies so much behind the surface is hidden by it
+
+// As project and isSeen below have it.
+const PIN_WAY = `
+uniform vec3 eye, right, down, ahead;
+uniform vec4 window;
+uniform vec2 size;
+uniform float across;
+uniform sampler2D distances;
+vec3 project(vec3 place)
+{
+    vec3 to = place - eye;
+    float z = dot(to, ahead);
+    vec2 at = (1.0 + vec2(dot(to, right), dot(to, down)) / window.xy / z - window.zw) * 0.5 * size;
+    return vec3(at, z > 1e-6 * across ? z : 0.0);
+}
+bool hides(vec3 at)
+{
+    ivec2 most = textureSize(distances, 0) - 1, cell = ivec2(floor(vec2(at.x, size.y - at.y) / size * vec2(most + 1)));
+    float far = 0.0;
+    for (int k = 0; k < 9; k++) {
+        ivec2 beside = cell + ivec2(k % 3, k / 3) - 1;
+        if (beside == clamp(beside, ivec2(0), most))
+            far = max(far, texelFetch(distances, beside, 0).r);
+    }
+    return far > 0.0 && at.z / across > far + ${BEHIND};
+}`;
 
 const within = (x, low, high) => Math.min(Math.max(x, low), high);
 
@@ -203,7 +230,7 @@ export class ObjectViewer {
             gl.finish();
             this.rough = performance.now() - begun > SLOW_FRAME || this.rough;
         }
-        this.told.drawn();
+        this.told.drawn(finely);
         if (rough)
             setTimeout(() => this.invalidate(), REST_OF_MOVING + 10);
         else
@@ -260,17 +287,32 @@ export class ObjectViewer {
         const { width, height } = this.canvas, k = Math.min(1, MOST_DISTANCES / Math.max(width, height));
         const target = this.target('distances', Math.ceil(k * width), Math.ceil(k * height), true);
         this.model.drawDistances(target, this.cameraOf(this));
-        this.distances = { width: target.width, height: target.height, data: this.device.read(target) };
+        this.distances = null;
+    }
+
+    // ... as numbers, read when the first place asks.
+    get measured() {
+        const { distances: target } = this.targets;
+        if (!this.distances && target)
+            this.distances = { width: target.width, height: target.height, data: this.device.read(target) };
+        return this.distances || {};
     }
 
     // The farthest surface around a place of the canvas hides what lies behind it.
     isSeen([x, y, z]) {
-        const { width, height, data } = this.distances || {}, column = Math.floor(x / this.canvas.width * width), row = Math.floor((1 - y / this.canvas.height) * height);
+        const { width, height, data } = this.measured, column = Math.floor(x / this.canvas.width * width), row = Math.floor((1 - y / this.canvas.height) * height);
         let far = 0;
         for (let j = Math.max(row - 1, 0); j <= Math.min(row + 1, height - 1); j++)
             for (let i = Math.max(column - 1, 0); i <= Math.min(column + 1, width - 1); i++)
                 far = Math.max(far, data[4 * (j * width + i)]);
         return !(far > 0) || z / this.across <= far + BEHIND;
+    }
+
+    async openPins() { return new Pins(this.device, PIN_WAY, (place) => place); }
+
+    pinValues() {
+        const { eye, right, down, ahead, window: shown } = this.cameraOf(this), { width, height } = this.canvas;
+        return { eye, right, down, ahead, window: shown, size: [width, height], across: this.across, distances: { texture: this.targets.distances.texture } };
     }
 
     snapshot() {

@@ -7,6 +7,7 @@ const MARK = '#e8c46a', SHADE = 'rgba(0, 0, 0, .65)';
 const BAR = [80, 200];  // its length, CSS pixels
 const MOST_LABELS = 60;
 const BESIDE = 50;      // what of a note beside the screen is drawn, CSS pixels
+const CROSS = [3, 11];  // from where to where it reaches, CSS pixels
 const REST = 300;       // milliseconds
 
 // Lengths of scale bars: 1, 2 and 5.
@@ -49,13 +50,41 @@ export class Overlay {
         return this.notesByPlace;
     }
 
+    // The notes that have places.
+    placed() {
+        const { notes } = this;
+        if (this.listed !== notes || this.listedVersion !== notes.version)
+            Object.assign(this, { withPlaces: notes.all.filter((note) => note.places.length), listed: notes, listedVersion: notes.version });
+        return this.withPlaces;
+    }
+
+    // Whether the card draws the notes (pins.js): very many on what turns.
+    get isPinned() { return this.turns && this.shown && !!this.notes && this.placed().length > MOST_LABELS; }
+
+    // Draws them, within a frame of the viewer.
+    pin() {
+        const { notes, viewer, pins } = this;
+        if (!this.isPinned)
+            return;
+        if (!this.asked) {
+            this.asked = true;
+            viewer.openPins().then((made) => { this.pins = made; viewer.invalidate(); }, (error) => viewer.told.problem(`${error.message}.`));
+        }
+        if (!pins)
+            return;
+        if (pins.of !== notes || pins.version !== notes.version)
+            pins.set(this.placed());
+        Object.assign(pins, { of: notes, version: notes.version });
+        pins.draw(viewer.pinValues(), this.viewer.canvas.width / Math.max(viewer.canvas.clientWidth, 1));
+    }
+
     // Notes that may be seen within some pixels of the canvas around a box of it; all where one turns.
     around(left, top, right, bottom, margin) {
         const { viewer } = this;
         if (!this.shown || !this.notes)
             return [];
         if (this.turns)
-            return this.notes.all.filter((note) => note.places.length);
+            return this.placed();
         return this.index().within([...viewer.toPicture([left - margin, top - margin]), ...viewer.toPicture([right + margin, bottom + margin])]);
     }
 
@@ -136,6 +165,17 @@ export class Overlay {
         return true;
     }
 
+    // Where keys would take a place.
+    drawCross(x, y) {
+        const { context } = this;
+        context.beginPath();
+        for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+            context.moveTo(x + CROSS[0] * dx, y + CROSS[0] * dy);
+            context.lineTo(x + CROSS[1] * dx, y + CROSS[1] * dy);
+        }
+        this.stroke(context, '#fff', 1.6);
+    }
+
     drawDrawing() {
         const { context, drawing } = this;
         if (!drawing)
@@ -144,20 +184,41 @@ export class Overlay {
         this.path(context, at, drawing.kind === 'polygon');
         this.stroke(context, '#fff', 2);
         at.forEach(([x, y]) => { context.beginPath(); context.arc(x, y, 3.5, 0, 7); this.stroke(context, '#fff', 1.5); });
+        if (drawing.cross)
+            this.drawCross(...drawing.cross);
         if (at.length > 1)
             this.label(context, this.notes.sayLength(drawing.length()), ...at[at.length - 1]);
         return true;
     }
 
-    // The notes one by one, as long as there are not too many of them.
-    drawNotes(seen, width, height) {
+    // Those of them that are seen, with their places on the screen.
+    seenOf(notes, width, height) {
         const inside = ([x, y]) => x > -BESIDE && y > -BESIDE && x < width + BESIDE && y < height + BESIDE;
-        const there = seen.map((note) => [note, note.places.map((p) => this.screen(p))])
+        return notes.map((note) => [note, note.places.map((p) => this.screen(p))])
             .filter(([, at]) => at.every((p) => p) && (!this.turns || at.some(inside)));
-        const moving = there.length > MOST_AT_ONCE && performance.now() - this.moved < REST;
-        for (const [note, at] of moving ? there.slice(0, MOST_AT_ONCE) : there)
+    }
+
+    // The notes one by one.
+    drawNotes(seen, width, height) {
+        const there = this.seenOf(seen, width, height);
+        for (const [note, at] of there)
             this.drawNote(this.context, note, at, there.length <= MOST_LABELS || note === this.chosen);
         return there.length > 0;
+    }
+
+    // What the card does not draw: the chosen note, and texts where few are seen and nothing moves.
+    drawBesidePins(width, height) {
+        const { chosen, context } = this, of = `${this.before} ${this.notes.version} ${width} ${height}`;
+        if (this.labelsOf !== of && performance.now() - this.moved >= REST) {
+            const there = this.seenOf(this.placed(), width, height);
+            Object.assign(this, { labelsOf: of, labels: there.length <= MOST_LABELS ? there : [] });
+        }
+        const labels = this.labelsOf === of ? this.labels : [];
+        labels.forEach(([note, at]) => this.label(context, note.text, ...at[0]));
+        const at = chosen && chosen.places.length ? chosen.places.map((p) => this.screen(p)) : [null];
+        if (at.every((p) => p))
+            this.drawNote(context, chosen, at, true);
+        return labels.length > 0 || !!at[0];
     }
 
     // Tells when the picture has come to rest.
@@ -190,6 +251,8 @@ export class Overlay {
     // All notes; true: some of them on this canvas. Very many move with the picture (marks.js).
     drawAll(view) {
         const { width, height, ratio } = view, { chosen, context } = this, still = this.shown && this.marks.serves(view);
+        if (this.isPinned && this.pins)
+            return this.drawBesidePins(width / ratio, height / ratio);
         const seen = still ? [] : this.around(0, 0, width, height, BESIDE * ratio);
         if (!still && (!view.at || seen.length <= MOST_AT_ONCE)) {
             this.marks.hide();
@@ -203,5 +266,7 @@ export class Overlay {
 
     close() {
         clearTimeout(this.resting);
+        if (this.pins)
+            this.pins.close();
     }
 }

@@ -58,6 +58,21 @@ function pixelOf(scene, d) {
     return [column, (0.5 - Math.atan2(d[1], across) / Math.PI) * height];
 }
 
+// As toCanvas below has it, of directions.
+const PIN_WAY = `
+uniform vec2 size, pan, tilt;  // cosines and sines
+uniform float zoom, planet;
+vec3 project(vec3 d)
+{
+    float right = d.x * pan.x + d.z * pan.y, level = d.x * pan.y - d.z * pan.x;
+    float ahead = level * tilt.x + d.y * tilt.y, up = d.y * tilt.x - level * tilt.y, depth = planet + ahead;
+    return vec3(0.5 * size + vec2(right, -up) * zoom * 0.5 * size.x / depth, depth > 1e-3 ? depth : 0.0);
+}
+bool hides(vec3 at)
+{
+    return false;
+}`;
+
 export class Panorama {
     constructor(scene, painter, device) {
         Object.assign(this, { scene, painter, device });
@@ -90,6 +105,15 @@ export class Panorama {
         const up = b * Math.cos(tilt) + depth * Math.sin(tilt), ahead = depth * Math.cos(tilt) - b * Math.sin(tilt);
         const at = pixelOf(this.scene, [a * Math.cos(pan) + ahead * Math.sin(pan), up, a * Math.sin(pan) - ahead * Math.cos(pan)]);
         return at[1] >= 0 && at[1] <= this.scene.height ? at : null;
+    }
+
+    get pinWay() { return PIN_WAY; }
+
+    directionOf([x, y]) { return unit(rayOf(this.scene, x, y)); }
+
+    pinValues({ pan, tilt, zoom, planet }) {
+        const turned = (degrees) => [Math.cos(degrees * RADIANS), Math.sin(degrees * RADIANS)];
+        return { pan: turned(pan), tilt: turned(tilt), zoom, planet: planet ? 1 : 0 };
     }
 
     toCanvas([x, y], camera, width, height) {

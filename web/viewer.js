@@ -11,7 +11,7 @@ import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
 import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
-import { More } from './more.js';
+import { More, loadMore } from './more.js';
 import { readState, writeState } from './state.js';
 import { brightestExposure, measureRange, meterExposure } from './measure.js';
 import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
@@ -188,6 +188,14 @@ export class Viewer {
         return [at.x + (x - width / 2) / at.scale, at.y + (y - height / 2) / at.scale];
     }
 
+    // Very many notes on what is looked around in (pins.js).
+    async openPins() {
+        const { Pins } = await loadMore(this.home);
+        return new Pins(this.device, this.stage.pinWay, (place) => this.stage.directionOf(place));
+    }
+
+    pinValues() { return { ...this.stage.pinValues(this.camera()), size: [this.canvas.width, this.canvas.height] }; }
+
     // ------------------------------------------------------------ the state line
 
     getState() {
@@ -284,7 +292,8 @@ export class Viewer {
         return { layer: this, lights: this.lights, pass: this.pass, tone: this.tone, exposure: this.exposure, memo: this.memo };
     }
 
-    frame(now) {
+    // `alone`: without the notes.
+    frame(now, alone = false) {
         if (this.closed || this.device.gl.isContextLost())
             return;
         const moving = this.keepPace(now), own = this.seen();
@@ -299,7 +308,7 @@ export class Viewer {
         this.tiles.end();
         if (other)
             this.comparison.draw(this.target('shown0'), this.target('shown1'));
-        this.told.drawn();
+        this.told.drawn(alone);
         this.settle(moving, looks);
     }
 
@@ -427,7 +436,7 @@ export class Viewer {
     // The picture as it is seen, as a PNG.
     snapshot() {
         return new Promise((resolve) => {
-            this.frame(performance.now());
+            this.frame(performance.now(), true);
             this.canvas.toBlob(resolve, 'image/png');
         });
     }

@@ -157,6 +157,21 @@ RELUME_RESULT relume_status relume_notes_write(const relume_notes *notes, const 
                                                enum relume_notes_format format, const char *canvas,
                                                const struct relume_log *log);
 
+// How an object is seen in a picture of it. Borrowed during the call.
+struct relume_notes_sight {
+    int width, height;  // of the picture, pixels, above 0
+    // Where a place of the object is seen, in pixels from the upper left corner; false: nowhere.
+    bool (*see)(void *context, double xy[2], const double place[3]);
+    void *context;
+};
+// The file `path` is an overlay, as RELUME_NOTES_SVG, of a picture of the object that the notes are
+// on; those of which a place is not seen are left out. Lengths are those on the object.
+// RELUME_EINVAL for notes on a picture and sizes below 1, RELUME_EIO, RELUME_ENOMEM. `see` is
+// called from the thread of the call.
+RELUME_RESULT relume_status relume_notes_write_overlay(const relume_notes *notes, const char *path,
+                                                       const struct relume_notes_sight *sight,
+                                                       const struct relume_log *log);
+
 #ifdef __cplusplus
 }
 #endif

@@ -105,6 +105,11 @@ ask "($view.panel.begin('line'), 0)"
 { echo 'drag 70 20 70 20'; echo 'drag 110 44 110 44'; echo 'key Enter'; } >>orders.txt
 ask "(window.relume.setState('pan=200&projection=planet&zoom=0.5'), [[70, 20], [110, 44]].forEach(p => $view.viewer.toPicture(p)), window.relume.setState('pan=30&tilt=10&zoom=1'), ['turned', ...$view.panel.notes.all[0].places.map(p => $view.viewer.toCanvas(p).map(x => Math.round(10 * x) / 10))])"
 echo "write room.page.json $view.panel.notes.toText()" >>orders.txt
+# very many notes: the card draws them, where the look has them; those behind the eye it leaves out
+ask "($view.hint.remove(), $view.status.remove(), $view.keptNotes = $view.panel.notes.page, $view.panel.choose(null), $view.panel.notes.read({ type: 'AnnotationPage', items: Array.from({ length: 200 }, (_, i) => ({ id: 'm' + i, type: 'Annotation', body: { value: 'm' }, target: { selector: { type: 'PointSelector', x: i % 2 ? $view.viewer.toPicture([60, 30])[0] : 2, y: i % 2 ? $view.viewer.toPicture([60, 30])[1] : 24 } } })) }), $view.viewer.invalidate(), new Promise(done => setTimeout(done, 700)).then(() => { let strokes = 0; $view.overlay.context.stroke = () => { strokes++; }; $view.viewer.turn(5, 0); $view.viewer.turn(-5, 0); return new Promise(done => setTimeout(done, 700)).then(() => { delete $view.overlay.context.stroke; return ['pinned', strokes, !!$view.overlay.pins, $view.viewer.toCanvas([2, 24])]; }); }))"
+echo 'shot pinned.png' >>orders.txt
+echo 'snap alone.png' >>orders.txt
+ask "($view.panel.notes.read($view.keptNotes), $view.viewer.invalidate())"
 lamp room 'point 0.5 0.8 0.3' '&pan=30&tilt=10&zoom=1&exposure=3' '--size 128x64 --pan 30 --tilt 10 --exposure 3'
 ask "(document.body.append(document.querySelector('relume-view')), document.querySelector('relume-view').ready.then(() => 'put elsewhere'))"
 ask "(document.querySelector('relume-view').controls.node.remove(), new Promise(done => setTimeout(done, 200)))"
@@ -118,6 +123,11 @@ if [ -e "$axe" ]; then
 else
     skip 'pages are accessible' 'no axe-core; make deps-web gets it'
 fi
+echo "open file://$work/site/dome.html" >>orders.txt
+# a phone: all that is touched is large and within the window; a button shows the rest
+small="(all => [all.length, all.filter(b => b.width < 44 || b.height < 44 || b.left < 0 || b.right > innerWidth).length, document.documentElement.scrollWidth])([...$view.root.querySelectorAll('.strip button, .strip select, .strip input')].map(b => b.getBoundingClientRect()).filter(b => b.width > 0))"
+echo 'size 360 640' >>orders.txt
+ask "new Promise(done => setTimeout(done, 300)).then(() => ['narrow', ...$small, $view.root.querySelector('.unfold').click(), ...$small, $view.root.querySelector('.unfold').getAttribute('aria-expanded')])"
 # pages that cannot be shown
 for page in dome pot room; do
     echo "open file://$work/bad/$page.html" >>orders.txt
@@ -147,6 +157,9 @@ else
 fi
 # the same by the viewer, in a window five times as large
 says 'a line in a panorama stays while one looks elsewhere' '^\["turned",\[70,20\],\[110,44\]\]'
+says 'very many notes in a panorama are drawn by the card' '^\["pinned",0,true,null\]'
+check '... where they lie, and in no picture that is saved' awk -v a="$("$mkimage" read pinned.png 56 26)" -v b="$("$mkimage" read alone.png 56 26)" 'BEGIN {
+    split(a, p, " "); split(b, q, " "); print a, "and", b; exit !(p[1] > 0.7 && p[2] > 0.45 && p[3] < 0.25) || (q[1] > 0.7 && q[2] > 0.45) }'
 printf 'size 640 320\nkey ctrl+n\nshot none.png\nclick 163 48\nshot none.png\nclick 350 100\nclick 550 220\nkey enter\nshot line.png\n' >jot.txt
 "$VIEWER" room.exr --state 'pan=30&tilt=10&zoom=1' --script jot.txt >jot.out 2>&1 || not_ok 'the viewer notes in a look' "$(cat jot.out)"
 "$RELUME" notes room.exr --import room.page.json --json >both.json 2>note.txt
@@ -156,6 +169,7 @@ check 'page and viewer find the same places of a panorama, and the tool keeps bo
 says 'two looks are compared' '^"difference"'
 says 'without WebGL2 there is a still picture and a sentence' '^\["Only a still picture can be shown: this browser has no WebGL2\.",true,"'
 [ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'
+says 'on a phone all controls are at hand and large enough' '^\["narrow",11,0,360,null,19,0,360,"true"\]'
 says 'a view that is put elsewhere opens again' '^"put elsewhere"'
 says 'a newer file says so' '^\["Only a still picture can be shown: this file was published by a newer relume .format 9.*",true\]'
 says 'a missing tile is said' '^\["Only a still picture can be shown: room/v0/0_0_0.bin is missing\."'

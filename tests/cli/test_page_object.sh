@@ -30,7 +30,15 @@ expect_ok 'a ruler sets its scale' - "$RELUME" notes any.exr --ruler n3 --length
 check '... in millimetres' grep -q '^n3 *line *56.5685 mm' out.txt
 expect_fail 'a place without depth' 2 "expected places as 'X,Y,Z X,Y,Z'" - "$RELUME" notes any.exr --add 'point 1,2'
 expect_fail 'a place far away' 2 'lies far beside the object' - "$RELUME" notes any.exr --add 'point 1,2,99'
-expect_fail 'no overlay of an object' 2 'any.exr is an object' - "$RELUME" notes any.exr --to svg -o notes.svg
+expect_ok 'an overlay of a picture of it' - "$RELUME" notes any.exr --to svg -o notes.svg --eye 0,0,9 --picture 128x96
+check 'has what is in front, where the picture has it' sh -c "grep -q '<circle cx=.64. cy=.48.' notes.svg && grep -q '<g id=.n4.><path' notes.svg && ! grep -q 'id=.n2.' notes.svg"
+check '... with lengths of the object, escaped' sh -c "grep -q '&#60;b&#62;front' notes.svg"
+expect_ok 'from behind' - "$RELUME" notes any.exr --to svg -o back.svg --eye 0,0,-9
+check '... what is in front is hidden' sh -c "grep -q 'id=.n2.' back.svg && ! grep -q 'id=.n1.' back.svg"
+# of a ball of radius 1, over a chord as long as the square root of 2, towards the eye: 0.35
+expect_ok 'the surface over a line' - "$RELUME" notes any.exr --profile n3 -o profile.csv --eye 3,3,3
+check '... is that of a ball' awk -F, 'NR > 1 && $5 + 0 > most { most = $5 } END { print most; exit !(most > 0.3 && most < 0.352 && NR == 257) }' profile.csv
+expect_fail 'a profile of a point' 2 "note 'n1' is a point; expected a line" - "$RELUME" notes any.exr --profile n1 -o lost.csv
 expect_fail 'its notes lie beside it' 2 'any.exr is an object' - "$RELUME" notes any.exr --embed
 cp any.notes.json fixed.notes.json
 sed -i 's/"max": \[[^,]*/"max": [3/' fixed.notes.json
@@ -132,6 +140,23 @@ ask "['touched', window.relume.getState()]"
 echo 'state light=dir,0,0,1&eye=0,0,9' >>orders.txt
 echo 'touch 54 48 34 48 74 48 94 48' >>orders.txt
 ask "['pinched', window.relume.getState()]"
+# a line by keys alone: from the middle to 20 pixels beside it
+ask "($view.panel.choose(null), window.relume.setState('light=dir,0,0,1&eye=0,0,9'), window.relume.idle().then(() => ($view.panel.begin('line'), 0)))"
+echo 'key Space ArrowRight ArrowRight Space Enter' >>orders.txt
+ask "(n => ['by keys', n.kind, n.places.length, n.places[0].map(x => +x.toFixed(2)), Math.round($view.viewer.toCanvas(n.places[1])[0])])($view.panel.notes.all[$view.panel.notes.all.length - 1])"
+# very many notes: those in front are drawn on the card, without a stroke on the canvas; those behind are not
+item="(n, x, y, z) => ({ id: 'm' + n, type: 'Annotation', body: { value: 'm' + n }, target: { selector: { type: 'PointSelector', x, y, z } } })"
+ask "($view.status.remove(), $view.overlay.context.stroke = () => { window.strokes = (window.strokes || 0) + 1; }, $view.panel.choose(null), $view.panel.notes.read({ type: 'AnnotationPage', items: Array.from({ length: 200 }, (_, i) => ($item)(i, i % 2 ? 0.4 : 0, 0, i % 2 ? -0.9165 : 1)) }), window.relume.setState('light=dir,0,0,1&eye=0,0,9'), window.relume.idle().then(() => window.relume.idle()).then(() => { window.before = window.strokes; $view.viewer.turn(0.5, 0); $view.viewer.turn(-0.5, 0); return new Promise(done => setTimeout(done, 500)); }).then(() => ['many', window.strokes === undefined || window.strokes - window.before, $view.overlay.isPinned, $view.viewer.toCanvas([0.4, 0, 0.9165]).map(Math.round)]))"
+echo 'shot many.png' >>orders.txt
+echo 'snap alone.png' >>orders.txt
+# in a page of one's own, by the element that pictures have
+cat >site/own.html <<'END'
+<!DOCTYPE html><script src="relume/relume.js" defer></script><relume-view src="any/object.json" state="eye=0,0,9&light=dir,0,3,4" style="position:fixed;inset:0;height:auto;min-height:0"></relume-view>
+END
+echo "open file://$work/site/own.html" >>orders.txt
+ask "(v => v.idle().then(() => (v.object.controls.node.remove(), new Promise(done => setTimeout(done, 200)))).then(() => ['embedded', v.getState(), v.object.tagName, v.viewer || null]))(document.querySelector('relume-view'))"
+echo 'state light=dir,0,1,1' >>orders.txt
+echo 'snap embedded.png' >>orders.txt
 open shiny
 snap shiny 'light=dir,0,1,1' --light 'dir 0 1 1'
 snap shiny 'light=dir,1,0.2,1&eye=2,1,2' --eye 2,1,2 --light 'dir 1 0.2 1'
@@ -147,6 +172,10 @@ if [ -e "$axe" ]; then
     ask "new Promise(done => { const script = document.createElement('script'); script.src = 'axe.js'; script.onload = done; document.head.append(script); })"
     ask "axe.run().then(found => 'axe ' + found.violations.filter(v => ['serious', 'critical'].includes(v.impact)).map(v => v.id))"
 fi
+# a phone: all that is touched is large and within the window; a button shows the rest
+small="(all => [all.length, all.filter(b => b.width < 44 || b.height < 44 || b.left < 0 || b.right > innerWidth).length, document.documentElement.scrollWidth])([...$view.root.querySelectorAll('.strip button, .strip select, .strip input')].map(b => b.getBoundingClientRect()).filter(b => b.width > 0))"
+echo 'size 360 640' >>orders.txt
+ask "new Promise(done => setTimeout(done, 300)).then(() => ['narrow', ...$small, $view.root.querySelector('.unfold').click(), ...$small, $view.root.querySelector('.unfold').getAttribute('aria-expanded')])"
 echo 'size 128 96' >>orders.txt
 for page in any shiny fixed; do
     echo "open file://$work/bad/$page.html" >>orders.txt
@@ -173,6 +202,7 @@ says 'a finger turns it' '^\["touched","eye=-[0-9.]+,0,[-0-9.]+&light=dir,0,0,1"
 says 'two fingers enlarge it' '^\["pinched","eye=0,0,9&at=[-0-9.e]+,0,3&light=dir,0,0,1"\]'
 says 'a server has all that it asks for' '^asked any/object.bin$'
 check '... and is not asked for more' sh -c "! grep '^asked .* missing' said.txt | grep -v favicon"
+says 'on a phone all controls are at hand and large enough' '^\["narrow",11,0,360,null,16,0,360,"true"\]'
 says 'keys open the notes' '^\["keys",false,"Point"\]'
 [ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'
 below 'a kept look stays' "$("$mkimage" codediff kept.png page1.png)" 0.01
@@ -182,8 +212,20 @@ near() { # two pictures, a pixel of both
         split(a, p, " "); split(b, q, " "); for (c = 1; c <= 3; c++) { d = p[c] - q[c]; bad = bad || d > 0.01 || d < -0.01 }
         print a, "and", b; exit bad || !(p[1] > 0.01) }'
 }
+near_colour() { # picture, pixel, its linear colour
+    awk -v a="$("$mkimage" read $1 $2 $3)" -v b="$4 $5 $6" 'BEGIN { split(a, p, " "); split(b, q, " ")
+        for (c = 1; c <= 3; c++) { d = p[c] - q[c]; bad = bad || d > 0.1 || d < -0.1 } print a; exit bad }'
+}
+not() { ! "$@"; }
 check 'beside each other this object is at the left' near slider.png page1.png 50 44
 check 'and the other one at the right' near slider.png other.png 78 44
+says 'keys alone draw a line' '^\["by keys","line",2,\[0,0,(0\.9[89]|1)\],84\]'
+says '<relume-view> shows an object too' '^\["embedded","eye=0,0,9&light=dir,0,0.6,0.8","RELUME-OBJECT",null\]'
+below '... as its page does' "$("$mkimage" codediff embedded.png page1.png)" 0.01
+says 'very many notes are drawn by the card' '^\["many",(0|true),true,\[76,48\]\]'
+check '... those in front are seen' near_colour many.png 60 44 0.807 0.552 0.144
+check '... those behind are not' near many.png alone.png 72 44
+check '... and no picture that is saved has them' not near many.png alone.png 60 44
 expect_ok 'what a page saved comes back' '1 new note' "$RELUME" notes any.exr --import saved.json
 check 'with its place, text and light' grep -q '^n6 *line .* made <here>' out.txt
 if [ "$python" ]; then

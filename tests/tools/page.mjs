@@ -121,7 +121,7 @@ const orders = {
     async key(...names) {
         for (const name of names)
             for (const type of ['keyDown', 'keyUp'])
-                await send('Input.dispatchKeyEvent', { type, key: name, code: name.length > 1 ? name : undefined,
+                await send('Input.dispatchKeyEvent', { type, key: name === 'Space' ? ' ' : name, code: name.length > 1 ? name : undefined,
                                                        text: name.length === 1 && type === 'keyDown' ? name : undefined,
                                                        windowsVirtualKeyCode: { Tab: 9, Enter: 13 }[name] });
     },

@@ -2,6 +2,7 @@
 // file
 #include "cli.h"
 
+#include "commands/notes_object.h"
 #include "program/notes_file.h"
 
 #include <math.h>
@@ -15,7 +16,8 @@ struct notes_options {
     const char *text, *state, *creator, *rewrite;
     double scale, length;
     const char *ruler, *profile, *output, *canvas;
-    int view;
+    int view, picture[2];
+    struct relume_vec3 eye;
     enum { TO_NOTHING, TO_CSV, TO_SVG, TO_IIIF } to;
     bool embed, extract, json;
 };
@@ -46,8 +48,14 @@ static const struct option options[] = {
     NAME("--to", to, "FORMAT", "csv: a table; svg: an overlay; iiif: an annotation page", TO_CSV,
          "csv", "svg", "iiif"),
     TEXT("--profile", profile, "ID",
-         "the height of the surface along this line, from depth or normals, as a table"),
+         "the height of the surface along this line, from depth or normals, as a table; on an "
+         "object over the straight line, towards the eye"),
     INT("--view", view, "N", "the view for --profile; default: 0", 0, 1 << 20),
+    POINT("--eye", eye, "x,y,z",
+          "of an object: who sees the overlay, or the profile's upper side; default: the note's "
+          "own, of an overlay as the page opens"),
+    SIZE("--picture", picture, "WxH",
+         "of an object: the picture under the overlay; default: 512x512", 1, 16384),
     TEXT("--canvas", canvas, "URL", "the canvas of an IIIF annotation page"),
     TEXT_AS(OPTION_OUTPUT, "-o", output, "OUT", "the file for --to or --profile"),
     FLAG("--json", json, "print one JSON object"),
@@ -242,11 +250,20 @@ static void print_profile(const void *context, FILE *f)
     }
 }
 
+static struct notes_sight sight_of(const struct notes_options *o)
+{
+    return (struct notes_sight){.args = &o->args,
+                                .eye = given(o, &o->eye) ? &o->eye : NULL,
+                                .size = {o->picture[0], o->picture[1]},
+                                .output = o->output};
+}
+
 static relume_status write_profile(const relume_notes *notes, relume_pack *pack,
                                    const struct notes_options *o)
 {
     int i;
     struct relume_profile profile = {0};
+    const struct notes_sight sight = sight_of(o);
     relume_status status = find(&i, notes, o->profile, "--profile");
     if (status)
         return status;
@@ -254,6 +271,8 @@ static relume_status write_profile(const relume_notes *notes, relume_pack *pack,
     if (note->kind != RELUME_NOTE_LINE)
         return usage_error("--profile: note '%s' is a %s; expected a line", o->profile,
                            relume_note_kind_name(note->kind));
+    if (!pack)
+        return notes_object_profile(notes, note, &sight);
     status = profile_of(&profile, note, pack, o);
     if (!status)
         status =
@@ -395,7 +414,10 @@ static relume_status work(relume_pack *pack, const struct relume_notes_file *fil
     relume_status status = relume_notes_open(&notes, o->args.input[0], file, o->args.log);
     if (!status)
         status = change(notes, file->solid, o);
-    if (!status && o->to)
+    const struct notes_sight sight = sight_of(o);
+    if (!status && o->to == TO_SVG && file->solid && !pack)
+        status = notes_object_overlay(notes, &sight);
+    else if (!status && o->to)
         status = relume_notes_write(notes, o->output, (enum relume_notes_format)(o->to - TO_CSV),
                                     o->canvas, o->args.log);
     if (!status && o->profile)
@@ -414,6 +436,8 @@ static relume_status on_picture(const struct notes_options *o)
 {
     const char *path = o->args.input[0];
     relume_pack *pack = NULL;
+    if (given(o, &o->eye) || given(o, o->picture))
+        return usage_error("--eye and --picture are of objects; %s is a picture", path);
     relume_status status = relume_open(&pack, path, relume_open_params(.log = o->args.log));
     if (!status) {
         const struct relume_pack_info *info = relume_pack_info(pack);
@@ -433,14 +457,9 @@ static relume_status on_object(const struct notes_options *o)
     struct relume_notes_file file = {.name = base_name(path), .solid = true};
     relume_baked *baked = NULL;
     float box[2][3];
-    if (o->embed || o->extract || o->profile || o->to == TO_SVG)
-        return usage_error("%s: %s is an object; --embed, --extract, --profile and --to svg are of "
-                           "pictures",
-                           o->embed     ? "--embed"
-                           : o->extract ? "--extract"
-                           : o->profile ? "--profile"
-                                        : "--to svg",
-                           path);
+    if (o->embed || o->extract)
+        return usage_error("%s: %s is an object, whose notes lie beside it",
+                           o->embed ? "--embed" : "--extract", path);
     const relume_status status = relume_baked_open(&baked, path, NULL, o->args.log);
     if (status)
         return status;

@@ -1,7 +1,7 @@
 // near.js - lamps that stand near: each pixel sees them from a direction of its own; after
 // viewer/shaders/near.frag.glsl and src/relight/near_lights.c
 import { MOST_SIDE, patchSide, patchesOf } from './lights.js';
-import { DECODE, HEAD } from './shaders.js';
+import { DECODE, guideGain, HEAD } from './shaders.js';
 import { loadPicture } from './tiles.js';
 
 const DOWN = 64;           // rows of the table from the pole to the horizon
@@ -95,9 +95,9 @@ void triangles_find(out ivec3 node, out vec3 share, vec3 world)
 `;
 
 // One lamp on one tile. The table has, by direction, three planes a texel: layers of red, green and
-// blue for each layer of codes, then the constants. `between`: it has them by captured light, between which
+// blue for each layer of codes, then the constants, then, with a guide, what is added to the sum. `between`: it has them by captured light, between which
 // light is blended.
-const nearShader = (layers, projection, between) => `${HEAD}${DECODE}
+const nearShader = (layers, guide, projection, between) => `${HEAD}${DECODE}
 uniform sampler2DArray codes;
 uniform sampler2DArray table;
 uniform sampler2D depth;
@@ -132,14 +132,17 @@ bool surface_at(out vec3 point)
 ${between ? TRIANGLES : ''}
 vec3 value_at(vec2 at)
 {
-    vec3 value = texture(table, vec3(at, float(${3 * layers}))).rgb;
+    vec3 value = ${guide ? `texture(table, vec3(at, float(${3 * layers + 1}))).rgb` : 'vec3(0.0)'};
+    float gain = 1.0;
     for (int j = 0; j < ${layers}; j++) {
         vec3 code = texelFetch(codes, ivec3(gl_FragCoord.xy, j), 0).rgb;
+        if (j == 0)
+            gain = ${guideGain(guide, 'code.r')};
         value += vec3(dot(code, texture(table, vec3(at, float(3 * j))).rgb),
                       dot(code, texture(table, vec3(at, float(3 * j + 1))).rgb),
                       dot(code, texture(table, vec3(at, float(3 * j + 2))).rgb));
     }
-    return decode(value);
+    return decode(texture(table, vec3(at, float(${3 * layers}))).rgb + gain * value);
 }
 
 void main()
@@ -174,21 +177,23 @@ export class NearLamps {
 
     // Weights of one column and row of a table, as Relighter.block has them for one.
     putWeights(texels, i, size, weights) {
-        const { planes, layers, scale, offset } = this.scene, layer = 4 * size;
+        const { planes, layers, scale, offset, guide } = this.scene, layer = 4 * size;
         for (let c = 0; c < 3; c++) {
-            let constant = weights[c * (planes + 1) + planes];
+            let added = 0;
             for (let k = 0; k < planes; k++) {
                 const w = weights[c * (planes + 1) + k];
-                constant += w * offset[k];
+                added += w * offset[k];
                 texels[layer * (3 * Math.floor(k / 3) + c) + 4 * i + k % 3] = 255 * w * scale[k];
             }
-            texels[layer * 3 * layers + 4 * i + c] = constant;
+            texels[layer * 3 * layers + 4 * i + c] = weights[c * (planes + 1) + planes] + (guide ? 0 : added);
+            if (guide)
+                texels[layer * (3 * layers + 1) + 4 * i + c] = added;
         }
     }
 
     // What directions are to the file: tables of weights, and of where light is taken from.
     makeTables() {
-        const { scene, basis } = this, { hemispherical, pole, lights } = scene.basis, depth = 3 * scene.layers + 1;
+        const { scene, basis } = this, { hemispherical, pole, lights } = scene.basis, depth = 3 * scene.layers + (scene.guide ? 2 : 1);
         const rows = hemispherical ? DOWN + 1 : 2 * DOWN + 2, columns = 4 * DOWN + 1, n = rows * columns, captured = lights.length / 3;
         const size = this.between ? captured : n, texels = new Float32Array(4 * size * depth), taken = new Float32Array(4 * n);
         for (let i = 0; i < n; i++) {
@@ -291,8 +296,8 @@ export class NearLamps {
 
     // Adds a lamp's light to a tile's.
     add(target, tile, lamp) {
-        const { scene, device } = this, { layers, projection } = scene, step = 2 ** tile.level, view = scene.views.find((v) => v.name === tile.view);
-        const program = device.program(`near ${layers} ${projection} ${this.between}`, () => nearShader(layers, projection, this.between));
+        const { scene, device } = this, { layers, guide, projection } = scene, step = 2 ** tile.level, view = scene.views.find((v) => v.name === tile.view);
+        const program = device.program(`near ${layers} ${guide} ${projection} ${this.between}`, () => nearShader(layers, guide, projection, this.between));
         device.begin(target, { clear: false, add: 'rgb' });
         program.set({
             codes: { texture: tile.codes, array: true }, table: { texture: this.table, array: true }, depth: { texture: this.depths.get(view.name) || null },

@@ -1,5 +1,5 @@
 // relight.js - tiles under the present lights; after src/relight/relight.c
-import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader } from './shaders.js';
+import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader, strideOf } from './shaders.js';
 import { isNear, spread } from './lights.js';
 
 const SIZES = [1, 2, 4, 8, MOST_LIGHTS];  // lights of a batch: few shaders
@@ -9,6 +9,7 @@ export class Relighter {
     // `more`: for lamps that stand near, and for what moves between captured lights (more.js).
     constructor(device, scene, basis, more) {
         Object.assign(this, { device, scene, basis, more });
+        this.stride = strideOf(scene.layers, scene.guide);
         this.lamps = [];
         this.moved = null;
         this.key = relighters++;  // of its pictures of tiles
@@ -16,29 +17,31 @@ export class Relighter {
         this.batches = [];
         this.buffer = device.gl.createBuffer();
         // lights whose numbers have room in a block: few of many planes on telephones
-        this.most = Math.max(1, Math.floor(device.gl.getParameter(device.gl.MAX_UNIFORM_BLOCK_SIZE) / (16 * (3 * scene.layers + 2))));
+        this.most = Math.max(1, Math.floor(device.gl.getParameter(device.gl.MAX_UNIFORM_BLOCK_SIZE) / (16 * this.stride)));
         this.samples = null;
         this.count = 0;
     }
 
     // Numbers of a light in the shader's block; the quantiser goes into the weights.
     block(out, at, weights, colour) {
-        const { planes, layers, scale, offset } = this.scene, stride = planes + 1, last = 4 * 3 * layers;
+        const { planes, layers, scale, offset, guide } = this.scene, stride = planes + 1, last = 4 * 3 * layers;
         for (let c = 0; c < 3; c++) {
-            let constant = weights[c * stride + planes];
+            let added = 0;
             for (let k = 0; k < planes; k++) {
                 const w = weights[c * stride + k];
-                constant += w * offset[k];
+                added += w * offset[k];
                 out[at + 4 * k + c] = 255 * w * scale[k];
             }
-            out[at + last + c] = constant;
+            out[at + last + c] = weights[c * stride + planes] + (guide ? 0 : added);
             out[at + last + 4 + c] = colour[c];
+            if (guide)
+                out[at + last + 8 + c] = added;
         }
     }
 
     // Batches of so many lights; those of `most` that are missing are dark.
     blocks(lights, most) {
-        const size = 4 * (3 * this.scene.layers + 2), batches = [];
+        const size = 4 * this.stride, batches = [];
         for (let first = 0; first < lights.length; first += most) {
             const some = lights.slice(first, first + most), data = new Float32Array(size * most);
             some.forEach((light, i) => this.block(data, i * size, light.weights, light.colour));
@@ -114,8 +117,8 @@ export class Relighter {
     }
 
     drawBatch(target, tile, batch, i) {
-        const { layers } = this.scene;
-        const program = this.device.program(`relight ${layers} ${batch.most}`, () => relightShader(layers, batch.most));
+        const { layers, guide } = this.scene;
+        const program = this.device.program(`relight ${layers} ${guide} ${batch.most}`, () => relightShader(layers, guide, batch.most));
         this.device.begin(target, { clear: i === 0, add: i > 0 && 'rgb' });
         this.draw(program, tile, batch);
     }
@@ -167,14 +170,14 @@ export class Relighter {
     surface(tile) {
         if (tile.surface)
             return tile.surface;
-        const { gl } = this.device, surface = this.device.target(tile.width, tile.height);
+        const { gl } = this.device, { layers, guide } = this.scene, surface = this.device.target(tile.width, tile.height);
         surface.albedo = this.device.texture(gl.LINEAR);
         gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA16F, tile.width, tile.height);
         gl.bindFramebuffer(gl.FRAMEBUFFER, surface.frame);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, surface.albedo, 0);
         gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
         this.device.begin(surface);
-        this.draw(this.device.program(`normals ${this.scene.layers}`, () => normalShader(this.scene.layers, this.mostSamples)), tile, this.samplesBlock());
+        this.draw(this.device.program(`normals ${layers} ${guide}`, () => normalShader(layers, guide, this.mostSamples)), tile, this.samplesBlock());
         tile.surface = surface;
         return surface;
     }

@@ -1,7 +1,7 @@
 // scene.js - what scene.json says, checked before anything is made of it
 import { Failure, loadJson } from './load.js';
 
-const NEWEST = 1;
+const NEWEST = 2;
 const PROJECTIONS = ['planar', 'slab', 'cylindrical', 'spherical', 'cube'];
 
 function insist(good, what) {
@@ -97,6 +97,7 @@ export function checkScene(scene, address) {
     insist(PROJECTIONS.includes(scene.projection), `unknown projection ${scene.projection}`);
     insist(isWhole(scene.planes, 1, 192) && isWhole(scene.functions, 1, 4096), 'number of planes');
     insist(areNumbers(scene.scale, scene.planes) && areNumbers(scene.offset, scene.planes), 'scales');
+    insist(scene.knee === undefined || scene.knee > 0, 'the guide of its planes');
     checkBasis(scene.basis);
     checkLevels(scene);
     checkViews(scene);
@@ -105,6 +106,8 @@ export function checkScene(scene, address) {
     scene.transform = floatsOf(scene.transform, 3 * scene.planes * scene.functions, 'transform');
     scene.mean = floatsOf(scene.mean, 3 * scene.functions, 'mean');
     scene.layers = Math.ceil(scene.planes / 3);
+    // of linear light: what makes the gain of a pixel of the code of its first plane
+    scene.guide = scene.knee ? [255 * scene.scale[0], scene.offset[0], scene.knee] : null;
     scene.base = new URL('.', address).href;
     scene.takesLamps = !!scene.window || scene.views.every((view) => view.depth);  // that stand near
     return scene;

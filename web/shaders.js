@@ -27,14 +27,22 @@ vec3 decode(vec3 v)
 `;
 
 // Of one light: three weights a layer, for its R, G and B, then the constant, then its colour (of
-// normals: its direction).
+// normals: its direction), then, where planes have a guide (src/publish/guide.h), what is added to their sum.
 export const MOST_LIGHTS = 16;
 export const MOST_SAMPLES = 20;
-const weightsBlock = (layers, lights) => `
+export const strideOf = (layers, guide) => 3 * layers + (guide ? 3 : 2);
+
+// What the sum of a pixel's planes counts, by the code of the first.
+export function guideGain(guide, code) {
+    const [scale, offset, knee] = (guide || []).map((v) => v.toExponential());
+    return guide ? `(${knee} + abs(${scale} * ${code} + (${offset})))` : '1.0';
+}
+
+const weightsBlock = (layers, guide, lights) => `
 const int LAYERS = ${layers};
-const int STRIDE = ${3 * layers + 2};
+const int STRIDE = ${strideOf(layers, guide)};
 uniform sampler2DArray codes;
-layout(std140) uniform Weights { vec4 weight[${(3 * layers + 2) * lights}]; };
+layout(std140) uniform Weights { vec4 weight[${strideOf(layers, guide) * lights}]; };
 uniform int lights;
 vec3 code[LAYERS];
 void fetch()
@@ -45,20 +53,20 @@ void fetch()
 vec3 value(int light)
 {
     int w = light * STRIDE;
-    vec3 v = weight[w + 3 * LAYERS].rgb;
+    vec3 v = ${guide ? 'weight[w + 3 * LAYERS + 2].rgb' : 'vec3(0.0)'};
     for (int j = 0; j < LAYERS; j++)
         v += code[j].r * weight[w + 3 * j].rgb + code[j].g * weight[w + 3 * j + 1].rgb +
              code[j].b * weight[w + 3 * j + 2].rgb;
-    return v;
+    return weight[w + 3 * LAYERS].rgb + ${guideGain(guide, 'code[0].r')} * v;
 }
 `;
 
 // One tile under `count` lights: each decoded by itself, then added in linear light. Written out, since
 // software renderers look up what an index is computed for pixel by pixel.
-export function relightShader(layers, count) {
-    const stride = 3 * layers + 2, each = Array.from({ length: layers }, (_, j) => j);
-    const value = (w) => [`weight[${w + 3 * layers}].rgb`, ...each.flatMap((j) => ['r', 'g', 'b'].map((c, k) =>
-        `code${j}.${c} * weight[${w + 3 * j + k}].rgb`))].join(' + ');
+export function relightShader(layers, guide, count) {
+    const stride = strideOf(layers, guide), each = Array.from({ length: layers }, (_, j) => j);
+    const planes = (w) => each.flatMap((j) => ['r', 'g', 'b'].map((c, k) => `code${j}.${c} * weight[${w + 3 * j + k}].rgb`)).join(' + ');
+    const value = (w) => `weight[${w + 3 * layers}].rgb + ${guide ? `gain * (weight[${w + 3 * layers + 2}].rgb + ${planes(w)})` : planes(w)}`;
     return `${HEAD}${DECODE}
 uniform sampler2DArray codes;
 layout(std140) uniform Weights { vec4 weight[${stride * count}]; };
@@ -67,13 +75,14 @@ void main()
 {
     vec3 sum = vec3(0.0);
     ${each.map((j) => `vec3 code${j} = texelFetch(codes, ivec3(gl_FragCoord.xy, ${j}), 0).rgb;`).join('\n    ')}
-    ${Array.from({ length: count }, (_, i) => `sum += weight[${i * stride + stride - 1}].rgb * decode(${value(i * stride)});`).join('\n    ')}
+    float gain = ${guideGain(guide, 'code0.r')};
+    ${Array.from({ length: count }, (_, i) => `sum += weight[${i * stride + 3 * layers + 1}].rgb * decode(${value(i * stride)});`).join('\n    ')}
     colour = vec4(sum, 1.0);
 }`;
 }
 
 // Normals and albedo of a tile by robust photometric stereo; after src/math/lambert.c.
-export const normalShader = (layers, samples) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, samples)}
+export const normalShader = (layers, guide, samples) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, guide, samples)}
 layout(location = 0) out vec4 normal;
 layout(location = 1) out vec4 albedo;
 const int ROUNDS = 5;

@@ -18,17 +18,17 @@ struct coding {
 };
 
 // `most`: the largest range of the planes that share the unit. Zero lies on the lattice of the
-// quantised DC, so that planes that are mostly zero stay so.
-static struct coding choose_coding(double min, double max, double most, double step)
+// quantised DC, so that planes that are mostly zero stay so; `whole`: it is a code, too.
+static struct coding choose_coding(double min, double max, double most, double step, bool whole)
 {
     const double least = fmax(most, 1e-9) / 254.0;
     struct coding c;
     c.step = (int)fmin(fmax(floor(step / least), 1.0), 255.0);
     c.unit = fmax(step / c.step, least);
-    const double middle = (min + max) / 2.0 / c.unit, lattice = c.step / 8.0;
+    const double middle = (min + max) / 2.0 / c.unit, lattice = whole ? c.step : c.step / 8.0;
     c.zero = 128.0 - rint(middle / lattice) * lattice;
     if (min / c.unit + c.zero < 0.0 || max / c.unit + c.zero > 255.0)
-        c.zero = 127.5 - middle;
+        c.zero = whole ? rint(127.5 - middle) : 127.5 - middle;
     return c;
 }
 
@@ -42,16 +42,17 @@ static void choose_codings(const struct sheet *s, double step, struct coding *ou
         weight = fmax(weight, s->weight[p]);
     }
     for (int p = 0; p < SHEET_PLANES; p++) {
-        const bool own = p < s->planes && s->weight[p] < weight;
+        const bool own = p < s->planes && (s->own || s->weight[p] < weight);
         if (p >= s->planes)
             out[p] = (struct coding){1.0, 128.0, out[0].step};
         else if (s->ycbcr)
-            out[p] = choose_coding(min, max, max - min, step / weight / sqrt(ycbcr_energy[0]));
+            out[p] =
+                choose_coding(min, max, max - min, step / weight / sqrt(ycbcr_energy[0]), false);
         else if (own)
             out[p] = choose_coding(s->minimum[p], s->maximum[p], s->maximum[p] - s->minimum[p],
-                                   step / s->weight[p]);
+                                   step / s->weight[p], s->own);
         else
-            out[p] = choose_coding(s->minimum[p], s->maximum[p], most, step / weight);
+            out[p] = choose_coding(s->minimum[p], s->maximum[p], most, step / weight, false);
         if (s->fixed && p < s->planes) {
             out[p].unit = 1.0 / 255.0;
             out[p].zero = 0.0;

@@ -20,6 +20,7 @@ struct sheet {
     const float *plane[SHEET_PLANES];  // [height][width]
     double minimum[SHEET_PLANES], maximum[SHEET_PLANES];
     double weight[SHEET_PLANES];  // error of the picture that a unit of error makes
+    bool own;                     // each plane has its own unit, whatever the others' ranges are
     bool fixed;                   // codes are 255 x value: no scale of their own
     bool ycbcr;                   // red, green and blue of one thing
     bool blocks;                  // report every block

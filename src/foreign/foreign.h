@@ -29,6 +29,7 @@ struct foreign {
     int planes;             // 3 K, K + 3 or K
     uint8_t *codes;         // [planes][height][width]
     float *scale, *offset;  // [planes]: C = code * scale + offset, 1 is white
+    float knee;             // joint: not 0: C counts knee + |C_0| times
 };
 
 // Space for `planes` planes. RELUME_ELIMIT with a sentence when the size is over the limits.

@@ -39,6 +39,11 @@ static void read_foreign(const struct foreign *f, size_t first, size_t n, float 
         for (size_t i = 0; i < n; i++)
             out[p * n + i] =
                 (float)f->codes[p * foreign_pixels(f) + first + i] * f->scale[p] + f->offset[p];
+    for (size_t i = 0; f->knee > 0.0f && i < n; i++) {
+        const float gain = f->knee + fabsf(out[i]);
+        for (size_t p = 0; p < (size_t)f->planes; p++)
+            out[p * n + i] *= gain;
+    }
 }
 
 static double compare_row(const struct judge *j, size_t row, const float *a, const float *b,

@@ -138,13 +138,15 @@ relume_status planes_sample(struct planes *out, const struct planes *p, int ever
                             const struct relume_log *log)
 {
     const int blocks = p->height / BLOCK, kept = (blocks + every - 1) / every;
-    const size_t block = (size_t)p->width * BLOCK;
-    relume_status status = allocate(out, p->width, kept * BLOCK, p->count, near, log);
+    const int rows = every == 1 ? p->height : kept * BLOCK;
+    const size_t row = (size_t)p->width;
+    relume_status status = allocate(out, p->width, rows, p->count, near, log);
     for (int i = 0; !status && i < p->count; i++) {
-        float *to = out->data + (size_t)i * (size_t)kept * block;
-        for (int b = 0; b < kept; b++)
-            memcpy(to + (size_t)b * block, planes_at(p, i) + (size_t)(b * every) * block,
-                   block * sizeof *to);
+        float *to = out->data + (size_t)i * (size_t)rows * row;
+        for (int y = 0; y < rows; y++)
+            memcpy(to + (size_t)y * row,
+                   planes_at(p, i) + (size_t)(y / BLOCK * every * BLOCK + y % BLOCK) * row,
+                   row * sizeof *to);
         out->minimum[i] = p->minimum[i];
         out->maximum[i] = p->maximum[i];
     }

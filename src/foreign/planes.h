@@ -13,7 +13,7 @@ struct planes {
 // Temporary data goes beside `near`. RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status planes_make(struct planes *out, const struct plan *plan, const struct source *s,
                           const char *near, int threads);
-// Every `every`-th row of blocks of `p`, for quick trials.
+// Every `every`-th row of blocks of `p`, for quick trials; 1: all of it.
 relume_status planes_sample(struct planes *out, const struct planes *p, int every, const char *near,
                             const struct relume_log *log);
 void planes_free(struct planes *p);

@@ -8,6 +8,7 @@
 #include "math/lsq.h"
 #include "math/vec.h"
 #include "publish/functions.h"
+#include "publish/guide.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,17 +31,42 @@ static struct relume_vec3 spiral(int i, const struct relume_coder_info *info)
                         : vec3_of(r * cos(phi), r * sin(phi), z);
 }
 
-// G = sum over directions and channels of w w^T, [P][P].
-static double *metric_of(const struct source *s, const struct relume_coder_info *info)
+// The lights by which errors count, and how much.
+struct jury {
+    int count;
+    struct relume_vec3 *light;
+    double *share;
+};
+
+static relume_status jury_make(struct jury *j, const struct source *s,
+                               const struct relume_coder_info *info)
 {
-    const size_t p = (size_t)s->numbers, directions = (size_t)s->lights + SPIRAL;
+    const size_t n = (size_t)s->lights + SPIRAL;
+    *j = (struct jury){(int)n, mem_array(n, sizeof *j->light), mem_array(n, sizeof *j->share)};
+    for (size_t i = 0; j->light && j->share && i < n; i++) {
+        const bool captured = i < (size_t)s->lights;
+        j->light[i] = captured ? s->light[i] : spiral((int)i - s->lights, info);
+        j->share[i] = 0.5 / (captured ? s->lights : SPIRAL);
+    }
+    return j->light && j->share ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static void jury_free(struct jury *j)
+{
+    mem_free(j->light);
+    mem_free(j->share);
+}
+
+// G = sum over directions and channels of w w^T, [P][P].
+static double *metric_of(const struct source *s, const struct jury *jury)
+{
+    const size_t p = (size_t)s->numbers, directions = (size_t)jury->count;
     double *rows = mem_array(3 * directions * p, sizeof *rows);
     double *gram = mem_array(p * p, sizeof *gram), *w = mem_array(3 * (p + 1), sizeof *w);
     const bool good = rows && gram && w;
     for (size_t i = 0; good && i < directions; i++) {
-        const bool captured = i < (size_t)s->lights;
-        const double share = sqrt(0.5 / (captured ? s->lights : SPIRAL));
-        source_weights(s, captured ? s->light[i] : spiral((int)i - s->lights, info), w);
+        const double share = sqrt(jury->share[i]);
+        source_weights(s, jury->light[i], w);
         for (size_t c = 0; c < 3; c++)
             for (size_t j = 0; j < p; j++)
                 rows[(3 * i + c) * p + j] = share * w[c * (p + 1) + j];
@@ -172,10 +198,14 @@ static relume_status find(struct common *c, struct statistics *all, int planes)
 {
     const int n = c->source.numbers;
     struct principal found = {0};
-    double *metric = metric_of(&c->source, coder_of(&c->source));
-    relume_status status =
-        metric ? principal_find(&found, metric, all->covariance, n, planes < n ? planes : n)
-               : RELUME_ENOMEM;
+    struct jury jury;
+    relume_status status = jury_make(&jury, &c->source, coder_of(&c->source));
+    double *metric = status ? NULL : metric_of(&c->source, &jury);
+    status = metric ? principal_find(&found, metric, all->covariance, n, planes < n ? planes : n)
+                    : RELUME_ENOMEM;
+    c->guided = c->source.coding.curve == RELUME_CURVE_LINEAR;
+    if (!status && c->guided)
+        status = guide_turn(&found, all->mean, &c->source, jury.light, jury.share, jury.count);
     if (!status)
         status = make_plan(&c->plan, &found, all->mean, n);
     if (!status)
@@ -183,6 +213,7 @@ static relume_status find(struct common *c, struct statistics *all, int planes)
     if (!status)
         status = make_functions(c, &found, all->mean);
     principal_free(&found);
+    jury_free(&jury);
     mem_free(metric);
     return status;
 }

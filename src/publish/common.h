@@ -4,7 +4,8 @@
 // With f(l) the raw functions of the file's own basis (or of an interpolation between pictures,
 // source.h) a page shows, in the codes of the source,
 //     value_c(l) = mean_c . f(l) + sum_k C_k transform_{c,k} . f(l)
-// and nothing is approximated but the picture's numbers, by as many components as there are.
+// and nothing is approximated but the picture's numbers, by as many components as there are. Those
+// of linear light are turned for a guide (guide.h).
 #ifndef PUBLISH_COMMON_H
 #define PUBLISH_COMMON_H
 
@@ -14,6 +15,7 @@
 
 struct common {
     enum source_kind kind;
+    bool guided;           // linear light
     struct plan plan;      // joint, without functions of its own
     struct source source;  // of the first view that was looked at; its weights are those of all
     relume_coder *raw;     // whose weights are f, without any transform

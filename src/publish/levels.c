@@ -6,6 +6,7 @@
 #include "base/thread.h"
 #include "image/jpeg.h"
 #include "math/scalar.h"
+#include "publish/guide.h"
 
 #include <string.h>
 
@@ -40,7 +41,8 @@ static struct sheet cut(const struct level *l, const struct relume_rect *at, int
 {
     struct sheet s = {.width = at->width,
                       .height = at->height,
-                      .planes = smaller_of(l->how->planes - first, SHEET_PLANES)};
+                      .planes = smaller_of(l->how->planes - first, SHEET_PLANES),
+                      .own = l->how->guided};
     const size_t width = (size_t)at->width, pixels = width * (size_t)at->height;
     for (int p = 0; p < s.planes; p++) {
         float *to = room + (size_t)p * pixels;
@@ -99,6 +101,38 @@ static void say_scales(const struct levels *how, int first, const struct sheet_r
     }
 }
 
+// The first plane of the first sheet becomes that of the guide; the gain of each pixel is what
+// readers will make of it.
+static relume_status find_gain(float *gain, const struct sheet *s, float *room, double step)
+{
+    const size_t n = (size_t)s->width * (size_t)s->height;
+    struct sheet alone = *s;  // with the ranges of all three, which its codes depend on
+    struct sheet_result coded;
+    struct jpeg_codes decoded = {0};
+    for (size_t i = 0; i < n; i++)
+        room[i] = guide_root(room[i]);
+    alone.plane[1] = alone.plane[2] = room;
+    relume_status status = sheet_encode(&coded, &alone, step);
+    if (!status)
+        status = jpeg_decode(&decoded, coded.bytes, coded.size, "tile", NULL, NULL);
+    for (size_t i = 0; !status && i < n; i++)
+        gain[i] = guide_gain((float)((decoded.data[i] / 255.0 - coded.bias[0]) * coded.scale[0]));
+    jpeg_codes_free(&decoded);
+    mem_free(coded.bytes);
+    return status;
+}
+
+// What is coded of the planes of a sheet that have a guide; `gain` is found from the first sheet.
+static relume_status follow_guide(const struct sheet *s, float *room, float *gain, bool first,
+                                  double step)
+{
+    const size_t n = (size_t)s->width * (size_t)s->height;
+    const relume_status status = first ? find_gain(gain, s, room, step) : RELUME_OK;
+    for (size_t i = first ? n : 0; !status && i < (size_t)s->planes * n; i++)
+        room[i] /= gain[i % n];
+    return status;
+}
+
 static void encode_tile(void *context, size_t item, int worker)
 {
     (void)worker;
@@ -108,11 +142,15 @@ static void encode_tile(void *context, size_t item, int worker)
                                    smaller_of(LEVELS_TILE, l->height - y)};
     const int sheets = (l->how->planes + SHEET_PLANES - 1) / SHEET_PLANES;
     struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
-    float *room = mem_array(SHEET_PLANES * (size_t)at.width * (size_t)at.height, sizeof *room);
+    const size_t n = (size_t)at.width * (size_t)at.height;
+    float *room = mem_array((SHEET_PLANES + 1) * n, sizeof *room);
     relume_status status = result && room ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < sheets; i++) {
         const struct sheet s = cut(l, &at, SHEET_PLANES * i, room);
-        status = sheet_encode(&result[i], &s, l->how->step);
+        if (l->how->guided)
+            status = follow_guide(&s, room, room + SHEET_PLANES * n, i == 0, l->how->step);
+        if (!status)
+            status = sheet_encode(&result[i], &s, l->how->step);
         if (!status && l->codes)
             status = keep_codes(l, &at, SHEET_PLANES * i, &result[i]);
         if (!status && !item)

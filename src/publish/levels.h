@@ -18,8 +18,10 @@ enum { PUBLISH_USUAL_PLANES = 45, PUBLISH_MOST_PLANES = 90 };
 struct levels {
     int planes, count;                // of levels
     double step;                      // in units of the picture's error
+    bool guided;                      // planes are divided by what guide.h says
     const double *minimum, *maximum;  // [planes], of all views
-    float *scale, *offset;            // [planes], found while writing: C = code * scale + offset
+    float *scale, *offset;            // [planes], found while writing: C (guided: u) = code * scale
+                                      // + offset
     int threads;
 };
 

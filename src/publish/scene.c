@@ -10,6 +10,7 @@
 #include "exchange/web_step.h"
 #include "foreign/measure.h"
 #include "math/scalar.h"
+#include "publish/guide.h"
 
 #include <errno.h>
 #include <float.h>
@@ -29,8 +30,9 @@ enum { USUAL_PLANES = 27, CORRECTIONS = 8, TRIAL_PIXELS = 1 << 17 };
 // Linear light of so high a dynamic range that 8 bits show less than this of it is coded first, and
 // ends at white.
 #define POOR_DB 28.0
-// Nor may it show less than this where shadows move, which hides no errors.
-#define POOR_MOVING_DB 44.0
+// Nor may it show less than this where shadows move, which hides no errors; black is exact in
+// linear planes, so that this is as near on the mean as 47 dB of coded ones.
+#define POOR_MOVING_DB 42.5
 // Nor does it become finer than this without anybody\'s wish.
 #define USUAL_FINER 2.0
 #define USUAL_SLACK 0.8  // measured values are rounded to 8 bits
@@ -61,6 +63,8 @@ static relume_status planes_of(struct planes *out, const struct scene *s, int vi
     if (!status)
         status =
             planes_make(out, &s->common.plan, &source, s->site->path, s->site->params->threads);
+    if (!status && s->common.guided)
+        guide_find_ranges(out, s->site->params->threads);
     source_close(&source);
     drop(s, view);
     return status;
@@ -110,12 +114,18 @@ static double lost_from(const struct plan *plan, int planes)
     return lost;
 }
 
+// Than the error that trials see.
+static double better(const struct scene *s)
+{
+    return s->common.guided ? GUIDE_DB : 0.0;
+}
+
 static relume_status choose_usual(struct scene *s, struct web_trials *t)
 {
     if (decibels(t->plan->lost / 3.0) < USUAL_DB + USUAL_MARGIN)
         return web_step_unseen(&s->levels.step, &s->report->quality, t);
     t->all = s->usual = true;
-    return web_step_of_psnr(&s->levels.step, t, USUAL_DB);
+    return web_step_of_psnr(&s->levels.step, t, USUAL_DB - better(s));
 }
 
 static relume_status choose_step(struct scene *s, const struct planes *planes, int *kept)
@@ -133,7 +143,7 @@ static relume_status choose_step(struct scene *s, const struct planes *planes, i
     if (p->bytes_per_pixel > 0.0)
         status = web_step_of_bytes(step, &t, p->bytes_per_pixel);
     else if (p->psnr_db > 0.0)
-        status = web_step_of_psnr(step, &t, p->psnr_db);
+        status = web_step_of_psnr(step, &t, p->psnr_db - better(s));
     else if (p->quality)
         *step = web_step_of_quality(p->quality);
     else
@@ -152,10 +162,13 @@ static relume_status find_step(struct scene *s, const struct planes *middle)
     const int every = (int)(pixels / TRIAL_PIXELS) + 1;
     struct planes sample = {0};
     int kept = 0;
+    const bool own = every > 1 || s->common.guided;
     relume_status status =
-        every > 1 ? planes_sample(&sample, middle, every, s->site->path, s->site->log) : RELUME_OK;
+        own ? planes_sample(&sample, middle, every, s->site->path, s->site->log) : RELUME_OK;
+    if (!status && s->common.guided)
+        guide_divide(&sample);
     if (!status)
-        status = choose_step(s, every > 1 ? &sample : middle, &kept);
+        status = choose_step(s, own ? &sample : middle, &kept);
     if (!status) {
         common_keep(&s->common, kept);
         s->levels.planes = s->report->planes = kept;
@@ -180,7 +193,8 @@ static relume_status measure(struct scene *s, const struct planes *middle, uint8
                               .planes = s->levels.planes,
                               .codes = codes,
                               .scale = s->levels.scale,
-                              .offset = s->levels.offset};
+                              .offset = s->levels.offset,
+                              .knee = s->common.guided ? GUIDE_KNEE : 0.0f};
     const struct measure_weights how = {weights_at, &s->common};
     return measure_psnr(&s->report->psnr_db, &f, &s->common.source, &how, s->site->params->threads);
 }
@@ -294,9 +308,11 @@ static relume_status allocate(struct scene *s)
     s->minimum = mem_array(n, sizeof *s->minimum);
     s->maximum = mem_array(n, sizeof *s->maximum);
     s->levels = (struct levels){.planes = (int)n,
-                                // so many planes are large at a size that is small for few
+                                .guided = s->common.guided,
+                                // so many planes, or so fine ones, are large at a size that is
+                                // small for few
                                 .count = levels_count(info->width, info->height, info->views) +
-                                         (n > PUBLISH_USUAL_PLANES),
+                                         (s->common.guided || n > PUBLISH_USUAL_PLANES),
                                 .minimum = s->minimum,
                                 .maximum = s->maximum,
                                 .scale = mem_zeroed(n, sizeof *s->levels.scale),

@@ -3,6 +3,7 @@
 
 #include "geometry/print.h"
 #include "math/base64.h"
+#include "publish/guide.h"
 
 #include <relume/coder.h>
 #include <string.h>
@@ -107,7 +108,7 @@ void scene_print_json(FILE *f, const struct scene *s)
     const struct common *c = &s->common;
     const size_t functions = (size_t)c->functions;
     char transfer[32];
-    fputs("{\n  \"format\": \"relume-web\", \"version\": 1,\n", f);
+    fprintf(f, "{\n  \"format\": \"relume-web\", \"version\": %d,\n", c->guided ? 2 : 1);
     put_details(f, s);
     fprintf(f, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
     geometry_print(f, &info->geometry);
@@ -121,6 +122,8 @@ void scene_print_json(FILE *f, const struct scene *s)
     put_floats(f, "mean", c->mean, 3 * functions);
     put_numbers(f, "scale", s->levels.scale, s->levels.planes);
     put_numbers(f, "offset", s->levels.offset, s->levels.planes);
+    if (c->guided)
+        fprintf(f, "  \"knee\": %g,\n", (double)GUIDE_KNEE);
     put_levels(f, s);
     if (info->has_shadow || info->has_gloss)
         fprintf(f, "  \"moves\": \"%s\",\n", info->has_shadow ? "shadows" : "highlights");

@@ -59,8 +59,8 @@ near pot 'point 0.6 0.5 1' '&eye=0.1,0,3' '--size 80x80 --eye 0.1,0,3'
     echo 'size 96 48'
     show site/room.html
 } >>orders.txt
-# a picture of 40 rows, enlarged twice
-lone room '0.3 0.8 0.3' '&pan=30&tilt=10&zoom=1' '--size 96x48 --pan 30 --tilt 10' 1.5
+# a picture of 40 rows, enlarged twice: 1.2 by planes of sRGB codes
+lone room '0.3 0.8 0.3' '&pan=30&tilt=10&zoom=1' '--size 96x48 --pan 30 --tilt 10' 0.7
 near room 'point 0.5 0.8 0.3 rgb 5 5 5' '&pan=30&tilt=10&zoom=1' '--size 96x48 --pan 30 --tilt 10'
 {
     echo 'size 48 48'

@@ -19,7 +19,7 @@ struct scene {
     const char *folder;
     int width, height, tile, functions, planes, level;
     float *transform, *mean;  // [3][planes][functions], [3][functions]
-    double *scale, *offset;
+    double *scale, *offset, knee;
     uint8_t *codes;  // [planes][height][width]
 };
 
@@ -70,7 +70,8 @@ static void load(struct scene *s, const char *folder, int level)
     char path[4096];
     snprintf(path, sizeof path, "%s/scene.json", folder);
     if (jvalue_load(&s->root, path, NULL) ||
-        jvalue_check_format(s->root, path, "relume-web", 1, NULL))
+        (jvalue_check_format(s->root, path, "relume-web", 1, NULL) &&
+         jvalue_check_format(s->root, path, "relume-web", 2, NULL)))
         fail("scene.json");
     const jvalue *size = jvalue_item(jvalue_member(s->root, "levels"), (size_t)level);
     s->folder = folder;
@@ -85,6 +86,7 @@ static void load(struct scene *s, const char *folder, int level)
     s->mean = floats(s->root, "mean", 3 * f);
     s->scale = numbers(s->root, "scale", k);
     s->offset = numbers(s->root, "offset", k);
+    jvalue_number(jvalue_member(s->root, "knee"), &s->knee);
     s->codes = calloc(k, (size_t)s->width * (size_t)s->height);
 }
 
@@ -213,14 +215,16 @@ int main(int argc, char **argv)
     const size_t pixels = (size_t)s.width * (size_t)s.height;
     double sum = 0.0, most = 0.0;
     for (int c = 0; c < 3; c++) {
-        double w[64];
+        double w[128];
         const double mean = dot(s.mean + c * s.functions, f, s.functions);
         for (int k = 0; k < s.planes; k++)
             w[k] = dot(s.transform + (c * s.planes + k) * s.functions, f, s.functions);
         for (size_t i = 0; i < pixels; i++) {
-            double v = mean;
+            double sum_k = 0.0;
             for (int k = 0; k < s.planes; k++)
-                v += w[k] * (s.codes[(size_t)k * pixels + i] * s.scale[k] + s.offset[k]);
+                sum_k += w[k] * (s.codes[(size_t)k * pixels + i] * s.scale[k] + s.offset[k]);
+            const double first = s.codes[i] * s.scale[0] + s.offset[0];
+            double v = mean + sum_k * (s.knee > 0.0 ? s.knee + fabs(first) : 1.0);
             v = share * (double)relume_transfer_decode(coding, (float)fmax(v, 0.0));
             const double shown =
                 (double)relume_transfer_encode(srgb, (float)fmin(fmax(v, 0.0), 1.0));

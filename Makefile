@@ -215,11 +215,11 @@ $B/obj/tests/tools/decode.o $B/obj/tests/unit/test_piz.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Isrc/cli -Itests -Iviewer
 # Tests themselves are many and short: compiled fast, and linked by the faster linker where it is, without
 # symbols for debuggers (config=debug has them). So are the programs for sanitizers: what takes time in them is the
-# library, but where a test makes its photographs itself.
+# library, but where a test makes its photographs itself, or the viewer looks for triangles.
 $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(FUZZ_C)): own_mode = $(if $(filter release,$(config)),-O1 -g0)
 ifneq ($(filter asan tsan,$(config)),)
 $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(CLI_C) $(VIEWER_C)): own_mode = -O0
-$(addprefix $B/obj/tests/unit/test_,acquire.o acquire_bad.o): own_mode = -O1
+$(addprefix $B/obj/,tests/unit/test_acquire.o tests/unit/test_acquire_bad.o viewer/draw/btf_upload.o): own_mode = -O1
 endif
 comma := ,
 TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold) $(if $(filter release,$(config)),-Wl$(comma)-S)

@@ -131,6 +131,7 @@ MPI      := $(if $(MPI_C),$B/relume-mpi)
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
 VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $(VIEWER_CXX:%.cpp=$B/obj/%.o) $B/obj/viewer/shaders.o
 UNIT     := $(UNIT_C:%.c=$B/%)
+THREADS  := $(filter $B/tests/threads/%,$(UNIT))
 GL       := $(GL_C:%.c=$B/%)
 BENCH    := $(BENCH_C:%.c=$B/%)
 FUZZ     := $(FUZZ_C:%.c=$B/%)
@@ -194,9 +195,11 @@ $B/obj/src/%_avx2.o: own_flags = $(AVX2)
 $B/obj/src/%_avx512.o: own_flags = $(AVX512)
 # One source, three objects: see its head. Without optimising Eigen is a hundred times slower, and its
 # debug symbols are ten times the rest of the library. gcc 12 warns of its own headers (PR 105593). Looked at by
-# ASan alone, of the one that most machines run: all sanitizers take minutes to compile them, for findings in Eigen.
-eigen_mode = $(if $(filter asan tsan,$(config)),-O1 -fno-sanitize=$(if $(filter asanavx2,$(config)$1),undefined,all),-O2)
-eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) $(call eigen_mode,$1) -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=24576 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
+# ASan alone, of the one that most machines run: the others are the release's under sanitizers, since each takes
+# half a minute to compile, for findings in Eigen.
+eigen_mode = $(if $(filter asan,$(config)),-O1 -fno-sanitize=undefined,-O2)
+eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) $(eigen_mode) -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=24576 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
+EIGEN_SHARED := $(addprefix obj/src/kernel/lsq_eigen,$(if $(filter asan tsan,$(config)),.o $(if $(AVX2),_avx512.o)) $(if $(AVX2),$(if $(filter tsan,$(config)),_avx2.o)))
 $B/obj/src/kernel/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
 $B/obj/src/kernel/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) $(AVX2)
 $B/obj/src/kernel/lsq_eigen_avx512.o: own_flags = $(call eigen_flags,avx512) $(AVX512) -Wno-uninitialized -Wno-maybe-uninitialized
@@ -210,13 +213,16 @@ $B/obj/viewer/window/context_glfw.o: own_flags = $(GLFW)
 $(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o $B/obj/tests/unit/test_piz.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Isrc/cli -Itests -Iviewer
-# Tests themselves are many and short: compiled fast, and linked by the faster linker where it is. So are
-# the programs for sanitizers: what takes time in them is the library.
-$(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(FUZZ_C)): own_mode = $(if $(filter release,$(config)),-O1)
+# Tests themselves are many and short: compiled fast, and linked by the faster linker where it is, without
+# symbols for debuggers (config=debug has them). So are the programs for sanitizers: what takes time in them is the
+# library, but where a test makes its photographs itself, or the viewer looks for triangles.
+$(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(FUZZ_C)): own_mode = $(if $(filter release,$(config)),-O1 -g0)
 ifneq ($(filter asan tsan,$(config)),)
 $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(CLI_C) $(VIEWER_C)): own_mode = -O0
+$(addprefix $B/obj/,tests/unit/test_acquire.o tests/unit/test_acquire_bad.o viewer/draw/btf_upload.o): own_mode = -O1
 endif
-TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold)
+comma := ,
+TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold) $(if $(filter release,$(config)),-Wl$(comma)-S)
 
 $B/obj/%.o: %.c | $(DEPS)
 	@mkdir -p $(@D)
@@ -231,6 +237,10 @@ $B/obj/src/kernel/lsq_eigen_%.o: src/kernel/lsq_eigen.cpp | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CXX)
 	$(Q)$(CXX) $(CXX17) -Iinclude -Isrc $(own_flags) $(CXXFLAGS) -c -o $@ $<
+$(EIGEN_SHARED:%=$B/%): $B/%: src/kernel/lsq_eigen.cpp src/kernel/lsq_kernels.h | $(DEPS)
+	@mkdir -p $(@D)
+	$(Q)$(MAKE) -s config=release build/$*
+	$(Q)cp build/$* $@
 
 # The web viewer is modules in the tree, one classic script in a site, and bytes in the library.
 $B/web/relume.js: scripts/join-web.sh $(WEB_JS) $(WEB_MORE)
@@ -275,7 +285,8 @@ $B/librelume.a: $(LIB_O)
 # Where a program or library looks for the module: first where the build left it. Sanitizers open
 # libraries in its name, which only the older kind of run path allows.
 run_path = $(if $(filter no,$(RUN_PATH)),,'-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer msan,$(config)),$(comma)--disable-new-dtags))
-comma := ,
+# Programs for ASan lie at a fixed place: half a million addresses within them would be worked out at each start.
+FIXED := $(if $(filter asan,$(config)),-no-pie)
 # Addresses of library functions are looked up at start and cannot be written over afterwards.
 HARD_LD := -Wl,-z,relro,-z,now
 $B/librelume.so: $(LIB_O)
@@ -294,21 +305,39 @@ $(STITCH): $(STITCH_CXX:%.cpp=$B/obj/%.o)
 	$(Q)$(CXX) $(MODE) -shared $(HARD_LD) -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $(HELPER): $(HELPER_C:%.c=$B/obj/%.o) $B/librelume.a | $(MODULE) $(MESHES)
 	$(call say,LD)
-	$(Q)$(LINK) $(MODE) -pthread $(call run_path) $(HARD_LD) -o $@ $(filter %.o %.a,$^) $(LDFLAGS) -Wl,--gc-sections -Wl,--as-needed -lm -ldl
+	$(Q)$(LINK) $(MODE) -pthread $(call run_path) $(HARD_LD) $(FIXED) -o $@ $(filter %.o %.a,$^) $(LDFLAGS) -Wl,--gc-sections -Wl,--as-needed -lm -ldl
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
 $B/relume-mpi: $(MPI_C:%.c=$B/obj/%.o) $(filter-out %/start.o,$(CLI_O)) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS) $(shell mpicc --showme:link)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS) $(shell mpicc --showme:link)
 $B/relume-view: $(VIEWER_O) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
+	$(Q)$(CXX) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
 
-$(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
+$(filter-out $(THREADS),$(UNIT)): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+# The map of the linker says which sources of the library they take. ThreadSanitizer sees these and no
+# others, half of all: a member that is asked for without optimising only is the release's.
+THREADS_LIB := $B/$(if $(filter tsan,$(config)),tests/threads/taken,librelume).a
+$(THREADS): $B/tests/%: $B/obj/tests/%.o $(THREADS_LIB)
+	@mkdir -p $(@D)
+	$(call say,LD)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -Wl,-Map=$@.map $(FIXED) -o $@ $^ $(if $(filter tsan,$(config)),build/librelume.a) $(LDFLAGS) $(LIBS) $(CMOCKA)
+ifeq ($(config)$(filter-out check-threads,$(MAKECMDGOALS)),tsan)
+include $B/tests/threads/taken.mk
+$B/tests/threads/taken.mk: $(THREADS:$B/%=%.c) $(LIB_C)
+	@mkdir -p $(@D)
+	$(Q)$(MAKE) -s config=release $(THREADS:$B/%=build/%)
+	$(Q)sed -n 's/^build.librelume.a(\([^)]*\)).*/TAKEN += \1/p' $(THREADS:$B/%=build/%.map) | LC_ALL=C sort -u > $@
+endif
+$B/tests/threads/taken.a: $(foreach o,$(LIB_O),$(if $(filter $(notdir $o),$(TAKEN)),$o))
+	$(Q)rm -f $@
+	$(call say,AR)
+	$(Q)$(AR) rcs $@ $^
 # Benches that draw are linked as the tests of GL are.
 GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
@@ -323,11 +352,11 @@ $B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/% $
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..:$$ORIGIN/..) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..:$$ORIGIN/..) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
+	$(Q)$(CXX) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
 # The tool with a basis and a model of one file each, for tests/cli/test_growing.sh
 GROWN   := $B/tests/growing/relume
@@ -352,8 +381,8 @@ $(FAULTS): tests/tools/preload/faults.c | $(DEPS)
 	$(call say,LD)
 	$(Q)$(CC) -std=c11 -O1 $(filter-out -Wpedantic,$(WARNINGS)) -shared -fPIC -o $@ $< -ldl
 
-# Programs open the module when they run.
-$B/relume $(MPI) $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES) $(HELPER)
+# Programs open the module when they run, but for the tests of threads.
+$B/relume $(MPI) $B/relume-view $(filter-out $(THREADS),$(UNIT)) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES) $(HELPER)
 
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 %.d: ;
@@ -368,7 +397,7 @@ check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS) $B/tests/core.so $(if $(filter asan 
 	@tests/check.sh $B
 # Does every test still compile? A minute where check takes five.
 compile-tests: $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(FUZZ_C) $(BENCH_C))
-check-threads: $(filter $B/tests/threads/%,$(UNIT))
+check-threads: $(THREADS)
 	@ONLY_BINARIES=1 tests/check.sh $B
 
 headers: $(HEADERS:include/relume/%.h=$B/headers/%.ok) $(if $(shell command -v python3),$B/headers/python.ok)

@@ -357,8 +357,8 @@ static void captures_hide_skies_from_objects(void **state)
     relume_environment *even;
     struct relume_image map;
     CHECK_OK(relume_image_create(&map, 16, 8, 3));
-    for (int i = 0; i < 16 * 8 * 3; i++)
-        map.data[i] = 1.0f;
+    for (int i = 0; i < 16 * 8 * 3; i++)  // in patches for sanitizers: fewer cells to add up
+        map.data[i] = !TEST_SANITIZED ? 1.0f : i / 3 % 2 || i / 48 % 2 ? 0.0f : 4.0f;
     CHECK_OK(relume_environment_create(&even, &map, NULL));
     relume_image_destroy(&map);
     for (int i = TEST_SANITIZED ? 1 : 0; i < 2; i++) {

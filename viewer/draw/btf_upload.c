@@ -147,7 +147,8 @@ struct mesh_list {
     int points;
     const int (*triangle)[3];
     int triangles;
-    int (*cell)[2];  // [CELLS * CELLS]: first, count
+    struct relume_vec3 (*across)[3];  // products of the two corners that follow each
+    int (*cell)[2];                   // [CELLS * CELLS]: first, count
     float (*texel)[TEXELS][4];
     size_t used, room;
 };
@@ -167,9 +168,11 @@ static struct relume_vec3 corner_of(const struct mesh_list *d, int triangle, int
     return i < d->points ? d->point[i] : (struct relume_vec3){0, 0, -1};
 }
 
-static struct relume_vec3 across(const struct mesh_list *d, int triangle, int corner)
+static void fill_across(struct mesh_list *d)
 {
-    return vec3_cross(corner_of(d, triangle, corner + 1), corner_of(d, triangle, corner + 2));
+    for (int i = 0; i < d->triangles; i++)
+        for (int c = 0; c < 3; c++)
+            d->across[i][c] = vec3_cross(corner_of(d, i, c + 1), corner_of(d, i, c + 2));
 }
 
 static int triangle_at(const struct mesh_list *d, struct relume_vec3 direction)
@@ -179,7 +182,7 @@ static int triangle_at(const struct mesh_list *d, struct relume_vec3 direction)
     for (int i = 0; i < d->triangles && most < 0.0; i++) {
         double w[3], sum = 0.0;
         for (int c = 0; c < 3; c++)
-            sum += w[c] = vec3_dot(direction, across(d, i, c));
+            sum += w[c] = vec3_dot(direction, d->across[i][c]);
         const double least = fmin(w[0], fmin(w[1], w[2])) / sum;
         if (sum > 1e-12 && least > most) {
             most = least;
@@ -201,7 +204,7 @@ static bool add_triangle(struct mesh_list *d, int triangle)
     }
     float(*to)[4] = d->texel[d->used++];
     for (int c = 0; c < 3; c++) {
-        const struct relume_vec3 a = across(d, triangle, c), p = corner_of(d, triangle, c);
+        const struct relume_vec3 a = d->across[triangle][c], p = corner_of(d, triangle, c);
         const int number = d->triangle[triangle][c];
         to[c][0] = (float)a.x, to[c][1] = (float)a.y, to[c][2] = (float)a.z;
         to[c][3] = number < d->points ? (float)number : -1.0f;
@@ -246,7 +249,10 @@ static relume_status upload_mesh(struct btf_material *m, const struct gl *gl, in
     struct mesh_list d = {.point = direction, .points = n};
     d.triangle = relume_direction_mesh_triangles(mesh, &d.triangles);
     d.cell = malloc(CELLS * CELLS * sizeof *d.cell);
-    status = d.cell ? RELUME_OK : RELUME_ENOMEM;
+    d.across = malloc((size_t)d.triangles * sizeof *d.across);
+    status = d.cell && d.across ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        fill_across(&d);
     for (int c = 0; c < CELLS * CELLS && !status; c++)
         status = fill_cell(&d, c) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
@@ -255,6 +261,7 @@ static relume_status upload_mesh(struct btf_material *m, const struct gl *gl, in
     if (!status)
         status =
             fill(m, gl, i + 1, GL_RGBA32F, d.used * TEXELS, d.used * sizeof *d.texel, d.texel, log);
+    free(d.across);
     free(d.cell);
     free(d.texel);
     relume_direction_mesh_destroy(&mesh);

@@ -30,7 +30,8 @@ static const double FEWER = 0.8;
 enum { MOVES = 256, LEAST_TRIANGLES = 12, MOST_LEVELS = 12, MOST_PARTS = 64 };
 
 struct level {
-    double error;      // in the world
+    double error;      // in the world, of what is seen
+    double length;     // most distance from the full mesh, in the world
     uint32_t *vertex;  // [vertices]: where each has gone
     uint32_t *kept;    // [triangles]: that have an area still
     size_t triangles;
@@ -182,6 +183,7 @@ static relume_status make_levels(struct object_levels *l, const struct relume_me
         const double most = FEWER * (double)next[-1].triangles;
         if (!status && steps && next->triangles && (double)next->triangles <= most) {
             next->error = 2.0 * l->radius * step_error(&s->step[steps - 1]);
+            next->length = 2.0 * l->radius * (double)s->step[steps - 1].error;
             l->levels++;
             continue;
         }
@@ -621,6 +623,18 @@ static relume_status show(relume_objects *to, const relume_objects *o)
     return status;
 }
 
+// A fold of a coarse surface that the full one has not got is at most so high.
+static float fold_of(const relume_objects *o, const struct level_choice *choice, int part)
+{
+    const struct object_levels *l = o->levels[o->part[part].object];
+    const struct level_choice c = choice[part];
+    if (!l)
+        return 0.0f;
+    const double from = l->level[c.level].length;
+    const double to = c.moved ? l->level[c.level + 1].length : from;
+    return (float)(from + (to - from) * c.moved / MOVES);
+}
+
 static bool same_choice(const relume_objects *shown, const relume_objects *o,
                         const struct level_choice *choice, bool rays)
 {
@@ -637,6 +651,11 @@ static relume_status finish(relume_objects *to, const relume_objects *o, bool ra
     to->translucent = o->translucent;
     to->standing = o->standing;
     to->reflection = o->reflection;
+    to->fold = mem_array((size_t)o->info.parts, sizeof *to->fold);
+    if (!to->fold)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < o->info.parts; i++)
+        to->fold[i] = fold_of(o, to->choice, i);
     const relume_status status = show(to, o);
     if (status || !rays)
         return status;

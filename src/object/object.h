@@ -45,7 +45,8 @@ struct relume_objects {
     int wants;
     struct object_levels **levels;   // [objects]; NULL: none, or of one of them
     const relume_objects *shown_of;  // NULL; or these are others as an eye sees them, and own ...
-    struct level_choice *choice;     // ... but the surface and this, [parts], nothing
+    struct level_choice *choice;     // ... but the surface and these, [parts], nothing
+    float *fold;                     // how far off its full surface that of a part is; or NULL
 };
 
 // One more vertex of the mesh, in the world; `colour` (sRGB) is part of the file's own look, and

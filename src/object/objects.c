@@ -34,6 +34,7 @@ static void destroy_surface(relume_objects *o)
     mem_free(o->triangles);
     mem_free(o->part);
     mem_free(o->choice);
+    mem_free(o->fold);
 }
 
 void relume_objects_destroy(relume_objects **objects)

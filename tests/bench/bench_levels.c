@@ -1,6 +1,6 @@
 // Levels of detail in a film of 60 distances, frame by frame.
 //
-//   bench_levels MESH [PIXELS]
+//   bench_levels MESH [PIXELS [SAMPLES]]: N x N rays a pixel, else 4 x 4
 //
 // A matte mesh under one lamp with shadows, from 2 to 120 diagonals, a field of view that shows all
 // of it at 2. For each frame: triangles, JND to the picture of the full mesh, and the pop: JND
@@ -18,6 +18,8 @@
 #include <unistd.h>
 
 enum { FRAMES = 60, SIDE = 160 };
+
+static int samples = 4;
 
 static relume_objects *open_mesh(const char *mesh, double pixels)
 {
@@ -44,7 +46,7 @@ static struct relume_image picture(const relume_objects *o, const struct relume_
         .kind = RELUME_LIGHT_DIRECTIONAL, .direction = {-0.48, 0.6, 0.64}, .rgb = {1, 1, 1}};
     struct relume_image image;
     if (relume_image_create(&image, SIDE, SIDE, 3) ||
-        relume_objects_render(&image, o, w, &light, 1, relume_render_params(.samples = 4)))
+        relume_objects_render(&image, o, w, &light, 1, relume_render_params(.samples = samples)))
         exit(1);
     return image;
 }
@@ -166,6 +168,8 @@ int main(int argc, char **argv)
 {
     if (argc < 2)
         return 2;
+    if (argc > 3)
+        samples = atoi(argv[3]);
     setvbuf(stdout, NULL, _IOLBF, 0);
     const double start = now_s();
     struct film f = {.full = open_mesh(argv[1], 0.0)};

@@ -1,11 +1,14 @@
 // bench_simplify: triangles at equal error, perceptual simplification beside quadrics with
-// attributes and, where libmeshoptimizer2d is installed, meshoptimizer.
-// bench_simplify MODEL ...; without a model it does nothing
+// attributes, the same tested for attributes, and, where libmeshoptimizer2d is installed, meshoptimizer.
+// bench_simplify [-t] [-e ERROR] MODEL ...; without a model it does nothing. -t: beside the tested
+// peer alone; -e: at this error, diagonals, else 0.001 and 0.01
 //
 // How many triangles the others need to be no worse: in the distance of the surfaces (Hausdorff, of
-// vertices and middles of triangles, both ways), and in what is seen of the shading in two pictures
+// vertices and middles of triangles, both ways), and in what is seen of the shading in six pictures
 // from where the error is seen under 1/30 degree (JND that 1 % of the pixels exceed, and the most).
 #include "bench.h"
+
+#include "mesh/simplify_run.h"
 
 #include <dlfcn.h>
 #include <relume/jnd.h>
@@ -14,7 +17,9 @@
 #include <relume/vec.h>
 
 #include <string.h>
+#include <unistd.h>
 
+static bool table;
 static double diagonal;  // of the original
 static vec3 middle;
 
@@ -147,7 +152,7 @@ static double one_way(const struct relume_mesh *from, const struct grid *to)
 
 // ---------------------------------------------------------------- pictures
 
-enum { PICTURES = 2 };
+enum { PICTURES = 6 };
 static void shade(float *rgb, vec3 n, vec3 light)
 {
     const vec3 half = vec3_unit(vec3_add(light, vec3_of(0, 0, 1)));
@@ -331,6 +336,140 @@ static void drop(struct relume_mesh *m, bool by_meshopt)
         relume_mesh_free(m);
 }
 
+// ---------------------------------------------------------------- attributes kept within the error
+
+// Simplification in the way of Guthe, Borodin, Balazs, Klein 2004: the same collapses in the order
+// of the same quadrics, each tested; attributes may not be farther from where they were than the
+// surface may. A texture slides by that at most; a normal is found again within that distance, by
+// how fast the original's normals turn there.
+struct keeper {
+    struct simplify s;
+    struct queue queue;
+    struct samples samples;
+    struct fan fan, there;
+    double *bend;  // [points]: of normals, 1 / diagonal
+    struct error most;
+};
+
+static void find_bend(struct keeper *k)
+{
+    const struct relume_mesh *m = k->s.mesh;
+    double *edges = calloc(k->s.connect.points, sizeof *edges);
+    must(edges && (k->bend = calloc(k->s.connect.points, sizeof *k->bend)));
+    for (size_t t = 0; t < m->triangle_count; t++)
+        for (int i = 0; i < 6; i++) {
+            const uint32_t a = m->triangle[t][i % 3], b = m->triangle[t][(i % 3 + 1 + i / 3) % 3];
+            const double length = vec3_length(vec3_sub(place(&k->s, a), place(&k->s, b)));
+            const uint32_t at = k->s.connect.point[a];
+            if (!(length > 0.0))
+                continue;
+            const double turn = vec3_length(vec3_sub(normal_of(&k->s, a), normal_of(&k->s, b)));
+            k->bend[at] += turn * turn / (length * length);
+            edges[at] += 0.5;  // the mean square over directions is half of that along one
+        }
+    for (uint32_t p = 0; p < k->s.connect.points; p++)
+        k->bend[p] = edges[p] > 0.0 ? sqrt(k->bend[p] / edges[p]) : 0.0;
+    free(edges);
+}
+
+static void keeper_create(struct keeper *k, const struct relume_mesh *m, double error)
+{
+    struct run run = {.s = {.mesh = m, .middle = middle, .scale = 1.0 / diagonal}};
+    must(!run_settle(&run, relume_simplify_params(.error = error)));
+    k->s = run.s;
+    k->most = (struct error){error, INFINITY};
+    must(!connect_create(&k->s.connect, m, m->triangle, m->triangle_count, m->part) &&
+         !quadrics_create(&k->s) && !samples_create(&k->s, NULL) &&
+         !near_create(&k->s.near, &k->s, error) && !queue_create(&k->queue, k->s.connect.points));
+    find_bend(k);
+}
+
+static void keeper_free(struct keeper *k)
+{
+    struct run run = {.s = k->s, .queue = k->queue, .samples = k->samples};
+    run_free(&run);
+    free(k->bend);
+}
+
+static double cheapest(struct keeper *k, uint32_t point, double from, int *neighbour)
+{
+    struct moves moves;
+    double least = INFINITY;
+    for (int i = 0; i < k->fan.neighbours; i++) {
+        if (!connect_is_target(&k->fan, i) ||
+            !connect_moves(&k->s.connect, point, &k->fan, k->fan.neighbour[i], &moves))
+            continue;
+        const double cost = quadrics_error(&k->s, point, &moves);
+        if (cost > from && cost < least) {
+            least = cost;
+            *neighbour = i;
+        }
+    }
+    return least;
+}
+
+static bool keeps_normals(const struct keeper *k)
+{
+    for (size_t i = 0; i < k->samples.own; i++) {
+        const struct landing *l = &k->samples.landing[i];
+        vec3 n = vec3_of(0, 0, 0);
+        for (int c = 0; c < 3; c++)
+            n = vec3_along(n, normal_of(&k->s, l->corner[c]), (double)l->weight[c]);
+        const double off = vec3_length(vec3_sub(vec3_unit(n), normal_of(&k->s, l->vertex)));
+        // on a plane float normals differ by rounding
+        if (off > fmax(k->bend[k->s.connect.point[l->vertex]] * k->most.length, 1e-4))
+            return false;
+    }
+    return true;
+}
+
+static bool keep_point(struct keeper *k, uint32_t point)
+{
+    double cost = -1.0;
+    int i = 0;
+    while ((cost = cheapest(k, point, cost, &i)) < (double)INFINITY) {
+        const uint32_t target = k->fan.neighbour[i];
+        struct moves moves;
+        struct error error;
+        if (!connect_may_move(&k->s.connect, point, &k->fan, i, &moves, &k->there))
+            continue;
+        must(samples_try(&k->s, &k->samples, &error, &k->fan, &k->there, target, &moves, &k->most));
+        if (error.length > k->most.length || !keeps_normals(k))
+            continue;
+        samples_move(&k->s, &k->samples, &k->fan);
+        quadrics_move(&k->s, point, target, &moves);
+        connect_move(&k->s.connect, point, &k->fan, target, &moves);
+        return true;
+    }
+    return false;
+}
+
+static void reduce_keeping(struct relume_mesh *out, const struct relume_mesh *m, double error)
+{
+    struct keeper *k = calloc(1, sizeof *k);
+    int i;
+    must(k != NULL);
+    keeper_create(k, m, error);
+    for (uint32_t p = 0; p < k->s.connect.points; p++) {
+        connect_fan(&k->s.connect, p, &k->fan);
+        queue_put(&k->queue, p, fmin(cheapest(k, p, -1.0, &i), 1e30));
+    }
+    while (k->queue.count) {
+        const uint32_t point = queue_take(&k->queue);
+        connect_fan(&k->s.connect, point, &k->fan);
+        const double cost = cheapest(k, point, -1.0, &i);
+        if (cost > (double)k->queue.key[point] * (1.0 + 1e-5) && cost < (double)INFINITY)
+            queue_put(&k->queue, point, cost);  // what is around it has changed
+        else if (keep_point(k, point))
+            for (i = 0; i < k->fan.neighbours; i++)
+                queue_put(&k->queue, k->fan.neighbour[i], k->queue.key[k->fan.neighbour[i]]);
+    }
+    *out = (struct relume_mesh){0};
+    must(!run_collect(out, &k->s.connect, m, NULL));
+    keeper_free(k);
+    free(k);
+}
+
 // The fewest triangles that are no worse by one measure.
 static size_t fewest(const struct relume_mesh *m, const struct grid *grid, double ppd,
                      const struct judged *want, enum measure by, bool by_meshopt)
@@ -351,6 +490,26 @@ static size_t fewest(const struct relume_mesh *m, const struct grid *grid, doubl
     return (size_t)exp(high);
 }
 
+// Of the tested peer: at the largest error that looks no worse.
+static size_t fewest_keeping(const struct relume_mesh *m, double error, double ppd,
+                             const struct judged *want, enum measure by)
+{
+    double low = log(error / 64.0), high = log(4.0 * error);
+    size_t fewest = m->triangle_count;
+    for (int i = 0; i < 7; i++) {
+        const double e = 0.5 * (low + high);
+        struct relume_mesh small;
+        struct judged j;
+        reduce_keeping(&small, m, exp(e));
+        look(&j, &small, ppd);
+        if (j.of[by] <= want->of[by])
+            fewest = small.triangle_count;
+        *(j.of[by] <= want->of[by] ? &low : &high) = e;
+        relume_mesh_free(&small);
+    }
+    return fewest;
+}
+
 // How many of each the others need.
 static void others(const struct relume_mesh *small, const struct relume_mesh *m,
                    const struct grid *grid, double ppd, const struct judged *own)
@@ -368,6 +527,22 @@ static void others(const struct relume_mesh *small, const struct relume_mesh *m,
     }
 }
 
+// In the form of Guthe's Table 10.2: at the same error.
+static void keep(const char *name, const struct relume_mesh *m, const struct grid *grid,
+                 double error, double ppd)
+{
+    struct relume_mesh small;
+    reduce_keeping(&small, m, error);
+    struct judged j = {.of = {distance_of(&small, m, grid)}};
+    look(&j, &small, ppd);
+    printf(
+        "%s %g%% attributes kept: %zu triangles, distance %.3f%%, 99%% below %.2f JND, all below "
+        "%.2f\n",
+        name, 100 * error, small.triangle_count, 100 * j.of[NEAR], j.of[LIKE], j.of[NOWHERE]);
+    fflush(stdout);
+    relume_mesh_free(&small);
+}
+
 static void compare(const char *name, const struct relume_mesh *m, double error)
 {
     static const double jnd[] = {1.0, 4.0};
@@ -379,6 +554,7 @@ static void compare(const char *name, const struct relume_mesh *m, double error)
     grid_create(&grid, m);
     for (int i = 0; i < PICTURES; i++)
         original[i] = draw(m, size, i);
+    keep(name, m, &grid, error, ppd);
     for (size_t k = 0; k < sizeof jnd / sizeof *jnd; k++) {
         struct relume_mesh small;
         const double start = now_s();
@@ -392,7 +568,14 @@ static void compare(const char *name, const struct relume_mesh *m, double error)
                name, 100 * error, jnd[k], small.triangle_count, m->triangle_count, time,
                100 * own.of[NEAR], own.of[LIKE], own.of[NOWHERE]);
         fflush(stdout);
-        others(&small, m, &grid, ppd, &own);
+        for (enum measure by = LIKE; by <= NOWHERE; by++) {
+            const size_t n = fewest_keeping(m, error, ppd, &own, by);
+            printf("  attributes kept, as good in %s: %zu, ratio %.2f\n",
+                   by == LIKE ? "99%" : "all", n, (double)small.triangle_count / (double)n);
+            fflush(stdout);
+        }
+        if (!table)
+            others(&small, m, &grid, ppd, &own);
         relume_mesh_free(&small);
     }
     grid_free(&grid);
@@ -405,7 +588,12 @@ int main(int argc, char **argv)
     void *library = dlopen("libmeshoptimizer.so.2d", RTLD_NOW);
     void *symbol = library ? dlsym(library, "meshopt_simplify") : NULL;
     memcpy(&meshopt_simplify, &symbol, sizeof symbol);
-    for (int i = 1; i < argc; i++) {
+    double error = 0.0;
+    for (int option; (option = getopt(argc, argv, "te:")) != -1;) {
+        table |= option == 't';
+        error = option == 'e' ? atof(optarg) : error;
+    }
+    for (int i = optind; i < argc; i++) {
         struct relume_mesh m;
         must(!relume_mesh_read(&m, argv[i], NULL));
         vec3 low = at(&m, 0), high = low;
@@ -416,8 +604,10 @@ int main(int argc, char **argv)
         }
         middle = vec3_scale(vec3_add(low, high), 0.5);
         diagonal = vec3_length(vec3_sub(high, low));
-        compare(argv[i], &m, 0.001);
-        compare(argv[i], &m, 0.01);
+        if (error > 0.0)
+            compare(argv[i], &m, error);
+        for (int k = 0; k < 2 && !(error > 0.0); k++)
+            compare(argv[i], &m, k ? 0.01 : 0.001);
         relume_mesh_free(&m);
     }
     return 0;

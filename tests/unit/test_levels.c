@@ -3,6 +3,7 @@
 #include "in_folder.h"
 
 #include "object/levels.h"
+#include "object/object.h"
 
 #include <relume/jnd.h>
 #include <relume/object.h>
@@ -192,18 +193,24 @@ static void a_change_of_level_moves_nothing(void **state)
 // ---------------------------------------------------------------- pictures
 
 // The objects from there in a window about all of them, under a lamp and its shadows.
-static struct relume_image picture(const relume_objects *o, double distance)
+static struct relume_image picture_of(const relume_objects *o, double distance,
+                                      struct relume_light light, bool shadows)
 {
-    const struct relume_light light = {
-        .kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.5, 0.6, 0.62}, .rgb = {1, 1, 1}};
     struct relume_image out;
     struct relume_window window;
     const struct relume_look_at look = {.field_of_view_deg = 2.0 * atan(0.32) * 180.0 / M_PI};
     assert_true(relume_objects_window(&window, o, eye_at(distance), &look, PICTURE, PICTURE));
     CHECK_OK(relume_image_create(&out, PICTURE, PICTURE, 3));
-    CHECK_OK(
-        relume_objects_render(&out, o, &window, &light, 1, relume_render_params(.samples = 3)));
+    CHECK_OK(relume_objects_render(&out, o, &window, &light, 1,
+                                   relume_render_params(.samples = 3, .no_shadows = !shadows)));
     return out;
+}
+
+static struct relume_image picture(const relume_objects *o, double distance)
+{
+    const struct relume_light light = {
+        .kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.5, 0.6, 0.62}, .rgb = {1, 1, 1}};
+    return picture_of(o, distance, light, true);
 }
 
 static double jnd_between(const relume_objects *a, const relume_objects *b, double distance)
@@ -222,6 +229,43 @@ static void levels_look_like_the_mesh(void **state)
     const double found = jnd_between(levels, full, 6.0);
     assert_true(found > 0.0);
     assert_true(found < 4.0);
+}
+
+// Pixels that a surface shades itself in, where the full one throws no shadow.
+static int count_slivers(const relume_objects *coarse, const struct relume_light *light)
+{
+    int n = 0;
+    struct relume_image image[4];
+    for (int i = 0; i < 4; i++)
+        image[i] = picture_of(i < 2 ? coarse : full, 4.0, *light, i % 2);
+    for (int i = 0; i < 3 * PICTURE * PICTURE; i += 3)
+        n += image[1].data[i] < 0.8f * image[0].data[i] && image[2].data[i] > 0.02f &&
+             image[3].data[i] > 0.95f * image[2].data[i];
+    for (int i = 0; i < 4; i++)
+        relume_image_destroy(&image[i]);
+    return n;
+}
+
+static void folds_of_coarse_levels_throw_no_slivers(void **state)
+{
+    (void)state;
+    const struct relume_light light[] = {
+        {.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.9, 0.1, 0.4}, .rgb = {1, 1, 1}},
+        {.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.1, 0.95, 0.3}, .rgb = {1, 1, 1}},
+    };
+    relume_objects *coarse = shown_at(4.0, 0.1, true);
+    assert_non_null(coarse);
+    assert_true(coarse->info.triangle_count < full->info.triangle_count / 15);
+    int slivers[2] = {0, 0};  // with what is known of the level's error, and without
+    for (int without = 0; without < 2; without++) {
+        if (without)
+            coarse->fold[0] = 0.0f;
+        for (int i = 0; i < 2; i++)
+            slivers[without] += count_slivers(coarse, &light[i]);
+    }
+    assert_true(slivers[1] >= 10);
+    assert_true(slivers[0] <= slivers[1] / 2);
+    relume_objects_destroy(&coarse);
 }
 
 static void no_frame_pops(void **state)
@@ -440,6 +484,7 @@ int main(void)
         cmocka_unit_test(errors_are_within_what_may_be_seen),
         cmocka_unit_test(a_change_of_level_moves_nothing),
         cmocka_unit_test(levels_look_like_the_mesh),
+        cmocka_unit_test(folds_of_coarse_levels_throw_no_slivers),
         cmocka_unit_test(no_frame_pops),
         cmocka_unit_test(what_is_shown_stays),
         cmocka_unit_test(mirrors_are_shown_in_full),

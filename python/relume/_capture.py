@@ -148,7 +148,7 @@ class Capture(Handle):
         array = np.ascontiguousarray(array)
         if array.ndim == 3:
             array = array[..., None]
-        if array.ndim != 4:
+        if array.ndim != 4 or not array.size:
             raise UsageError(f"pictures: an array of shape {np.shape(pictures)}; expected "
                              "[light, y, x, 3] or [light, y, x]")
         _, height, width, channels = array.shape

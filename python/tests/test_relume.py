@@ -204,6 +204,8 @@ class Errors(Fixture):
             (lambda: relume.open(self.data[:900]), relume.DamagedError, "memory: "),
             (lambda: relume.open(b""), relume.FormatError, "memory: "),
             (lambda: relume.encode(self.pictures, self.lights[:3]), relume.UsageError, "3 lights"),
+            (lambda: relume.encode(self.pictures[:0], self.lights[:0]), relume.UsageError,
+             "pictures: an array of shape (0, "),
             (lambda: relume.encode(self.pictures, self.lights, basis="ssh"), ValueError, "ssh"),
             (lambda: relume.encode(self.pictures, self.lights, bits="9"), ValueError, "bits '9'"),
             (lambda: relume.encode(self.pictures, 0 * self.lights), relume.FormatError,

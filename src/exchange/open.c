@@ -170,6 +170,7 @@ static bool is_scene(const char *path, const struct relume_log *log)
 static relume_status unknown(const char *path, const struct relume_open_params *p)
 {
     const enum input_kind kind = input_kind(path, p->log);
+    const char *q = relume_name_quotes(path);
     if (kind == INPUT_NONE)
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
     if (kind != INPUT_FOLDER && is_scene(path, p->log))
@@ -177,6 +178,12 @@ static relume_status unknown(const char *path, const struct relume_open_params *
                         "%s: a scene file, which 'relume relight' and 'relume info' open; expected "
                         "one of the captures that it names",
                         path);
+    static const char *const meshes[] = {".obj", ".ply", ".gltf", ".glb", ".stl", NULL};
+    if (kind != INPUT_FOLDER && is_among(path, meshes))
+        return log_fail(p->log, RELUME_EFORMAT,
+                        "%s: a 3D model, which is shown with a material: relume-view --mesh "
+                        "%s%s%s --material DIR",
+                        path, q, path, q);
     if (kind != INPUT_FOLDER)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
@@ -187,7 +194,6 @@ static relume_status unknown(const char *path, const struct relume_open_params *
                         "%s: tiles of WebRTI (info.xml), which relume does not read; expected the "
                         ".ptm or .rti that they were made from",
                         path);
-    const char *q = relume_name_quotes(path);
     return log_fail(
         p->log, RELUME_EFORMAT,
         "%s: a folder without capture.json, info.json or a single .lp file; if it holds "

@@ -17,7 +17,7 @@ struct lightfield_options {
 static const struct option options[] = {
     VIEWS_OPTIONS,
     GROUP("output"),
-    FLAG("--json", json, "print one JSON object"),
+    FLAG("--json", json, "--depth-from-views: print one JSON object"),
     GROUP("grid of cameras"),
     TEXT("--names", names, "PATTERN",
          "where the file names hold the place of the camera: {row}, {column}, {n}, {u}, {v}, *; "
@@ -142,6 +142,9 @@ static relume_status run(const struct args *args)
                            "depth in a second run");
     if (o->depth_from_views)
         return depth_of(o);
+    if (o->json)
+        return usage_error("lightfield: --json says how good depth is; leave it out, or see "
+                           "--depth-from-views");
     relume_status status = ingest_params(&p, &lights, args, &o->views);
     if (!status)
         status = o->colmap ? posed(o, o->args.input[0], &p) : slab(o, &p);

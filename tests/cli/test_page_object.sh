@@ -57,7 +57,26 @@ check 'a title is text' [ -z "$(grep -rl '<script>alert' site --include='*.html'
 check 'other sites have no part of it' [ ! -e flat/relume/relume-object.js ]
 "$RELUME" publish any.exr -o again --threads 1 -q
 check 'byte for byte' sh -c 'cmp site/any/object.bin again/any/object.bin && cmp site/any/poster.jpg again/any/poster.jpg && diff -r site/any/iiif again/any/iiif'
+# what other programs show: the mesh in light from everywhere, under which a matte ball has its own colour
+check 'the texture of the mesh is the colour of the ball' awk -v a="$("$mkimage" read site/any/iiif/texture.jpg 12 12)" 'BEGIN {
+    split(a, p, " "); split("0.8 0.4 0.2", q, " "); for (c = 1; c <= 3; c++) { d = p[c] - q[c]; bad = bad || d > 0.03 || d < -0.03 } print a; exit bad }'
+check 'byte for byte, for any threads' cmp site/any/model.glb again/any/model.glb
+modules=$TOP/build/web/node_modules
+if [ "$node" ] && [ -d "$modules/gltf-validator" ]; then
+    check "Khronos's validator has nothing to say of the mesh" sh -c "node '$TOP/tests/tools/gltf_check.mjs' '$modules' site/shiny/model.glb | grep -q '^errors 0 warnings 0'"
+else
+    skip 'the mesh is glTF' 'no node and gltf-validator; make deps-web gets them'
+fi
 if [ "$python" ]; then
+    check 'the mesh has the triangles and the box of the object, and a manifest' "$python" -c "
+import json, struct
+data = open('site/any/model.glb', 'rb').read(); length, = struct.unpack_from('<I', data, 12); m = json.loads(data[20:20 + length])
+p = m['meshes'][0]['primitives'][0]; at = m['accessors'][p['attributes']['POSITION']]; o = json.load(open('site/any/object.json'))
+assert all(abs(a - b) < 1e-6 for a, b in zip(at['min'] + at['max'], o['min'] + o['max'])), at
+assert m['accessors'][p['indices']]['count'] == 3 * o['triangles'] and m['images'][0]['mimeType'] == 'image/jpeg'
+body = json.load(open('site/any/iiif/model.json'))['items'][0]['items'][0]['items'][0]['body']
+assert body == {'id': 'any/model.glb', 'type': 'Model', 'format': 'model/gltf-binary'}, body
+m = json.load(open('site/any/manifest.json')); assert m['rendering'][0]['id'] == 'any/model.glb' and all('thumbnail' in c for c in m['items'])"
     check 'a manifest has a canvas for each picture from around it, the model, and its notes' "$python" -c "
 import json, os
 m = json.load(open('site/any/manifest.json')); bodies = [c['items'][0]['items'][0]['body'] for c in m['items']]

@@ -159,6 +159,9 @@ ask "['touched', window.relume.getState()]"
 echo 'state light=dir,0,0,1&eye=0,0,9' >>orders.txt
 echo 'touch 54 48 34 48 74 48 94 48' >>orders.txt
 ask "['pinched', window.relume.getState()]"
+# the surface over a line: the table of the tool
+ask "($view.panel.choose($view.panel.notes.all[2]), URL.createObjectURL = (blob) => { window.table = blob.text(); return '#'; }, $view.panel.profile().then(() => $view.panel.profiled.querySelector('button').click()).then(() => ['profile', $view.panel.measures.textContent, !!$view.panel.profiled.querySelector('svg')]))"
+echo "write page.csv window.table" >>orders.txt
 # a line by keys alone: from the middle to 20 pixels beside it
 ask "($view.panel.choose(null), window.relume.setState('light=dir,0,0,1&eye=0,0,9'), window.relume.idle().then(() => ($view.panel.begin('line'), 0)))"
 echo 'key Space ArrowRight ArrowRight Space Enter' >>orders.txt
@@ -238,6 +241,12 @@ near_colour() { # picture, pixel, its linear colour
 not() { ! "$@"; }
 check 'beside each other this object is at the left' near slider.png page1.png 50 44
 check 'and the other one at the right' near slider.png other.png 78 44
+says 'a page draws the surface over a line' '^\["profile","[^"]*",true\]'
+"$RELUME" notes any.exr --profile n3 -o tool.csv -q
+# places of a page are 16 bits of the box
+check '... as the tool has it' awk -F, 'NR == FNR { row[FNR] = $0; next } FNR == 1 { bad = row[1] != $0; next } {
+    n = split(row[FNR], p, ","); if (n != NF || n < 5) bad = 1
+    for (c = 1; c <= n; c++) { d = p[c] - $c; if (d < 0) d = -d; if (d > 1e-3 * (1 + ($c < 0 ? -$c : $c))) { bad = 1; print FNR, row[FNR], $0 } } count++ } END { exit bad || count != 256 }' page.csv tool.csv
 says 'keys alone draw a line' '^\["by keys","line",2,\[0,0,(0\.9[89]|1)\],84\]'
 says '<relume-view> shows an object too' '^\["embedded","eye=0,0,9&light=dir,0,0.6,0.8","RELUME-OBJECT",null\]'
 below '... as its page does' "$("$mkimage" codediff embedded.png page1.png)" 0.01

@@ -6,6 +6,7 @@ import { RADIANS } from './lights.js';
 import { Failure, loadJson, put } from './load.js';
 import { NotePanel } from './notepanel.js';
 import { ObjectNotes } from './objectnotes.js';
+import { profileOfObject } from './objectprofile.js';
 import { ObjectViewer } from './objectview.js';
 import { Overlay } from './overlay.js';
 import { listenPointers } from './pointer.js';
@@ -112,6 +113,7 @@ export class RelumeObject extends HTMLElement {
         this.overlay = new Overlay(this.over, viewer, () => this.panel.rested());
         this.panel = new NotePanel(viewer, notes, this.overlay, {
             draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state), focus: () => this.surface.focus(),
+            profile: (note, list) => profileOfObject(viewer, note, list),
         });
         this.panel.node.hidden = true;
         this.frame.append(this.panel.node);

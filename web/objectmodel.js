@@ -130,13 +130,25 @@ export class ObjectModel {
         return this.places;
     }
 
-    // Where a ray first meets the surface, or null (Moeller and Trumbore 1997).
-    meet(from, way) {
-        const { corners, object: { index } } = this;
-        const at = (i) => [corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]];
+    corner(i) { return [this.corners[3 * i], this.corners[3 * i + 1], this.corners[3 * i + 2]]; }
+
+    // The triangles that a plane cuts or touches.
+    cutBy(place, normal) {
+        const { object: { index } } = this, far = product(place, normal), out = [];
+        for (let i = 0; i < index.length / 3; i++) {
+            const sides = [0, 1, 2].map((k) => product(this.corner(index[3 * i + k]), normal) - far);
+            if (Math.min(...sides) <= 0 && Math.max(...sides) >= 0)
+                out.push(i);
+        }
+        return out;
+    }
+
+    // Where a ray first meets the surface, or null (Moeller and Trumbore 1997); of the triangles `only`, if there are any.
+    meet(from, way, only = null) {
+        const { object: { index } } = this, at = (i) => this.corner(i), count = only ? only.length : index.length / 3;
         let nearest = Infinity;
-        for (let i = 0; i < index.length; i += 3) {
-            const a = at(index[i]), u = minus(at(index[i + 1]), a), v = minus(at(index[i + 2]), a), p = cross(way, v), d = product(u, p);
+        for (let k = 0; k < count; k++) {
+            const i = 3 * (only ? only[k] : k), a = at(index[i]), u = minus(at(index[i + 1]), a), v = minus(at(index[i + 2]), a), p = cross(way, v), d = product(u, p);
             if (d === 0)
                 continue;
             const to = minus(from, a), s = product(to, p) / d, q = cross(to, u), t = product(way, q) / d, far = product(v, q) / d;

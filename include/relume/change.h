@@ -42,6 +42,7 @@ struct relume_change_params {
     int least_area;       // pixels of the smallest place; default 16
     double max_roll_deg;  // how far the second may be turned in its plane, up to 180; default 12
     bool keep_bend;       // a smooth bend of the whole surface counts as change
+    double least_gloss;   // smaller differences of gloss are none, [0, 1] of white; default 0.03
 };
 #define relume_change_params(...)                                                                  \
     (&(const struct relume_change_params){RELUME_SIZED(relume_change_params), __VA_ARGS__})
@@ -54,6 +55,8 @@ struct relume_change_place {
     double deg;              // mean turn of the normal, degrees
     double delta_e;          // mean difference of colour, CIEDE2000
     double significance;     // -log10 of the least probability in it, at most 300
+    int gloss;               // pixels whose gloss alone has changed
+    double gloss_by;         // mean difference of gloss, the second's less the first's, of white
 };
 
 // What was found. Pictures have the size of the first capture. Thread-safety: plain data.
@@ -65,9 +68,10 @@ struct relume_change {
         albedo[2];                // three: linear, the first's bright parts at 0.8; both registered
     struct relume_image degrees;  // one: between the normals
     struct relume_image delta_e;  // one: between the colours, CIEDE2000
-    struct relume_image significance;  // two of three channels: -log10 of the probability that
-                                       // chance makes this of the shape, of the colour; third 0
-    struct relume_image changed;       // three: 1 where the shape has changed, the colour, either
+    struct relume_image significance;  // three: -log10 of the probability that chance makes this
+                                       // of the shape, of the colour, of the gloss
+    struct relume_image changed;  // three: 1 where the shape has changed, the colour, anything; the
+                                  // third alone: the gloss
     struct relume_homography registered;  // pixels of the first -> of the second
     double flow;                          // pixels, the longest step of the smooth flow
     double misplaced;                     // pixels, how far places are off afterwards (estimated)
@@ -78,6 +82,12 @@ struct relume_change {
     size_t area, shape, colour;  // pixels that have changed; by shape, by colour
     struct relume_change_place *place;  // [places], largest first
     int places;
+    // One channel: how much brighter highlights are in the second capture, of white, where a lobe
+    // of cos^16 around the mirror direction is seen by enough lamps of both; else 0.
+    struct relume_image gloss;
+    double noise_gloss;              // median of its uncertainty, one standard deviation
+    size_t gloss_known, gloss_area;  // pixels where both captures tell gloss; where it alone has
+                                     // changed
 };
 
 // Compare two captures of one object: planar ones, or views of a slab. RELUME_EUNFIT with a

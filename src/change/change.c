@@ -21,7 +21,7 @@ void relume_change_destroy(struct relume_change *c)
 {
     struct relume_image *const of[] = {&c->normal[0],    &c->normal[1], &c->albedo[0],
                                        &c->albedo[1],    &c->degrees,   &c->delta_e,
-                                       &c->significance, &c->changed};
+                                       &c->significance, &c->changed,   &c->gloss};
     for (size_t i = 0; i < sizeof of / sizeof *of; i++)
         relume_image_destroy(of[i]);
     mem_free(c->place);
@@ -45,6 +45,10 @@ static relume_status expose(struct surface *s, double *exposure)
     for (size_t i = 0; i < 3 * n; i++) {
         s->colour.data[i] *= gain;
         s->colour_noise.data[i] *= gain;
+    }
+    for (size_t i = 0; i < n; i++) {
+        s->gloss.data[3 * i] *= gain * gain * gain;
+        s->gloss_noise.data[3 * i] *= gain * gain * gain;
     }
     *exposure = (double)gain * (double)gain * (double)gain;
     mem_free(some);
@@ -149,7 +153,7 @@ static relume_status create(struct relume_change *out, const struct surface *a)
         int channels;
     } const of[] = {{&out->normal[0], 3},    {&out->normal[1], 3}, {&out->albedo[0], 3},
                     {&out->albedo[1], 3},    {&out->degrees, 1},   {&out->delta_e, 1},
-                    {&out->significance, 3}, {&out->changed, 3}};
+                    {&out->significance, 3}, {&out->changed, 3},   {&out->gloss, 1}};
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof of / sizeof *of; i++)
         status = relume_image_create(of[i].image, a->width, a->height, of[i].channels);
@@ -173,10 +177,12 @@ static relume_status check(const struct relume_change_params *p)
 {
     if (!(p->least_deg >= 0.0 && p->least_deg <= 90.0) ||
         !(p->least_de >= 0.0 && p->least_de <= 100.0) ||
+        !(p->least_gloss >= 0.0 && p->least_gloss <= 1.0) ||
         !(p->false_share > 0.0 && p->false_share <= 0.5) || p->least_area < 1 ||
         !(p->max_roll_deg > 0.0 && p->max_roll_deg <= 180.0))
         return log_fail(p->log, RELUME_EINVAL,
-                        "change: expected degrees of 0 to 90, deltaE of 0 to 100, a false share "
+                        "change: expected degrees of 0 to 90, deltaE of 0 to 100, gloss of 0 to 1, "
+                        "a false share "
                         "above 0 and at most 0.5, an area of 1 or more, a roll of at most 180");
     return RELUME_OK;
 }
@@ -192,6 +198,7 @@ relume_status relume_change_find(struct relume_change *out,
     p.threads = thread_count(p.threads);
     p.least_deg = p.least_deg != 0.0 ? p.least_deg : 2.0;
     p.least_de = p.least_de != 0.0 ? p.least_de : 2.0;
+    p.least_gloss = p.least_gloss != 0.0 ? p.least_gloss : 0.03;
     p.false_share = p.false_share != 0.0 ? p.false_share : 0.01;
     p.least_area = p.least_area ? p.least_area : 16;
     p.max_roll_deg = p.max_roll_deg != 0.0 ? p.max_roll_deg : 12.0;

@@ -11,6 +11,7 @@
 #include "change/smooth.h"
 #include "compare/ciede2000.h"
 #include "math/bilinear.h"
+#include "math/scalar.h"
 #include "math/sort.h"
 #include "math/vec.h"
 
@@ -25,6 +26,7 @@ static const double smooth_part = 0.75, smooth_chi = 1.323;  // quantile of smoo
 static const double freedom = 20.0;                          // degrees of freedom of a variance
 static const double floor_normal = 4e-3;                     // a quarter of a degree
 static const double floor_colour = 2e-3;                     // cube root
+static const double floor_gloss = 5e-3;                      // of white
 static const double least_scale = 0.06;  // of the statistic, of what is expected
 static const double steep_part = 0.9;    // of the pixels are less steep than those that tell shifts
 static const double most_shift = 1.0, least_shift = 0.05;           // pixels
@@ -279,7 +281,8 @@ static relume_status mark(struct relume_change *out, struct judged *j, size_t ch
         return RELUME_ENOMEM;
     for (size_t i = 0; i < j->n; i++)
         if (j->known.data[i] > 0.5f) {
-            some[count] = improbable((double)j->statistic.data[i], components);
+            // the tail of one component is below that of two with half of its square each
+            some[count] = improbable((double)j->statistic.data[i], larger_of(components, 2));
             out->significance.data[3 * i + channel] = (float)some[count++];
         }
     const double from = mark_from(some, count, share);
@@ -406,6 +409,41 @@ static relume_status judge_colour(struct relume_change *out, struct judged *j,
     return status;
 }
 
+// ---------------------------------------------------------------- gloss
+
+static relume_status judge_gloss(struct relume_change *out, struct judged *j,
+                                 const struct relume_change_params *p)
+{
+    struct relume_image size = {0};
+    for (size_t i = 0; i < j->n; i++) {
+        if (!surface_knows_gloss(j->a, i) || !surface_knows_gloss(j->b, i))
+            j->known.data[i] = 0.0f;
+        out->gloss_known += j->known.data[i] > 0.5f;
+    }
+    if (!out->gloss_known || out->gloss_known < (size_t)p->least_area)
+        return RELUME_OK;
+    relume_status status = difference_of(j, &j->a->gloss, &j->b->gloss);
+    if (!status)
+        status = variance_of(j, &j->a->gloss_noise, &j->b->gloss_noise);
+    if (!status)
+        status = slope_of(j, &j->a->gloss, &j->b->gloss);
+    if (!status)
+        status = relume_image_create(&size, out->width, out->height, 1);
+    for (size_t i = 0; !status && i < j->n; i++) {
+        out->gloss.data[i] = j->known.data[i] > 0.5f ? -j->difference.data[3 * i] : 0.0f;
+        size.data[i] = fabsf(out->gloss.data[i]);
+    }
+    if (!status)
+        status = statistics(j, floor_gloss, out->misplaced, 1);
+    if (!status)
+        status = mark(out, j, 2, 1, p->false_share, &size, p->least_gloss);
+    if (!status)
+        status = median_noise(&out->noise_gloss, j);
+    relume_image_destroy(&size);
+    clear(j);
+    return status;
+}
+
 relume_status judge(struct relume_change *out, const struct surface *a, const struct surface *b,
                     const struct relume_change_params *params)
 {
@@ -418,10 +456,13 @@ relume_status judge(struct relume_change *out, const struct surface *a, const st
         status = judge_shape(out, &j, params);
     if (!status)
         status = judge_colour(out, &j, params);
+    for (size_t i = 0; !status && i < j.n; i++)
+        out->known += j.known.data[i] > 0.5f;
+    if (!status)
+        status = judge_gloss(out, &j, params);
     for (size_t i = 0; !status && i < j.n; i++) {
         float *c = out->changed.data + 3 * i;
-        c[2] = c[0] > 0.5f || c[1] > 0.5f ? 1.0f : 0.0f;
-        out->known += j.known.data[i] > 0.5f;
+        c[2] = c[0] > 0.5f || c[1] > 0.5f || c[2] > 0.5f ? 1.0f : 0.0f;
     }
     relume_image_destroy(&j.known);
     relume_image_destroy(&j.statistic);

@@ -333,6 +333,11 @@ static void apply_row(void *context, size_t y, int worker)
             factor[c] = exp(sum_of(l->gain[c], t, LEVEL_TERMS));
         scale_noise(a->b->colour.data + 3 * i, factor);
         scale_noise(a->b->colour_noise.data + 3 * i, factor);
+        const double light = pow((factor[0] + factor[1] + factor[2]) / 3.0, 3.0);
+        if (a->b->gloss.data) {
+            a->b->gloss.data[3 * i] *= (float)light;
+            a->b->gloss_noise.data[3 * i] *= (float)light;
+        }
     }
 }
 

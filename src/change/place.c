@@ -93,6 +93,10 @@ static void sample_row(void *context, size_t y, int worker)
         // Means of neighbours have less noise than they: the nearest one has all of it.
         const size_t nearest = 3 * ((size_t)index_clamped((int)q[1], b->height) * (size_t)b->width +
                                     (size_t)index_clamped((int)q[0], b->width));
+        if (b->gloss.data)  // its differences are smoothed anyhow
+            memcpy(s->out->gloss.data + at, b->gloss.data + nearest, sizeof normal);
+        if (b->gloss.data)
+            memcpy(s->out->gloss_noise.data + at, b->gloss_noise.data + nearest, sizeof normal);
         memcpy(s->out->normal_noise.data + at, b->normal_noise.data + nearest, sizeof normal);
         memcpy(s->out->colour_noise.data + at, b->colour_noise.data + nearest, sizeof colour);
     }
@@ -102,11 +106,12 @@ relume_status place_sample(struct surface *out, const struct surface *b, const s
                            int width, int height, int threads)
 {
     *out = (struct surface){.width = width, .height = height};
-    struct relume_image *const of[] = {&out->normal, &out->colour, &out->normal_noise,
-                                       &out->colour_noise};
+    struct relume_image *const of[] = {&out->normal,       &out->colour, &out->normal_noise,
+                                       &out->colour_noise, &out->gloss,  &out->gloss_noise};
+    const size_t images = b->gloss.data ? 6 : 4;
     struct sampling s = {out, b, p};
     relume_status status = RELUME_OK;
-    for (size_t i = 0; !status && i < sizeof of / sizeof *of; i++)
+    for (size_t i = 0; !status && i < images; i++)
         status = relume_image_create(of[i], width, height, 3);
     if (status)
         surface_free(out);

@@ -54,9 +54,11 @@ static struct relume_change_place measure(const struct filling *f)
         top = smaller_of(top, y), bottom = larger_of(bottom, y);
         p.shape += out->changed.data[3 * at] > 0.5f;
         p.colour += out->changed.data[3 * at + 1] > 0.5f;
+        p.gloss += !(out->changed.data[3 * at] > 0.5f) && !(out->changed.data[3 * at + 1] > 0.5f);
+        p.gloss_by += (double)out->gloss.data[at] / p.area;
         p.deg += (double)out->degrees.data[at] / p.area;
         p.delta_e += (double)out->delta_e.data[at] / p.area;
-        for (int c = 0; c < 2; c++)
+        for (int c = 0; c < 3; c++)
             p.significance = (double)of[c] > p.significance ? (double)of[c] : p.significance;
     }
     p.box = (struct relume_rect){left, top, right - left + 1, bottom - top + 1};
@@ -85,6 +87,7 @@ static bool add(struct relume_change *out, struct relume_change_place place)
     out->area += (size_t)place.area;
     out->shape += (size_t)place.shape;
     out->colour += (size_t)place.colour;
+    out->gloss_area += (size_t)place.gloss;
     return true;
 }
 

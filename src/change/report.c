@@ -31,9 +31,9 @@ static void put_summary(FILE *f, const struct relume_change *c)
     if (c->places)
         fprintf(f,
                 "<p class=\"warn\"><b>%d place%s changed</b>: %.3g %% of the surface (shape %.3g "
-                "%%, colour %.3g %%).</p>\n",
+                "%%, colour %.3g %%, gloss alone %.3g %%).</p>\n",
                 c->places, c->places == 1 ? " has" : "s have", share(c, c->area),
-                share(c, c->shape), share(c, c->colour));
+                share(c, c->shape), share(c, c->colour), share(c, c->gloss_area));
     else
         fputs("<p class=\"good\"><b>Nothing has changed</b> that is more than chance.</p>\n", f);
     fprintf(f, "<table><tr><td>pixels compared</td><td>%zu of %d x %d</td></tr>\n", c->known,
@@ -43,12 +43,16 @@ static void put_summary(FILE *f, const struct relume_change *c)
             "<tr><td>longest step of the smooth flow</td><td>%.1f pixels</td></tr>"
             "<tr><td>places are off by about</td><td>%.2f pixels</td></tr>\n",
             c->registered.correlation, c->flow, c->misplaced);
-    fprintf(f,
-            "<tr><td>uncertainty of a normal (median)</td><td>%.2f&#176;</td></tr>"
-            "<tr><td>uncertainty of a colour (median)</td><td>about %.1f deltaE</td></tr>"
-            "<tr><td>smooth bend that was taken away</td><td>%.1f&#176;</td></tr>"
-            "<tr><td>gain of the second's colours</td><td>%.3f %.3f %.3f</td></tr></table>\n",
-            c->noise_deg, c->noise_de, c->bend_deg, c->gain[0], c->gain[1], c->gain[2]);
+    fprintf(
+        f,
+        "<tr><td>uncertainty of a normal (median)</td><td>%.2f&#176;</td></tr>"
+        "<tr><td>uncertainty of a colour (median)</td><td>about %.1f deltaE</td></tr>"
+        "<tr><td>uncertainty of gloss (median; compared where enough lamps stand near the mirror "
+        "direction: %.0f %%)</td><td>%.3f of white</td></tr>"
+        "<tr><td>smooth bend that was taken away</td><td>%.1f&#176;</td></tr>"
+        "<tr><td>gain of the second's colours</td><td>%.3f %.3f %.3f</td></tr></table>\n",
+        c->noise_deg, c->noise_de, share(c, c->gloss_known), c->noise_gloss, c->bend_deg,
+        c->gain[0], c->gain[1], c->gain[2]);
 }
 
 static void put_boxes(FILE *f, const struct relume_change *c, int places)
@@ -68,11 +72,11 @@ static void put_boxes(FILE *f, const struct relume_change *c, int places)
     fputs("</svg>", f);
 }
 
-static void put_picture(FILE *f, const char *file, const char *says, int most)
+static void put_picture(FILE *f, const char *file, const char *says, double most)
 {
     fprintf(f, "<figure><img src=\"%s\" alt=\"%s\"><figcaption>%s", file, says, says);
-    if (most)
-        fprintf(f, " <span class=\"ramp\"></span> 0 to %d", most);
+    if (most > 0.0)
+        fprintf(f, " <span class=\"ramp\"></span> 0 to %g", most);
     fputs("</figcaption></figure>\n", f);
 }
 
@@ -83,7 +87,8 @@ static void put_pictures(FILE *f, const struct relume_change *c, int places)
           f);
     put_boxes(f, c, places);
     fputs("</div><figcaption>orange: the shape has changed, blue: the colour, pink: "
-          "both</figcaption></figure>\n<figure><div class=\"over\"><img src=\"before.png\" "
+          "both, green: the gloss alone</figcaption></figure>\n<figure><div class=\"over\"><img "
+          "src=\"before.png\" "
           "alt=\"before\"><img class=\"top\" src=\"after.png\" alt=\"after\"></div>"
           "<figcaption>before and after take turns (point at the picture to hold it), under the "
           "same light from the upper left; <a href=\"before.png\">before.png</a>, <a "
@@ -92,6 +97,7 @@ static void put_pictures(FILE *f, const struct relume_change *c, int places)
     fputs("<h2>How much, and how surely</h2>\n<div class=\"row\">", f);
     put_picture(f, "shape.png", "turn of the normals, degrees", RAMP_DEGREES);
     put_picture(f, "colour.png", "difference of colour, deltaE (CIEDE2000)", RAMP_DELTA_E);
+    put_picture(f, "gloss.png", "difference of highlights, parts of white", RAMP_GLOSS);
     put_picture(f, "significance.png", "significance: -log10 of the probability of chance",
                 RAMP_SIGNIFICANCE);
     fputs("</div>\n", f);
@@ -102,15 +108,16 @@ static void put_places(FILE *f, const struct relume_change *c, int places)
     if (!places)
         return;
     fprintf(f, "<h2>Places</h2>\n<table><tr><th>place</th><th>x</th><th>y</th><th>width</th>"
-               "<th>height</th><th>pixels</th><th>of shape</th><th>of colour</th><th>turn</th><th>"
-               "deltaE</th><th>chance</th></tr>\n");
+               "<th>height</th><th>pixels</th><th>of shape</th><th>of colour</th><th>of "
+               "gloss</th><th>turn</th><th>deltaE</th><th>highlights</th><th>chance</th></tr>\n");
     for (int i = 0; i < places; i++) {
         const struct relume_change_place *p = &c->place[i];
         fprintf(f,
                 "<tr><td>%d</td><td>%d</td><td>%d</td><td>%d</td><td>%d</td><td>%d</td><td>%d</td>"
-                "<td>%d</td><td>%.1f&#176;</td><td>%.1f</td><td>10<sup>-%.0f</sup></td></tr>\n",
+                "<td>%d</td><td>%d</td><td>%.1f&#176;</td><td>%.1f</td><td>%+.2f</"
+                "td><td>10<sup>-%.0f</sup></td></tr>\n",
                 i + 1, p->box.left, p->box.top, p->box.width, p->box.height, p->area, p->shape,
-                p->colour, p->deg, p->delta_e, p->significance);
+                p->colour, p->gloss, p->deg, p->delta_e, p->gloss_by, p->significance);
     }
     fputs("</table>\n", f);
     if (places < c->places)

@@ -6,6 +6,7 @@
 
 // What is white in the pictures.
 enum { RAMP_DEGREES = 15, RAMP_DELTA_E = 15, RAMP_SIGNIFICANCE = 20 };
+#define RAMP_GLOSS 0.3
 
 struct writing {
     const struct relume_change *change;

@@ -3,6 +3,10 @@
 // A half is a draw of the lights as another capture would be: what halves differ in has all that
 // lights bring in, noise, shadows and highlights alike. Two means of n/2 samples differ by twice
 // the deviation that a mean of n has, so half of the difference has the size of the noise.
+//
+// Gloss is what highlights add to the matte surface, by least squares along a broad lobe around the
+// mirror direction, cos^16 of the angle between normal and half vector: the same for all captures,
+// so that lamps at other places see about the same of it, and a sharper highlight is less.
 #include "change/surface.h"
 
 #include "base/log.h"
@@ -18,6 +22,8 @@
 enum { LEAST = 4, LEAST_HALVED = 8, PARTS = 3, TRIES = 50 };
 static const size_t band_bytes = (size_t)64 << 20;
 static const float clipped = 0.995f;  // of the largest value
+static const double least_lobe =
+    0.25;  // of the squares of the lobe that some lamps see: 12 degrees
 
 struct fit {
     struct surface *out;
@@ -49,6 +55,7 @@ struct found {
     vec3 normal;
     float colour[3];
     double miss;  // RMS of the residuals over the albedo
+    double gloss, lobe;
 };
 
 void colour_code(float code[3], const float linear[3])
@@ -95,6 +102,26 @@ static int gather(const struct fit *f, const struct pixel *p, int part)
     return n;
 }
 
+// What the lamps of a part see over the matte surface `g`, those that clip too.
+static void find_gloss(struct found *out, const struct fit *f, const struct pixel *p, int part,
+                       vec3 g)
+{
+    double sum = 0.0;
+    out->lobe = 0.0;
+    for (int i = 0; i < f->lights; i++) {
+        const vec3 l = p->direction[i], half = vec3_unit(vec3_add(l, vec3_of(0.0, 0.0, 1.0)));
+        const double c = vec3_dot(out->normal, half);
+        if ((part != 2 && f->half[i] != part) || !(c > 0.0) ||
+            vec3_dot(out->normal, l) <= LAMBERT_GRAZING)
+            continue;
+        const double c4 = c * c * c * c, lobe = c4 * c4 * c4 * c4;
+        const double over = (double)luminance_709f(sample_of(f, i, p->at)) - vec3_dot(g, l);
+        sum += lobe * over;
+        out->lobe += lobe * lobe;
+    }
+    out->gloss = out->lobe > 0.0 ? sum / out->lobe : 0.0;
+}
+
 static bool find(struct found *out, const struct fit *f, const struct pixel *p, int part)
 {
     vec3 g;
@@ -121,6 +148,7 @@ static bool find(struct found *out, const struct fit *f, const struct pixel *p, 
         albedo[c] = norm > 0.0 ? (float)(sum[c] / norm) : 0.0f;
     colour_code(out->colour, albedo);
     out->miss = weight > 0.0 ? sqrt(miss / weight) / vec3_length(g) : 0.0;
+    find_gloss(out, f, p, part, g);
     return true;
 }
 
@@ -168,6 +196,11 @@ static void fit_pixel(struct fit *f, const struct pixel *p)
     vec3_store(f->out->normal.data + at, found[2].normal);
     for (size_t c = 0; c < 3; c++)
         f->out->colour.data[at + c] = found[2].colour[c];
+    if (f->halved && found[0].lobe >= least_lobe && found[1].lobe >= least_lobe) {
+        f->out->gloss.data[at] = (float)found[2].gloss;
+        f->out->gloss.data[at + 1] = 1.0f;
+        f->out->gloss_noise.data[at] = (float)(0.5 * (found[0].gloss - found[1].gloss));
+    }
     set_noise(f->out->normal_noise.data + at, f->out->colour_noise.data + at, f, p, found);
 }
 
@@ -269,8 +302,9 @@ static relume_status alloc(struct fit *f, int threads)
 {
     const size_t lights = (size_t)f->lights, workers = (size_t)threads;
     const size_t fitting = band_bytes / ((size_t)f->width * lights * 3 * sizeof(float));
-    struct relume_image *const of[] = {&f->out->normal, &f->out->colour, &f->out->normal_noise,
-                                       &f->out->colour_noise};
+    struct relume_image *const of[] = {&f->out->normal,       &f->out->colour,
+                                       &f->out->gloss,        &f->out->normal_noise,
+                                       &f->out->colour_noise, &f->out->gloss_noise};
     f->rows = fitting < 1 ? 1 : fitting < (size_t)f->out->height ? (int)fitting : f->out->height;
     f->samples = mem_array(3 * lights * (size_t)f->rows * (size_t)f->width, sizeof *f->samples);
     f->white = mem_array(lights, sizeof *f->white);
@@ -306,6 +340,8 @@ void surface_free(struct surface *s)
     relume_image_destroy(&s->colour);
     relume_image_destroy(&s->normal_noise);
     relume_image_destroy(&s->colour_noise);
+    relume_image_destroy(&s->gloss);
+    relume_image_destroy(&s->gloss_noise);
     *s = (struct surface){0};
 }
 

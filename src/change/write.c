@@ -90,13 +90,19 @@ static void put_delta_e(float rgb[3], const struct writing *w, size_t at)
     put_ramp(rgb, (double)w->change->delta_e.data[at] / RAMP_DELTA_E);
 }
 
+static void put_gloss(float rgb[3], const struct writing *w, size_t at)
+{
+    put_ramp(rgb, fabs((double)w->change->gloss.data[at]) / RAMP_GLOSS);
+}
+
 static void put_significance(float rgb[3], const struct writing *w, size_t at)
 {
     const float *s = w->change->significance.data + 3 * at;
-    put_ramp(rgb, (double)fmaxf(s[0], s[1]) / RAMP_SIGNIFICANCE);
+    put_ramp(rgb, (double)fmaxf(fmaxf(s[0], s[1]), s[2]) / RAMP_SIGNIFICANCE);
 }
 
-// The first capture in grey; orange where the shape has changed, blue the colour, pink both.
+// The first capture in grey; orange where the shape has changed, blue the colour, pink both, green
+// the gloss alone.
 static void put_changed(float rgb[3], const struct writing *w, size_t at)
 {
     const float *c = w->change->changed.data + 3 * at;
@@ -104,6 +110,10 @@ static void put_changed(float rgb[3], const struct writing *w, size_t at)
     put_before(own, w, at);
     const float grey = 0.6f * (own[0] + own[1] + own[2]) / 3.0f;
     const bool shape = c[0] > 0.5f, colour = c[1] > 0.5f;
+    if (!shape && !colour && c[2] > 0.5f) {
+        rgb[0] = 0.05f, rgb[1] = 0.6f, rgb[2] = 0.1f;
+        return;
+    }
     rgb[0] = shape ? 1.0f : colour ? 0.02f : grey;
     rgb[1] = shape ? colour ? 0.05f : 0.25f : colour ? 0.3f : grey;
     rgb[2] = shape ? colour ? 0.6f : 0.0f : colour ? 1.0f : grey;
@@ -114,9 +124,13 @@ static relume_status save_all(const struct writing *w)
     static const struct {
         const char *name;
         void (*pixel)(float rgb[3], const struct writing *w, size_t at);
-    } made[] = {{"before.png", put_before},   {"after.png", put_after},
-                {"changed.png", put_changed}, {"shape.png", put_degrees},
-                {"colour.png", put_delta_e},  {"significance.png", put_significance}};
+    } made[] = {{"before.png", put_before},
+                {"after.png", put_after},
+                {"changed.png", put_changed},
+                {"shape.png", put_degrees},
+                {"colour.png", put_delta_e},
+                {"gloss.png", put_gloss},
+                {"significance.png", put_significance}};
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof made / sizeof *made; i++)
         status = save_made(w, made[i].name, made[i].pixel);
@@ -124,6 +138,8 @@ static relume_status save_all(const struct writing *w)
         status = save(w, &w->change->degrees, "degrees.exr");
     if (!status)
         status = save(w, &w->change->delta_e, "delta_e.exr");
+    if (!status)
+        status = save(w, &w->change->gloss, "gloss.exr");
     if (!status)
         status = save(w, &w->change->significance, "significance.exr");
     return status;

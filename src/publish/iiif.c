@@ -190,6 +190,13 @@ static void put_links(FILE *f, const struct site *site, const struct page *p)
         p->object ? "Model" : "Dataset",
         p->object ? "The relightable object (relume-web-object 1)"
                   : "Coefficient layers of the relightable image (relume-web 1)");
+    if (!p->object)
+        return;
+    fputs("  \"rendering\": [{", f);
+    put_id(f, site, p->name, "/model.glb");
+    fputs("\"type\": \"Model\", \"format\": \"model/gltf-binary\", \"label\": {\"en\": [\"The "
+          "object in plain light (glTF)\"]}}],\n",
+          f);
 }
 
 static void put_notes(FILE *f, const struct site *site, const struct page *p)
@@ -205,7 +212,15 @@ struct canvas {
     int number, width, height;
     const char *picture, *label;
     bool service, notes;
+    bool thumbnail;  // the picture itself serves as one
+    bool model;      // it is no picture, but a mesh
 };
+
+static const char *body_of(const struct canvas *c)
+{
+    return c->model ? "\"type\": \"Model\", \"format\": \"model/gltf-binary\""
+                    : "\"type\": \"Image\", \"format\": \"image/jpeg\"";
+}
 
 static void put_canvas(FILE *f, const struct site *site, const struct page *p,
                        const struct canvas *c)
@@ -216,6 +231,11 @@ static void put_canvas(FILE *f, const struct site *site, const struct page *p,
     put_id(f, site, p->name, id);
     fprintf(f, "\"type\": \"Canvas\", \"width\": %d, \"height\": %d,\n    ", c->width, c->height);
     put_words(f, "label", c->label);
+    if (c->thumbnail) {
+        fputs(",\n    \"thumbnail\": [{", f);
+        put_id(f, site, p->name, c->model ? "/poster.jpg" : c->picture);
+        fputs("\"type\": \"Image\", \"format\": \"image/jpeg\"}]", f);
+    }
     fputs(",\n    \"items\": [{", f);
     snprintf(below, sizeof below, "%s/page", id);
     put_id(f, site, p->name, below);
@@ -227,8 +247,9 @@ static void put_canvas(FILE *f, const struct site *site, const struct page *p,
     site_put_address(f, site, whole);
     fputs("\",\n      \"body\": {", f);
     put_id(f, site, p->name, c->picture);
-    fprintf(f, "\"type\": \"Image\", \"format\": \"image/jpeg\", \"width\": %d, \"height\": %d",
-            c->width, c->height);
+    fputs(body_of(c), f);
+    if (!c->model)
+        fprintf(f, ", \"width\": %d, \"height\": %d", c->width, c->height);
     if (c->service) {
         fputs(",\n        \"service\": [{", f);
         put_id(f, site, p->name, "/iiif");
@@ -243,13 +264,14 @@ static void put_canvas(FILE *f, const struct site *site, const struct page *p,
 }
 
 // All of a manifest before its canvases.
-static relume_status manifest_begin(struct text *t, const struct site *site, const struct page *p)
+static relume_status manifest_begin(struct text *t, const struct site *site, const struct page *p,
+                                    const char *name)
 {
     const relume_status status = text_open(t);
     if (status)
         return status;
     fputs("{\n  \"@context\": \"http://iiif.io/api/presentation/3/context.json\",\n  ", t->file);
-    put_id(t->file, site, p->name, "/manifest.json");
+    put_id(t->file, site, p->name, name);
     fputs("\"type\": \"Manifest\",\n  ", t->file);
     put_words(t->file, "label", p->details.title);
     fputs(",\n", t->file);
@@ -259,11 +281,12 @@ static relume_status manifest_begin(struct text *t, const struct site *site, con
     return RELUME_OK;
 }
 
-static relume_status manifest_end(struct text *t, const struct site *site, const struct page *p)
+static relume_status manifest_end(struct text *t, const struct site *site, const struct page *p,
+                                  const char *name)
 {
     char path[128];
     fputs("\n}\n", t->file);
-    snprintf(path, sizeof path, "%s/manifest.json", p->name);
+    snprintf(path, sizeof path, "%s%s", p->name, name);
     return site_save_text(site, path, false, t);
 }
 
@@ -271,7 +294,7 @@ static relume_status write_manifest(const struct site *site, const struct page *
                                     int height, bool notes)
 {
     struct text t;
-    const relume_status status = manifest_begin(&t, site, p);
+    const relume_status status = manifest_begin(&t, site, p, "/manifest.json");
     if (status)
         return status;
     put_canvas(t.file, site, p,
@@ -283,13 +306,32 @@ static relume_status write_manifest(const struct site *site, const struct page *
                                 .service = true,
                                 .notes = notes});
     fputc(']', t.file);
-    return manifest_end(&t, site, p);
+    return manifest_end(&t, site, p, "/manifest.json");
+}
+
+// The mesh alone: viewers that show meshes look at the first canvas.
+static relume_status write_model(const struct site *site, const struct page *p)
+{
+    struct text t;
+    const relume_status status = manifest_begin(&t, site, p, "/iiif/model.json");
+    if (status)
+        return status;
+    put_canvas(t.file, site, p,
+               &(struct canvas){.number = 1,
+                                .width = POSTER_WIDTH,
+                                .height = POSTER_HEIGHT,
+                                .picture = "/model.glb",
+                                .label = p->details.title,
+                                .thumbnail = true,
+                                .model = true});
+    fputc(']', t.file);
+    return manifest_end(&t, site, p, "/iiif/model.json");
 }
 
 relume_status iiif_write_object(const struct site *site, const struct page *p, bool notes)
 {
     struct text t;
-    const relume_status status = manifest_begin(&t, site, p);
+    const relume_status status = manifest_begin(&t, site, p, "/manifest.json");
     if (status)
         return status;
     for (int step = 0; step < TURN_STEPS; step++) {
@@ -303,14 +345,16 @@ relume_status iiif_write_object(const struct site *site, const struct page *p, b
                                     .width = step ? TURN_WIDTH : POSTER_WIDTH,
                                     .height = step ? TURN_HEIGHT : POSTER_HEIGHT,
                                     .picture = picture,
-                                    .label = label});
+                                    .label = label,
+                                    .thumbnail = true});
     }
     fputc(']', t.file);
     if (notes) {
         fputs(",\n  ", t.file);
         put_notes(t.file, site, p);
     }
-    return manifest_end(&t, site, p);
+    const relume_status written = manifest_end(&t, site, p, "/manifest.json");
+    return written ? written : write_model(site, p);
 }
 
 char *iiif_target(const struct site *site, const struct page *page)

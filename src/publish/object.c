@@ -13,6 +13,7 @@
 #include "math/base64.h"
 #include "publish/annotations.h"
 #include "publish/iiif.h"
+#include "publish/model.h"
 #include "publish/names.h"
 #include "publish/turn.h"
 
@@ -316,6 +317,8 @@ relume_status object_write(const struct site *site, struct page *page, const cha
         status = write_json(site, page, b, &a, bytes, notes);
     if (!status)
         status = turn_write(site, page, path);
+    if (!status)
+        status = model_write(site, page, b);
     const bool noted = !status && relume_notes_count(notes) > 0;
     if (!status)
         status = iiif_write_object(site, page, noted);

@@ -62,6 +62,28 @@ check "names are escaped" grep -q 'to &lt;b&gt;&amp;/' found/report.html
 same "one thread measures the same" found/degrees.exr twice/degrees.exr
 same "one thread marks the same" found/changed.png twice/changed.png
 
+# ---------------------------------------------------------------- gloss alone
+# 24 lamps or more; an ellipse around (0.68, 0.5) has highlights three times as bright
+glossy="--size 128 104 --noise 0.004 --gloss 0.2"
+"$scene" dull $glossy --lights 24
+"$scene" kept $glossy --lights 27 --seed 7 --gain 0.7 0.8 0.75
+"$scene" polished $glossy --lights 27 --seed 7 --gain 0.7 0.8 0.75 --polish
+change dull kept none4
+check "a glossy surface under other lamps has not changed" grep -q '"changed": 0,.*"gloss_known": [1-9][0-9]*,.*"places": \[\]' none4.json
+rm -rf found found.json
+change dull polished found
+count=$(grep -o '"x": ' found.json | wc -l)
+if [ "$count" = 1 ]; then ok "a place that was polished is found, and nothing else"; else not_ok "a place that was polished is found" "$(cat found.json)"; fi
+above "it lies where it was made" "$(overlaps 1 78 57.6 96 70.4)" 0.6
+check "it is gloss, not shape or colour, and brighter" awk -v p="$(place 1)" 'BEGIN {
+    n = split(p, v, /[^-0-9.e]+/); match(p, /"gloss": [0-9]+/); g = substr(p, RSTART + 9, RLENGTH - 9)
+    match(p, /"shape": [0-9]+/); s = substr(p, RSTART + 9, RLENGTH - 9); match(p, /"colour": [0-9]+/); c = substr(p, RSTART + 10, RLENGTH - 10)
+    match(p, /"gloss_by": [-0-9.e]+/); b = substr(p, RSTART + 12, RLENGTH - 12); exit !(g + 0 > 10 * (s + c) && b > 0.1 && b < 0.3) }'
+check "the report has it" sh -c "grep -q 'gloss alone [1-9]' found/report.html && test -s found/gloss.exr -a -s found/gloss.png"
+"$scene" few --size 64 52 --lights 7
+"$RELUME" change few/lights.lp few/lights.lp -o fewer 2>err.txt
+check "few lamps do not tell gloss, which is said" grep -q 'gloss was not compared' err.txt
+
 # ---------------------------------------------------------------- files
 relume encode a/lights.lp -o a.exr && relume change a.exr a/lights.lp -o file --force
 check "a file beside its own capture has not changed" grep -q 'Nothing has changed' file/report.html

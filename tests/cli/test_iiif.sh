@@ -15,6 +15,12 @@ relume notes ball.exr --add 'polygon 100,100 200,100 200,200' --text 'a loss' >/
 mkdir root home
 relume publish ball.exr -o root/site --url https://museum.test/site || exit 1
 relume relight ball.exr -o ball.png || exit 1
+# an object: pictures from around it, and the mesh
+awk -v n=8 -f "$TOP/scripts/ball.awk" >ball.obj
+echo '{"format":"relume-objects","version":1,"objects":[{"mesh":"ball.obj","parts":[{"material":{"diffuse":[0.8,0.4,0.2]}}]}]}' >ball.json
+relume bake ball.json -o thing.exr --size 24x24 --rays 8 --light 'dir 1 1 1' || exit 1
+relume publish thing.exr -o thing --url https://museum.test/thing || exit 1
+mv thing root/thing
 ln -s "$viewers" root/viewers
 cat >root/mirador.html <<'END'
 <!DOCTYPE html><meta charset="utf-8"><div id="place" style="position:absolute;inset:0"></div>
@@ -46,6 +52,15 @@ for viewer in mirador universal; do
         echo "shot $viewer.png"
     } >>orders.txt
 done
+for of in manifest.json iiif/model.json; do
+    sed "s,site/ball/manifest.json,thing/thing/$of,; /^const notes/d" root/universal.html >root/thing-${of##*/}.html
+    {
+        echo "visit https://museum.test/thing-${of##*/}.html"
+        echo "until performance.getEntriesByType('resource').filter((one) => /turn-2.jpg|model.glb/.test(one.name)).length"
+        echo 'eval new Promise((done) => setTimeout(done, 3000)).then(() => 0)'
+        echo "shot ${of##*/}.png"
+    } >>orders.txt
+done
 HOME=$work/home timeout 240 node "$TOP/tests/tools/page.mjs" "$browser" "$work/home/profile" <orders.txt >said.txt 2>&1 ||
     not_ok 'the browser does as it is told' "$(grep -E '^failed' said.txt)"
 for viewer in mirador universal; do
@@ -57,5 +72,8 @@ for viewer in mirador universal; do
         split(a, p, " "); split(b, q, " "); for (c = 1; c <= 3; c++) { d = p[c] - q[c]; if (d > 0.05 || d < -0.05) bad = 1 }
         print a, "and", b; exit bad || !(q[1] > 1.5 * q[3]) }'
 done
+check 'an object: the Universal Viewer lists its pictures' grep -q '^asked thing/thing/iiif/turn-2.jpg$' said.txt
+check '... and shows its mesh, which is red in the middle' awk -v a="$("$mkimage" read model.json.png 430 345)" 'BEGIN { split(a, p, " "); print a; exit !(p[1] > 0.05 && p[1] > 1.3 * p[3]) }'
+check '... and all of it is there' sh -c "! grep -E '^asked thing/.* missing' said.txt"
 check 'Mirador has the notes' grep -q '^true' mirador.txt
 finish

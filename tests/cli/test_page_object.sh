@@ -57,7 +57,26 @@ check 'a title is text' [ -z "$(grep -rl '<script>alert' site --include='*.html'
 check 'other sites have no part of it' [ ! -e flat/relume/relume-object.js ]
 "$RELUME" publish any.exr -o again --threads 1 -q
 check 'byte for byte' sh -c 'cmp site/any/object.bin again/any/object.bin && cmp site/any/poster.jpg again/any/poster.jpg && diff -r site/any/iiif again/any/iiif'
+# what other programs show: the mesh in light from everywhere, under which a matte ball has its own colour
+check 'the texture of the mesh is the colour of the ball' awk -v a="$("$mkimage" read site/any/iiif/texture.jpg 12 12)" 'BEGIN {
+    split(a, p, " "); split("0.8 0.4 0.2", q, " "); for (c = 1; c <= 3; c++) { d = p[c] - q[c]; bad = bad || d > 0.03 || d < -0.03 } print a; exit bad }'
+check 'byte for byte, for any threads' cmp site/any/model.glb again/any/model.glb
+modules=$TOP/build/web/node_modules
+if [ "$node" ] && [ -d "$modules/gltf-validator" ]; then
+    check "Khronos's validator has nothing to say of the mesh" sh -c "node '$TOP/tests/tools/gltf_check.mjs' '$modules' site/shiny/model.glb | grep -q '^errors 0 warnings 0'"
+else
+    skip 'the mesh is glTF' 'no node and gltf-validator; make deps-web gets them'
+fi
 if [ "$python" ]; then
+    check 'the mesh has the triangles and the box of the object, and a manifest' "$python" -c "
+import json, struct
+data = open('site/any/model.glb', 'rb').read(); length, = struct.unpack_from('<I', data, 12); m = json.loads(data[20:20 + length])
+p = m['meshes'][0]['primitives'][0]; at = m['accessors'][p['attributes']['POSITION']]; o = json.load(open('site/any/object.json'))
+assert all(abs(a - b) < 1e-6 for a, b in zip(at['min'] + at['max'], o['min'] + o['max'])), at
+assert m['accessors'][p['indices']]['count'] == 3 * o['triangles'] and m['images'][0]['mimeType'] == 'image/jpeg'
+body = json.load(open('site/any/iiif/model.json'))['items'][0]['items'][0]['items'][0]['body']
+assert body == {'id': 'any/model.glb', 'type': 'Model', 'format': 'model/gltf-binary'}, body
+m = json.load(open('site/any/manifest.json')); assert m['rendering'][0]['id'] == 'any/model.glb' and all('thumbnail' in c for c in m['items'])"
     check 'a manifest has a canvas for each picture from around it, the model, and its notes' "$python" -c "
 import json, os
 m = json.load(open('site/any/manifest.json')); bodies = [c['items'][0]['items'][0]['body'] for c in m['items']]
@@ -140,6 +159,9 @@ ask "['touched', window.relume.getState()]"
 echo 'state light=dir,0,0,1&eye=0,0,9' >>orders.txt
 echo 'touch 54 48 34 48 74 48 94 48' >>orders.txt
 ask "['pinched', window.relume.getState()]"
+# the surface over a line: the table of the tool
+ask "($view.panel.choose($view.panel.notes.all[2]), URL.createObjectURL = (blob) => { window.table = blob.text(); return '#'; }, $view.panel.profile().then(() => $view.panel.profiled.querySelector('button').click()).then(() => ['profile', $view.panel.measures.textContent, !!$view.panel.profiled.querySelector('svg')]))"
+echo "write page.csv window.table" >>orders.txt
 # a line by keys alone: from the middle to 20 pixels beside it
 ask "($view.panel.choose(null), window.relume.setState('light=dir,0,0,1&eye=0,0,9'), window.relume.idle().then(() => ($view.panel.begin('line'), 0)))"
 echo 'key Space ArrowRight ArrowRight Space Enter' >>orders.txt
@@ -219,6 +241,12 @@ near_colour() { # picture, pixel, its linear colour
 not() { ! "$@"; }
 check 'beside each other this object is at the left' near slider.png page1.png 50 44
 check 'and the other one at the right' near slider.png other.png 78 44
+says 'a page draws the surface over a line' '^\["profile","[^"]*",true\]'
+"$RELUME" notes any.exr --profile n3 -o tool.csv -q
+# places of a page are 16 bits of the box
+check '... as the tool has it' awk -F, 'NR == FNR { row[FNR] = $0; next } FNR == 1 { bad = row[1] != $0; next } {
+    n = split(row[FNR], p, ","); if (n != NF || n < 5) bad = 1
+    for (c = 1; c <= n; c++) { d = p[c] - $c; if (d < 0) d = -d; if (d > 1e-3 * (1 + ($c < 0 ? -$c : $c))) { bad = 1; print FNR, row[FNR], $0 } } count++ } END { exit bad || count != 256 }' page.csv tool.csv
 says 'keys alone draw a line' '^\["by keys","line",2,\[0,0,(0\.9[89]|1)\],84\]'
 says '<relume-view> shows an object too' '^\["embedded","eye=0,0,9&light=dir,0,0.6,0.8","RELUME-OBJECT",null\]'
 below '... as its page does' "$("$mkimage" codediff embedded.png page1.png)" 0.01

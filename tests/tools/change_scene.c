@@ -2,7 +2,8 @@
 // some lamps see it, and with or without a scratch and a stain
 //
 //   change_scene DIR [--size W H] [--lights N] [--seed S] [--gain R G B] [--noise D] [--gloss G]
-//                [--homography A B C D E F G H] [--roll DEG] [--scratch] [--stain] [--truth PNG]
+//                [--homography A B C D E F G H] [--roll DEG] [--scratch] [--stain] [--polish]
+//                [--truth PNG]
 //
 // The homography takes pixels of this camera to those of the first (its last entry is 1); the roll
 // is by how much the camera is turned with it, counter-clockwise. The truth has red where the
@@ -21,7 +22,7 @@ struct scene {
     const char *folder, *truth;
     int width, height, lights, seed;
     double gain[3], noise, gloss, roll, h[9];
-    bool scratch, stain;
+    bool scratch, stain, polish;
 };
 
 static uint64_t mix(uint64_t x)
@@ -126,6 +127,14 @@ static vec3 light_of(const struct scene *s, int i)
     return (vec3){r * cos(phi), r * sin(phi), z};
 }
 
+// Where it was polished highlights are three times as bright.
+static double gloss_at(const struct scene *s, size_t k)
+{
+    double p[2];
+    place(p, s, (double)(k % (size_t)s->width) + 0.5, (double)(k / (size_t)s->width) + 0.5);
+    return s->gloss * (s->polish && stain_at(p[0], p[1]) < 1.0 ? 3.0 : 1.0);
+}
+
 static bool save_light(const struct scene *s, int i, const vec3 *normal, const float *albedo)
 {
     char path[4096];
@@ -137,7 +146,7 @@ static bool save_light(const struct scene *s, int i, const vec3 *normal, const f
     for (size_t k = 0; k < (size_t)s->width * (size_t)s->height; k++) {
         const double cosine = fmax(vec3_dot(normal[k], light), 0.0);
         const double lobe =
-            cosine > 0.0 ? s->gloss * pow(fmax(vec3_dot(normal[k], half), 0.0), 60.0) : 0.0;
+            cosine > 0.0 ? gloss_at(s, k) * pow(fmax(vec3_dot(normal[k], half), 0.0), 60.0) : 0.0;
         for (size_t c = 0; c < 3; c++) {
             double sum = -6.0;  // twelve uniform ones are about normal
             for (uint64_t j = 0; s->noise > 0.0 && j < 12; j++)
@@ -234,6 +243,8 @@ int main(int argc, char **argv)
             s.scratch = true;
         else if (!strcmp(o, "--stain"))
             s.stain = true;
+        else if (!strcmp(o, "--polish"))
+            s.polish = true;
         else if (!strcmp(o, "--truth") && i + 1 < argc)
             s.truth = argv[++i];
         else if (!strcmp(o, "--size"))

@@ -129,6 +129,7 @@ static struct relume_change make_change(void)
     CHECK_OK(relume_image_create(&c.delta_e, WIDTH, HEIGHT, 1));
     CHECK_OK(relume_image_create(&c.significance, WIDTH, HEIGHT, 3));
     CHECK_OK(relume_image_create(&c.changed, WIDTH, HEIGHT, 3));
+    CHECK_OK(relume_image_create(&c.gloss, WIDTH, HEIGHT, 1));
     return c;
 }
 

@@ -5,7 +5,7 @@ struct change_options {
     struct args args;
     const char *output;
     int least_area, view_a, view_b;
-    double least_deg, least_de, false_share, max_roll;
+    double least_deg, least_de, least_gloss, false_share, max_roll;
     bool force, json, keep_bend, skip_missing, allow_outside, keep_going;
 };
 #define OPTIONS struct change_options
@@ -20,6 +20,8 @@ static const struct option options[] = {
            1e-6, 90),
     NUMBER("--least-colour", least_de, "DE",
            "smallest difference of colour, deltaE (CIEDE2000); default: 2", 1e-6, 100),
+    NUMBER("--least-gloss", least_gloss, "PART",
+           "smallest difference of highlights, a part of white; default: 0.03", 1e-6, 1),
     NUMBER("--false-share", false_share, "F",
            "of the marked pixels, at most this share may be marked by chance; default: 0.01", 1e-9,
            0.5),
@@ -55,9 +57,14 @@ static void say_result(const struct change_options *o, const struct relume_chang
     else
         announce(&o->args, RELUME_NOTE,
                  "%s: %d place%s, %.3g %% of the surface, %s changed: %.3g %% in shape, %.3g %% in "
-                 "colour; see %s/report.html",
+                 "colour, %.3g %% in gloss alone; see %s/report.html",
                  o->output, c->places, relume_plural(c->places), percent_of(c->area, c),
                  c->places == 1 ? "has" : "have", percent_of(c->shape, c), percent_of(c->colour, c),
+                 percent_of(c->gloss_area, c), o->output);
+    if (!c->gloss_known)
+        announce(&o->args, RELUME_NOTE,
+                 "%s: gloss was not compared; that takes more lamps near the mirror direction of "
+                 "the surface",
                  o->output);
     if (c->misplaced > 0.5)
         announce(&o->args, RELUME_WARNING,
@@ -78,11 +85,12 @@ static void print_places(const struct relume_change *c)
     for (int i = 0; i < c->places; i++) {
         const struct relume_change_place *p = &c->place[i];
         printf("%s{\"x\": %d, \"y\": %d, \"width\": %d, \"height\": %d, \"area\": %d, \"shape\": "
-               "%d, \"colour\": %d",
+               "%d, \"colour\": %d, \"gloss\": %d",
                i ? ", " : "", p->box.left, p->box.top, p->box.width, p->box.height, p->area,
-               p->shape, p->colour);
+               p->shape, p->colour, p->gloss);
         put_number("degrees", p->deg);
         put_number("delta_e", p->delta_e);
+        put_number("gloss_by", p->gloss_by);
         put_number("significance", p->significance);
         putchar('}');
     }
@@ -92,11 +100,13 @@ static void print_places(const struct relume_change *c)
 static void print_json(const struct relume_change *c)
 {
     printf("{\"width\": %d, \"height\": %d, \"known\": %zu, \"changed\": %zu, \"shape\": %zu, "
-           "\"colour\": %zu",
-           c->width, c->height, c->known, c->area, c->shape, c->colour);
+           "\"colour\": %zu, \"gloss\": %zu, \"gloss_known\": %zu",
+           c->width, c->height, c->known, c->area, c->shape, c->colour, c->gloss_area,
+           c->gloss_known);
     put_number("changed_percent", percent_of(c->area, c));
     put_number("noise_degrees", c->noise_deg);
     put_number("noise_delta_e", c->noise_de);
+    put_number("noise_gloss", c->noise_gloss);
     put_number("correlation", c->registered.correlation);
     put_number("flow_pixels", c->flow);
     put_number("misplaced_pixels", c->misplaced);
@@ -152,7 +162,8 @@ static relume_status run(const struct args *args)
             relume_change_params(.log = args->log, .threads = args->threads,
                                  .least_deg = o->least_deg, .least_de = o->least_de,
                                  .false_share = o->false_share, .least_area = o->least_area,
-                                 .max_roll_deg = o->max_roll, .keep_bend = o->keep_bend));
+                                 .least_gloss = o->least_gloss, .max_roll_deg = o->max_roll,
+                                 .keep_bend = o->keep_bend));
     if (!status)
         status = relume_change_write(
             &change, o->output,
@@ -173,6 +184,6 @@ static relume_status run(const struct args *args)
 
 const struct command command_change = {
     COMMAND("change", "BEFORE AFTER -o DIR [OPTION ...]",
-            "what has changed in shape and colour between two captures of one object",
+            "what has changed in shape, colour and gloss between two captures of one object",
             "relume change coin-2024 coin-2026 -o coin-change", 2, 2),
 };

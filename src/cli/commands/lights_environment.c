@@ -4,6 +4,7 @@
 // table
 #include "lights_environment.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -174,15 +175,29 @@ static void print_json(const struct weighed *w, const struct environment_order *
     puts("]}");
 }
 
+// As Nuke's reader of EXR calls a layer: digits before it are left out, what is no letter, digit or
+// _ is _.
+static const char *nuke_name(char out[NAME], const char *name)
+{
+    name += strspn(name, "0123456789");
+    snprintf(out, NAME, "%s", name);
+    for (char *c = out; *c; c++)
+        if (!isalnum((unsigned char)*c))
+            *c = '_';
+    return out;
+}
+
 // One node to be pasted into Nuke's graph below the reader of the layers.
 static void print_nuke(const struct weighed *w)
 {
     static const char *const colours[] = {"red", "green", "blue"};
+    char name[NAME];
     puts("Expression {");
     for (int c = 0; c < 3; c++) {
         printf(" expr%d \"", c);
         for (int i = 0; i < w->lights; i++)
-            printf("%s%.7g*%s.%s", i ? " + " : "", (double)w->weight[i][c], w->name[i], colours[c]);
+            printf("%s%.7g*%s.%s", i ? " + " : "", (double)w->weight[i][c],
+                   nuke_name(name, w->name[i]), colours[c]);
         puts("\"");
     }
     puts(" name Environment1\n label \"weights by relume\"\n}");
@@ -256,13 +271,18 @@ static void print_blender(const struct weighed *w, const char *file)
 }
 
 // What a name is in a recipe: no program takes anything else in a layer's name.
-static relume_status check_names(const struct weighed *w, const char *file)
+static relume_status check_names(const struct weighed *w, const char *file, bool nuke)
 {
+    char own[NAME];
     static const char good[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
     for (int i = 0; i < w->lights; i++)
         if (!w->name[i][0] || w->name[i][strspn(w->name[i], good)])
             return data_error("%s: a layer is called '%.60s'; a recipe needs names of letters, "
                               "digits, _, - and .",
+                              file, w->name[i]);
+        else if (nuke && !*nuke_name(own, w->name[i]))
+            return data_error("%s: a layer is called '%.60s', of which Nuke leaves nothing; "
+                              "expected a letter in it",
                               file, w->name[i]);
     return RELUME_OK;
 }
@@ -275,7 +295,8 @@ static void write_csv(const void *context, FILE *f)
 static relume_status show(const struct weighed *w, const struct args *args,
                           const struct environment_order *o)
 {
-    relume_status status = o->recipe ? check_names(w, o->file) : RELUME_OK;
+    relume_status status =
+        o->recipe ? check_names(w, o->file, o->recipe == RECIPE_NUKE) : RELUME_OK;
     if (!status && o->csv)
         status = relume_file_print(o->csv, write_csv, w, args->log);
     if (status)

@@ -320,14 +320,15 @@ $(filter-out $(THREADS),$(UNIT)): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
-# The map of the linker says which sources of the library they take. ThreadSanitizer sees these and no
-# others, half of all: a member that is asked for without optimising only is the release's.
-THREADS_LIB := $B/$(if $(filter tsan,$(config)),tests/threads/taken,librelume).a
+# The map of the linker says which sources of the library they take. For `make config=tsan check-threads` these are
+# compiled and no others, half of all; a member that the release did not ask for is the release's.
+TAKES := $(if $(filter tsan,$(config)),$(filter check-threads,$(MAKECMDGOALS)))
+THREADS_LIB := $(if $(TAKES),$B/tests/threads/taken.a build/librelume.a,$B/librelume.a)
 $(THREADS): $B/tests/%: $B/obj/tests/%.o $(THREADS_LIB)
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -Wl,-Map=$@.map $(FIXED) -o $@ $^ $(if $(filter tsan,$(config)),build/librelume.a) $(LDFLAGS) $(LIBS) $(CMOCKA)
-ifeq ($(config)$(filter-out check-threads,$(MAKECMDGOALS)),tsan)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -Wl,-Map=$@.map $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+ifneq ($(TAKES),)
 include $B/tests/threads/taken.mk
 $B/tests/threads/taken.mk: $(THREADS:$B/%=%.c) $(LIB_C)
 	@mkdir -p $(@D)

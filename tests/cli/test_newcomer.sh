@@ -32,7 +32,8 @@ turned() {
         tail -c +3 "$2"; } >turned.jpg && mv turned.jpg "$2"
 }
 fresh photos sideways && for f in sideways/*.jpg; do turned 6 "$f"; done
-relume capture photos -o flat
+expect_ok 'what comes next' "next: relume encode 'S A' -o FILE.exr" "$RELUME" capture photos -o 'S A'
+mv 'S A' flat
 expect_ok 'photographs taken sideways' 'lights.lp: its lights are turned with the photographs' "$RELUME" capture sideways -o upright
 # upright (x, y) is (y, -x) of the picture as it lies in the file
 sed 1d flat/lights.lp | awk '{ printf "%.5f %.5f %.5f\n", $3, -$2, $4 }' >want.txt
@@ -80,7 +81,6 @@ same 'the same as by full size' want.txt got.txt
 # ---- commands to copy have names in quotation marks; a hyphen is no file
 mkdir 'St. Anna' && cp photos/*.jpg 'St. Anna'
 expect_fail 'a name with a blank' 1 "relume capture 'St. Anna' -o DIR" x.exr "$RELUME" encode 'St. Anna' -o x.exr
-expect_ok 'what comes next' "next: relume encode 'S A' -o FILE.exr" "$RELUME" capture photos -o 'S A'
 expect_fail 'output -' 2 '/dev/stdout' ./- "$RELUME" encode photos -o -
 
 # ---- what is no picture says how it is shown, an option without effect where it has one

@@ -61,6 +61,8 @@ struct relume_acquire_params {
     const char *chart_path;     // of the photograph that shows it; for the report
     const char *likely_lights;  // a file that may be meant as `lights`: where no ball is found the
                                 // sentence names it; or NULL
+    bool quick;  // the surface is not wanted: `photometric` is fitted to small photographs, of at
+                 // most 168 pixels a side, to see whether they fit their lights
 };
 #define relume_acquire_params(...)                                                                 \
     (&(const struct relume_acquire_params){RELUME_SIZED(relume_acquire_params), __VA_ARGS__})

@@ -265,8 +265,11 @@ static relume_status fit(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
     relume_status status =
-        relume_photometric_fit(&out->photometric, capture, 0,
-                               relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
+        s->p.quick && s->width > s->shot[0].small.width
+            ? acquire_fit_small(s, capture)
+            : relume_photometric_fit(
+                  &out->photometric, capture, 0,
+                  relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
     if (status == RELUME_EUNFIT)  // the lights do not allow it; that has been said
         return RELUME_OK;
     if (!status)

@@ -116,6 +116,8 @@ relume_status acquire_find_lights(struct acquisition *s);
 // The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
 bool acquire_has_poses(const char *path);
 relume_status acquire_lights_from_poses(struct acquisition *s);
+// out->photometric by the small photographs; an input status, RELUME_EUNFIT.
+relume_status acquire_fit_small(struct acquisition *s, const relume_capture *capture);
 // Uneven coverage, coplanar lights.
 relume_status acquire_check_lights(struct acquisition *s);
 

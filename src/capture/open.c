@@ -170,9 +170,10 @@ static relume_status check_image(relume_capture *c, int view, int light,
         return RELUME_OK;
     }
     if (info.width != c->width || info.height != c->height)
-        return log_fail(p->log, RELUME_EUNFIT,
-                        "%s: %d x %d pixels; expected %d x %d as in the other images", path,
-                        info.width, info.height, c->width, c->height);
+        return log_fail(
+            p->log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as in the other images%s",
+            path, info.width, info.height, c->width, c->height,
+            info.width == c->height && info.height == c->width ? ": it is turned on its side" : "");
     if (info.x != c->x || info.y != c->y)
         return log_fail(p->log, RELUME_EUNFIT,
                         "%s: its data window begins at (%d, %d); expected (%d, %d) as in the other "

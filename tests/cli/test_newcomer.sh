@@ -32,7 +32,8 @@ turned() {
         tail -c +3 "$2"; } >turned.jpg && mv turned.jpg "$2"
 }
 fresh photos sideways && for f in sideways/*.jpg; do turned 6 "$f"; done
-relume capture photos -o flat
+expect_ok 'what comes next' "next: relume encode 'S A' -o FILE.exr" "$RELUME" capture photos -o 'S A'
+mv 'S A' flat
 expect_ok 'photographs taken sideways' 'lights.lp: its lights are turned with the photographs' "$RELUME" capture sideways -o upright
 # upright (x, y) is (y, -x) of the picture as it lies in the file
 sed 1d flat/lights.lp | awk '{ printf "%.5f %.5f %.5f\n", $3, -$2, $4 }' >want.txt
@@ -57,10 +58,29 @@ fresh photos down && turned 3 down/light0004.jpg
 expect_ok 'one orientation that contradicts the others' 'light0004.jpg: its EXIF orientation is not that of the first' "$RELUME" capture down -o still
 for i in 3 4; do same "photograph $i stays as it is" flat/light000$i.exr still/light000$i.exr; done
 
+# ---- a photograph on its side among others
+mkdir side
+for size in 24x16 24x16 16x24; do
+    n=$((${n:-0} + 1))
+    relume relight want.exr -o side/$n.png --size $size
+    echo "$n.png 0.$n 0 1" >>side/lights.lp
+done
+not_encoded 'a photograph on its side' 'side/3.png: 16 x 24 pixels; expected 24 x 16 .*on its side' side
+
+# ---- without a wish for the surface, small photographs tell which ones do not fit their lights
+"$sphere" wide --size 172 --lights 9 --hemisphere --format jpg || exit 1
+mkdir swapped && cp wide/view00/*.jpg swapped && sed 's|view00/||' wide/dirs.lp >swapped/lights.lp
+mv swapped/light0003.jpg three.jpg && mv swapped/light0007.jpg swapped/light0003.jpg && mv three.jpg swapped/light0007.jpg
+"$RELUME" capture swapped -o quick --json 2>quick.txt >quick.json
+"$RELUME" capture swapped -o slow --normals normals.exr --json 2>slow.txt >slow.json
+for i in 3 7; do check "photograph $i is under another light" grep -q "light000$i.jpg does not fit its light" quick.txt; done
+grep -o 'light....\.jpg does not fit' slow.txt >want.txt
+grep -o 'light....\.jpg does not fit' quick.txt >got.txt
+same 'the same as by full size' want.txt got.txt
+
 # ---- commands to copy have names in quotation marks; a hyphen is no file
 mkdir 'St. Anna' && cp photos/*.jpg 'St. Anna'
 expect_fail 'a name with a blank' 1 "relume capture 'St. Anna' -o DIR" x.exr "$RELUME" encode 'St. Anna' -o x.exr
-expect_ok 'what comes next' "next: relume encode 'S A' -o FILE.exr" "$RELUME" capture photos -o 'S A'
 expect_fail 'output -' 2 '/dev/stdout' ./- "$RELUME" encode photos -o -
 
 # ---- what is no picture says how it is shown, an option without effect where it has one

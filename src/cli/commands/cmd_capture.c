@@ -273,6 +273,7 @@ static void read_options(const struct capture_options *o, struct job *job)
         .ball_mask = (o->ball_mask ? o->ball_mask : job->balls.mask),
         .photographs = (const char *const *)job->photos.path,
         .photograph_count = job->photos.count,
+        .quick = !o->normals && !o->albedo && !o->height,
         .ball_photographs = (const char *const *)job->balls.path,
         .ball_photograph_count = job->balls.count,
         .transfer = o->transfer,

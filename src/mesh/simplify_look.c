@@ -15,7 +15,7 @@
 #define PI 3.14159265358979323846
 // Lengths of waves in radii of what lies around a vertex. Of 0.4 to 3 tried, 0.8 to 1.5 took the
 // fewest triangles at equal pictures.
-#define WAVE      1.5
+#define WAVE      1.2
 #define LONG_WAVE 4.0
 // A mean of normals that is shorter says little: they point all ways.
 #define LEAST_NORMAL 0.3

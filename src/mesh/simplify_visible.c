@@ -39,10 +39,10 @@ enum {
 #define PENALTY 1e-4
 // Shading is steepest where light grazes the surface; what is found in pictures is so many times
 // the mean over all directions.
-#define STRONGEST 1.8
+#define STRONGEST 2.6
 // What of the original's own differences around a place masks there. Of 0.05 to 1 tried, 0.15 to
 // 0.3 took the fewest triangles at equal pictures.
-#define MASKER_SHARE 0.2
+#define MASKER_SHARE 0.25
 
 struct fit {
     double normal[NORMALS][3];

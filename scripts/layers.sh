@@ -34,7 +34,7 @@ pack:base math geometry image coder lossy:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 block:base:base
 exchange:base math image foreign block:base io image photograph directions codebook coder capture pack relight exchange
-publish:base math geometry image foreign exchange baked:base io image capture coder pack relight light frame exchange notes object bake mesh shadow publish
+publish:base math geometry image lossy foreign exchange baked:base io image capture coder pack relight light frame tone exchange notes object bake mesh shadow publish vec
 relight:base math kernel image:base image capture coder light relight rig relighter shadow
 analysis:base math stereo:base image coder light relight normals enhance
 view:base math image:base image light relight view slab_set capture

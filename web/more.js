@@ -20,7 +20,14 @@ export function loadMore(home) {
 export class More {
     // `told`: changed(), failed(error).
     constructor(device, scene, basis, home, told) {
-        Object.assign(this, { device, scene, basis, home, told, parts: null, gone: false });
+        Object.assign(this, { device, scene, basis, home, told, parts: null, gone: false, begun: false });
+    }
+
+    // There is a picture: what moves may load, which is more than that needs.
+    begin() {
+        if (!this.begun && this.scene.moves)
+            this.told.changed();
+        this.begun = true;
     }
 
     // { near, moving }, or null: they are not there yet, or will not come.
@@ -41,7 +48,7 @@ export class More {
 
     // What moves the shadows or highlights of a view: null where they do not move, or not yet.
     movingOf(view) {
-        const parts = this.scene.moves && this.need();
+        const parts = this.scene.moves && this.begun && this.need();
         return parts && parts.moving.isReady(view) ? parts.moving : null;
     }
 

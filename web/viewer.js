@@ -18,6 +18,7 @@ import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
 
 const MOST_LAMPS = 8;  // that passes enhance
 const MEASURED = 128;  // pixels a side
+const DRAFT = 256;     // of the canvas while the first picture is drawn, which is no finer
 const GROUND = [22, 22, 23].map((v) => v / 255);  // --ground of relume.css
 const SLOW = 90, QUICK = 30;  // milliseconds from frame to frame
 const LEAST_PIXELS = 1 << 18, MOST_PIXELS = 1 << 25;  // relit in a frame
@@ -47,7 +48,9 @@ export class Viewer {
         Object.assign(this, layer);
         this.projection = layer.scene.projection;
         this.reset();
-        this.metering = true;
+        this.metering = layer.scene.exposure === undefined;
+        this.exposure = layer.scene.exposure || 0;
+        this.draft = true;
         this.resize();
     }
 
@@ -129,7 +132,8 @@ export class Viewer {
     }
 
     setFraming(at) {
-        this.at = { x: clamp(at.x, 0, this.scene.width), y: clamp(at.y, 0, this.scene.height), scale: at.scale };
+        const scale = at.scale * this.sharpen();
+        this.at = { x: clamp(at.x, 0, this.scene.width), y: clamp(at.y, 0, this.scene.height), scale };
         this.changed();
     }
 
@@ -157,13 +161,22 @@ export class Viewer {
     }
 
     resize() {
-        const ratio = window.devicePixelRatio || 1, box = this.canvas.getBoundingClientRect();
+        const full = window.devicePixelRatio || 1, box = this.canvas.getBoundingClientRect();
+        const ratio = this.draft ? Math.min(full, DRAFT / Math.max(box.width, box.height, 1)) : full;
         const width = Math.max(1, Math.round(box.width * ratio)), height = Math.max(1, Math.round(box.height * ratio));
         if (this.canvas.width !== width || this.canvas.height !== height) {
             this.canvas.width = width;
             this.canvas.height = height;
         }
         this.invalidate();
+    }
+
+    // From now on all pixels of the canvas are drawn; how many times as many a side these are.
+    sharpen() {
+        const before = this.canvas.width;
+        this.draft = false;
+        this.resize();
+        return this.canvas.width / before;
     }
 
     // ------------------------------------------------------------ places
@@ -223,7 +236,7 @@ export class Viewer {
                 this[name] = values[name];
         if (values.projection)
             this.setLook(values.projection, values);
-        if (values.at && !this.isPanorama)
+        if (values.at && !this.isPanorama && this.sharpen())
             this.at = { x: values.at[0], y: values.at[1], scale: values.at[2] };
         if (lights)
             this.setLights(lights);
@@ -330,8 +343,12 @@ export class Viewer {
     settle(moving, looks) {
         const busy = looks.some(({ layer }) => layer.tiles.busy > 0), complete = looks.every(({ layer }) => layer.painter.complete);
         this.drawn = this.drawn || [...this.tiles.tiles.values()].some((tile) => tile.lit.length);
-        if (this.drawn)
+        if (this.drawn) {
             this.isReady();
+            looks.forEach(({ layer }) => layer.tiles.more.begin());
+        }
+        if (this.draft && this.drawn && complete)
+            return void this.sharpen();
         if (!complete && !busy)
             this.invalidate();
         if (this.coarser && moving)

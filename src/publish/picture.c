@@ -16,11 +16,17 @@
 relume_status picture_still(struct relume_image *out, relume_pack *pack, int side, bool look,
                             const struct site *site)
 {
+    const bool pole_y = relume_coder_info(relume_pack_info(pack)->coder)->pole_y;
+    const struct relume_vec3 front =
+        pole_y ? (struct relume_vec3){0.35, 0.8, 0.49} : (struct relume_vec3){0, 0, 1};
+    return picture_lit(out, pack, side, look, front, site);
+}
+
+relume_status picture_lit(struct relume_image *out, relume_pack *pack, int side, bool look,
+                          struct relume_vec3 direction, const struct site *site)
+{
     const struct relume_pack_info *info = relume_pack_info(pack);
-    const bool pole_y = relume_coder_info(info->coder)->pole_y;
-    const struct relume_light front = {.direction = pole_y ? (struct relume_vec3){0.35, 0.8, 0.49}
-                                                           : (struct relume_vec3){0, 0, 1},
-                                       .rgb = {1, 1, 1}};
+    const struct relume_light light = {.direction = direction, .rgb = {1, 1, 1}};
     const int longer = larger_of(info->width, info->height);
     struct relume_camera camera = {.framing = RELUME_FRAME_DEFAULT};
     if (look && info->geometry.projection >= RELUME_CYLINDRICAL) {
@@ -33,7 +39,7 @@ relume_status picture_still(struct relume_image *out, relume_pack *pack, int sid
         camera.height = larger_of(1, (int)lround((double)info->height * side / longer));
     }
     return relume_frame(
-        out, pack, &camera, &front, 1,
+        out, pack, &camera, &light, 1,
         relume_frame_params(.log = site->log, .threads = site->params->threads, .once = true));
 }
 

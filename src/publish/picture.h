@@ -12,6 +12,9 @@
 // lit from above, or with `look` a look into it. Errors of relume_frame.
 relume_status picture_still(struct relume_image *out, relume_pack *pack, int side, bool look,
                             const struct site *site);
+// The same lit from a direction of length 1.
+relume_status picture_lit(struct relume_image *out, relume_pack *pack, int side, bool look,
+                          struct relume_vec3 direction, const struct site *site);
 // A rectangle of a linear picture as a JPEG of the site, coded as sRGB.
 relume_status picture_save_jpeg(const struct site *site, const char *name,
                                 const struct relume_image *picture, const struct relume_rect *at);

@@ -10,6 +10,7 @@
 #include "exchange/web_step.h"
 #include "foreign/measure.h"
 #include "math/scalar.h"
+#include "publish/exposure.h"
 #include "publish/guide.h"
 
 #include <errno.h>
@@ -39,7 +40,8 @@ enum { USUAL_PLANES = 27, CORRECTIONS = 8, TRIAL_PIXELS = 1 << 17 };
 
 // What the page loads before it shows something, beside scene.json: of 150 kB what the viewer
 // itself leaves.
-enum { FIRST_BYTES = 60000, FIRST_VIEWS = 4 };
+enum { FIRST_BYTES = 60000, FIRST_VIEWS = 4, LEAST_SIDE = 16 };
+#define LEVEL_RATIO 3.0
 
 static int middle_of(const struct scene *s)
 {
@@ -221,6 +223,19 @@ static relume_status give_up(const struct scene *s, double found)
                                p->psnr_db, s->levels.planes, s->report->psnr_db);
 }
 
+// Many planes, or fine ones, are large at a size that is small for others: levels, each of which
+// takes a third of the one before, until the last is small enough to be the first picture. `bytes`:
+// of one view.
+static void add_levels(struct scene *s, uint64_t bytes)
+{
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    const int longer = larger_of(info->width, info->height);
+    double last = (double)bytes * smaller_of(info->views, FIRST_VIEWS) /
+                  pow(LEVEL_RATIO, s->levels.count - 1);
+    for (; last > FIRST_BYTES && longer >> s->levels.count >= LEAST_SIDE; last /= LEVEL_RATIO)
+        s->levels.count++;
+}
+
 // Finer until the PSNR is reached that is wanted, coarser until the size is.
 static relume_status correct_step(struct scene *s, const struct planes *middle)
 {
@@ -235,6 +250,7 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
     for (int i = 0; !status; i++) {
         uint64_t bytes = 0;
         status = levels_try(middle, &s->levels, &bytes, codes);
+        add_levels(s, bytes);
         if (!status)
             status = measure(s, middle, codes);
         const double found = (double)bytes / (double)pixels;
@@ -295,8 +311,6 @@ static void choose_first(struct scene *s, const uint64_t *bytes)
         level--;
     s->first_level = level;
     s->report->first_bytes = bytes[level] * shown / (uint64_t)info->views;
-    for (int i = 0; i < LEVELS_MOST; i++)
-        s->report->bytes += bytes[i];
 }
 
 static relume_status allocate(struct scene *s)
@@ -309,10 +323,7 @@ static relume_status allocate(struct scene *s)
     s->maximum = mem_array(n, sizeof *s->maximum);
     s->levels = (struct levels){.planes = (int)n,
                                 .guided = s->common.guided,
-                                // so many planes, or so fine ones, are large at a size that is
-                                // small for few
-                                .count = levels_count(info->width, info->height, info->views) +
-                                         (s->common.guided || n > PUBLISH_USUAL_PLANES),
+                                .count = levels_count(info->width, info->height, info->views),
                                 .minimum = s->minimum,
                                 .maximum = s->maximum,
                                 .scale = mem_zeroed(n, sizeof *s->levels.scale),
@@ -384,8 +395,12 @@ relume_status scene_write(struct scene *s)
     }
     if (!status)
         status = write_views(s, &middle, bytes);
+    if (!status)
+        status = exposure_find(&s->exposure, s->pack, s->site);
     if (!status) {
         choose_first(s, bytes);
+        for (int i = 0; i < LEVELS_MOST; i++)
+            s->report->bytes += bytes[i];
         status = scene_write_json(s);
     }
     planes_free(&middle);

@@ -124,6 +124,7 @@ void scene_print_json(FILE *f, const struct scene *s)
     put_numbers(f, "offset", s->levels.offset, s->levels.planes);
     if (c->guided)
         fprintf(f, "  \"knee\": %g,\n", (double)GUIDE_KNEE);
+    fprintf(f, "  \"exposure\": %g,\n", s->exposure);
     put_levels(f, s);
     if (info->has_shadow || info->has_gloss)
         fprintf(f, "  \"moves\": \"%s\",\n", info->has_shadow ? "shadows" : "highlights");

@@ -23,14 +23,14 @@ is_run() { # script
     return 1
 }
 
-# Scripts first: they take longest, and a core should not wait for the last one alone. One that may not be
+# Scripts first and short ones last: a core should not wait for the last one alone. One that may not be
 # executed fails.
 tests() {
     [ "${ONLY_BINARIES:-}" ] || for t in "$here"/cli/test_*.sh; do
         is_run "$t" && echo "$t"
     done
-    for t in "$build"/tests/gl/* "$build"/tests/unit/* "$build"/tests/props/* \
-        "$build"/tests/kernels/* "$build"/tests/threads/*; do
+    for t in "$build"/tests/gl/* "$build"/tests/threads/* "$build"/tests/props/* \
+        "$build"/tests/kernels/* "$build"/tests/unit/*; do
         [ -x "$t" ] && [ -f "$t" ] && echo "$t"
     done
 }

@@ -103,7 +103,7 @@ WEB_OBJECT := $(wildcard web/object*.js)
 WEB_MORE := web/near.js web/pins.js $(wildcard web/moving*.js)
 WEB_JS   := $(filter-out $(WEB_OBJECT) $(WEB_MORE),$(wildcard web/*.js))
 # ... of which pages of objects have these, and nothing else
-WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js marks.js noteindex.js notepanel.js notes.js overlay.js pins.js pointer.js profilegraph.js shaders.js \
+WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js marks.js noteindex.js notepanel.js notes.js overlay.js pins.js pointer.js profilegraph.js shaders.js stage.js \
               state.js wasm.js)
 WEB_CORE := $(wildcard web/core/relume-core.wasm)
 WEB_OPEN := $(wildcard web/open/relume-open.wasm web/open/licences.txt)

@@ -1,18 +1,17 @@
 // element.js - <relume-view src="…/scene.json">: a picture that can be relit, and its controls
 import { Viewer } from './viewer.js';
-import { Controls, handOut, make } from './controls.js';
+import { Controls, make } from './controls.js';
 import { directionOf, placeOf, sayDirection } from './ball.js';
 import { listenPointers } from './pointer.js';
 import { COMPARISONS } from './compare.js';
 import { readEnvironment } from './hdr.js';
 import { isRelume, openFile } from './drop.js';
 import { moved, reshaped } from './lights.js';
-import { Failure, addScript, loadJson } from './load.js';
+import { addScript } from './load.js';
 import { Notes } from './notes.js';
-import { NotePanel } from './notepanel.js';
-import { Overlay } from './overlay.js';
 import { profileOfNote } from './profile.js';
 import { PASSES, TONES_BY_NAME } from './shaders.js';
+import { Stage, following } from './stage.js';
 
 const STEP = 0.06;  // of the disc of lights, a key
 const MOST_LAMPS_OF_PAGE = 16;
@@ -23,9 +22,7 @@ const KEYS = [
     ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], [', .', 'the note before, the next one'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
 
-const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
-
-export class RelumeView extends HTMLElement {
+export class RelumeView extends Stage {
     // Where relume.css and core.js lie.
     static home = '';
 
@@ -33,16 +30,7 @@ export class RelumeView extends HTMLElement {
         this.root = this.shadowRoot || this.attachShadow({ mode: 'open' });
         if (!this.opened && /\/object\.json$/.test(this.source.pathname))
             return this.showObject();
-        this.canvas = make('canvas', { 'aria-hidden': 'true' });
-        this.over = make('canvas', { 'aria-hidden': 'true' });
-        this.poster = make('img', { class: 'poster', alt: '', hidden: true });
-        this.hint = make('p', { class: 'hint' });
-        this.status = make('p', { class: 'status', role: 'status', 'aria-live': 'polite' });
-        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.over, this.poster, this.hint);
-        this.frame = make('div', { class: 'frame' }, this.surface, this.status);
-        this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeView.home).href }),
-                         this.frame);
-        this.ready = new Promise((resolve) => { this.isReady = resolve; });
+        this.build(RelumeView.home);
         return this.open().catch((error) => this.fail(error));
     }
 
@@ -61,21 +49,11 @@ export class RelumeView extends HTMLElement {
     }
 
     disconnectedCallback() {
-        if (this.observer)
-            this.observer.disconnect();
-        document.removeEventListener('keydown', this.bodyKey);
-        if (this.viewer) {
-            this.overlay.close();
-            this.first = this.getState();  // for when it is put elsewhere in the page
-            this.viewer.close();
-        }
         if (this.object)
             this.first = this.object.getState();
-        this.root.replaceChildren();
-        this.viewer = this.controls = this.object = null;
+        super.disconnectedCallback();
+        this.object = null;
     }
-
-    get source() { return new URL(this.getAttribute('src') || '', document.baseURI); }
 
     // A view of a file from the visitor's disk.
     static of(scene) {
@@ -105,30 +83,12 @@ export class RelumeView extends HTMLElement {
         return this.say(`${title} was read by this browser and sent nowhere.`);
     }
 
-    // A still picture and a sentence.
+    // A file from a disk has no still picture.
     fail(error) {
-        const poster = this.getAttribute('poster');
-        if (this.opened) {
-            this.say(`${error.message}.`);
-            return this.isReady();
-        }
-        this.poster.src = poster ? new URL(poster, document.baseURI).href : new URL('poster.jpg', this.source).href;
-        this.poster.alt = this.getAttribute('title') || 'A still picture';
-        this.poster.hidden = false;
-        this.hint.remove();
-        this.say(error instanceof Failure ? `Only a still picture can be shown: ${error.message}.`
-            : 'Only a still picture can be shown: something went wrong in this browser.');
-        if (!(error instanceof Failure))
-            console.error(error);
+        if (!this.opened)
+            return super.fail(error);
+        this.say(`${error.message}.`);
         return this.isReady();
-    }
-
-    say(text) {
-        this.status.textContent = text;
-        this.status.classList.toggle('shown', text !== '');
-        clearTimeout(this.silence);
-        if (!this.poster || this.poster.hidden)
-            this.silence = setTimeout(() => this.status.classList.remove('shown'), 6000);
     }
 
     async open() {
@@ -156,14 +116,12 @@ export class RelumeView extends HTMLElement {
         this.lighting = viewer.projection === 'planar';
         this.controls = new Controls(viewer, this);
         this.frame.append(this.controls.node);
-        this.openNotes();
+        this.openNotes(new Notes(viewer.scene), profileOfNote, viewer.scene.notes ? `${viewer.scene.base}notes.json` : null);
         this.showMode();
         this.hint.textContent = this.lighting ? 'Drag across the picture to move the light'
             : viewer.isSlab ? 'Drag to walk around, move the light by its ball' : 'Drag to look around, move the light by its ball';
         this.listen();
-        this.observer = new ResizeObserver(() => this.viewer.resize());
-        this.observer.observe(this.canvas);
-        viewer.canvas.addEventListener('webglcontextlost', () => this.fail(new Failure('the graphics of this browser gave up')));
+        this.watch(viewer);
         if (this.first !== undefined)
             viewer.setState(this.first);
         else if (this.getAttribute('state'))
@@ -172,51 +130,6 @@ export class RelumeView extends HTMLElement {
         if (this.opened)
             this.sayOpened();
         return this.isReady();
-    }
-
-    // Notes that were published with the picture, and those that are made here.
-    async openNotes() {
-        const { viewer } = this, notes = new Notes(viewer.scene);
-        this.overlay = new Overlay(this.over, viewer, () => this.panel.rested());
-        this.panel = new NotePanel(viewer, notes, this.overlay, {
-            draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state),
-            focus: () => this.surface.focus(), profile: (note, list) => profileOfNote(viewer, note, list),
-        });
-        this.panel.node.hidden = true;
-        this.frame.append(this.panel.node);
-        if (!viewer.scene.notes)
-            return;
-        try {
-            notes.read(await loadJson(`${viewer.scene.base}notes.json`));
-            this.panel.show();
-            viewer.invalidate();
-        } catch (error) {
-            this.say(`The notes cannot be shown: ${error.message}.`);
-        }
-    }
-
-    toggleNotes() {
-        const { node } = this.panel;
-        node.hidden = !node.hidden;
-        if (!node.hidden)
-            node.querySelector('button').focus();
-        else
-            this.surface.focus();
-    }
-
-    // What a click on the picture means for notes; false: nothing.
-    clickNotes(at) {
-        if (this.panel.isDrawing) {
-            const ratio = this.canvas.width / this.surface.getBoundingClientRect().width;
-            this.panel.click(this.viewer.toPicture([at.x * ratio, at.y * ratio]));
-            return true;
-        }
-        const note = this.overlay.find(at.x, at.y);
-        if (note && this.panel.node.hidden)
-            this.toggleNotes();
-        if (note || this.overlay.chosen)
-            this.panel.choose(note);
-        return !!note;
     }
 
     // ------------------------------------------------------------ state
@@ -292,37 +205,9 @@ export class RelumeView extends HTMLElement {
         return viewer.setLights([...viewer.lights, { kind: 'dir', direction, rgb: [1, 1, 1] }]);
     }
 
-    removeLight() {
-        const { viewer } = this;
-        viewer.setLights(viewer.lights.filter((_, i) => i !== viewer.chosen));
-    }
-
-    // Compares with the kept look, or with the file that `compare` names.
-    async compare(way) {
-        const { comparison } = this.viewer, named = this.getAttribute('compare'), { kept } = comparison;
-        const address = named && new URL(named, document.baseURI).href;
-        try {
-            if (way !== 'off' && address && (!kept || (kept.follows && kept.follows !== address)))
-                await comparison.open(address);
-        } catch (error) {
-            comparison.setWay('off');
-            this.controls.show();
-            return this.say(`${error.message}.`);
-        }
-        comparison.setWay(way);
-        this.controls.show();
-        const what = comparison.title || 'the kept look';
-        return way === 'off' ? this.say('') : this.say(way === 'lens' ? `The lens shows ${what}.` : `This is compared with ${what}.`);
-    }
-
     keep() {
         this.viewer.comparison.keep();
         this.say('This look is kept; change the light or what is shown, and compare.');
-    }
-
-    divide(value) {
-        this.viewer.comparison.divide = value;
-        this.viewer.invalidate();
     }
 
     toggleMode() {
@@ -340,43 +225,8 @@ export class RelumeView extends HTMLElement {
         this.viewer.changed();
     }
 
-    fullScreen() {
-        if (document.fullscreenElement)
-            document.exitFullscreen();
-        else if (this.requestFullscreen)
-            this.requestFullscreen().catch(() => this.say('This browser allows no full screen here.'));
-    }
-
-    async copyLink() {
-        const address = new URL(location.href);
-        address.hash = this.getState();
-        try {
-            await navigator.clipboard.writeText(address.href);
-            this.say('The link to this view is copied.');
-        } catch {
-            location.hash = address.hash;
-            this.say('The address of this page is now a link to this view.');
-        }
-    }
-
-    async save() {
-        handOut(await this.snapshot(), 'image/png', `${this.viewer.scene.name || 'picture'}.png`);
-        this.say('The picture is saved.');
-    }
-
-    help() {
-        if (this.dialog)
-            return this.dialog.close();
-        const close = () => { this.dialog.remove(); this.dialog = null; this.surface.focus(); };
-        this.dialog = make('dialog', { 'aria-label': 'Keys', onclose: close, onclick: () => this.dialog.close() },
-            make('dl', {}, ...KEYS.flatMap(([key, what]) => [make('dt', {}, key), make('dd', {}, what)])));
-        this.root.append(this.dialog);
-        return this.dialog.showModal();
-    }
-
-    dismissHint() {
-        this.hint.classList.add('gone');
-    }
+    save() { return this.savePicture(this.viewer.scene.name); }
+    help() { return this.helpWith(KEYS); }
 
     // ------------------------------------------------------------ pointers, keys, dropped files
 
@@ -412,16 +262,9 @@ export class RelumeView extends HTMLElement {
             },
             wheel: enlarge,
         });
-        this.surface.addEventListener('keydown', (event) => this.key(event));
-        this.bodyKey = (event) => event.target === document.body && document.querySelector('relume-view') === this && this.key(event);
-        document.addEventListener('keydown', this.bodyKey);
+        this.listenKeys();
         this.controls.ball.node.addEventListener('keydown', (event) => this.ballKey(event));
-        this.surface.addEventListener('pointermove', (event) => {
-            const { comparison } = this.viewer, box = this.surface.getBoundingClientRect();
-            comparison.lens = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
-            if (comparison.way === 'lens')
-                this.viewer.invalidate();
-        });
+        this.listenLens();
         this.surface.addEventListener('dragover', (event) => event.preventDefault());
         this.surface.addEventListener('drop', (event) => {
             event.preventDefault();
@@ -466,14 +309,8 @@ export class RelumeView extends HTMLElement {
         }
         const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
         const { viewer } = this, acts = {
-            '+': () => viewer.enlarge(1.25), '=': () => viewer.enlarge(1.25), '-': () => viewer.enlarge(0.8),
-            0: () => this.fit(), l: () => this.toggleMode(), n: () => this.addLight(), Delete: () => this.removeLight(),
-            '[': () => this.set('exposure', Math.max(viewer.exposure - 0.25, -20)),
-            ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
-            p: () => this.set('pass', next(PASSES, viewer.pass)), t: () => this.set('tone', next(TONES_BY_NAME, viewer.tone)),
-            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), m: () => this.toggleNotes(),
-            ',': () => this.panel.step(-1), '.': () => this.panel.step(1),
-            k: () => this.keep(), v: () => this.compare(next(COMPARISONS, viewer.comparison.way)), b: () => viewer.comparison.swap(), '?': () => this.help(),
+            ...this.usualActs, v: () => this.compare(following(COMPARISONS, viewer.comparison.way)),
+            p: () => this.set('pass', following(PASSES, viewer.pass)), t: () => this.set('tone', following(TONES_BY_NAME, viewer.tone)),
         };
         if (way && this.lighting !== event.shiftKey)
             this.moveLight(STEP * way[0], STEP * way[1]);

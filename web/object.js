@@ -1,16 +1,15 @@
 // object.js - <relume-object src="…/object.json">: a baked object that can be turned and relit
 import { Ball, directionOf, placeOf, sayDirection } from './ball.js';
 import { COMPARISONS } from './compare.js';
-import { WAY_NAMES, button, colourOf, handOut, hexOf, labelled, make, select, slider, unfolder } from './controls.js';
+import { WAY_NAMES, button, colourOf, hexOf, labelled, make, select, slider, unfolder } from './controls.js';
 import { RADIANS } from './lights.js';
-import { Failure, loadJson, put } from './load.js';
-import { NotePanel } from './notepanel.js';
+import { put } from './load.js';
 import { ObjectNotes } from './objectnotes.js';
 import { profileOfObject } from './objectprofile.js';
 import { ObjectViewer } from './objectview.js';
-import { Overlay } from './overlay.js';
 import { listenPointers } from './pointer.js';
 import { TONES_BY_NAME } from './shaders.js';
+import { Stage, following } from './stage.js';
 import { putCore } from './wasm.js';
 
 const A_KEY = 0.06, A_TURN = 0.12;  // of the disc of lights; radians
@@ -22,65 +21,19 @@ const OBJECT_KEYS = [
     ['K  V  B', 'keep this look; ways to compare with it; change sides'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
 
-const following = (list, value) => list[(list.indexOf(value) + 1) % list.length];
-
-export class RelumeObject extends HTMLElement {
+export class RelumeObject extends Stage {
     // Where relume.css and core.js lie.
     static home = '';
 
     connectedCallback() {
         this.root = this.shadowRoot || this.attachShadow({ mode: 'open' });
-        this.canvas = make('canvas', { 'aria-hidden': 'true' });
-        this.over = make('canvas', { 'aria-hidden': 'true' });
-        this.poster = make('img', { class: 'poster', alt: '', hidden: true });
-        this.hint = make('p', { class: 'hint' }, 'Drag to turn the object, move the light by its ball');
-        this.status = make('p', { class: 'status', role: 'status', 'aria-live': 'polite' });
-        this.surface = make('div', { class: 'surface', tabindex: 0, role: 'application' }, this.canvas, this.over, this.poster, this.hint);
-        this.frame = make('div', { class: 'frame' }, this.surface, this.status);
-        this.root.append(make('link', { rel: 'stylesheet', href: new URL('relume.css', RelumeObject.home).href }), this.frame);
-        this.ready = new Promise((resolve) => { this.isReady = resolve; });
+        this.build(RelumeObject.home, 'Drag to turn the object, move the light by its ball');
         this.open().catch((error) => this.fail(error));
-    }
-
-    disconnectedCallback() {
-        if (this.observer)
-            this.observer.disconnect();
-        document.removeEventListener('keydown', this.bodyKey);
-        if (this.viewer) {
-            this.overlay.close();
-            this.first = this.getState();
-            this.viewer.close();
-        }
-        this.root.replaceChildren();
-        this.viewer = null;
-    }
-
-    get source() { return new URL(this.getAttribute('src') || '', document.baseURI); }
-
-    // A still picture and a sentence.
-    fail(error) {
-        const poster = this.getAttribute('poster');
-        this.poster.src = poster ? new URL(poster, document.baseURI).href : new URL('poster.jpg', this.source).href;
-        this.poster.alt = this.getAttribute('title') || 'A still picture';
-        this.poster.hidden = false;
-        this.hint.remove();
-        this.say(`Only a still picture can be shown: ${error instanceof Failure ? error.message : 'something went wrong in this browser'}.`);
-        if (!(error instanceof Failure))
-            console.error(error);
-        return this.isReady();
-    }
-
-    say(text) {
-        this.status.textContent = text;
-        this.status.classList.toggle('shown', text !== '');
-        clearTimeout(this.silence);
-        if (this.poster.hidden)
-            this.silence = setTimeout(() => this.status.classList.remove('shown'), 6000);
     }
 
     async open() {
         const viewer = new ObjectViewer(this.canvas, RelumeObject.home, {
-            changed: () => this.controls && this.show(),
+            changed: () => this.controls && this.controls.show(),
             drawn: (alone) => this.drawOver(alone),
             broken: (error) => this.fail(error),
             problem: (sentence) => this.say(sentence),
@@ -93,39 +46,14 @@ export class RelumeObject extends HTMLElement {
         this.surface.setAttribute('aria-label', `${viewer.object.title || 'Object'}: an object that can be turned, and whose light can be moved. ` +
                                                 'Arrow keys turn it; press the question mark for all keys.');
         this.addControls();
-        this.openNotes();
+        this.openNotes(new ObjectNotes(viewer.object), profileOfObject, viewer.object.notes ? new URL('notes.json', this.source).href : null);
         this.listen();
-        this.observer = new ResizeObserver(() => this.viewer.resize());
-        this.observer.observe(this.canvas);
-        this.canvas.addEventListener('webglcontextlost', () => this.viewer === viewer && this.fail(new Failure('the graphics of this browser gave up')));
+        this.watch(viewer);
         const first = this.first ?? this.getAttribute('state');
         if (first)
             viewer.setState(first);
         await viewer.idle();
         return this.isReady();
-    }
-
-    // ------------------------------------------------------------ notes
-
-    // Those that were published with the object, and those that are made here.
-    async openNotes() {
-        const { viewer } = this, notes = new ObjectNotes(viewer.object);
-        this.overlay = new Overlay(this.over, viewer, () => this.panel.rested());
-        this.panel = new NotePanel(viewer, notes, this.overlay, {
-            draw: () => viewer.invalidate(), say: (text) => this.say(text), go: (state) => viewer.setState(state), focus: () => this.surface.focus(),
-            profile: (note, list) => profileOfObject(viewer, note, list),
-        });
-        this.panel.node.hidden = true;
-        this.frame.append(this.panel.node);
-        if (!viewer.object.notes)
-            return;
-        try {
-            notes.read(await loadJson(new URL('notes.json', this.source).href));
-            this.panel.show();
-            viewer.invalidate();
-        } catch (error) {
-            this.say(`The notes cannot be shown: ${error.message}.`);
-        }
     }
 
     // `alone`: the picture is wanted without notes.
@@ -140,55 +68,9 @@ export class RelumeObject extends HTMLElement {
         overlay.draw();
     }
 
-    toggleNotes() {
-        const { node } = this.panel;
-        node.hidden = !node.hidden;
-        (node.hidden ? this.surface : node.querySelector('button')).focus();
-    }
-
-    // What a click on the object means for notes; false: nothing.
-    clickNotes(at) {
-        const { panel, overlay, viewer } = this, ratio = this.canvas.width / this.surface.getBoundingClientRect().width;
-        if (panel.isDrawing) {
-            panel.click(viewer.toPicture([at.x * ratio, at.y * ratio]));
-            return true;
-        }
-        const note = overlay.find(at.x, at.y);
-        if (note && panel.node.hidden)
-            this.toggleNotes();
-        if (note || overlay.chosen)
-            panel.choose(note);
-        return !!note;
-    }
-
-    // ------------------------------------------------------------ comparing
-
-    // With the kept look, or with the object that `compare` names.
-    async compare(way) {
-        const { comparison } = this.viewer, named = this.getAttribute('compare'), { kept } = comparison;
-        const address = named && new URL(named, document.baseURI).href;
-        try {
-            if (way !== 'off' && address && (!kept || (kept.follows && kept.follows !== address)))
-                await comparison.open(address);
-        } catch (error) {
-            comparison.setWay('off');
-            this.show();
-            return this.say(`${error.message}.`);
-        }
-        comparison.setWay(way);
-        this.show();
-        const what = comparison.title || 'the kept look';
-        return way === 'off' ? this.say('') : this.say(way === 'lens' ? `The lens shows ${what}.` : `This is compared with ${what}.`);
-    }
-
     keep() {
         this.viewer.comparison.keep();
         this.say('This look is kept; turn the object or change the light, and compare.');
-    }
-
-    divide(value) {
-        this.viewer.comparison.divide = value;
-        this.viewer.invalidate();
     }
 
     // ------------------------------------------------------------ state
@@ -225,7 +107,7 @@ export class RelumeObject extends HTMLElement {
             make('div', { class: 'row' }, this.mode, this.counter, button('add', 'Another light (N)', () => this.addLight()),
                  button('remove', 'Remove this light (Delete)', () => this.removeLight()), this.colour),
             make('div', { class: 'row rest' }, labelled('Strength', this.strength), labelled('Soft', this.softness)))];
-        this.controls = { node: make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
+        this.controls = { show: () => this.show(), node: make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
             ...(fixed ? [] : lights),
             make('div', { class: 'group rest' }, make('div', { class: 'row' }, labelled('Exposure', this.exposure))),
             make('div', { class: 'group rest' },
@@ -283,7 +165,7 @@ export class RelumeObject extends HTMLElement {
     // As who looks sees it.
     setDirection(seen) {
         const { viewer } = this, direction = viewer.fromSeen(seen);
-        this.hint.classList.add('gone');
+        this.dismissHint();
         if (!viewer.lights.length)
             return this.addLight();
         viewer.touch();
@@ -311,11 +193,6 @@ export class RelumeObject extends HTMLElement {
         return viewer.setLights([...viewer.lights, { kind: 'dir', direction, rgb: [1, 1, 1] }]);
     }
 
-    removeLight() {
-        const { viewer } = this;
-        viewer.setLights(viewer.lights.filter((_, i) => i !== viewer.chosen));
-    }
-
     fit() {
         const { viewer } = this, { lights, exposure, tone } = viewer;
         viewer.reset();
@@ -323,39 +200,8 @@ export class RelumeObject extends HTMLElement {
         viewer.setLights(lights);
     }
 
-    fullScreen() {
-        if (document.fullscreenElement)
-            document.exitFullscreen();
-        else if (this.requestFullscreen)
-            this.requestFullscreen().catch(() => this.say('This browser allows no full screen here.'));
-    }
-
-    async copyLink() {
-        const address = new URL(location.href);
-        address.hash = this.getState();
-        try {
-            await navigator.clipboard.writeText(address.href);
-            this.say('The link to this view is copied.');
-        } catch {
-            location.hash = address.hash;
-            this.say('The address of this page is now a link to this view.');
-        }
-    }
-
-    async save() {
-        handOut(await this.snapshot(), 'image/png', `${this.viewer.object.name || 'picture'}.png`);
-        this.say('The picture is saved.');
-    }
-
-    help() {
-        if (this.dialog)
-            return this.dialog.close();
-        const close = () => { this.dialog.remove(); this.dialog = null; this.surface.focus(); };
-        this.dialog = make('dialog', { 'aria-label': 'Keys', onclose: close, onclick: () => this.dialog.close() },
-            make('dl', {}, ...OBJECT_KEYS.flatMap(([key, what]) => [make('dt', {}, key), make('dd', {}, what)])));
-        this.root.append(this.dialog);
-        return this.dialog.showModal();
-    }
+    save() { return this.savePicture(this.viewer.object.name); }
+    help() { return this.helpWith(OBJECT_KEYS); }
 
     // ------------------------------------------------------------ pointers and keys
 
@@ -372,7 +218,7 @@ export class RelumeObject extends HTMLElement {
 
     turn(dx, dy) {
         const [, , half] = this.placeOn(0, 0);
-        this.hint.classList.add('gone');
+        this.dismissHint();
         this.viewer.touch();
         this.viewer.turn(-1.5 * dx / half, 1.5 * dy / half);
     }
@@ -390,15 +236,8 @@ export class RelumeObject extends HTMLElement {
             },
             wheel: enlarge,
         });
-        this.surface.addEventListener('keydown', (event) => this.key(event));
-        this.bodyKey = (event) => event.target === document.body && document.querySelector('relume-object') === this && this.key(event);
-        document.addEventListener('keydown', this.bodyKey);
-        this.surface.addEventListener('pointermove', (event) => {
-            const { comparison } = this.viewer, box = this.surface.getBoundingClientRect();
-            comparison.lens = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
-            if (comparison.way === 'lens')
-                this.viewer.invalidate();
-        });
+        this.listenKeys();
+        this.listenLens();
         this.ball.node.addEventListener('keydown', (event) => this.key(event, true));
     }
 
@@ -419,13 +258,8 @@ export class RelumeObject extends HTMLElement {
         }
         const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
         const { viewer } = this, acts = {
-            '+': () => viewer.enlarge(1.25), '=': () => viewer.enlarge(1.25), '-': () => viewer.enlarge(0.8), 0: () => this.fit(),
-            l: () => this.toggleMode(), n: () => this.addLight(), Delete: () => this.removeLight(),
-            '[': () => this.set('exposure', Math.max(viewer.exposure - 0.25, -20)), ']': () => this.set('exposure', Math.min(viewer.exposure + 0.25, 20)),
-            t: () => this.set('tone', following(TONES_BY_NAME, viewer.tone)), m: () => this.toggleNotes(),
-            ',': () => this.panel.step(-1), '.': () => this.panel.step(1),
-            k: () => this.keep(), v: () => this.compare(following(COMPARISONS, viewer.comparison.way)), b: () => viewer.comparison.swap(),
-            f: () => this.fullScreen(), c: () => this.copyLink(), s: () => this.save(), '?': () => this.help(),
+            ...this.usualActs, t: () => this.set('tone', following(TONES_BY_NAME, viewer.tone)),
+            v: () => this.compare(following(COMPARISONS, viewer.comparison.way)),
         };
         const act = acts[event.key] || acts[event.key.toLowerCase()];
         if (way && (onBall || this.lighting !== event.shiftKey))

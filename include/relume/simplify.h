@@ -27,7 +27,7 @@ struct relume_simplify_params {
     double error;      // most distance between the surfaces, (0, 1]; default: see `distance`
     size_t triangles;  // as many or a few less; what can be seen no longer counts once no other
                        // collapse is left. Default: as few as can be
-    double jnd;        // what must not be seen of the shading, JND, (0, 100]; 1 is 0.5 to 1.3 in
+    double jnd;        // what must not be seen of the shading, JND, (0, 100]; 1 is 1 to 2 in
                        // 99 % of pictures. Default 4: seen where one looks for it
     double distance;   // of the eye, (0, 1e6]; default: where `error` is seen under 1/30 degree,
                        // without it 1.9, a picture on a screen, whose `error` is 0.0011

@@ -131,6 +131,8 @@ struct simplify {
     float *spread;          // [vertices][quadric_floats]: of values
 
     bool tested;             // and not by quadrics alone
+    float *bend;             // [points]: sqrt(k1^2 + k2^2) of the original, 1 / diagonal
+    double slip;             // by which normals may lie beside where they were, diagonals
     float *area;             // [vertices]: of the original about them
     float (*shown)[3];       // [vertices]: normals as they are now, of any length
     bool fits;               // they may change

@@ -7,6 +7,8 @@
 // over all do the rest). What is left over is finer than those triangles: as a pattern whose waves
 // are as long as they are wide it is seen up to some distance only, and less where the original's
 // normals vary as much themselves (masking). What of it does not average out is a longer wave.
+// Where the original bends much a normal is another one close by: what a pattern turns normals by
+// when it lies a little beside where it was, less than the eye tells apart, does not count.
 #include "mesh/simplify.h"
 
 #include <math.h>
@@ -103,10 +105,13 @@ struct sums {
     double original_2, off_2, weight;
 };
 
-static void add(struct sums *s, vec3 shown, vec3 original, double area)
+// The difference that is left when the pattern may lie `slip` beside where it was.
+static void add(struct sums *s, vec3 shown, vec3 original, double area, double slip)
 {
     const double length = vec3_length(shown);
-    const vec3 d = vec3_sub(vec3_scale(shown, length > 0.0 ? 1.0 / length : 0.0), original);
+    vec3 d = vec3_sub(vec3_scale(shown, length > 0.0 ? 1.0 / length : 0.0), original);
+    const double off = vec3_length(d);
+    d = vec3_scale(d, off > slip ? (off - slip) / off : 0.0);
     s->original = vec3_along(s->original, original, area);
     s->original_2 += area * vec3_dot(original, original);
     s->off = vec3_along(s->off, d, area);
@@ -119,19 +124,26 @@ static double angle_of(double chord)
     return 2.0 * asin(fmin(0.5 * chord, 1.0));
 }
 
+static double turn_by_slip(const struct simplify *s, uint32_t vertex)
+{
+    return s->slip * (double)s->bend[s->connect.point[vertex]];
+}
+
 double look_distance(const struct simplify *s, const struct samples *to)
 {
     struct sums sums = {.weight = 0.0};
     for (int i = 0; i < to->fitted; i++) {
         const uint32_t v = to->fit[i].vertex;
-        add(&sums, vec3_floats(to->fit[i].normal), normal_of(s, v), (double)s->area[v]);
+        add(&sums, vec3_floats(to->fit[i].normal), normal_of(s, v), (double)s->area[v],
+            turn_by_slip(s, v));
     }
     for (size_t i = 0; i < to->count; i++) {
         const struct landing *l = &to->landing[i];
         vec3 n = vec3_of(0, 0, 0);
         for (int k = 0; k < 3; k++)
             n = vec3_along(n, corner_normal(s, to, l, k), (double)l->weight[k]);
-        add(&sums, n, normal_of(s, l->vertex), (double)s->area[l->vertex]);
+        add(&sums, n, normal_of(s, l->vertex), (double)s->area[l->vertex],
+            turn_by_slip(s, l->vertex));
     }
     if (!(sums.weight > 0.0))
         return 0.0;

@@ -17,6 +17,9 @@
 #define VALUE_WEIGHT 0.03
 // Seen where one looks for it: at 1 few triangles of a scan could go.
 #define USUAL_JND 4.0
+// A pattern may lie beside where it was by this share of the most error for each JND: a 1200th of a
+// degree, as finely as eyes tell whether lines meet (vernier acuity, about 5 seconds of arc).
+#define SLIP_PER_JND 0.025
 // Errors below this share of the most are as good as none.
 #define FINE_SHARE 0.95
 // Between looks at whether to stop.
@@ -29,6 +32,7 @@ void run_free(struct run *r)
     queue_free(&r->queue);
     mem_free(s->quadric);
     mem_free(s->spread);
+    mem_free(s->bend);
     mem_free(s->area);
     mem_free(s->shown);
     mem_free(s->spacing);
@@ -118,7 +122,7 @@ size_t run_bytes(const struct simplify *s, size_t v, size_t t)
 {
     return quadrics_bytes(s, v, v) + t * (12 + 12 + 4) +
            t * (NEAR_CELLS + NEAR_REFERENCES) * sizeof(uint32_t) +
-           v * (4 + 4 + 4 + 4 + 4 + 12 + 2 + 12) + sizeof(struct relume_simplify_step) * v;
+           v * (4 + 4 + 4 + 4 + 4 + 12 + 2 + 12 + 4) + sizeof(struct relume_simplify_step) * v;
 }
 
 static void set_limits(struct run *r, const struct relume_simplify_params *p)
@@ -131,6 +135,7 @@ static void set_limits(struct run *r, const struct relume_simplify_params *p)
     r->most.distance = p->distance > 0.0 ? p->distance : r->most.length * s->seen_per_length;
     // errors of shading count in lengths as they are seen from where somebody looks
     s->seen_per_length = r->most.distance / r->most.length;
+    s->slip = endless ? 0.0 : SLIP_PER_JND * s->jnd * r->most.length;
     if (endless)
         r->most = (struct error){INFINITY, INFINITY};
     r->target = p->triangles;

@@ -92,7 +92,20 @@ void nearest_place(const vec3 t[3], vec3 p, double w[3])
 
 // ---------------------------------------------------------------- the original
 
-// How much of the surface each vertex stands for, and how far apart they are.
+// Of the original. The mean square of how fast normals turn along edges is (k1^2 + k2^2) / 2.
+static void add_edge(struct simplify *s, uint32_t a, uint32_t b, float *edges)
+{
+    const uint32_t at = s->connect.point[a];
+    const double length = vec3_length(vec3_sub(place(s, a), place(s, b)));
+    if (!(length > 0.0))
+        return;
+    const double turn = vec3_length(vec3_sub(normal_of(s, a), normal_of(s, b))) / length;
+    s->bend[at] += (float)(turn * turn);
+    s->spacing[at] += (float)length;
+    edges[at] += 1.0f;
+}
+
+// How much of the surface each vertex stands for, how far apart they are, and how it bends.
 static relume_status find_areas(struct simplify *s)
 {
     float *edges = mem_zeroed(s->connect.points, sizeof *edges);
@@ -106,28 +119,29 @@ static relume_status find_areas(struct simplify *s)
         for (int k = 0; k < 3; k++)
             f.p[k] = place(s, f.vertex[k]);
         for (int k = 0; k < 3; k++) {
-            const uint32_t at = s->connect.point[f.vertex[k]];
             s->area[f.vertex[k]] += (float)(area_of(&f) / 3.0);
-            s->spacing[at] += (float)(vec3_length(vec3_sub(f.p[k], f.p[(k + 1) % 3])) +
-                                      vec3_length(vec3_sub(f.p[k], f.p[(k + 2) % 3])));
-            edges[at] += 2.0f;
+            add_edge(s, f.vertex[k], f.vertex[(k + 1) % 3], edges);
+            add_edge(s, f.vertex[k], f.vertex[(k + 2) % 3], edges);
         }
     }
     for (uint32_t p = 0; p < s->connect.points; p++)
-        if (edges[p] > 0.0f)
+        if (edges[p] > 0.0f) {
+            s->bend[p] = sqrtf(2.0f * s->bend[p] / edges[p]);
             s->spacing[p] /= edges[p];
+        }
     mem_free(edges);
     return RELUME_OK;
 }
 
 relume_status samples_create(struct simplify *s, float (*shown)[3])
 {
+    s->bend = mem_zeroed(s->connect.points, sizeof *s->bend);
     s->area = mem_zeroed(s->connect.vertices, sizeof *s->area);
     s->shown = mem_copy(shown ? shown : s->mesh->normal, s->connect.vertices, sizeof *s->shown);
     s->spacing = mem_zeroed(s->connect.points, sizeof *s->spacing);
     s->sample_first = mem_array(s->connect.triangles, sizeof *s->sample_first);
     s->sample_next = mem_array(s->connect.vertices, sizeof *s->sample_next);
-    if (!s->area || !s->shown || !s->spacing || !s->sample_first || !s->sample_next)
+    if (!s->bend || !s->area || !s->shown || !s->spacing || !s->sample_first || !s->sample_next)
         return RELUME_ENOMEM;
     memset(s->sample_first, 0xff, s->connect.triangles * sizeof *s->sample_first);
     return find_areas(s);

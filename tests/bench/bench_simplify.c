@@ -1,7 +1,7 @@
 // bench_simplify: triangles at equal error, perceptual simplification beside quadrics with
-// attributes, the same tested for attributes, and, where libmeshoptimizer2d is installed, meshoptimizer.
-// bench_simplify [-t] [-e ERROR] MODEL ...; without a model it does nothing. -t: beside the tested
-// peer alone; -e: at this error, diagonals, else 0.001 and 0.01
+// attributes, the same tested for attributes, and, where libmeshoptimizer2d is installed,
+// meshoptimizer. bench_simplify [-t] [-e ERROR] MODEL ...; without a model it does nothing. -t:
+// beside the tested peer alone; -e: at this error, diagonals, else 0.001 and 0.01
 //
 // How many triangles the others need to be no worse: in the distance of the surfaces (Hausdorff, of
 // vertices and middles of triangles, both ways), and in what is seen of the shading in six pictures

@@ -36,7 +36,7 @@ struct relume_simplify_params {
     bool quadrics;     // quadric errors alone: nothing is tested, `error` is one of quadrics
     size_t memory;     // bytes that it may take beside the two meshes; default --max-memory
                        // (context.h). Larger meshes are done in parts, with what waits in a file
-                       // without a name ($TMPDIR), about 30 bytes a triangle
+                       // without a name ($TMPDIR), 46 bytes a triangle
     bool no_steps;     // leave `step` out of the report: 16 bytes a vertex. With steps normals stay
                        // those of the original, and more triangles look as good
 };

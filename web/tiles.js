@@ -86,12 +86,12 @@ export class Tiles {
 
     get busy() { return this.loading + this.queue.length; }
 
-    // The pictures of a file of a tile, decoded.
+    // The pictures of a file of a tile, decoded; among AVIF those that are smaller as JPEG.
     async decoded(tile, avif) {
         const address = `${this.scene.base}${tile.key}${avif ? '.avif' : ''}.bin`, bytes = await loadBytes(address);
         this.received += bytes.length;
         return Promise.all(partsOf(bytes, this.scene.layers, address)
-            .map((part) => decodePicture(part, avif ? 'image/avif' : 'image/jpeg').catch(() => {
+            .map((part) => decodePicture(part, part[0] === 0xff ? 'image/jpeg' : 'image/avif').catch(() => {
                 throw new Failure(this.scene.pictures === 'avif' ? 'this browser does not decode its AVIF pictures, or they are damaged' : `${tile.key}.bin is damaged`);
             })));
     }

@@ -144,6 +144,17 @@ static bool has_avif(const struct level *l)
     return l->kept && l->how->layers != RELUME_PUBLISH_JPEG;
 }
 
+// JPEG stays where AVIF is larger.
+static relume_status keep_smaller(struct sheet_result *avif, const struct sheet_result *jpeg)
+{
+    if (avif->size < jpeg->size)
+        return RELUME_OK;
+    mem_free(avif->bytes);
+    avif->bytes = mem_copy(jpeg->bytes, jpeg->size, 1);
+    avif->size = jpeg->size;
+    return avif->bytes ? RELUME_OK : RELUME_ENOMEM;
+}
+
 // The sheets of a tile again, as AVIF. The guide of the later ones is what that makes of the first.
 static relume_status encode_avif(const struct level *l, size_t item, const struct relume_rect *at,
                                  const struct sheet_result *jpeg, float *room)
@@ -161,8 +172,11 @@ static relume_status encode_avif(const struct level *l, size_t item, const struc
             status = follow_guide(&s, room, gain, i == 0, l->how->step);
         if (!status)
             status = avif_encode(&result[i], codes, &s, &jpeg[i], &quantiser, l->log);
-        for (size_t k = 0; !status && l->how->guided && i == 0 && k < n; k++)
+        const bool taken = !status && result[i].size < jpeg[i].size;
+        for (size_t k = 0; taken && l->how->guided && i == 0 && k < n; k++)
             gain[k] = guide_gain((float)((codes[k] / 255.0 - jpeg->bias[0]) * jpeg->scale[0]));
+        if (!status)
+            status = keep_smaller(&result[i], &jpeg[i]);
     }
     if (!status)
         status = levels_join(result, sheets, &l->avif[item], &l->avif_size[item]);

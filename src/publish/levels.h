@@ -2,7 +2,8 @@
 //
 // NAME/v0/L_X_Y.bin: level L (0 is the full size, each next one half of it, rounded up), column X,
 // row Y of tiles. Little-endian: how many pictures, as 32 bits, the bytes of each, likewise, then
-// the pictures, JPEG of three planes each as red, green and blue; L_X_Y.avif.bin: likewise, AVIF.
+// the pictures, JPEG of three planes each as red, green and blue; L_X_Y.avif.bin: likewise, each
+// as AVIF unless JPEG is smaller.
 #ifndef PUBLISH_LEVELS_H
 #define PUBLISH_LEVELS_H
 

@@ -400,6 +400,7 @@ relume_status scene_write(struct scene *s)
     if (!status)
         status = exposure_find(&s->exposure, s->pack, s->site);
     if (!status) {
+        s->metered = true;
         choose_first(s, s->levels.layers == RELUME_PUBLISH_AVIF ? avif : bytes);
         for (int i = 0; i < LEVELS_MOST; i++) {
             s->report->bytes += bytes[i] + avif[i];

@@ -128,7 +128,8 @@ void scene_print_json(FILE *f, const struct scene *s)
     if (s->levels.layers != RELUME_PUBLISH_JPEG)
         fprintf(f, "  \"pictures\": \"%s\",\n",
                 s->levels.layers == RELUME_PUBLISH_AVIF ? "avif" : "both");
-    fprintf(f, "  \"exposure\": %g,\n", s->exposure);
+    if (s->metered)
+        fprintf(f, "  \"exposure\": %g,\n", s->exposure);
     put_levels(f, s);
     if (info->has_shadow || info->has_gloss)
         fprintf(f, "  \"moves\": \"%s\",\n", info->has_shadow ? "shadows" : "highlights");

@@ -97,6 +97,7 @@ export function checkScene(scene, address) {
     insist(PROJECTIONS.includes(scene.projection), `unknown projection ${scene.projection}`);
     insist(isWhole(scene.planes, 1, 192) && isWhole(scene.functions, 1, 4096), 'number of planes');
     insist(areNumbers(scene.scale, scene.planes) && areNumbers(scene.offset, scene.planes), 'scales');
+    insist([undefined, 'avif', 'both'].includes(scene.pictures), 'unknown pictures');
     insist(scene.exposure === undefined || Number.isFinite(scene.exposure), 'exposure');
     insist(scene.knee === undefined || scene.knee > 0, 'the guide of its planes');
     checkBasis(scene.basis);

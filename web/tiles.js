@@ -86,14 +86,26 @@ export class Tiles {
 
     get busy() { return this.loading + this.queue.length; }
 
-    // The pictures of its layers, decoded.
-    async pictures(tile) {
-        const address = `${this.scene.base}${tile.key}.bin`, bytes = await loadBytes(address);
+    // The pictures of a file of a tile, decoded; among AVIF those that are smaller as JPEG.
+    async decoded(tile, avif) {
+        const address = `${this.scene.base}${tile.key}${avif ? '.avif' : ''}.bin`, bytes = await loadBytes(address);
         this.received += bytes.length;
-        const pictures = await Promise.all(partsOf(bytes, this.scene.layers, address)
-            .map((part) => decodePicture(part, 'image/jpeg').catch(() => {
-                throw new Failure(`${tile.key}.bin is damaged`);
+        return Promise.all(partsOf(bytes, this.scene.layers, address)
+            .map((part) => decodePicture(part, part[0] === 0xff ? 'image/jpeg' : 'image/avif').catch(() => {
+                throw new Failure(this.scene.pictures === 'avif' ? 'this browser does not decode its AVIF pictures, or they are damaged' : `${tile.key}.bin is damaged`);
             })));
+    }
+
+    // Those of its layers: JPEG where there is that and a browser does not decode AVIF.
+    async pictures(tile) {
+        let pictures = null;
+        if (this.scene.pictures && !this.plain)
+            pictures = await this.decoded(tile, true).catch((error) => {
+                if (this.scene.pictures === 'avif')
+                    throw error;
+                this.plain = true;
+            });
+        pictures = pictures || await this.decoded(tile, false);
         if (pictures.some((p) => p.width !== tile.width || p.height !== tile.height))
             throw new Failure(`${tile.key}.bin has another size than scene.json says`);
         return pictures;

@@ -22,6 +22,17 @@ enum relume_publish_for {
 RELUME_RESULT relume_status relume_publish_for_parse(enum relume_publish_for *out,
                                                      const char *name);
 
+// What planes are coded as. Every browser with WebGL2 decodes JPEG; AVIF, which is smaller, those
+// since 2023 (some since 2020).
+enum relume_publish_layers {
+    RELUME_PUBLISH_JPEG = 0,
+    RELUME_PUBLISH_AVIF,
+    RELUME_PUBLISH_JPEG_AND_AVIF,  // a page takes AVIF, and JPEG where that cannot be decoded
+};
+// "jpeg", "avif", "both". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_publish_layers_parse(enum relume_publish_layers *out,
+                                                        const char *name);
+
 // Texts are UTF-8 and plain: what they hold of HTML is shown, not obeyed. Zero or NULL in a field
 // means its default. Of quality, psnr_db and bytes_per_pixel at most one is given.
 struct relume_publish_params {
@@ -40,12 +51,13 @@ struct relume_publish_params {
     double psnr_db;          // expected against the file's own pictures
     double bytes_per_pixel;  // of all views at full size, about
     enum relume_publish_for target;
-    double mm_per_pixel;  // planar files: how large a pixel is; default: not known
-    const char *url;      // where the site will be, for links from elsewhere: "https://..."
-    bool force;           // replace a folder that relume made
-    bool allow_outside;   // as relume_open_params
-    bool keep_going;      // likewise
-    int threads;          // default: all cores
+    enum relume_publish_layers layers;  // of what is no baked object
+    double mm_per_pixel;                // planar files: how large a pixel is; default: not known
+    const char *url;     // where the site will be, for links from elsewhere: "https://..."
+    bool force;          // replace a folder that relume made
+    bool allow_outside;  // as relume_open_params
+    bool keep_going;     // likewise
+    int threads;         // default: all cores
 };
 #define relume_publish_params(...)                                                                 \
     (&(const struct relume_publish_params){RELUME_SIZED(relume_publish_params), __VA_ARGS__})
@@ -56,7 +68,8 @@ struct relume_publish_report {
     int views, planes;     // that its folder holds; 0 of a baked object
     int quality;           // asked for or chosen; 0: by size or PSNR
     uint64_t bytes;        // of its folder, twins not counted
-    uint64_t first_bytes;  // of these, what a page loads before it shows something
+    uint64_t avif_bytes;   // of its folder: planes as AVIF
+    uint64_t first_bytes;  // of what a page loads, before it shows something
     double psnr_db;  // of pictures: of one view, mean over at most 16 lights, 8-bit sRGB, against
                      // the file's own pictures
     bool linear;     // its planes hold linear light

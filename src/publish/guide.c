@@ -134,8 +134,11 @@ static void find_range(void *context, size_t k, int worker)
         max = fmaxf(max, u);
     }
     const float bin = fmaxf((max - min) / (BINS - 1), 1e-12f);
-    for (size_t i = 0; isfinite(bin) && i < n; i++)
-        count[(int)((coded_at(p, (int)k, i) - min) / bin)]++;
+    for (size_t i = 0; i < n; i++) {
+        const float at = (coded_at(p, (int)k, i) - min) / bin;
+        if (at >= 0.0f && at < (float)BINS)
+            count[(int)at]++;
+    }
     int low = 0, high = BINS - 1;
     while (low < high && (below += count[low]) <= few)
         low++;

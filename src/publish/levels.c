@@ -6,9 +6,13 @@
 #include "base/thread.h"
 #include "image/jpeg.h"
 #include "math/scalar.h"
+#include "publish/avif.h"
 #include "publish/guide.h"
 
 #include <string.h>
+
+// Where the search for that of AVIF begins.
+enum { FIRST_QUANTISER = 12 };
 
 int levels_count(int width, int height, int views)
 {
@@ -24,8 +28,10 @@ struct level {
     const struct levels *how;
     int width, height, columns, rows;
     const float *plane[PUBLISH_MOST_PLANES];
-    uint8_t **bytes;  // [tiles]
-    size_t *size;
+    const struct relume_log *log;
+    bool kept;                // it goes into the site
+    uint8_t **bytes, **avif;  // [tiles]
+    size_t *size, *avif_size;
     relume_status *status;
     uint8_t *codes;
 };
@@ -133,6 +139,54 @@ static relume_status follow_guide(const struct sheet *s, float *room, float *gai
     return status;
 }
 
+static bool has_avif(const struct level *l)
+{
+    return l->kept && l->how->layers != RELUME_PUBLISH_JPEG;
+}
+
+// JPEG stays where AVIF is larger.
+static relume_status keep_smaller(struct sheet_result *avif, const struct sheet_result *jpeg)
+{
+    if (avif->size < jpeg->size)
+        return RELUME_OK;
+    mem_free(avif->bytes);
+    avif->bytes = mem_copy(jpeg->bytes, jpeg->size, 1);
+    avif->size = jpeg->size;
+    return avif->bytes ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// The sheets of a tile again, as AVIF. The guide of the later ones is what that makes of the first.
+static relume_status encode_avif(const struct level *l, size_t item, const struct relume_rect *at,
+                                 const struct sheet_result *jpeg, float *room)
+{
+    const int sheets = (l->how->planes + SHEET_PLANES - 1) / SHEET_PLANES;
+    const size_t n = (size_t)at->width * (size_t)at->height;
+    struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
+    uint8_t *codes = mem_array(SHEET_PLANES * n, 1);
+    float *gain = room + SHEET_PLANES * n;
+    int quantiser = FIRST_QUANTISER;
+    relume_status status = result && codes ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < sheets; i++) {
+        const struct sheet s = cut(l, at, SHEET_PLANES * i, room);
+        if (l->how->guided)
+            status = follow_guide(&s, room, gain, i == 0, l->how->step);
+        if (!status)
+            status = avif_encode(&result[i], codes, &s, &jpeg[i], &quantiser, l->log);
+        const bool taken = !status && result[i].size < jpeg[i].size;
+        for (size_t k = 0; taken && l->how->guided && i == 0 && k < n; k++)
+            gain[k] = guide_gain((float)((codes[k] / 255.0 - jpeg->bias[0]) * jpeg->scale[0]));
+        if (!status)
+            status = keep_smaller(&result[i], &jpeg[i]);
+    }
+    if (!status)
+        status = levels_join(result, sheets, &l->avif[item], &l->avif_size[item]);
+    for (int i = 0; result && i < sheets; i++)
+        mem_free(result[i].bytes);
+    mem_free(result);
+    mem_free(codes);
+    return status;
+}
+
 static void encode_tile(void *context, size_t item, int worker)
 {
     (void)worker;
@@ -158,6 +212,8 @@ static void encode_tile(void *context, size_t item, int worker)
     }
     if (!status)
         status = levels_join(result, sheets, &l->bytes[item], &l->size[item]);
+    if (!status && has_avif(l))
+        status = encode_avif(l, item, &at, result, room);
     for (int i = 0; result && i < sheets; i++)
         mem_free(result[i].bytes);
     mem_free(result);
@@ -166,40 +222,53 @@ static void encode_tile(void *context, size_t item, int worker)
 }
 
 static relume_status save_tiles(const struct site *site, const char *folder, int number,
-                                const struct level *l, uint64_t *bytes)
+                                const struct level *l, const char *ending, bool avif,
+                                uint64_t *bytes)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < l->columns * l->rows; i++) {
-        *bytes += l->size[i];
+        const size_t size = avif ? l->avif_size[i] : l->size[i];
+        *bytes += size;
         if (!site)
             continue;
-        char *name = mem_format("%s/%d_%d_%d.bin", folder, number, i % l->columns, i / l->columns);
-        status = name ? site_save_data(site, name, l->bytes[i], l->size[i]) : RELUME_ENOMEM;
+        char *name =
+            mem_format("%s/%d_%d_%d%s", folder, number, i % l->columns, i / l->columns, ending);
+        status = name ? site_save_data(site, name, avif ? l->avif[i] : l->bytes[i], size)
+                      : RELUME_ENOMEM;
         mem_free(name);
     }
     return status;
 }
 
 static relume_status write_level(const struct site *site, const char *folder, int number,
-                                 struct level *l, uint64_t *bytes)
+                                 struct level *l, uint64_t *bytes, uint64_t *avif)
 {
     l->columns = (l->width + LEVELS_TILE - 1) / LEVELS_TILE;
     l->rows = (l->height + LEVELS_TILE - 1) / LEVELS_TILE;
     const size_t n = (size_t)l->columns * (size_t)l->rows;
     l->bytes = mem_zeroed(n, sizeof *l->bytes);
+    l->avif = mem_zeroed(n, sizeof *l->avif);
     l->size = mem_zeroed(n, sizeof *l->size);
+    l->avif_size = mem_zeroed(n, sizeof *l->avif_size);
     l->status = mem_zeroed(n, sizeof *l->status);
-    relume_status status = l->bytes && l->size && l->status ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status =
+        l->bytes && l->avif && l->size && l->avif_size && l->status ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         thread_for(l->how->threads, n, encode_tile, l);
     for (size_t i = 0; !status && i < n; i++)
         status = l->status[i];
-    if (!status)
-        status = save_tiles(site, folder, number, l, bytes);
-    for (size_t i = 0; l->bytes && i < n; i++)
+    if (!status && (!site || l->how->layers != RELUME_PUBLISH_AVIF))
+        status = save_tiles(site, folder, number, l, ".bin", false, bytes);
+    if (!status && has_avif(l))
+        status = save_tiles(site, folder, number, l, ".avif.bin", true, avif);
+    for (size_t i = 0; l->bytes && l->avif && i < n; i++) {
         mem_free(l->bytes[i]);
+        mem_free(l->avif[i]);
+    }
     mem_free(l->bytes);
+    mem_free(l->avif);
     mem_free(l->size);
+    mem_free(l->avif_size);
     mem_free(l->status);
     return status;
 }
@@ -220,15 +289,21 @@ static relume_status go_up(struct level *l, float **own)
 }
 
 relume_status levels_write(const struct site *site, const char *name, const struct planes *p,
-                           const struct levels *how, uint64_t *bytes, uint8_t *codes)
+                           const struct levels *how, uint64_t *bytes, uint64_t *avif,
+                           uint8_t *codes)
 {
-    struct level l = {.how = how, .width = p->width, .height = p->height, .codes = codes};
+    struct level l = {.how = how,
+                      .width = p->width,
+                      .height = p->height,
+                      .kept = true,
+                      .log = site->log,
+                      .codes = codes};
     float **own = mem_zeroed((size_t)how->planes, sizeof *own);
     for (int i = 0; i < how->planes; i++)
         l.plane[i] = planes_at(p, i);
     relume_status status = own ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < how->count; i++) {
-        status = write_level(site, name, i, &l, &bytes[i]);
+        status = write_level(site, name, i, &l, &bytes[i], &avif[i]);
         l.codes = NULL;
         if (!status && i + 1 < how->count)
             status = go_up(&l, own);
@@ -245,5 +320,5 @@ relume_status levels_try(const struct planes *p, const struct levels *how, uint6
     struct level l = {.how = how, .width = p->width, .height = p->height, .codes = codes};
     for (int i = 0; i < how->planes; i++)
         l.plane[i] = planes_at(p, i);
-    return write_level(NULL, NULL, 0, &l, bytes);
+    return write_level(NULL, NULL, 0, &l, bytes, NULL);
 }

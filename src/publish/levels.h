@@ -2,7 +2,8 @@
 //
 // NAME/v0/L_X_Y.bin: level L (0 is the full size, each next one half of it, rounded up), column X,
 // row Y of tiles. Little-endian: how many pictures, as 32 bits, the bytes of each, likewise, then
-// the pictures, JPEG of three planes each as red, green and blue.
+// the pictures, JPEG of three planes each as red, green and blue; L_X_Y.avif.bin: likewise, each
+// as AVIF unless JPEG is smaller.
 #ifndef PUBLISH_LEVELS_H
 #define PUBLISH_LEVELS_H
 
@@ -22,6 +23,7 @@ struct levels {
     const double *minimum, *maximum;  // [planes], of all views
     float *scale, *offset;            // [planes], found while writing: C (guided: u) = code * scale
                                       // + offset
+    enum relume_publish_layers layers;
     int threads;
 };
 
@@ -29,11 +31,11 @@ struct levels {
 // views, of which a page shows four at once.
 int levels_count(int width, int height, int views);
 
-// Write the pyramid of `p` into the folder `name` of the site.
-// bytes[level] grows by what was written. With `codes`, [planes][height][width], what a reader
+// Write the pyramid of `p` into the folder `name` of the site. bytes[level] grows by what was
+// written, avif[level] by what of it is AVIF. With `codes`, [planes][height][width], what a reader
 // decodes of level 0.
 relume_status levels_write(const struct site *site, const char *name, const struct planes *p,
-                           const struct levels *l, uint64_t *bytes, uint8_t *codes);
+                           const struct levels *l, uint64_t *bytes, uint64_t *avif, uint8_t *codes);
 // The same of level 0 alone, of which nothing is written.
 relume_status levels_try(const struct planes *p, const struct levels *l, uint64_t *bytes,
                          uint8_t *codes);

@@ -29,6 +29,14 @@ relume_status relume_publish_for_parse(enum relume_publish_for *out, const char 
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
+relume_status relume_publish_layers_parse(enum relume_publish_layers *out, const char *name)
+{
+    static const char *const names[] = {"jpeg", "avif", "both"};
+    const int i = name_find(name, names, sizeof names / sizeof *names);
+    *out = (enum relume_publish_layers)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
+}
+
 // All files of a site, and what is known of them.
 struct work {
     const struct relume_publish_params *params;

@@ -276,7 +276,8 @@ static relume_status correct_step(struct scene *s, const struct planes *middle)
 
 // ---------------------------------------------------------------- tiles
 
-static relume_status write_views(struct scene *s, struct planes *middle, uint64_t *bytes)
+static relume_status write_views(struct scene *s, struct planes *middle, uint64_t *bytes,
+                                 uint64_t *avif)
 {
     const int views = relume_pack_info(s->pack)->views;
     relume_status status = RELUME_OK;
@@ -288,8 +289,8 @@ static relume_status write_views(struct scene *s, struct planes *middle, uint64_
         if (!is_middle)
             status = planes_of(&view, s, i);
         if (!status)
-            status =
-                levels_write(s->site, name, is_middle ? middle : &view, &s->levels, bytes, NULL);
+            status = levels_write(s->site, name, is_middle ? middle : &view, &s->levels, bytes,
+                                  avif, NULL);
         if (!status)
             status = layers_write(&s->layers[i], s->site, name, s->pack, i);
         if (!status)
@@ -323,6 +324,7 @@ static relume_status allocate(struct scene *s)
     s->maximum = mem_array(n, sizeof *s->maximum);
     s->levels = (struct levels){.planes = (int)n,
                                 .guided = s->common.guided,
+                                .layers = s->site->params->layers,
                                 .count = levels_count(info->width, info->height, info->views),
                                 .minimum = s->minimum,
                                 .maximum = s->maximum,
@@ -382,7 +384,7 @@ static relume_status prepare(struct scene *s, enum source_kind kind, struct plan
 
 relume_status scene_write(struct scene *s)
 {
-    uint64_t bytes[LEVELS_MOST] = {0};
+    uint64_t bytes[LEVELS_MOST] = {0}, avif[LEVELS_MOST] = {0};
     struct planes middle = {0};
     relume_status status = prepare(s, SOURCE_WHOLE, &middle);
     const double poor =
@@ -394,13 +396,16 @@ relume_status scene_write(struct scene *s)
         status = prepare(s, SOURCE_CODED, &middle);
     }
     if (!status)
-        status = write_views(s, &middle, bytes);
+        status = write_views(s, &middle, bytes, avif);
     if (!status)
         status = exposure_find(&s->exposure, s->pack, s->site);
     if (!status) {
-        choose_first(s, bytes);
-        for (int i = 0; i < LEVELS_MOST; i++)
-            s->report->bytes += bytes[i];
+        s->metered = true;
+        choose_first(s, s->levels.layers == RELUME_PUBLISH_AVIF ? avif : bytes);
+        for (int i = 0; i < LEVELS_MOST; i++) {
+            s->report->bytes += bytes[i] + avif[i];
+            s->report->avif_bytes += avif[i];
+        }
         status = scene_write_json(s);
     }
     planes_free(&middle);

@@ -26,6 +26,7 @@ struct scene {
     double *minimum, *maximum;  // [planes]
     bool usual;                 // the step is that of nobody's wish
     int first_level;
+    bool metered;     // exposure is known
     double exposure;  // EV
     struct relume_publish_report *report;
 };

@@ -108,7 +108,8 @@ void scene_print_json(FILE *f, const struct scene *s)
     const struct common *c = &s->common;
     const size_t functions = (size_t)c->functions;
     char transfer[32];
-    fprintf(f, "{\n  \"format\": \"relume-web\", \"version\": %d,\n", c->guided ? 2 : 1);
+    fprintf(f, "{\n  \"format\": \"relume-web\", \"version\": %d,\n",
+            c->guided || s->levels.layers == RELUME_PUBLISH_AVIF ? 2 : 1);
     put_details(f, s);
     fprintf(f, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
     geometry_print(f, &info->geometry);
@@ -124,7 +125,11 @@ void scene_print_json(FILE *f, const struct scene *s)
     put_numbers(f, "offset", s->levels.offset, s->levels.planes);
     if (c->guided)
         fprintf(f, "  \"knee\": %g,\n", (double)GUIDE_KNEE);
-    fprintf(f, "  \"exposure\": %g,\n", s->exposure);
+    if (s->levels.layers != RELUME_PUBLISH_JPEG)
+        fprintf(f, "  \"pictures\": \"%s\",\n",
+                s->levels.layers == RELUME_PUBLISH_AVIF ? "avif" : "both");
+    if (s->metered)
+        fprintf(f, "  \"exposure\": %g,\n", s->exposure);
     put_levels(f, s);
     if (info->has_shadow || info->has_gloss)
         fprintf(f, "  \"moves\": \"%s\",\n", info->has_shadow ? "shadows" : "highlights");

@@ -37,6 +37,8 @@ fi
     "$RELUME" notes dome.exr --ruler n1 --length 4 -q >>note.txt 2>&1 || exit 1
 "$RELUME" publish dome.exr pot.exr room.exr -o site -q 2>note.txt ||
     { not_ok 'a site is published' "$(cat note.txt)"; finish; exit; }
+"$RELUME" encode pot -o mug.exr --basis pca --coefficients 6 --domain display -q || exit 1
+"$RELUME" publish mug.exr -o two --layers both -q && "$RELUME" publish mug.exr -o avif --layers avif -q || exit 1
 node --check site/relume/relume.js 2>check.txt || { not_ok 'the modules join to a script' "$(head -n 5 check.txt)"; finish; exit; }
 cp -r site bad
 sed -i 's/"version": 1/"version": 9/' bad/pot/scene.json
@@ -94,6 +96,18 @@ snap pot "light=dir,0,0,1&eye=$eye" "--size 96x96 --eye $eye" --light 'dir 0 0 1
 snap pot "light=dir,0.5,0.3,0.7&eye=$eye" "--size 96x96 --eye $eye" --light 'dir 0.5 0.3 0.7'
 lamp() { snap "$1" "light=$(echo "$2" | tr ' ' ,)$3" "$4" --light "$2"; }
 lamp pot 'point 0.6 0.5 1' "&eye=$eye" "--size 96x96 --eye $eye"
+# layers as AVIF; without it as JPEG, or a sentence
+{
+    show two/mug.html
+} >>orders.txt
+snap mug "light=dir,0.5,0.3,0.7&eye=$eye" "--size 96x96 --eye $eye" --light 'dir 0.5 0.3 0.7'
+ask "['AVIF', !document.querySelector('relume-view').viewer.tiles.plain]"
+echo 'before const own = window.createImageBitmap; window.createImageBitmap = (blob, ...more) => blob.type === "image/avif" && location.href.includes("old") ? Promise.reject(new Error("no")) : own(blob, ...more)' >>orders.txt
+show 'two/mug.html?old' >>orders.txt
+snap mug "light=dir,0.5,0.3,0.7&eye=$eye" "--size 96x96 --eye $eye" --light 'dir 0.5 0.3 0.7'
+ask "['JPEG', document.querySelector('relume-view').viewer.tiles.plain]"
+echo "open file://$work/avif/mug.html?old" >>orders.txt
+ask "document.querySelector('relume-view').status.textContent"
 {
     echo 'size 128 64'
     show site/room.html
@@ -170,6 +184,9 @@ says 'two looks are compared' '^"difference"'
 says 'without WebGL2 there is a still picture and a sentence' '^\["Only a still picture can be shown: this browser has no WebGL2\.",true,"'
 [ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'
 says 'on a phone all controls are at hand and large enough' '^\["narrow",11,0,360,null,19,0,360,"true"\]'
+says 'a browser takes AVIF' '^\["AVIF",true\]'
+says 'where it cannot, JPEG' '^\["JPEG",true\]'
+says 'where there is none, a sentence' '^"Only a still picture can be shown: this browser does not decode its AVIF pictures'
 says 'a view that is put elsewhere opens again' '^"put elsewhere"'
 says 'a newer file says so' '^\["Only a still picture can be shown: this file was published by a newer relume .format 9.*",true\]'
 says 'a missing tile is said' '^\["Only a still picture can be shown: room/v0/0_0_0.bin is missing\."'

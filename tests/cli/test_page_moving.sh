@@ -42,10 +42,12 @@ lone() { # file, direction, more of the state, options, limit
 }
 {
     echo 'size 64 64'
+    echo "before const own = Element.prototype.append; Element.prototype.append = function (...nodes) { if (nodes.some(n => /moving.bin/.test(n.src || ''))) window.drawnThen = !!document.querySelector('relume-view').viewer.drawn; return own.apply(this, nodes); }"
     show site/box.html
 } >orders.txt
 lone box '0.2 0.3 0.8' '' '' 1
 lone box '-0.62 0.55 0.56' '' '' 1
+ask "['behind', window.drawnThen]"
 near() { snap "$1" 1 "light=$(echo "$2" | tr ' ' ,)$3" "$4" "$2"; } # file, light, more of the state, options
 near box 'point 0.3 0.6 1.4' '' ''
 near box 'area 0.2 0.5 1.2 0.2 0 0 0 -0.2 0.05 rgb 9 9 9' '' ''
@@ -82,6 +84,7 @@ for shot in $shots; do
 done
 "$RELUME" relight faded.exr -o faded.png -q --light 'dir 0.2 0.3 0.8'
 above 'which fading would not' "$("$mkimage" codediff faded.png tool1.png)" 3
+says 'what moves loads behind the first picture' '^\["behind",true\]'
 says 'what is missing is said' '"A part of the picture cannot be shown: box/v0/moving.bin is missing\."'
 says 'what is cut short is said' '"A part of the picture cannot be shown: v0/moving.bin is damaged\."'
 finish

@@ -54,6 +54,15 @@ check 'a mask' test -s site/wrap/v0/mask.png
 check '--for web has no twins' [ -z "$(find web/slab -name '*.js')" ]
 check '--for disk has twins alone' [ -z "$(find disk/slab -name '*.bin' -o -name scene.json)" ]
 
+# planes as AVIF, beside JPEG and alone
+publish wrap.exr -o avif --layers avif && publish wrap.exr -o two --layers both
+check 'AVIF in a tile' grep -q ftypavif two/wrap/v0/0_0_0.avif.bin
+check 'its JPEG is as without' cmp two/wrap/v0/0_0_0.bin site/wrap/v0/0_0_0.bin
+check 'AVIF alone' [ -s avif/wrap/v0/0_0_0.avif.bin -a ! -e avif/wrap/v0/0_0_0.bin ]
+check 'which older pages refuse' grep -q '"version": 2' avif/wrap/scene.json
+check 'both they show' grep -q '"version": 1' two/wrap/scene.json
+expect_fail 'layers of another kind' 2 "'--layers'|--layers.*webp" bad "$RELUME" publish wrap.exr -o bad --layers webp
+
 # tiles of the image service: all that info.json promises
 width=$(field width site/planar/iiif/info.json) height=$(field height site/planar/iiif/info.json)
 lost=$(sed -n 's/.*"scaleFactors": \[\(.*\)\]}.*/\1/p' site/planar/iiif/info.json | tr -d ' ' | tr , '\n' | awk -v w="$width" -v h="$height" '

@@ -7,6 +7,7 @@ struct publish_options {
     struct args args;
     const char *output, *title, *maker, *licence, *object, *description, *metadata, *url;
     enum relume_publish_for target;
+    enum relume_publish_layers layers;
     int coefficients, quality;
     double bytes_per_pixel, psnr, mm_per_pixel;
     bool force, allow_outside, keep_going;
@@ -31,6 +32,10 @@ static const struct option options[] = {
     PROSE("--url", url, "URL", "where the site will be, for links from elsewhere"),
     NUMBER("--mm-per-pixel", mm_per_pixel, "X", "scale of planar files", 1e-6, 1e6),
     GROUP("quality"),
+    NAME("--layers", layers, "KIND",
+         "jpeg (default: every browser), avif (smaller, slower to make; browsers since 2023) or "
+         "both",
+         RELUME_PUBLISH_JPEG, "jpeg", "avif", "both"),
     INT("--quality", quality, "Q",
         "10 less doubles the quantiser step; default: 95 or more, so that no blocks are seen", 1,
         100),
@@ -62,6 +67,10 @@ static void say_result(const struct publish_options *o, const struct relume_publ
              o->output, r->name, r->views, relume_plural(r->views), r->planes,
              (double)r->bytes / 1e3, (double)r->first_bytes / 1e3, r->psnr_db,
              judgement(r->psnr_db));
+    if (r->avif_bytes && r->avif_bytes < r->bytes)
+        announce(&o->args, RELUME_NOTE, "%s/%s.html: %.1f kB of it as AVIF, %.1f kB as JPEG",
+                 o->output, r->name, (double)r->avif_bytes / 1e3,
+                 (double)(r->bytes - r->avif_bytes) / 1e3);
     if (r->psnr_db < SEEN_DB && r->linear)
         announce(&o->args, RELUME_NOTE,
                  "%s/%s.html: dark places of linear files need more than its 8 bits; a file of "
@@ -95,6 +104,7 @@ static relume_status run(const struct args *args)
         .psnr_db = o->psnr,
         .bytes_per_pixel = o->bytes_per_pixel,
         .target = o->target,
+        .layers = o->layers,
         .mm_per_pixel = o->mm_per_pixel,
         .url = o->url,
         .force = o->force,

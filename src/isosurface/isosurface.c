@@ -26,7 +26,8 @@ static relume_status check(const int *blocks, int levels, const relume_volume *v
             return log_fail(log, RELUME_EINVAL, "blocks of %d samples; expected 1, 2, 4, 8 or 16",
                             blocks[i]);
     if (!isfinite(threshold) || fabs(threshold) > 1e38)
-        return log_fail(log, RELUME_EINVAL, "a threshold of %g; expected a number", threshold);
+        return log_fail(log, RELUME_EINVAL, "a threshold of %g; expected one from -1e38 to 1e38",
+                        threshold);
     const float t = (float)threshold;
     if (!(t > volume->min && t <= volume->max))
         log_line(log, RELUME_WARNING,

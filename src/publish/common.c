@@ -142,6 +142,14 @@ static relume_status look_at_views(struct common *c, struct statistics *all, rel
 
 // ---------------------------------------------------------------- functions
 
+// To 12 bits, which pack a fifth smaller in scene.json and move pictures by 0.02 of 255 at most.
+static float rounded(double value)
+{
+    int exponent;
+    const double mantissa = frexp(value, &exponent);
+    return (float)ldexp(rint(mantissa * 4096.0), exponent - 12);
+}
+
 static relume_status make_functions(struct common *c, const struct principal *found,
                                     const double *mean)
 {
@@ -161,7 +169,10 @@ static relume_status make_functions(struct common *c, const struct principal *fo
                 sum[i] = (double)info->mean[ch * f + i];
             functions_add(sum, info, (int)ch, is_mean ? mean : found->back + row * p);
             for (size_t i = 0; i < f; i++)
-                (is_mean ? c->mean + ch * f : c->transform + (ch * k + row) * f)[i] = (float)sum[i];
+                if (is_mean)
+                    c->mean[ch * f + i] = (float)sum[i];
+                else
+                    c->transform[(ch * k + row) * f + i] = rounded(sum[i]);
         }
     mem_free(sum);
     return good ? RELUME_OK : RELUME_ENOMEM;

@@ -38,10 +38,11 @@ enum { USUAL_PLANES = 27, CORRECTIONS = 8, TRIAL_PIXELS = 1 << 17 };
 #define USUAL_FINER 2.0
 #define USUAL_SLACK 0.8  // measured values are rounded to 8 bits
 
-// What the page loads before it shows something, beside scene.json: of 150 kB what the viewer
-// itself leaves.
-enum { FIRST_BYTES = 60000, FIRST_VIEWS = 4, LEAST_SIDE = 16 };
-#define LEVEL_RATIO 3.0
+// What the page loads before it shows something: of 150 kB what the viewer itself leaves. What
+// scene.json says of lights is a part of it, packed.
+enum { FIRST_BYTES = 51000, LEAST_BYTES = 12000, FIRST_VIEWS = 4, LEAST_SIDE = 16 };
+#define PACKED_FLOAT 3.7  // bytes
+#define LEVEL_RATIO  3.0
 
 static int middle_of(const struct scene *s)
 {
@@ -223,6 +224,13 @@ static relume_status give_up(const struct scene *s, double found)
                                p->psnr_db, s->levels.planes, s->report->psnr_db);
 }
 
+// Of the first picture's planes.
+static double first_most(const struct scene *s)
+{
+    const double numbers = 3.0 * (s->levels.planes + 1) * s->common.functions;
+    return fmax(FIRST_BYTES - PACKED_FLOAT * numbers, LEAST_BYTES);
+}
+
 // Many planes, or fine ones, are large at a size that is small for others: levels, each of which
 // takes a third of the one before, until the last is small enough to be the first picture. `bytes`:
 // of one view.
@@ -232,7 +240,7 @@ static void add_levels(struct scene *s, uint64_t bytes)
     const int longer = larger_of(info->width, info->height);
     double last = (double)bytes * smaller_of(info->views, FIRST_VIEWS) /
                   pow(LEVEL_RATIO, s->levels.count - 1);
-    for (; last > FIRST_BYTES && longer >> s->levels.count >= LEAST_SIDE; last /= LEVEL_RATIO)
+    for (; last > first_most(s) && longer >> s->levels.count >= LEAST_SIDE; last /= LEVEL_RATIO)
         s->levels.count++;
 }
 
@@ -308,7 +316,8 @@ static void choose_first(struct scene *s, const uint64_t *bytes)
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const uint64_t shown = (uint64_t)smaller_of(info->views, FIRST_VIEWS);
     int level = s->levels.count - 1;
-    while (level > 0 && bytes[level - 1] * shown / (uint64_t)info->views <= FIRST_BYTES)
+    const double most = first_most(s);
+    while (level > 0 && (double)(bytes[level - 1] * shown / (uint64_t)info->views) <= most)
         level--;
     s->first_level = level;
     s->report->first_bytes = bytes[level] * shown / (uint64_t)info->views;

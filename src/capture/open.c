@@ -11,59 +11,50 @@
 #include <string.h>
 #include <unistd.h>
 
-// The description in a folder: its capture.json, else its only .lp file. NULL: none, or no memory.
-static char *own_description(const char *folder, const struct relume_log *log)
+// The description in a folder: its capture.json, else its only .lp file; `*out` NULL: none.
+static relume_status own_description(char **out, const char *folder, const struct relume_log *log)
 {
-    char *path = mem_format("%s/capture.json", folder);
-    if (path && input_exists(path, log))
-        return path;
+    char *path = *out = mem_format("%s/capture.json", folder);
+    if (!path)
+        return RELUME_ENOMEM;
+    if (input_exists(path, log))
+        return RELUME_OK;
     mem_free(path);
-    return tree_only(folder, ".lp");
+    *out = tree_only(folder, ".lp");
+    return RELUME_OK;
 }
 
-// The same, else the only .lp file in one of its folders: this one is a project.
-static relume_status find_description(char **out, const char *folder, const struct relume_log *log)
+// The only .lp file in one of its folders: this one is a project.
+static relume_status project_description(char **out, const char *folder,
+                                         const struct relume_log *log)
 {
-    *out = own_description(folder, log);
-    if (!*out)
-        *out = tree_only_below(folder, ".lp");
+    const char *q = relume_name_quotes(folder);
+    *out = tree_only_below(folder, ".lp");
     if (*out)
         return RELUME_OK;
-    const char *q = relume_name_quotes(folder);
     return log_fail(log, RELUME_EFORMAT,
                     "%s: no capture.json and no single .lp file in this folder; give the .lp file, "
                     "or make a capture of photographs first: relume capture %s%s%s -o DIR",
                     folder, q, folder, q);
 }
 
-static bool lacks_description(const char *path, const struct relume_log *log)
-{
-    if (input_kind(path, log) != INPUT_FOLDER)
-        return false;
-    char *found = own_description(path, log);
-    const bool lacks = !found;
-    mem_free(found);
-    return lacks;
-}
-
 static relume_status read_description(relume_capture *c, const char *path,
                                       const struct relume_capture_params *p)
 {
-    if (lacks_description(path, p->log) && olat_is_folder(path, p->log))
-        return olat_read_folder(&c->draft, &c->path, path, p->log);
     const bool folder = input_kind(path, p->log) == INPUT_FOLDER;
-    if (folder) {
-        const relume_status status = find_description(&c->path, path, p->log);
-        if (status)
-            return status;
-    } else {
-        c->path = mem_text(path);
-    }
-    if (!c->path)
-        return RELUME_ENOMEM;
-    if (!picture_has_extension(c->path, ".lp"))
+    relume_status status = RELUME_OK;
+    if (folder)
+        status = own_description(&c->path, path, p->log);
+    else if (!(c->path = mem_text(path)))
+        status = RELUME_ENOMEM;
+    if (!status && !c->path && olat_is_folder(path, p->log))
+        return olat_read_folder(&c->draft, &c->path, path, p->log);
+    if (!status && !c->path)
+        status = project_description(&c->path, path, p->log);
+    if (!status && !picture_has_extension(c->path, ".lp"))
         return manifest_read(&c->draft, c->path, p);
-    const relume_status status = lp_read(&c->draft, c->path, p->limits, p->log);
+    if (!status)
+        status = lp_read(&c->draft, c->path, p->limits, p->log);
     return status ? status : lp_resolve(&c->draft, c->path, folder, p);
 }
 

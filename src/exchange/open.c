@@ -178,12 +178,6 @@ static relume_status unknown(const char *path, const struct relume_open_params *
                         "%s: a scene file, which 'relume relight' and 'relume info' open; expected "
                         "one of the captures that it names",
                         path);
-    static const char *const meshes[] = {".obj", ".ply", ".gltf", ".glb", ".stl", NULL};
-    if (kind != INPUT_FOLDER && is_among(path, meshes))
-        return log_fail(p->log, RELUME_EFORMAT,
-                        "%s: a 3D model, which is shown with a material: relume-view --mesh "
-                        "%s%s%s --material DIR",
-                        path, q, path, q);
     if (kind != INPUT_FOLDER)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
@@ -201,25 +195,37 @@ static relume_status unknown(const char *path, const struct relume_open_params *
         path, q, path, q);
 }
 
+// What cannot be relit, and what to do with it.
+static relume_status elsewhere(enum relume_kind kind, const char *path,
+                               const struct relume_log *log)
+{
+    const char *q = relume_name_quotes(path);
+    switch (kind) {
+    case RELUME_KIND_MATERIAL:
+        return log_fail(log, RELUME_EFORMAT,
+                        "%s: this is a measured material; work with it by 'relume btf', or see it: "
+                        "relume-view %s%s%s",
+                        path, q, path, q);
+    case RELUME_KIND_MODEL:
+        return log_fail(log, RELUME_EFORMAT,
+                        "%s: this is a 3D model; see it: relume-view %s%s%s, or make what pages "
+                        "show of it: relume bake %s%s%s -o OUT.exr",
+                        path, q, path, q, q, path, q);
+    default:
+        return log_fail(log, RELUME_EFORMAT,
+                        "%s: this is a baked object; put it into a scene with --objects, see it: "
+                        "relume-view %s%s%s, or draw it: relume btf render %s%s%s -o OUT.png",
+                        path, q, path, q, q, path, q);
+    }
+}
+
 static relume_status convert(enum relume_kind kind, const char *path, const char *out,
                              const struct relume_open_params *p)
 {
     switch (kind) {
     case RELUME_KIND_MATERIAL:
-        return log_fail(p->log, RELUME_EFORMAT,
-                        "%s: this is a measured material; see it with 'relume-view %s', work with "
-                        "it by 'relume btf'",
-                        path, path);
     case RELUME_KIND_MODEL:
-        return log_fail(p->log, RELUME_EFORMAT,
-                        "%s: this is a 3D model; see it with 'relume-view %s', or make what pages "
-                        "show of it: relume bake %s -o OUT.exr",
-                        path, path, path);
-    case RELUME_KIND_BAKED:
-        return log_fail(p->log, RELUME_EFORMAT,
-                        "%s: this is a baked object; see it with 'relume-view %s', draw it with "
-                        "'relume btf render %s -o OUT.png', put it into a scene with --objects",
-                        path, path, path);
+    case RELUME_KIND_BAKED: return elsewhere(kind, path, p->log);
     case RELUME_KIND_FOREIGN:
         return relume_import(path, out,
                              relume_import_params(.log = p->log, .limits = p->limits,

@@ -13,8 +13,8 @@ for o in nowhere/deep/o.exr good.exr/o.exr /proc/o.exr; do
     expect_fail "relight to $o" 3 "$o: cannot be (written|created)" "$o" $relight $o
 done
 mkdir folder
-expect_fail 'encode to a folder' 3 'folder: .*directory' - $encode folder
-expect_fail 'relight to a folder' 3 'folder.exr: .*directory' - sh -c "mkdir folder.exr; $relight folder.exr"
+expect_fail 'encode to a folder' 3 'folder: .*a folder has this name' - $encode folder
+expect_fail 'relight to a folder' 3 'folder.exr: .*a folder has this name' - sh -c "mkdir folder.exr; $relight folder.exr"
 expect_fail 'export to a folder in no folder' 3 'web/statue: cannot be created; there is no folder web: make it first' web \
     "$RELUME" export good.exr -o web/statue
 expect_fail 'relight to hdr, no such folder' 3 'nowhere/o.hdr: ' nowhere/o.hdr $relight nowhere/o.hdr

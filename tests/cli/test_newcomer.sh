@@ -85,7 +85,7 @@ expect_fail 'output -' 2 '/dev/stdout' ./- "$RELUME" encode photos -o -
 
 # ---- what is no picture says how it is shown, an option without effect where it has one
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >'my cow.obj'
-expect_fail 'a 3D model' 1 "a 3D model.*relume-view --mesh 'my cow.obj' --material DIR" x.png "$RELUME" relight 'my cow.obj' -o x.png
+expect_fail 'a 3D model' 1 "a 3D model.*relume-view 'my cow.obj', .*relume bake 'my cow.obj' -o OUT.exr" x.png "$RELUME" relight 'my cow.obj' -o x.png
 expect_fail 'lightfield --json without depth' 2 'depth-from-views' grid "$RELUME" lightfield photos -o grid --json
 
 # ---- a file that is larger than the photographs says so

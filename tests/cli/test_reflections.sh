@@ -92,7 +92,7 @@ script_fails 'objects without a mirror' 'one is a mirror' matte.json
 expect_fail 'edits without objects' 2 'add --objects FILE' x.exr "$RELUME" relight room.exr --reflections down.json -o x.exr
 expect_fail 'edits that are not there' 1 'none.json' x.exr "$RELUME" relight room.exr --objects ball.json --reflections none.json -o x.exr
 expect_fail 'a pixel without an object' 2 'expected a pixel that shows an object' x.exr "$RELUME" relight room.exr --objects ball.json $look --reflection-at 0,0 -o x.exr
-expect_fail 'edits for what is no description' 2 'expected a description of objects' x.png "$RELUME" btf render ball.obj --reflections down.json -o x.png
+expect_fail 'edits for what is no description' 2 'expected a description of objects' x.png "$RELUME" btf render lit --reflections down.json -o x.png
 echo "{\"format\":\"relume-reflections\",\"version\":1,\"edits\":[{\"constraints\":[]},{\"object\":0,\"constraints\":[]}]}" >twice.json
 expect_fail 'two edits of an object' 1 'twice.json: edit 1: object 0 has an edit already' x.exr "$RELUME" relight room.exr --objects ball.json --reflections twice.json $look -o x.exr
 "$VIEWER" room.exr --reflections down.json --offscreen x.png 2>err.txt

@@ -78,24 +78,24 @@ CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
-# Every folder of src is a room of the library, but for the programs.
-LIB_C    := $(filter-out src/cli/% src/helper/% src/mpi/% src/program/% src/mesh/mesh_assimp.c,$(wildcard src/*/*.c))
+# Every folder of src is a wing of the library, and theirs are rooms, but for the programs. Benches share cli/measure.
+LIB_C    := $(filter-out src/cli/% src/shape/mesh/mesh_assimp.c,$(wildcard src/*/*/*.c)) $(wildcard src/cli/measure/*.c)
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
-# The module that is loaded when the first image needs it (src/image/picture.h)
-MODULE_CXX := src/image/oiio.cpp
-# The module that is loaded when the first model needs it (src/mesh/mesh_other.h)
-MESHES_C := src/mesh/mesh_assimp.c
+# The module that is loaded when the first image needs it (src/image/image/picture.h)
+MODULE_CXX := src/image/image/oiio.cpp
+# The module that is loaded when the first model needs it (src/shape/mesh/mesh_other.h)
+MESHES_C := src/shape/mesh/mesh_assimp.c
 # Built where OpenCV's stitching is (make deps-stitch); opened to stitch photographs
 OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/include)))
-STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/multiview/stitch.cpp)
-# The program in which foreign files are read (src/base/helper.h); it lies beside the modules
-HELPER_C := $(wildcard src/helper/*.c)
+STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/capture/multiview/stitch.cpp)
+# The program in which foreign files are read (src/core/base/helper.h); it lies beside the modules
+HELPER_C := $(wildcard src/cli/helper/*.c)
 # The tool for all processes of an MPI launcher, built where one is (make deps-mpi); some packages
 # bring mpicc without the header
-MPI_C    := $(if $(shell echo 'int mpi;' | mpicc -include mpi.h -fsyntax-only -x c - 2>/dev/null && echo there),$(wildcard src/mpi/*.c))
-# src/program is what the tool and the viewer share.
-CLI_C    := $(wildcard src/program/*.c src/cli/*.c src/cli/*/*.c)
-VIEWER_C := $(wildcard src/program/*.c viewer/*/*.c)
+MPI_C    := $(if $(shell echo 'int mpi;' | mpicc -include mpi.h -fsyntax-only -x c - 2>/dev/null && echo there),$(wildcard src/cli/mpi/*.c))
+# src/cli/program is what the tool and the viewer share.
+CLI_C    := $(filter-out src/cli/helper/% src/cli/measure/% src/cli/mpi/%,$(wildcard src/cli/*.c src/cli/*/*.c))
+VIEWER_C := $(wildcard src/cli/program/*.c viewer/*/*.c)
 VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 # What `relume publish` puts into every site; the core is compiled by make web
 WEB_OBJECT := $(wildcard web/object*.js)
@@ -122,7 +122,7 @@ SAMPLES_C := samples/sphere.c samples/figures.c samples/mirrorball.c
 # Where no compiler is yet (make deps gets one, later in this run), the machine says what it is.
 AVX2     := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null || uname -m)),-mavx2 -mfma -mf16c)
 AVX512   := $(if $(AVX2),$(AVX2) -mavx512f -mavx512bw -mavx512dq -mavx512vl)
-LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/web/assets.o $(addprefix $B/obj/src/kernel/lsq_eigen,.o $(if $(AVX2),_avx2.o _avx512.o))
+LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/web/assets.o $(addprefix $B/obj/src/core/kernel/lsq_eigen,.o $(if $(AVX2),_avx2.o _avx512.o))
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
 MESHES   := $B/librelume-assimp.so.$(MAJOR)
 STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
@@ -173,9 +173,9 @@ deps-python:
 # What pages compute by the library itself (web/core/core.c), and what opens files that are dropped onto them
 # (web/open/open.c), compiled for browsers. The results are kept in the tree: only who changes these sources needs
 # emscripten (Debian's 3.1.6; another one gives other bytes).
-CORE_C := $(wildcard web/core/*.c src/coder/interpolant_*.c) $(addprefix src/,$(addprefix coder/,coder.c basis_table.c \
+CORE_C := $(wildcard web/core/*.c src/format/coder/interpolant_*.c) $(addprefix src/,$(addprefix format/coder/,coder.c basis_table.c \
           basis_ptm.c basis_hsh.c basis_sh.c basis_dct.c basis_dct_resampled.c harmonics.c disc.c zone.c mesh.c) \
-          math/hull.c math/sh.c math/hsh.c $(addprefix relight/,environment.c directions.c cells.c triangles.c))
+          core/math/hull.c core/math/sh.c core/math/hsh.c $(addprefix relight/light/,environment.c directions.c cells.c triangles.c))
 web:
 	scripts/web-core.sh web/core/relume-core.wasm $(CORE_C)
 	scripts/web-open.sh web/open/relume-open.wasm
@@ -187,10 +187,10 @@ $B/tests/core.so: $(CORE_C) | $(DEPS)
 
 # ---------------------------------------------------------------- compiling
 
-$B/obj/src/image/exr.o: own_flags = $(EXR)
-$B/obj/src/image/oiio.o: own_flags = $(OIIO)
-$B/obj/src/multiview/stitch.o: own_flags = -isystem $(OPENCV)
-$B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
+$B/obj/src/image/image/exr.o: own_flags = $(EXR)
+$B/obj/src/image/image/oiio.o: own_flags = $(OIIO)
+$B/obj/src/capture/multiview/stitch.o: own_flags = -isystem $(OPENCV)
+$B/obj/src/core/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
 $B/obj/src/%_avx2.o: own_flags = $(AVX2)
 $B/obj/src/%_avx512.o: own_flags = $(AVX512)
 # One source, three objects: see its head. Without optimising Eigen is a hundred times slower, and its
@@ -199,20 +199,18 @@ $B/obj/src/%_avx512.o: own_flags = $(AVX512)
 # half a minute to compile, for findings in Eigen.
 eigen_mode = $(if $(filter asan,$(config)),-O1 -fno-sanitize=undefined,-O2)
 eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) $(eigen_mode) -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=24576 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
-EIGEN_SHARED := $(addprefix obj/src/kernel/lsq_eigen,$(if $(filter asan tsan,$(config)),.o $(if $(AVX2),_avx512.o)) $(if $(AVX2),$(if $(filter tsan,$(config)),_avx2.o)))
-$B/obj/src/kernel/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
-$B/obj/src/kernel/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) $(AVX2)
-$B/obj/src/kernel/lsq_eigen_avx512.o: own_flags = $(call eigen_flags,avx512) $(AVX512) -Wno-uninitialized -Wno-maybe-uninitialized
+EIGEN_SHARED := $(addprefix obj/src/core/kernel/lsq_eigen,$(if $(filter asan tsan,$(config)),.o $(if $(AVX2),_avx512.o)) $(if $(AVX2),$(if $(filter tsan,$(config)),_avx2.o)))
+$B/obj/src/core/kernel/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
+$B/obj/src/core/kernel/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) $(AVX2)
+$B/obj/src/core/kernel/lsq_eigen_avx512.o: own_flags = $(call eigen_flags,avx512) $(AVX512) -Wno-uninitialized -Wno-maybe-uninitialized
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
-$B/obj/src/cli/%.o:           own_include = -Isrc/cli -Isrc
-$(MPI_C:%.c=$B/obj/%.o):      own_include = -Isrc/cli -Isrc
 $(MPI_C:%.c=$B/obj/%.o):      own_flags = $(patsubst -I%,-isystem %,$(shell mpicc --showme:compile))
 $B/obj/viewer/%.o:            own_include = -Iviewer -Isrc
 $B/obj/viewer/window/context_glfw.o: own_flags = $(GLFW)
 $(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o $B/obj/tests/unit/test_piz.o: own_flags = $(EXR)
-$B/obj/tests/%.o:             own_include = -Isrc -Isrc/cli -Itests -Iviewer
+$B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
 # Tests themselves are many and short: compiled fast, and linked by the faster linker where it is, without
 # symbols for debuggers (config=debug has them). So are the programs for sanitizers: what takes time in them is the
 # library, but where a test makes its photographs itself, or the viewer looks for triangles.
@@ -233,11 +231,11 @@ $B/obj/%.o: %.cpp | $(DEPS)
 	$(call say,CXX)
 	$(Q)$(CXX) $(CXX17) -Iinclude $(own_include) $(own_flags) $(CXXFLAGS) -c -o $@ $<
 
-$B/obj/src/kernel/lsq_eigen_%.o: src/kernel/lsq_eigen.cpp | $(DEPS)
+$B/obj/src/core/kernel/lsq_eigen_%.o: src/core/kernel/lsq_eigen.cpp | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CXX)
 	$(Q)$(CXX) $(CXX17) -Iinclude -Isrc $(own_flags) $(CXXFLAGS) -c -o $@ $<
-$(EIGEN_SHARED:%=$B/%): $B/%: src/kernel/lsq_eigen.cpp src/kernel/lsq_kernels.h | $(DEPS)
+$(EIGEN_SHARED:%=$B/%): $B/%: src/core/kernel/lsq_eigen.cpp src/core/kernel/lsq_kernels.h | $(DEPS)
 	@mkdir -p $(@D)
 	$(Q)$(MAKE) -s config=release build/$*
 	$(Q)cp build/$* $@
@@ -349,7 +347,7 @@ $(FUZZ): | $(MSAN_TOLD_O)
 # The tool without its main
 $B/tests/fuzz/fuzz_command: $(filter-out %/main.o %/start.o,$(CLI_O))
 # The viewer without its window
-$B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/% $B/obj/src/program/%,$(VIEWER_O))
+$B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/% $B/obj/src/cli/program/%,$(VIEWER_O))
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
@@ -362,10 +360,10 @@ $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O
 # The tool with a basis and a model of one file each, for tests/cli/test_growing.sh
 GROWN   := $B/tests/growing/relume
 GROWN_O := $(addprefix $B/obj/tests/growing/,basis_linear.o model_mean.o bases.o models.o)
-$B/obj/tests/growing/bases.c: src/coder/coder.c
+$B/obj/tests/growing/bases.c: src/format/coder/coder.c
 	@mkdir -p $(@D)
 	$(Q)sed 's/&relume_basis_table,/\&relume_basis_linear, &/; /^const struct relume_basis .const relume_bases/i extern const struct relume_basis relume_basis_linear;' $< > $@
-$B/obj/tests/growing/models.c: src/btf_model/model.c
+$B/obj/tests/growing/models.c: src/material/model/model.c
 	@mkdir -p $(@D)
 	$(Q)sed 's/&model_lit,/\&model_mean, &/; /^const struct relume_btf_model .const relume_btf_models/i extern const struct relume_btf_model model_mean;' $< > $@
 $(addprefix $B/obj/tests/growing/,bases.o models.o): %.o: %.c | $(DEPS)
@@ -430,11 +428,11 @@ lint:
 	@mkdir -p $B/lint
 	@cppcheck -q -j2 --std=c11 --enable=warning,portability --suppressions-list=scripts/lint.supp --error-exitcode=1 \
 	    --cppcheck-build-dir=$B/lint -URELUME_VEC3_SHORT -Uvec3_of \
-	    -Iinclude -Isrc -Isrc/cli -Iviewer $(LINTED)
+	    -Iinclude -Isrc -Iviewer $(LINTED)
 
 format:
-	clang-format -i $(LIB_C) $(MODULE_CXX) src/kernel/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(wildcard src/mpi/*.c) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
-	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h src/cli/*/*.h viewer/*/*.h tests/*.h tests/fuzz/*.h samples/*.c)
+	clang-format -i $(LIB_C) $(MODULE_CXX) src/core/kernel/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(wildcard src/cli/mpi/*.c) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*/*.h src/cli/*.h viewer/*/*.h tests/*.h tests/fuzz/*.h samples/*.c)
 
 bench: all $(BENCH)
 	@tests/bench/run.sh $B

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Files that every site holds, as one C file: embed-web.sh NAME=FILE... > assets.c
 set -eu
-echo '#include "publish/assets.h"'
+echo '#include "site/publish/assets.h"'
 n=0
 table=
 for pair in "$@"; do

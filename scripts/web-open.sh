@@ -67,16 +67,16 @@ theirs="$theirs $(compile "-O2 -w -DBITDEPTH=16 -I$dav1d -I$dav1d/include -I$wor
 rm -f "$work"/src_* "$work"/web_*
 own="-O2 -Wall -Wextra -Wno-unused-function -Iinclude -Isrc -DOPENS_FILES -I$dav1d/include -I$work -I$work/dav1d"
 parts="web/open/open.c web/open/absent.c web/core/absent.c \
-    $(of src/base arena beside called context_create cpu infile inputs inventory log memory names printable scratch thread tree) \
-    $(of src/math base64 gram hsh hull lanczos markup sh) \
-    $(of src/image exr exr_sums image piz response transfer) \
-    $(of src/kernel dot_c kernels nearest_c psf_c turn_c unpack_c) \
-    $(of src/coder basis_dct basis_dct_resampled basis_eigen basis_hsh basis_pca basis_ptm basis_sh basis_table codes coefficients \
-        coder disc harmonics mesh sums zone) $(ls src/coder/interpolant_*.c) \
-    $(of src/lossy av1_read disparity entropy lossy slopes) \
-    $(of src/codebook book) $(of src/geometry camera geometry print) src/foreign/source.c \
-    $(of src/pack format functions learnt read_books read_coded read_halved read_header read_mask read_parts read_slabs read_view reader words) \
-    $(of src/publish functions layers levels scene_json text)"
+    $(of src/core/base arena beside called context_create cpu infile inputs inventory log memory names printable scratch thread tree) \
+    $(of src/core/math base64 gram hsh hull lanczos markup sh) \
+    $(of src/image/image exr exr_sums image piz response transfer) \
+    $(of src/core/kernel dot_c kernels nearest_c psf_c turn_c unpack_c) \
+    $(of src/format/coder basis_dct basis_dct_resampled basis_eigen basis_hsh basis_pca basis_ptm basis_sh basis_table codes coefficients \
+        coder disc harmonics mesh sums zone) $(ls src/format/coder/interpolant_*.c) \
+    $(of src/format/lossy av1_read disparity entropy lossy slopes) \
+    $(of src/format/codebook book) $(of src/image/geometry camera geometry print) src/exchange/foreign/source.c \
+    $(of src/format/pack format functions learnt read_books read_coded read_halved read_header read_mask read_parts read_slabs read_view reader words) \
+    $(of src/site/publish functions layers levels scene_json text)"
 ours=$(compile "$own" $parts)
 echo 'mergeInto(LibraryManager.library, { page_read: function () {} });' >"$work/page.js"
 emcc -O2 $ours $theirs --js-library "$work/page.js" --no-entry -s STANDALONE_WASM=1 -s ALLOW_MEMORY_GROWTH=1 \

@@ -2,7 +2,7 @@
 #ifndef FOREIGN_PIXEL_H
 #define FOREIGN_PIXEL_H
 
-#include "foreign/foreign.h"
+#include "exchange/foreign/foreign.h"
 
 // The value of a pixel for weights and constants of foreign_weights.
 static inline void foreign_pixel(const struct foreign *f, size_t pixel, const double *weights,

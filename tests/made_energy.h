@@ -2,7 +2,7 @@
 #ifndef MADE_ENERGY_H
 #define MADE_ENERGY_H
 
-#include "gbrdf/gbrdf.h"
+#include "material/gbrdf/gbrdf.h"
 
 // Of light from `l`, of a plane, by the midpoint rule over the hemisphere in so many rings.
 static inline double sent_back(const struct gbrdf *g, double x, double y, vec3 l, int channel,

@@ -2,7 +2,7 @@
 #ifndef TESTS_MADE_EXR_H
 #define TESTS_MADE_EXR_H
 
-#include "base/half.h"
+#include "core/base/half.h"
 
 #include <stdint.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #ifndef MADE_ROOM_H
 #define MADE_ROOM_H
 
-#include "scene/scene.h"
+#include "world/stage/scene.h"
 
 #include <stdio.h>
 

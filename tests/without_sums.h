@@ -2,8 +2,8 @@
 #ifndef TESTS_WITHOUT_SUMS_H
 #define TESTS_WITHOUT_SUMS_H
 
-#include "base/arena.h"
-#include "image/exr.h"
+#include "core/base/arena.h"
+#include "image/image/exr.h"
 
 #include <relume/io.h>
 #include <string.h>

@@ -62,7 +62,7 @@ export function reshaped(light, { distance, soft, seen }) {
     return { ...out, rgb: seen.map((value) => value * gainOf(out)) };
 }
 
-// Nodes and weights of Gauss and Legendre on [-1, 1]; after src/relight/area.c.
+// Nodes and weights of Gauss and Legendre on [-1, 1]; after src/relight/light/area.c.
 function nodesOf(n) {
     return Array.from({ length: n }, (_, i) => {
         let x = n > 1 ? Math.cos(Math.PI * (i + 0.75) / (n + 0.5)) : 0, slope = 1;

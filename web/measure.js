@@ -1,5 +1,5 @@
 // measure.js - what passes and the first exposure take from the picture; after
-// src/analysis/enhance_range.c and relume_tone_meter
+// src/relight/normals/enhance_range.c and relume_tone_meter
 
 const LEAST = 1e-4;  // of the brightest: what is darker is background
 

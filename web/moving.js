@@ -1,7 +1,7 @@
-// moving.js - shadows and highlights that move between the captured lights; after src/shadow and
+// moving.js - shadows and highlights that move between the captured lights; after src/relight/shadow and
 // viewer/relit/moving.c
 //
-// A view's model is eight numbers a pixel (src/publish/moving.h), its stage what rays meet: its depth.
+// A view's model is eight numbers a pixel (src/site/publish/moving.h), its stage what rays meet: its depth.
 import { Failure, loadBytes } from './load.js';
 import { decodePicture, loadPicture, partsOf } from './tiles.js';
 import { pixelsOf } from './views.js';
@@ -9,10 +9,10 @@ import { patchesOf } from './lights.js';
 import { glossShader, nearShadowShader, shadowShader, traceShader } from './movingshaders.js';
 
 const NUMBERS = 8, GLOSS_SHINE = 6;
-const LEAST_WEIGHT = 1e-4, PHOTOGRAPH = 0.9999, AROUND = 4;  // as src/shadow/around.c
+const LEAST_WEIGHT = 1e-4, PHOTOGRAPH = 0.9999, AROUND = 4;  // as src/relight/shadow/around.c
 const [PARALLEL, EYE, CYLINDER, SPHERE] = [0, 1, 2, 3];
-const PATCHES = 4;  // a side of near areas, as src/shadow/shadows.c
-const TILE = 8, MARGIN = 2, DEEPEST = 16, BACKGROUND = 1e30;  // as src/shadow/stage.c
+const PATCHES = 4;  // a side of near areas, as src/relight/shadow/shadows.c
+const TILE = 8, MARGIN = 2, DEEPEST = 16, BACKGROUND = 1e30;  // as src/relight/shadow/stage.c
 const MOST_STAGES = 16, MOST_STAGE_BYTES = 384 << 20, MOST_REACHED_BYTES = 128 << 20;
 
 // ---------------------------------------------------------------- what moves
@@ -31,7 +31,7 @@ function modelOf(pictures, { scale, offset }, gloss) {
     return out;
 }
 
-// How rays lie in a view's coordinates: twin of set_up of src/shadow/stage.c.
+// How rays lie in a view's coordinates: twin of set_up of src/relight/shadow/stage.c.
 function raysOf(scene, view) {
     const { width, height, projection, window: w, slab, panorama } = scene;
     const through = (min, max, u, v, distance, rays, eye) => {

@@ -1,5 +1,5 @@
 // movingshaders.js - shadows and highlights that move, on the graphics card; twins of
-// viewer/shaders/moving and of src/shadow
+// viewer/shaders/moving and of src/relight/shadow
 import { ARRIVING, TRIANGLES } from './near.js';
 import { DECODE, HEAD } from './shaders.js';
 

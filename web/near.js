@@ -1,5 +1,5 @@
 // near.js - lamps that stand near: each pixel sees them from a direction of its own; after
-// viewer/shaders/near.frag.glsl and src/relight/near_lights.c
+// viewer/shaders/near.frag.glsl and src/relight/light/near_lights.c
 import { MOST_SIDE, patchSide, patchesOf } from './lights.js';
 import { DECODE, guideGain, HEAD } from './shaders.js';
 import { loadPicture } from './tiles.js';
@@ -7,7 +7,7 @@ import { loadPicture } from './tiles.js';
 const DOWN = 64;           // rows of the table from the pole to the horizon
 const MOST_DEPTH = 4096;   // pixels a side
 
-// Where the way through a pixel leads: twins of src/geometry/camera.c.
+// Where the way through a pixel leads: twins of src/image/geometry/camera.c.
 const RAYS = {
     cylindrical: `
     if (disc > 0.0 && at.y >= size.y - disc) {
@@ -162,7 +162,7 @@ void main()
     light = vec4(sent * from.a * colour * value, 1.0);
 }`;
 
-// Directions of a table's rows and columns; twin of node_direction of src/relight/directions.c.
+// Directions of a table's rows and columns; twin of node_direction of src/relight/light/directions.c.
 function nodeDirection(row, column, columns, rows, poleY) {
     const below = row > DOWN, t = (below ? rows - 1 - row : row) / DOWN, theta = 0.5 * Math.PI * (2 * t - t * t);
     const phi = 2 * Math.PI * column / (columns - 1) - Math.PI, height = t === 1 ? 1e-12 : Math.cos(theta), r = Math.sin(theta);

@@ -1,4 +1,4 @@
-// objectshaders.js - a baked object on the graphics card; twin of src/baked/lit.c
+// objectshaders.js - a baked object on the graphics card; twin of src/world/baked/lit.c
 import { HEAD, LUMINANCE, TONES } from './shaders.js';
 
 export const COLOURS_ACROSS = 1024;  // of the texture of colours

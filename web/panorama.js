@@ -1,4 +1,4 @@
-// panorama.js - looking around in a panorama; after src/view/panorama.c
+// panorama.js - looking around in a panorama; after src/relight/view/panorama.c
 import { RADIANS, unit } from './lights.js';
 import { levelFor } from './paint.js';
 import { panoramaShader } from './shaders.js';
@@ -12,7 +12,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 const discsOf = (scene) => (scene.projection === 'cylindrical' && scene.panorama.discs) || 0;
 
-// The end discs of a cylinder lie in squares below it, the upper one first; as src/view/panorama_discs.c.
+// The end discs of a cylinder lie in squares below it, the upper one first; as src/relight/view/panorama_discs.c.
 function discRay(scene, x, y) {
     const side = discsOf(scene), lower = x >= side, { v_min, v_max } = scene.panorama;
     const right = 2 * (lower ? x - side : x) / side - 1, up = 1 - 2 * y / side;

@@ -1,5 +1,5 @@
 // profile.js - what lies along a line: the height of the surface, as relume_profile_of_normals and
-// relume_profile_of_heights have it, or the colours that are seen; after src/notes/measure.c
+// relume_profile_of_heights have it, or the colours that are seen; after src/exchange/notes/measure.c
 import { Failure, loadBytes } from './load.js';
 import { showProfile } from './profilegraph.js';
 import { decodePicture } from './tiles.js';

@@ -1,4 +1,4 @@
-// relight.js - tiles under the present lights; after src/relight/relight.c
+// relight.js - tiles under the present lights; after src/relight/light/relight.c
 import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader, strideOf } from './shaders.js';
 import { isNear, spread } from './lights.js';
 

@@ -27,7 +27,7 @@ vec3 decode(vec3 v)
 `;
 
 // Of one light: three weights a layer, for its R, G and B, then the constant, then its colour (of
-// normals: its direction), then, where planes have a guide (src/publish/guide.h), what is added to their sum.
+// normals: its direction), then, where planes have a guide (src/site/publish/guide.h), what is added to their sum.
 export const MOST_LIGHTS = 16;
 export const MOST_SAMPLES = 20;
 export const strideOf = (layers, guide) => 3 * layers + (guide ? 3 : 2);
@@ -81,7 +81,7 @@ void main()
 }`;
 }
 
-// Normals and albedo of a tile by robust photometric stereo; after src/math/lambert.c.
+// Normals and albedo of a tile by robust photometric stereo; after src/core/math/lambert.c.
 export const normalShader = (layers, guide, samples) => `${HEAD}${LUMINANCE}${DECODE}${weightsBlock(layers, guide, samples)}
 layout(location = 0) out vec4 normal;
 layout(location = 1) out vec4 albedo;
@@ -618,8 +618,8 @@ vec3 srgb(vec3 l)
 export const PASSES = ['colour', 'normals', 'specular', 'diffuse-gain', 'unsharp', 'luminance', 'false-colour'];
 export const TONES_BY_NAME = ['linear', 'reinhard', 'filmic', 'gamma'];
 
-// Exposure, pass, tone and the sRGB curve over the page's ground; after src/analysis/enhance.c and
-// src/post/tone.c. Lights here are those that passes enhance: direction, colour.
+// Exposure, pass, tone and the sRGB curve over the page's ground; after src/relight/normals/enhance.c and
+// src/relight/eye/tone.c. Lights here are those that passes enhance: direction, colour.
 // A shader for each pass: software renderers take long to make one of all.
 export const presentShader = (pass) => `${HEAD}${LUMINANCE}
 const int pass = ${pass};

@@ -1,4 +1,4 @@
-// slab.js - a light slab: looked at from any place before it; after src/view/slab_frame.c
+// slab.js - a light slab: looked at from any place before it; after src/relight/view/slab_frame.c
 import { lensShader, slabShader } from './shaders.js';
 import { Views } from './views.js';
 import { levelFor } from './paint.js';

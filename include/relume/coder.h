@@ -36,7 +36,7 @@ struct relume_basis {
     int (*fit_count)(int want, int lights);
     // Whether `count` is a number of coefficients that the basis has.
     bool (*has_count)(int count);
-    // Build the private data and the encoding map of `coder`; see src/coder/basis.h.
+    // Build the private data and the encoding map of `coder`; see src/format/coder/basis.h.
     relume_status (*prepare)(relume_coder *coder, const struct relume_log *log);
     // The raw functions at a unit direction in the pole's frame (pole = third axis): K values, or
     // one per light where the basis interpolates.

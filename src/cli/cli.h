@@ -2,9 +2,9 @@
 #ifndef CLI_H
 #define CLI_H
 
-#include "program/options.h"
-#include "program/output_name.h"
-#include "program/say.h"
+#include "cli/program/options.h"
+#include "cli/program/output_name.h"
+#include "cli/program/say.h"
 
 #include <relume/relume.h>
 #include <stddef.h>

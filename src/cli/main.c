@@ -1,9 +1,9 @@
 // main.c - the relume tool: finds the command, has its options read, turns statuses into exit codes
 #include "start.h"
 
+#include "cli/program/output_name.h"
+#include "cli/program/stopping.h"
 #include "messages.h"
-#include "program/output_name.h"
-#include "program/stopping.h"
 
 #include <errno.h>
 #include <fcntl.h>

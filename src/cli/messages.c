@@ -1,8 +1,8 @@
 // messages.c - sentences and progress for people
 #include "messages.h"
 
-#include "program/clock.h"
-#include "program/stopping.h"
+#include "cli/program/clock.h"
+#include "cli/program/stopping.h"
 
 #include <stdarg.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef BENCH_H
 #define BENCH_H
 
-#include "measure/times.h"
+#include "cli/measure/times.h"
 
 #include <relume/relume.h>
 

@@ -2,8 +2,8 @@
 // the library's own reader. Usage: bench_encode [SIDE]; default 2048. Prints peak memory as well.
 #include "bench.h"
 
-#include "base/thread.h"
-#include "image/picture.h"
+#include "core/base/thread.h"
+#include "image/image/picture.h"
 
 #include <sys/wait.h>
 

@@ -7,7 +7,7 @@
 // and of a flat surface the last is exact.
 #include "bench.h"
 
-#include "scene/scene.h"
+#include "world/stage/scene.h"
 
 struct distances {
     double sum, most;

@@ -9,7 +9,7 @@
 // trilinear field, by Newton's method along the gradient.
 #include "bench.h"
 
-#include "volume/volume.h"
+#include "shape/volume/volume.h"
 
 enum { LEVELS = 4, RUNS = 5 };
 static const int blocks[LEVELS] = {1, 2, 4, 8};

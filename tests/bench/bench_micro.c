@@ -7,7 +7,7 @@
 // The points are those of a room's six walls; pictures are drawn from places on all of them.
 #include "bench.h"
 
-#include "transport/cut.h"
+#include "world/transport/cut.h"
 
 enum { LEAST = 10, MOST = 20, PLACES = 512, RUNS = 5 };
 

@@ -9,14 +9,14 @@
 // both lets meet something, and the median distance between them, in parts of the mesh's size.
 #include "bench.h"
 
-#include "math/random.h"
-#include "math/sort.h"
-#include "mesh/mesh_read.h"
-#include "mesh/octree.h"
-#include "mesh/trace.h"
-#include "reflect/bezier.h"
-#include "reflect/triangle.h"
-#include "scene/shapes.h"
+#include "core/math/random.h"
+#include "core/math/sort.h"
+#include "shape/mesh/mesh_read.h"
+#include "shape/mesh/octree.h"
+#include "shape/mesh/trace.h"
+#include "world/reflect/bezier.h"
+#include "world/reflect/triangle.h"
+#include "world/stage/shapes.h"
 
 enum { PLACES = 20000, RAYS = 200000 };
 

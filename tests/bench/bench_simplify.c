@@ -8,7 +8,7 @@
 // from where the error is seen under 1/30 degree (JND that 1 % of the pixels exceed, and the most).
 #include "bench.h"
 
-#include "mesh/simplify_run.h"
+#include "shape/mesh/simplify_run.h"
 
 #include <dlfcn.h>
 #include <relume/jnd.h>

@@ -7,10 +7,10 @@
 // points. Then frames of 640 x 512 pixels by the library, in which the object fills the window.
 #include "bench.h"
 
-#include "mesh/mesh_read.h"
-#include "object/object.h"
-#include "scene/shapes.h"
-#include "transport/glow.h"
+#include "shape/mesh/mesh_read.h"
+#include "world/object/object.h"
+#include "world/stage/shapes.h"
+#include "world/transport/glow.h"
 
 enum { PLACES = 2000, WIDE = 1280, HIGH = 1024 };
 

@@ -11,8 +11,8 @@
 
 #include "capture_fixture.h"
 #include "made_room.h"
-#include "transport/cut.h"
-#include "transport/instant.h"
+#include "world/transport/cut.h"
+#include "world/transport/instant.h"
 
 #include <stdatomic.h>
 #include <sys/stat.h>

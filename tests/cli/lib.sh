@@ -22,7 +22,7 @@ check() { # name, command: ok when the command succeeds
 }
 finish() { [ "$failures" -eq 0 ]; }
 
-# Unfinished outputs that nobody wants to find (src/base/beside.h).
+# Unfinished outputs that nobody wants to find (src/core/base/beside.h).
 leftovers() { find . -name '.relume-*'; }
 
 # lines of `$1` that are neither warnings nor remarks on success. Sanitized builds leave standard error

@@ -57,10 +57,10 @@ for f in relume relume-view librelume.so librelume.a; do
 done
 
 # ---------------------------------------------------------------- stacks
-cp -r "$TOP/Makefile" "$TOP/include" "$TOP/scripts" . && mkdir -p src/base
+cp -r "$TOP/Makefile" "$TOP/include" "$TOP/scripts" . && mkdir -p src/core/base
 for bytes in 90000 100000; do
-    echo "int deep(int (*f)(char *)); int deep(int (*f)(char *)) { char room[$bytes]; return f(room) + room[1]; }" >src/base/deep$bytes.c
-    make -s config=release build/obj/src/base/deep$bytes.o >make.txt 2>&1 && echo $bytes >>fits.txt
+    echo "int deep(int (*f)(char *)); int deep(int (*f)(char *)) { char room[$bytes]; return f(room) + room[1]; }" >src/core/base/deep$bytes.c
+    make -s config=release build/obj/src/core/base/deep$bytes.o >make.txt 2>&1 && echo $bytes >>fits.txt
 done
 check "a function takes no more than 96 kB of stack" grep -q 'frame-larger-than' make.txt
 check "one that takes less is built" grep -qx 90000 fits.txt
@@ -68,8 +68,8 @@ check "one that takes less is built" grep -qx 90000 fits.txt
 # ---------------------------------------------------------------- layers
 check "layers hold" "$TOP/scripts/layers.sh"
 "$TOP/scripts/layers.sh" --table >table.txt
-sed -n '/^| folder | private/,/^$/p' "$TOP/docs/architecture.md" | sed '/^$/d' >documented.txt
-same "docs/architecture.md has the table of scripts/layers.sh" table.txt documented.txt
+sed -n '/^| wing | rooms/,/^Each external/p' "$TOP/docs/architecture.md" | sed '$d' | sed '$d' >documented.txt
+same "docs/architecture.md has the tables of scripts/layers.sh" table.txt documented.txt
 mkdir tree
 (cd "$TOP" && tar cf - --exclude=__pycache__ src include viewer scripts samples tests Makefile) |
     (cd tree && tar xf -)
@@ -88,34 +88,38 @@ plant() {
     fi
     cp before "tree/$2"
 }
-plant "a private header of a neighbour" src/math/sh.c '#include "image/image.h"' image/image.h
-plant "a private header of a stranger" src/cli/commands/cmd_info.c '#include "pack/format.h"' pack/format.h
-plant "a private header in the viewer" viewer/app/app.c '#include "base/log.h"' base/log.h
+plant "a header of a wing above" src/core/math/sh.c '#include "image/image/image.h"' image/image/image.h
+plant "a private header of a stranger" src/cli/commands/cmd_info.c '#include "format/pack/format.h"' format/pack/format.h
+plant "a private header in the viewer" viewer/app/app.c '#include "core/base/log.h"' core/base/log.h
 plant "a header of a room above" viewer/gl/gl.c '#include "draw/draw.h"' draw/draw.h
-plant "a private header in a sample" samples/minimal.c '#include "base/log.h"' base/log.h
-plant "a public header from above" src/coder/fit.c '#include <relume/pack.h>' '<relume/pack.h>'
-plant "an external library out of place" src/pack/reader.c '#include <openexr.h>' '<openexr'
-plant "linear algebra out of place" src/coder/encode.c '#include <Eigen/Dense>' '<Eigen'
-plant "intrinsics out of place" src/relight/relight.c '#include <immintrin.h>' '<immintrin'
+plant "a private header in a sample" samples/minimal.c '#include "core/base/log.h"' core/base/log.h
+plant "a public header from above" src/format/coder/fit.c '#include <relume/frame.h>' '<relume/frame.h>'
+plant "an external library out of place" src/format/pack/reader.c '#include <openexr.h>' '<openexr'
+plant "linear algebra out of place" src/format/coder/encode.c '#include <Eigen/Dense>' '<Eigen'
+plant "intrinsics out of place" src/relight/light/relight.c '#include <immintrin.h>' '<immintrin'
+cp tree/src/core/base/tree.h before
+echo '#include "core/math/hull.h"' >>tree/src/core/base/tree.h
+check "rooms that include each other" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "rooms that include each other.*core/base" layers.txt'
+cp before tree/src/core/base/tree.h
 cp tree/viewer/draw/draw.c before
 echo 'void f(const struct app *app);' >>tree/viewer/draw/draw.c
 check "a drawer that takes the app" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "expected struct frame_request: viewer/draw/draw.c" layers.txt'
 cp before tree/viewer/draw/draw.c
-cp tree/src/btf/npy.h before
-echo '#include "btf/btf.h"' >>tree/src/btf/npy.h
-check "files that include each other" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "include each other.*src/btf/npy" layers.txt'
-cp before tree/src/btf/npy.h
+cp tree/src/material/btf/npy.h before
+echo '#include "material/btf/btf.h"' >>tree/src/material/btf/npy.h
+check "files that include each other" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "include each other.*src/material/btf/npy" layers.txt'
+cp before tree/src/material/btf/npy.h
 cp tree/src/cli/commands/cmd_info.c before
 echo 'void f(void) { fopen("x", "w"); }' >>tree/src/cli/commands/cmd_info.c
-check "a file that opens files itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "itself; expected base/inputs.h.*src/cli/commands/cmd_info.c" layers.txt'
+check "a file that opens files itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "itself; expected core/base/inputs.h.*src/cli/commands/cmd_info.c" layers.txt'
 cp before tree/src/cli/commands/cmd_info.c
-cp tree/src/math/sh.c before
-echo 'void f(void *p) { free(p); }' >>tree/src/math/sh.c
-check "a file that frees by itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "frees itself; expected mem_array.*src/math/sh.c" layers.txt'
-cp before tree/src/math/sh.c
+cp tree/src/core/math/sh.c before
+echo 'void f(void *p) { free(p); }' >>tree/src/core/math/sh.c
+check "a file that frees by itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "frees itself; expected mem_array.*src/core/math/sh.c" layers.txt'
+cp before tree/src/core/math/sh.c
 "$TOP/scripts/metrics.sh" >metrics.txt
 check "no folder has more than 45 files" awk '$1 == "largest_folder" && $2 <= 45 { found = 1 } END { exit !found }' metrics.txt
-cat >>tree/src/math/sh.c <<'END'
+cat >>tree/src/core/math/sh.c <<'END'
 static int small(int a)
 {
     return a;
@@ -126,8 +130,8 @@ int planted(void)
     return small(1);
 }
 END
-check "a small function called once is counted" sh -c 'tree/scripts/metrics.sh --small | grep -qx "src/math/sh.c: small"'
-sed -i 's/return small(1);/return small(1) + small(2);/' tree/src/math/sh.c
-check "one called twice is not" sh -c '! tree/scripts/metrics.sh --small | grep -qx "src/math/sh.c: small"'
+check "a small function called once is counted" sh -c 'tree/scripts/metrics.sh --small | grep -qx "src/core/math/sh.c: small"'
+sed -i 's/return small(1);/return small(1) + small(2);/' tree/src/core/math/sh.c
+check "one called twice is not" sh -c '! tree/scripts/metrics.sh --small | grep -qx "src/core/math/sh.c: small"'
 check "layers hold again" tree/scripts/layers.sh
 finish

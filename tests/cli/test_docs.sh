@@ -50,7 +50,7 @@ for page in "$docs"/*.md "$docs"/reference/*.md "$docs"/tutorials/*.md "$TOP/REA
     below "$(basename "$page"): words of a page for users" "$(wc -w <"$page")" 1500
 done
 
-grep -o '"relume\.[a-z]*"' "$TOP/src/pack/format.h" | tr -d '"' | sort -u >written.txt
+grep -o '"relume\.[a-z]*"' "$TOP/src/format/pack/format.h" | tr -d '"' | sort -u >written.txt
 grep -o '^| `relume\.[a-z]*`' "$docs/format.md" | tr -d '|` ' | sort -u >documented.txt
 same "format.md has every attribute and no other" written.txt documented.txt
 

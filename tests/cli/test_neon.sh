@@ -1,5 +1,5 @@
 #!/bin/sh
-# The loops written for NEON (src/kernel/kernels_neon.c) under the tests of every instruction set,
+# The loops written for NEON (src/core/kernel/kernels_neon.c) under the tests of every instruction set,
 # cross-compiled and run by an emulator. Debian: gcc-aarch64-linux-gnu libc6-dev-arm64-cross
 # qemu-user-static. Nothing else needs these packages.
 . "$(dirname "$0")/lib.sh"
@@ -16,8 +16,8 @@ else
         check "test_$t compiles for 64-bit ARM" "$compiler" -std=c11 -D_GNU_SOURCE -O2 -static \
             -ffp-contract=off -fno-math-errno -ffunction-sections -Wl,--gc-sections \
             -I"$TOP/tests/tools/small" -I"$TOP/tests" -I"$TOP/src" -I"$TOP/include" \
-            -o "test_$t" "$TOP/tests/kernels/test_$t.c" eigen.c "$TOP"/src/kernel/*.c \
-            "$TOP"/src/base/cpu.c "$TOP"/src/base/log.c "$TOP"/src/base/called.c "$TOP"/src/base/printable.c -lm
+            -o "test_$t" "$TOP/tests/kernels/test_$t.c" eigen.c "$TOP"/src/core/kernel/*.c \
+            "$TOP"/src/core/base/cpu.c "$TOP"/src/core/base/log.c "$TOP"/src/core/base/called.c "$TOP"/src/core/base/printable.c -lm
         check "test_$t passes under the emulator" timeout -k 1 120 "$emulator" "./test_$t"
     done
     check "the set is NEON's" sh -c '"$0" ./test_kernels | grep -qx "set: neon"' "$emulator"

@@ -12,9 +12,9 @@
 #ifndef FUZZ_H
 #define FUZZ_H
 
-#include "base/helper.h"
-#include "base/memory.h"
 #include "capture_fixture.h"
+#include "core/base/helper.h"
+#include "core/base/memory.h"
 
 #include <sys/resource.h>
 #include <time.h>

@@ -2,9 +2,9 @@
 // COLMAP's poses, exposure times, and names that hold a camera's place
 #include "fuzz.h"
 
+#include "capture/multiview/views.h"
+#include "capture/multiview/views_colmap.h"
 #include "cli/commands/capture_times.c"
-#include "multiview/views.h"
-#include "multiview/views_colmap.h"
 
 #include <relume/directions.h>
 #include <relume/response.h>

@@ -2,8 +2,8 @@
 // where every value must be finite
 #include "fuzz_look.h"
 
-#include "base/arena.h"
-#include "image/exr.h"
+#include "core/base/arena.h"
+#include "image/image/exr.h"
 
 #include <relume/bake.h>
 

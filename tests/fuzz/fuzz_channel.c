@@ -4,8 +4,8 @@
 #define FUZZ_HELPER
 #include "fuzz.h"
 
-#include "base/channel.h"
-#include "base/module.h"
+#include "core/base/channel.h"
+#include "core/base/module.h"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -23,7 +23,7 @@ static int start_fake(int end);
 #define posix_spawn(process, path, files, attributes, arguments, environment)                      \
     ((void)(path), (void)(arguments), *(process) = 1, fake)
 static int fake;
-#include "base/helper.c"
+#include "core/base/helper.c"
 #undef kill
 #undef waitpid
 

@@ -2,11 +2,11 @@
 #include "fuzz.h"
 #include "foreign_pixel.h"
 
-#include "exchange/ptm.h"
-#include "exchange/rti.h"
-#include "exchange/web.h"
-#include "image/jpeg.h"
-#include "image/trellis.h"
+#include "exchange/formats/ptm.h"
+#include "exchange/formats/rti.h"
+#include "exchange/formats/web.h"
+#include "image/image/jpeg.h"
+#include "image/image/trellis.h"
 
 #include <relume/exchange.h>
 #include <string.h>

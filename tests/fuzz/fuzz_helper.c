@@ -3,11 +3,11 @@
 #define FUZZ_HELPER
 #include "fuzz_look.h"
 
-#include "base/channel.h"
-#include "base/context.h"
-#include "image/picture_serve.h"
-#include "mesh/mesh.h"
-#include "mesh/mesh_serve.h"
+#include "core/base/channel.h"
+#include "core/base/context.h"
+#include "image/image/picture_serve.h"
+#include "shape/mesh/mesh.h"
+#include "shape/mesh/mesh_serve.h"
 
 #include <relume/photograph.h>
 #include <sys/mman.h>
@@ -24,7 +24,7 @@ static size_t take(void *out, size_t size)
     return n;
 }
 
-// ---------------------------------------------------------------- in place of base/helper.c
+// ---------------------------------------------------------------- in place of core/base/helper.c
 
 relume_status helper_start(struct helper_job *job, enum helper_kind kind, const char *path,
                            const struct relume_log *log)

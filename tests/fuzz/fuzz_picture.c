@@ -4,9 +4,9 @@
 #include "made_exr.h"
 #include "png_crc.h"
 
-#include "image/jpeg.h"
-#include "image/picture.h"
-#include "image/picture_format.h"
+#include "image/image/jpeg.h"
+#include "image/image/picture.h"
+#include "image/image/picture_format.h"
 
 static const struct relume_limits limits = {.max_side = 256, .max_pixels = 1 << 14};
 static const char *const words[] = {

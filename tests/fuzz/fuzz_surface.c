@@ -2,7 +2,7 @@
 // made of noise
 #include "fuzz.h"
 
-#include "btf/npy.h"
+#include "material/btf/npy.h"
 
 #include <relume/surface.h>
 

@@ -2,7 +2,7 @@
 // what is accepted a surface is made, whose numbers must be finite
 #include "fuzz.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <relume/volume.h>

@@ -7,7 +7,7 @@
 #include "app/keys.h"
 #include "app/light_list.h"
 #include "app/script.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "draw/visible_lights.h"
 #include "owned.h"
 #include "session/options.h"

@@ -1,7 +1,7 @@
 // BC1, BC6H and BC7 as the graphics card decodes them, beside our own decoders
 #include "fixture.h"
 
-#include "block/block.h"
+#include "image/block/block.h"
 
 enum { ACROSS = 16, SIDE = ACROSS * BLOCK_SIDE };
 enum { DXT1 = 0x83f0, BPTC = 0x8e8c, BPTC_HALF = 0x8e8f };

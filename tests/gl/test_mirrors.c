@@ -4,7 +4,7 @@
 
 #include "common/vec.h"
 #include "draw/objects_drawer.h"
-#include "object/object.h"
+#include "world/object/object.h"
 
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 // test_state_line.c - lines of a state: what was added comes back, what is wrong is refused
 #include "test.h"
 
-#include "program/state_line.h"
+#include "cli/program/state_line.h"
 
 enum { MOST = 8 };
 

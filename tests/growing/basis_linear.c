@@ -1,6 +1,6 @@
 // basis_linear.c - one file that a line in `relume_bases` makes a basis of the tool: 1 and the
 // direction itself, by least squares (tests/cli/test_growing.sh)
-#include "coder/basis.h"
+#include "format/coder/basis.h"
 
 extern const struct relume_basis relume_basis_linear;
 

@@ -1,6 +1,6 @@
 // model_mean.c - one file that a line in `relume_btf_models` makes a model of the tool: every texel
 // is its mean over all pictures (tests/cli/test_growing.sh)
-#include "btf_model/model.h"
+#include "material/model/model.h"
 
 extern const struct relume_btf_model model_mean;
 

@@ -4,7 +4,7 @@
 
 #include "test.h"
 
-#include "kernel/kernels.h"
+#include "core/kernel/kernels.h"
 
 static const struct kernels *sets[5];  // NULL behind the last; sets[0] is plain C
 

@@ -1,7 +1,7 @@
 // test_kernels.c - every instruction set against plain C; `--bench` prints nanoseconds a code
 #include "sets.h"
 
-#include "base/half.h"
+#include "core/base/half.h"
 
 #include <time.h>
 

@@ -2,7 +2,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "coder/basis.h"
+#include "format/coder/basis.h"
 
 enum { LIGHTS = 60, MOST_PLANES = 3 * RELUME_MOST_COEFFICIENTS };
 

@@ -1,7 +1,7 @@
 // test_interpolants.c - what must hold for every interpolant in the registry
 #include "test.h"
 
-#include "coder/basis.h"
+#include "format/coder/basis.h"
 
 enum { MOST = 64 };
 

@@ -1,8 +1,8 @@
 // test_threads.c - the same bits for 1, 2 and 7 threads; run under tsan too
 #include "test.h"
 
-#include "base/thread.h"
 #include "capture_fixture.h"
+#include "core/base/thread.h"
 
 #include <stdatomic.h>
 

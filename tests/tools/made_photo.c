@@ -7,7 +7,7 @@
 //                              above 0 in all channels
 #include "made_camera.h"
 
-#include "image/picture.h"
+#include "image/image/picture.h"
 
 #include <stdio.h>
 #include <stdlib.h>

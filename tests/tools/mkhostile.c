@@ -2,7 +2,7 @@
 //
 // Each is what its format's description allows, or nearly, and a few hundred bytes that crash a
 // reader, keep it busy or claim memory. None is anybody else's file.
-#include "image/exr.h"
+#include "image/image/exr.h"
 
 #include <stdio.h>
 #include <stdlib.h>

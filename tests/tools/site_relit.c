@@ -6,8 +6,8 @@
 // library it takes what a browser has too: JSON, JPEG, and the functions of the light.
 #include <relume/relume.h>
 
-#include "base/json.h"
-#include "image/jpeg.h"
+#include "core/base/json.h"
+#include "image/image/jpeg.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 // test_alloc.c - every allocation fails once: no crash, no leak (under ASan), no half-made output
 #include "test.h"
 
-#include "base/memory.h"
 #include "capture_fixture.h"
+#include "core/base/memory.h"
 
 #include <dirent.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
 // light of its own.
 #include "made_btf.h"
 
-#include "btf_model/ambient.h"
+#include "material/model/ambient.h"
 
 #include <relume/surface.h>
 

@@ -1,8 +1,8 @@
 // What lens, sensor, lamp and rectification do to a photograph, each against its closed form.
 #include "test.h"
 
-#include "base/half.h"
-#include "scene/apparatus.h"
+#include "core/base/half.h"
+#include "world/stage/apparatus.h"
 
 enum { SIZE = 32, TEXELS = SIZE * SIZE, MANY = 400 };
 

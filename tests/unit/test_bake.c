@@ -3,7 +3,7 @@
 #include "in_folder.h"
 #include "made_btf.h"
 
-#include "object/object.h"
+#include "world/object/object.h"
 
 enum { SMALL = TEST_SANITIZED };
 

@@ -2,10 +2,10 @@
 // obey
 #include "test.h"
 
-#include "base/log.h"
-#include "base/memory.h"
-#include "base/params.h"
-#include "math/base64.h"
+#include "core/base/log.h"
+#include "core/base/memory.h"
+#include "core/base/params.h"
+#include "core/math/base64.h"
 
 static void test_whole(void **state)
 {

@@ -1,7 +1,7 @@
 // test_bilinear.c - the one bilinear sampler: exact on what is linear, and its two edges
 #include "test.h"
 
-#include "math/bilinear.h"
+#include "core/math/bilinear.h"
 
 enum { WIDTH = 5, HEIGHT = 4 };
 

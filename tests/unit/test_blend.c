@@ -2,7 +2,7 @@
 // is for: steps of brightness, fine detail and what moved at a seam.
 #include "test.h"
 
-#include "multiview/blend.h"
+#include "capture/multiview/blend.h"
 
 enum { WIDTH = 67, HEIGHT = 32, PICTURES = 3, PIXELS = WIDTH * HEIGHT, BANDS = 4 };
 

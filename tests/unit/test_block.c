@@ -1,9 +1,9 @@
 // BC1, BC6H and BC7: blocks worked out by hand, and how far coded ones are from what went in
 #include "test.h"
 
-#include "block/dds.h"
+#include "image/block/dds.h"
 
-#include "base/half.h"
+#include "core/base/half.h"
 
 static const struct block_format *const formats[] = {&block_bc1, &block_bc7};
 

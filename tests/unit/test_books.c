@@ -1,7 +1,7 @@
 // test_books.c - relighting from codebooks against the sum of their vectors in double precision
 #include "test.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 enum { W = 37, H = 11, PIXELS = W * H, LIGHTS = 12, MOST_BOOKS = 3, MOST_PLANES = 3 * 16 };
 static const int counts[MOST_BOOKS] = {300, 7, 1};

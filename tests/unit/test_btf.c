@@ -1,9 +1,9 @@
 // Measured materials: directions, containers, the reference, readers of folders.
 #include "test.h"
 
-#include "base/memory.h"
-#include "btf/btf.h"
-#include "base/half.h"
+#include "core/base/memory.h"
+#include "material/btf/btf.h"
+#include "core/base/half.h"
 
 #include <relume/capture.h>
 #include <sys/stat.h>

@@ -1,8 +1,8 @@
 // Levels of detail of BTFs and of their models: means of values, fitted again.
 #include "made_btf.h"
 
-#include "btf_model/model.h"
-#include "base/half.h"
+#include "material/model/model.h"
+#include "core/base/half.h"
 
 enum { WIDTH = 7, HEIGHT = 4 };
 

@@ -2,11 +2,11 @@
 // quality, files.
 #include "made_btf.h"
 
-#include "base/memory.h"
-#include "btf_model/lobes.h"
-#include "btf_model/reduce.h"
-#include "btf_model/scalar.h"
-#include "base/half.h"
+#include "core/base/memory.h"
+#include "material/model/lobes.h"
+#include "material/model/reduce.h"
+#include "material/model/scalar.h"
+#include "core/base/half.h"
 
 #include <relume/scene.h>
 

@@ -1,10 +1,10 @@
 // test_change.c - the steps of a comparison over time, each on what is known: smoothing, what
 // lights and exposures make, the smooth flow, places, and what is refused
-#include "change/flow.h"
-#include "change/judge.h"
-#include "change/smooth.h"
-#include "math/random.h"
-#include "math/vec.h"
+#include "core/math/random.h"
+#include "core/math/vec.h"
+#include "material/change/flow.h"
+#include "material/change/judge.h"
+#include "material/change/smooth.h"
 #include "test.h"
 
 enum { WIDTH = 96, HEIGHT = 80, PIXELS = WIDTH * HEIGHT };

@@ -1,8 +1,8 @@
-// test_ciede2000.c - tests of src/compare/ciede2000.h: perceived colour difference (Sharma, Wu,
+// test_ciede2000.c - tests of src/image/compare/ciede2000.h: perceived colour difference (Sharma, Wu,
 // Dalal 2005, kL = kC = kH = 1)
 #include "test.h"
 
-#include "compare/ciede2000.h"
+#include "image/compare/ciede2000.h"
 
 // Sharma, Wu, Dalal 2005, table 1: the pairs that separate right programs from wrong ones.
 static const double pairs[34][7] = {

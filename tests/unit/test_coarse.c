@@ -1,7 +1,7 @@
 // Pictures of fewer pixels: means, places, and quotients between them, over the seam of a panorama.
 #include "test.h"
 
-#include "object/coarse.h"
+#include "world/object/coarse.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 // test_codebook.c - training and search against brute force in double precision
 #include "test.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 static float *uniform(size_t floats, uint32_t seed)
 {

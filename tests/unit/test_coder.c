@@ -2,7 +2,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "coder/basis.h"
+#include "format/coder/basis.h"
 
 enum { LIGHTS = 40 };
 

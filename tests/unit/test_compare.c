@@ -1,8 +1,8 @@
 // test_compare.c - error measures against their definitions
 #include "test.h"
 
-#include "compare/ciede2000.h"
-#include "image/encoder.h"
+#include "image/compare/ciede2000.h"
+#include "image/image/encoder.h"
 
 static struct relume_image noise(int width, int height, uint32_t seed)
 {

@@ -1,10 +1,10 @@
 // Small pictures drawn from trees of points: form factors in closed form; what the trees hold;
 // points that are none.
 #include "test.h"
-#include "transport/cut.h"
-#include "transport/warp.h"
+#include "world/transport/cut.h"
+#include "world/transport/warp.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
-// test_disc.c - tests of src/coder/disc.h: cosines on the stereographic discs of the sphere (Wong
+// test_disc.c - tests of src/format/coder/disc.h: cosines on the stereographic discs of the sphere (Wong
 // 1998, 9.1.2)
 #include "test.h"
 
-#include "coder/disc.h"
+#include "format/coder/disc.h"
 
 static void test_round_trip(void **state)
 {

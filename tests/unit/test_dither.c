@@ -2,7 +2,7 @@
 // leaves of them.
 #include "test.h"
 
-#include "codebook/dither.h"
+#include "format/codebook/dither.h"
 
 enum { PATCH = 16, RAMP = 64, W = PATCH + RAMP, H = 16, CODES = 4 };
 

@@ -3,10 +3,10 @@
 #include "made_energy.h"
 #include "test.h"
 
-#include "base/half.h"
-#include "base/memory.h"
-#include "btf_model/model_gbrdf.h"
-#include "edit/drawing.h"
+#include "core/base/half.h"
+#include "core/base/memory.h"
+#include "material/gbrdf/drawing.h"
+#include "material/model/model_gbrdf.h"
 
 #include <relume/edit.h>
 #include <sys/stat.h>

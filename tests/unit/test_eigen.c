@@ -1,7 +1,7 @@
 // Eigenimages: both ways of finding them, and what comes back of logarithms of light
 #include "test.h"
 
-#include "coder/basis.h"
+#include "format/coder/basis.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 // that they fold into, against sums over the map
 #include "flat_coder.h"
 
-#include "math/vec.h"
+#include "core/math/vec.h"
 #include "learned_fixture.h"
 
 static struct test_log heard;

@@ -1,9 +1,9 @@
-// test_exr.c - tests of src/image/exr.h: multi-part scanline OpenEXR files: the container under
+// test_exr.c - tests of src/image/image/exr.h: multi-part scanline OpenEXR files: the container under
 // relume files and EXR images
 #include "test.h"
 
-#include "base/thread.h"
-#include "image/exr.h"
+#include "core/base/thread.h"
+#include "image/image/exr.h"
 
 static char folder[64], path[96];
 

@@ -2,9 +2,9 @@
 // is; files of before have none, and are read as they were
 #include "test.h"
 
-#include "base/memory.h"
 #include "capture_fixture.h"
-#include "image/exr_sums.h"
+#include "core/base/memory.h"
+#include "image/image/exr_sums.h"
 #include "pack_in_folder.h"
 #include "without_sums.h"
 

@@ -1,6 +1,6 @@
-// test_fft.c - tests of src/math/fft.h: Fourier and cosine transforms; the folder's door to FFTW
+// test_fft.c - tests of src/core/math/fft.h: Fourier and cosine transforms; the folder's door to FFTW
 // (`make FFT=kiss`: to kissfft)
-#include "math/fft2d.h"
+#include "core/math/fft2d.h"
 #include "test.h"
 
 #include <complex.h>

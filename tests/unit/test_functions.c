@@ -2,7 +2,7 @@
 // what earlier files have
 #include "test.h"
 
-#include "pack/functions.h"
+#include "format/pack/functions.h"
 
 #include <math.h>
 #include <stdlib.h>

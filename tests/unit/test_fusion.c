@@ -1,7 +1,7 @@
 // Depth fused to meshes, against the shapes that the depth was made of; places seen by cameras.
-#include "baked/charts.h"
-#include "fusion/field.h"
-#include "fusion/seen.h"
+#include "shape/atlas/charts.h"
+#include "shape/fusion/field.h"
+#include "shape/fusion/seen.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,16 +2,16 @@
 #include "made_btf.h"
 
 #include "made_energy.h"
-#include "base/half.h"
-#include "base/memory.h"
-#include "btf_model/model_gbrdf.h"
-#include "gbrdf/als.h"
-#include "gbrdf/cluster.h"
-#include "gbrdf/cut.h"
-#include "gbrdf/depth.h"
-#include "gbrdf/fit.h"
-#include "gbrdf/planted.h"
-#include "math/lsq.h"
+#include "core/base/half.h"
+#include "core/base/memory.h"
+#include "material/model/model_gbrdf.h"
+#include "material/gbrdf/als.h"
+#include "material/gbrdf/cluster.h"
+#include "material/gbrdf/cut.h"
+#include "material/gbrdf/depth.h"
+#include "material/gbrdf/fit.h"
+#include "material/gbrdf/planted.h"
+#include "core/math/lsq.h"
 
 #include <relume/btf.h>
 

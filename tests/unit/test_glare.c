@@ -1,7 +1,7 @@
 // test_glare.c - tests of include/relume/glare.h: the frame as a living eye would see it: convolved
 // with the eye's pattern (psf.h)
-#include "base/memory.h"
-#include "post/glare.h"
+#include "core/base/memory.h"
+#include "relight/eye/glare.h"
 #include "test.h"
 
 // One pattern for all: small, of a default eye.

@@ -3,7 +3,7 @@
 #include "in_folder.h"
 #include "test.h"
 
-#include "shadow/gloss.h"
+#include "relight/shadow/gloss.h"
 
 #include <relume/maps.h>
 

@@ -1,7 +1,7 @@
 // test_gonio.c - intensity over direction from pictures
 #include "test.h"
 
-#include "math/vec.h"
+#include "core/math/vec.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 // The virtual gonioreflectometer: a flat matte sample in closed form, reciprocity, ground truth.
 #include "test.h"
 
-#include "base/half.h"
-#include "math/vec.h"
+#include "core/base/half.h"
+#include "core/math/vec.h"
 
 #include <relume/scene.h>
 

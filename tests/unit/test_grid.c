@@ -1,8 +1,8 @@
 // Least squares of the differences between neighbours, against the dense normal equations
 #include "test.h"
 
-#include "math/grid.h"
-#include "math/lsq.h"
+#include "core/math/grid.h"
+#include "core/math/lsq.h"
 
 enum { W = 11, H = 7, N = W * H };
 

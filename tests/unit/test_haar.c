@@ -1,8 +1,8 @@
 // Haar wavelets: energy stays, the way back is exact, and what is kept is the best that so few say.
 #include "test.h"
 
-#include "math/haar.h"
-#include "math/random.h"
+#include "core/math/haar.h"
+#include "core/math/random.h"
 
 static double squares(const float *v, int n)
 {

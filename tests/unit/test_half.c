@@ -1,8 +1,8 @@
-// test_half.c - tests of src/image/half.h: IEEE 754 binary16, rounding to nearest even; plain
+// test_half.c - tests of src/image/image/half.h: IEEE 754 binary16, rounding to nearest even; plain
 // integer code that compilers vectorise
 #include "test.h"
 
-#include "base/half.h"
+#include "core/base/half.h"
 
 static void test_every_half_round_trips(void **state)
 {

@@ -1,7 +1,7 @@
-// test_hsh.c - tests of src/math/hsh.h: hemispherical harmonics (Gautron et al. 2004)
+// test_hsh.c - tests of src/core/math/hsh.h: hemispherical harmonics (Gautron et al. 2004)
 #include "test.h"
 
-#include "math/hsh.h"
+#include "core/math/hsh.h"
 
 enum { COUNT = (HSH_MAX_DEGREE + 1) * (HSH_MAX_DEGREE + 1) };
 

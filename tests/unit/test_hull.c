@@ -1,10 +1,10 @@
-// test_hull.c - tests of src/math/hull.h: triangulation of directions on the sphere: the convex
+// test_hull.c - tests of src/core/math/hull.h: triangulation of directions on the sphere: the convex
 // hull of unit vectors is their spherical Delaunay triangulation (Brown 1979)
 #include "test.h"
 
-#include "base/memory.h"
-#include "math/hull.h"
-#include "math/vec.h"
+#include "core/base/memory.h"
+#include "core/math/hull.h"
+#include "core/math/vec.h"
 
 // Every direction meets exactly one triangle (edges may belong to two), weights give it back.
 static void check_cover(const vec3 *points, const struct hull_triangle *t, int count)

@@ -2,10 +2,10 @@
 // those by rays, holes, limits.
 #include "test.h"
 
-#include "base/memory.h"
-#include "math/random.h"
-#include "scene/shapes.h"
-#include "transport/instant.h"
+#include "core/base/memory.h"
+#include "core/math/random.h"
+#include "world/stage/shapes.h"
+#include "world/transport/instant.h"
 
 #include <relume/view.h>
 

@@ -2,8 +2,8 @@
 // happens when a callback fails
 #include "test.h"
 
-#include "base/params.h"
 #include "capture_fixture.h"
+#include "core/base/params.h"
 
 #include <errno.h>
 #include <pthread.h>

@@ -1,7 +1,7 @@
 // Surfaces of volumes: known shapes, no cracks, dikes and boxes against slow definitions.
-#include "base/memory.h"
-#include "isosurface/block.h"
-#include "isosurface/climb.h"
+#include "core/base/memory.h"
+#include "shape/volume/block.h"
+#include "shape/volume/climb.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,8 +1,8 @@
 // Planes as JPEG: codes come back unmanaged; broken files are errors that name the file.
 #include "test.h"
 
-#include "image/jpeg.h"
-#include "image/trellis.h"
+#include "image/image/jpeg.h"
+#include "image/image/trellis.h"
 
 enum { W = 37, H = 21, BLOCKS = 5 * 3 };
 

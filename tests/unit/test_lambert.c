@@ -1,5 +1,5 @@
 // Which way a surface faces, from its brightness
-#include "math/lambert.h"
+#include "core/math/lambert.h"
 #include "test.h"
 
 enum { LIGHTS = 12, STEPS = 400 };

@@ -1,7 +1,7 @@
 // Lanczos's method against Jacobi rotations in double precision
 #include "test.h"
 
-#include "math/lanczos.h"
+#include "core/math/lanczos.h"
 
 #include <math.h>
 #include <string.h>

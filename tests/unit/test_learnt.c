@@ -1,8 +1,8 @@
 // test_learnt.c - models of pixels as coded bytes: what comes back, and what cannot be one
 #include "test.h"
 
-#include "base/memory.h"
-#include "pack/learnt.h"
+#include "core/base/memory.h"
+#include "format/pack/learnt.h"
 
 #include <math.h>
 

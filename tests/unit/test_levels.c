@@ -2,8 +2,8 @@
 // level, and as pictures against those of the full mesh.
 #include "in_folder.h"
 
-#include "object/levels.h"
-#include "object/object.h"
+#include "world/object/levels.h"
+#include "world/object/object.h"
 
 #include <relume/jnd.h>
 #include <relume/object.h>

@@ -2,7 +2,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "encode/look.h"
+#include "encode/encode/look.h"
 #include "in_folder.h"
 
 enum { LIGHTS = 24, SIDE = 48 };

@@ -1,9 +1,9 @@
 // test_lossy.c - planes coded with loss: near what they were, alone by tiles, and never believed
 #include "test.h"
 
-#include "base/memory.h"
-#include "lossy/disparity.h"
-#include "lossy/slopes.h"
+#include "core/base/memory.h"
+#include "format/lossy/disparity.h"
+#include "format/lossy/slopes.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 // test_lp.c - .lp files; the rows of the "broken input" table that need no pictures
 #include "test.h"
 
-#include "capture/manifest.h"
+#include "capture/manifest/manifest.h"
 
 static char folder[64], path[96];
 

@@ -1,9 +1,9 @@
-// test_lsq.c - tests of src/math/lsq.h: small dense linear algebra, by Eigen (lsq_eigen.cpp)
+// test_lsq.c - tests of src/core/math/lsq.h: small dense linear algebra, by Eigen (lsq_eigen.cpp)
 #include "test.h"
 
-#include "math/lsq.h"
-#include "kernel/kernels.h"
-#include "kernel/lsq_kernels.h"
+#include "core/math/lsq.h"
+#include "core/kernel/kernels.h"
+#include "core/kernel/lsq_kernels.h"
 
 enum { N = 24 };
 

@@ -2,7 +2,7 @@
 #include "in_folder.h"
 #include "made_exr.h"
 
-#include "image/picture.h"
+#include "image/image/picture.h"
 
 enum { MOST = 96 };
 static float rgb[MOST * MOST * 3];

@@ -1,8 +1,8 @@
-// test_manifest.c - tests of src/capture/manifest.h: reading what describes a capture into one
+// test_manifest.c - tests of src/capture/manifest/manifest.h: reading what describes a capture into one
 // form; images are not touched here
 #include "test.h"
 
-#include "capture/manifest.h"
+#include "capture/manifest/manifest.h"
 
 static char folder[64], path[96];
 

@@ -1,6 +1,6 @@
 // Meshes: the readers on good and broken files, the solids, the teapot.
-#include "mesh/mesh_read.h"
-#include "scene/shapes.h"
+#include "shape/mesh/mesh_read.h"
+#include "world/stage/shapes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,8 +4,8 @@
 #include "learned_fixture.h"
 #include "relight_fixture.h"
 
-#include "base/memory.h"
-#include "math/vec.h"
+#include "core/base/memory.h"
+#include "core/math/vec.h"
 
 // ---------------------------------------------------------------- the grid
 

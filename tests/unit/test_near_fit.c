@@ -1,7 +1,7 @@
 // Near lights: coefficients fitted at each pixel's own directions
 #include "lambert_fixture.h"
 
-#include "coder/near_fit.h"
+#include "format/coder/near_fit.h"
 
 #include <relume/coder.h>
 

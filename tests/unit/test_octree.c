@@ -1,10 +1,10 @@
 // Cells of an octree against the ray tracer, and against all of its cells one by one.
-#include "base/memory.h"
-#include "math/random.h"
-#include "mesh/octree.h"
-#include "mesh/trace.h"
-#include "scene/shapes.h"
+#include "core/base/memory.h"
+#include "core/math/random.h"
+#include "shape/mesh/octree.h"
+#include "shape/mesh/trace.h"
 #include "test.h"
+#include "world/stage/shapes.h"
 
 static vec3 random_direction(struct random *r)
 {

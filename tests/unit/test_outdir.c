@@ -1,10 +1,10 @@
-// test_outdir.c - tests of src/base/outdir.h: folders, and files that others write, that appear
+// test_outdir.c - tests of src/core/base/outdir.h: folders, and files that others write, that appear
 // whole or not at all
 #include "test.h"
 
-#include "base/beside.h"
-#include "base/inventory.h"
-#include "base/outdir.h"
+#include "core/base/beside.h"
+#include "core/base/inventory.h"
+#include "core/base/outdir.h"
 
 #include <dirent.h>
 #include <errno.h>

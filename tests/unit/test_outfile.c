@@ -1,9 +1,9 @@
-// test_outfile.c - tests of src/base/outfile.h: files that appear whole or not at all
+// test_outfile.c - tests of src/core/base/outfile.h: files that appear whole or not at all
 #include "test.h"
 
-#include "base/infile.h"
-#include "base/outfile.h"
-#include "base/scratch.h"
+#include "core/base/infile.h"
+#include "core/base/outfile.h"
+#include "core/base/scratch.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -2,9 +2,9 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "pack/format.h"
-#include "base/half.h"
-#include "image/exr.h"
+#include "format/pack/format.h"
+#include "core/base/half.h"
+#include "image/image/exr.h"
 #include "pack_in_folder.h"
 #include "pack_parts.h"
 

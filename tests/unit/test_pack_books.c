@@ -1,8 +1,8 @@
 // test_pack_books.c - files with codebooks against files with planes, and against themselves
 #include "test.h"
 
-#include "base/memory.h"
 #include "capture_fixture.h"
+#include "core/base/memory.h"
 #include "pack_parts.h"
 
 static char folder[64], path[96], other[96];

@@ -1,5 +1,5 @@
-// test_panorama.c - tests of src/multiview/panorama.h: the sources of panoramas
-#include "math/vec.h"
+// test_panorama.c - tests of src/capture/multiview/panorama.h: the sources of panoramas
+#include "core/math/vec.h"
 
 #include <relume/view.h>
 

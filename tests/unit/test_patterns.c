@@ -1,5 +1,5 @@
 // Light patterns, their discrepancy, and reading directions from files.
-#include "math/vec.h"
+#include "core/math/vec.h"
 
 #include <relume/directions.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 // test_pca.c - principal components against what defines them, in double precision
 #include "test.h"
 
-#include "coder/pca.h"
+#include "format/coder/pca.h"
 
 enum { LIGHTS = 12, DIM = 3 * LIGHTS, PIXELS = 300 };
 

@@ -1,7 +1,7 @@
 // Normals, height and refined lights of a surface whose every sample is known
 #include "lambert_fixture.h"
 
-#include "math/fft.h"
+#include "core/math/fft.h"
 
 // Mean angle between the fitted and the true normals, degrees.
 static double error_of(const struct relume_image *normal, const struct bump *s)

@@ -2,12 +2,12 @@
 #include "in_folder.h"
 #include "png_crc.h"
 
-#include "base/module.h"
-#include "base/outfile.h"
-#include "image/exr.h"
-#include "base/half.h"
-#include "image/picture.h"
-#include "image/picture_format.h"
+#include "core/base/module.h"
+#include "core/base/outfile.h"
+#include "image/image/exr.h"
+#include "core/base/half.h"
+#include "image/image/picture.h"
+#include "image/image/picture_format.h"
 
 #include <fcntl.h>
 #include <jpeglib.h>

@@ -1,7 +1,7 @@
 // What a file is by its first bytes: the formats for photographs, and what is none.
 #include "test.h"
 
-#include "image/picture_kind.h"
+#include "image/image/picture_kind.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // test_pictures.c - a capture of pictures in memory is the capture of the same pictures in files
 #include "test.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <sys/stat.h>
 

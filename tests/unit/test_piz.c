@@ -1,8 +1,8 @@
-// test_piz.c - tests of src/image/piz.h: blocks of every kind become the bytes that OpenEXR's own
+// test_piz.c - tests of src/image/image/piz.h: blocks of every kind become the bytes that OpenEXR's own
 // library makes of them
 #include "test.h"
 
-#include "image/piz.h"
+#include "image/image/piz.h"
 
 #include <openexr.h>
 

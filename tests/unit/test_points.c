@@ -1,9 +1,9 @@
 // Surfaces as points: areas, even spread in any run, sides, captured places and what they send.
 #include "test.h"
 
-#include "base/memory.h"
-#include "scene/shapes.h"
-#include "transport/points.h"
+#include "core/base/memory.h"
+#include "world/stage/shapes.h"
+#include "world/transport/points.h"
 
 #include <relume/view.h>
 

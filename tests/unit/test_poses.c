@@ -1,7 +1,7 @@
 // Slabs with poses in a manifest and in a file: what goes in comes out, what is wrong is refused
 #include "test.h"
 
-#include "capture/manifest.h"
+#include "capture/manifest/manifest.h"
 #include "capture_fixture.h"
 
 static char folder[64], path[96], json[96];

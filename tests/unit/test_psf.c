@@ -1,7 +1,7 @@
 // test_psf.c - tests of include/relume/psf.h: what one point source leaves on the retina of an eye
 // (Ritschel 2009, 8.3, 8.4)
-#include "post/aperture.h"
-#include "post/psf.h"
+#include "relight/eye/aperture.h"
+#include "relight/eye/psf.h"
 #include "test.h"
 
 static const double nm575 = 575e-6;  // mm

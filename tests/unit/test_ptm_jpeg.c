@@ -2,8 +2,8 @@
 // sees, however planes predict each other; records bound the error of every pixel.
 #include "in_folder.h"
 
-#include "exchange/ptm.h"
-#include "exchange/sheet.h"
+#include "exchange/formats/ptm.h"
+#include "exchange/formats/sheet.h"
 
 enum { W = 37, H = 21, PIXELS = W * H };
 

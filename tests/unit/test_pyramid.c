@@ -3,8 +3,8 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "encode/reduce.h"
-#include "image/image.h"
+#include "encode/encode/reduce.h"
+#include "image/image/image.h"
 
 static char folder[64], path[96];
 

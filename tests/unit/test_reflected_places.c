@@ -1,9 +1,9 @@
 // Where curved mirrors reflect a place to an eye: Fermat's principle on Bezier patches, and the
 // cubic of triangles against places that it is made of.
-#include "math/random.h"
-#include "reflect/bezier.h"
-#include "reflect/triangle.h"
+#include "core/math/random.h"
 #include "test.h"
+#include "world/reflect/bezier.h"
+#include "world/reflect/triangle.h"
 
 // A bulge over the square from (-1, -1) to (1, 1).
 static void make_bulge(struct bezier *out, double height)

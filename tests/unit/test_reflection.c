@@ -2,11 +2,11 @@
 // header promises, distances along surfaces against closed forms.
 #include "test.h"
 
-#include "reflect/geodesic.h"
-#include "reflect/rotation.h"
+#include "world/reflect/geodesic.h"
+#include "world/reflect/rotation.h"
 
-#include "math/lsq.h"
-#include "math/vec.h"
+#include "core/math/lsq.h"
+#include "core/math/vec.h"
 
 static char last[512];
 static int warnings;

@@ -2,7 +2,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "frame/renderer.h"
+#include "relight/frame/renderer.h"
 
 enum { W = 31, H = 23, GAP = 24 };
 

@@ -1,7 +1,7 @@
-// test_repair.c - tests of src/capture/repair.h: pixels that hold NaN or infinity
+// test_repair.c - tests of src/capture/manifest/repair.h: pixels that hold NaN or infinity
 #include "test.h"
 
-#include "capture/repair.h"
+#include "capture/manifest/repair.h"
 
 enum { LIGHTS = 5, PIXELS = 3 };
 

@@ -1,7 +1,7 @@
 // test_rig.c - lights in words and as JSON
 #include "test.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <sys/stat.h>
 

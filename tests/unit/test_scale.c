@@ -1,8 +1,8 @@
 // What a pixel covers: means against sums over a hundred rays, closed forms, and no cost elsewhere
 #include "test.h"
 
-#include "image/footprint.h"
-#include "math/vec.h"
+#include "core/math/vec.h"
+#include "image/image/footprint.h"
 
 #include <relume/image.h>
 #include <relume/view.h>

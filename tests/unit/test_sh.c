@@ -1,7 +1,7 @@
-// test_sh.c - tests of src/math/sh.h: real spherical harmonics (Wong 1998, appendix A)
+// test_sh.c - tests of src/core/math/sh.h: real spherical harmonics (Wong 1998, appendix A)
 #include "test.h"
 
-#include "math/sh.h"
+#include "core/math/sh.h"
 
 enum { COUNT = (SH_MAX_DEGREE + 1) * (SH_MAX_DEGREE + 1) };
 

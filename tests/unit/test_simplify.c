@@ -1,7 +1,7 @@
 // test_simplify.c - fewer triangles: known surfaces, what must stay, replayed steps
 #include "test.h"
 
-#include "mesh/simplify.h"
+#include "shape/mesh/simplify.h"
 
 struct surface {
     int across, down;  // squares

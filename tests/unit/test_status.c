@@ -1,8 +1,8 @@
 // test_status.c - every status by the public functions: each kind of fault has its own
 #include "test.h"
 
-#include "base/memory.h"
 #include "capture_fixture.h"
+#include "core/base/memory.h"
 
 #include <sys/resource.h>
 

@@ -1,8 +1,8 @@
-// test_sums.c - tests of src/coder/sums.h: sums over all lights, of which some are picked, are
+// test_sums.c - tests of src/format/coder/sums.h: sums over all lights, of which some are picked, are
 // those of the samples of these lights
 #include "test.h"
 
-#include "coder/sums.h"
+#include "format/coder/sums.h"
 
 enum { LIGHTS = 7, PIXELS = 700, SOME = 4 };
 static const int some[SOME] = {6, 0, 3, 2};

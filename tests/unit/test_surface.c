@@ -1,8 +1,8 @@
 // Large surfaces: cuts against all cuts, tiles, lookups through maps, files, pictures.
 #include "made_btf.h"
 
-#include "synthesis/cut.h"
-#include "surface/surface.h"
+#include "material/synthesis/cut.h"
+#include "material/surface/surface.h"
 
 // ---------------------------------------------------------------- samples
 

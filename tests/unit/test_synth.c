@@ -1,6 +1,6 @@
 // The virtual light stage: cameras, radiometry, shadows, depth, indirect light, capture folders.
-#include "base/memory.h"
-#include "scene/render.h"
+#include "core/base/memory.h"
+#include "world/stage/render.h"
 
 #include <relume/capture.h>
 #include <relume/directions.h>

@@ -2,9 +2,9 @@
 // tiles close, any number of threads makes the same map, and what is no texture is refused.
 #include "test.h"
 
-#include "base/memory.h"
-#include "math/random.h"
-#include "synthesis/alike.h"
+#include "core/base/memory.h"
+#include "core/math/random.h"
+#include "material/synthesis/alike.h"
 
 typedef double painter(int x, int y);
 

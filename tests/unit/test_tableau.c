@@ -1,9 +1,9 @@
 // Scene files: what hides what, whose shadow falls where, poses, near and far, bad input.
 #include "capture_fixture.h"
 #include "in_folder.h"
-#include "scene/scene.h"
+#include "world/stage/scene.h"
 
-#include "scene/shapes.h"
+#include "world/stage/shapes.h"
 
 #include <sys/stat.h>
 

@@ -1,6 +1,6 @@
 // Rays against triangles: distances, both sides of thin plates, packets of any length.
-#include "mesh/trace.h"
-#include "scene/shapes.h"
+#include "shape/mesh/trace.h"
+#include "world/stage/shapes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,9 +1,9 @@
 // Light below surfaces: the dipole against closed forms and the table of its paper, hierarchies
 // against sums over all points, bodies of every size, open and flipped ones, and descriptions.
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "in_folder.h"
-#include "scene/shapes.h"
-#include "transport/glow.h"
+#include "world/stage/shapes.h"
+#include "world/transport/glow.h"
 
 // ---------------------------------------------------------------- the dipole
 

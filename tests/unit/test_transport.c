@@ -3,8 +3,8 @@
 #include "capture_fixture.h"
 #include "in_folder.h"
 #include "made_room.h"
-#include "transport/bright.h"
-#include "transport/transport.h"
+#include "world/transport/bright.h"
+#include "world/transport/transport.h"
 
 #include <sys/stat.h>
 

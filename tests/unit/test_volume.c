@@ -1,5 +1,5 @@
 // Volumes from files of every format, made here byte by byte; what no volume is.
-#include "volume/volume.h"
+#include "shape/volume/volume.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 // Where light was captured, and what relighting shows of light from elsewhere.
 #include "test.h"
 
-#include "math/vec.h"
+#include "core/math/vec.h"
 
 #include <relume/light.h>
 #include <relume/relight.h>

@@ -5,7 +5,7 @@
 #include "app/notes.h"
 #include "app/light_list.h"
 #include "app/orbit.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
 
 #include <relume/tone.h>

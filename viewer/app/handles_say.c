@@ -5,8 +5,8 @@
 #include "app/handles_drag.h"
 #include "app/orbit.h"
 #include "app/sight.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
-#include "program/say.h"
 
 #include <stdio.h>
 #include <string.h>

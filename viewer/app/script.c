@@ -4,7 +4,7 @@
 #include "app/adjust.h"
 #include "app/app.h"
 #include "app/way.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 // baked.c - baked objects: arrays go to the GPU once, colours whenever lights change. Twin:
-// src/baked/lit.c
+// src/world/baked/lit.c
 #include "draw/baked.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <stdlib.h>
 #include <string.h>

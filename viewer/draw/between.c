@@ -1,10 +1,10 @@
 // between.c - light between a captured panorama and the objects in it, by passes over the frame.
-// Twins: object/exchange.c, transport/screen.c, transport/smooth.c
+// Twins: world/object/exchange.c, world/transport/screen.c, world/transport/smooth.c
 #include "draw/between.h"
 
+#include "cli/program/say.h"
 #include "common/vec.h"
 #include "draw/objects_drawer_parts.h"
-#include "program/say.h"
 
 #include <stdlib.h>
 #include <string.h>

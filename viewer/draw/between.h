@@ -1,5 +1,5 @@
 // between.h - light between a captured panorama and the objects in it, by passes over the frame:
-// the ways of transport/screen.c on the graphics card
+// the ways of world/transport/screen.c on the graphics card
 //
 // They differ from that file in this: all directions are spread as the cosine (none by what is
 // bright), rays end in the panorama where a march through its depth finds a surface, what is

@@ -2,7 +2,7 @@
 // any direction, as buffer textures
 #include "draw/btf_upload.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
 #include "gl/target.h"
 

@@ -1,4 +1,4 @@
-// mirrors.c - mirrors among objects, on the GPU. Twin: src/object/mirror.c
+// mirrors.c - mirrors among objects, on the GPU. Twin: src/world/object/mirror.c
 #include "draw/mirrors.h"
 
 #include "relit/light_uniforms.h"

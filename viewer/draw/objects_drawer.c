@@ -1,7 +1,7 @@
 // objects_drawer.c - objects covered with measured materials, on the GPU
 #include "draw/objects_drawer.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
 #include "draw/objects_drawer_parts.h"
 

@@ -1,7 +1,7 @@
 // renderer.c - what the app says becomes a frame: relit views, then the drawing of the framing
 #include "draw/renderer.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "draw/renderer_parts.h"
 
 #include <relume/tone.h>

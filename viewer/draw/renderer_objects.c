@@ -2,10 +2,10 @@
 // where an object stands between, then the objects where they stand before it. Twin:
 // relume_renderer_set_objects.
 #include "app/handles.h"
+#include "cli/program/clock.h"
 #include "common/vec.h"
 #include "draw/renderer.h"
 #include "draw/renderer_parts.h"
-#include "program/clock.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 // renderer_ways.c - frames with light between the scene and the objects in it: as the library makes
 // them in a thread of its own, and until then with the hard shadows of renderer_objects.c
 #include "app/way.h"
+#include "cli/program/clock.h"
 #include "draw/renderer.h"
 #include "draw/renderer_parts.h"
-#include "program/clock.h"
 
 #include <relume/transport.h>
 

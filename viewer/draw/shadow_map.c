@@ -1,7 +1,7 @@
 // shadow_map.c - what a light sample sees of the objects: depths, for shadow.glsl
 #include "draw/shadow_map.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
 #include "gl/target.h"
 

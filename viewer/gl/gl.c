@@ -2,7 +2,7 @@
 // passes of 4.3 where there are any
 #include "gl/gl.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <string.h>
 

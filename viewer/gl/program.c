@@ -1,7 +1,7 @@
 // program.c - shaders from the tree, linked, with their uniforms found once by name
 #include "gl/program.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <assert.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // target.c - a float texture that can be drawn into; row 0 is the top of the picture
 #include "gl/target.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <stdlib.h>
 

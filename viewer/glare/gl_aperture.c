@@ -2,7 +2,7 @@
 // multiplies
 #include "glare/gl_aperture.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "gl/target.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // enhancer.c - passes over relit views: normals are fitted once for each view that is looked at
 #include "relit/enhancer.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // exchanger.c - light between a scene and the objects in it, by the library, in a thread of its own
 #include "relit/exchanger.h"
 
-#include "program/clock.h"
+#include "cli/program/clock.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

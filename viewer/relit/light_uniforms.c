@@ -3,7 +3,7 @@
 #include "relit/light_uniforms.h"
 
 #include "gl/program.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
 #include "gl/target.h"
 

@@ -1,7 +1,7 @@
 // moving.c - shadows and highlights that move, on the GPU
 #include "relit/moving.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "relit/moving_parts.h"
 
 #include <math.h>

@@ -35,7 +35,7 @@ enum unit {
     UNIT_LIGHTS
 };
 
-enum { SIDE = 4 };  // of an area light's patches, as near.frag and src/shadow/shadows.c
+enum { SIDE = 4 };  // of an area light's patches, as near.frag and src/relight/shadow/shadows.c
 
 void moving_near_destroy(struct moving_near *near, const struct gl *gl)
 {

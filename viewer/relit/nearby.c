@@ -2,8 +2,8 @@
 // pixel's own direction
 #include "relit/nearby.h"
 
+#include "cli/program/say.h"
 #include "gl/program.h"
-#include "program/say.h"
 #include "relit/captured_uniforms.h"
 #include "relit/weights.h"
 

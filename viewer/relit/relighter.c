@@ -1,7 +1,7 @@
 // relighter.c - views of a file on the GPU: codes are uploaded once, relit when the lights change
 #include "relit/relighter.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "relit/books.h"
 #include "relit/moving.h"
 #include "relit/relighter_parts.h"

@@ -1,9 +1,9 @@
 // main.c - relume-view: a file in a window, or in pictures written without one
 #include "app/events.h"
 #include "app/script.h"
-#include "program/clock.h"
-#include "program/say.h"
-#include "program/stopping.h"
+#include "cli/program/clock.h"
+#include "cli/program/say.h"
+#include "cli/program/stopping.h"
 #include "session/options.h"
 #include "session/session.h"
 #include "session/settings.h"

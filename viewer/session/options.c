@@ -4,8 +4,8 @@
 #include "app/keys.h"
 #include "app/light_list.h"
 #include "app/way.h"
-#include "program/options.h"
-#include "program/say.h"
+#include "cli/program/options.h"
+#include "cli/program/say.h"
 
 #include <relume/tableau.h>
 #include <relume/tone.h>

@@ -3,7 +3,7 @@
 
 #include "app/light_list.h"
 #include "app/orbit.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-// record.h - moving pictures: what moves in them; what they become is program/film.h
+// record.h - moving pictures: what moves in them; what they become is cli/program/film.h
 #ifndef VIEWER_RECORD_H
 #define VIEWER_RECORD_H
 

@@ -4,7 +4,7 @@
 #include "app/events.h"
 #include "app/light_list.h"
 #include "app/way.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <math.h>
 #include <relume/exchange.h>

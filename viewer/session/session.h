@@ -7,7 +7,7 @@
 #include "relit/pack_source.h"
 #include "session/inspect.h"
 #include "session/maps.h"
-#include "program/film.h"
+#include "cli/program/film.h"
 #include "session/record.h"
 #include "window/context.h"
 
@@ -250,7 +250,7 @@ relume_status session_load_rig(struct session *s, const char *path);
 relume_status session_save_rig(struct session *s, const char *path);
 // They as a rig, which the caller destroys. RELUME_ENOMEM.
 relume_status session_rig(relume_rig **out, const struct session *s);
-// How the file is seen now, as `--state` and the pages read it (program/state_line.h);
+// How the file is seen now, as `--state` and the pages read it (cli/program/state_line.h);
 // RELUME_ELIMIT when it does not fit, RELUME_ENOMEM.
 relume_status session_state_line(char *text, size_t size, struct session *s);
 

@@ -1,7 +1,7 @@
 // session_edits.c - edits of the g-BRDF that is shown (relume/edit.h), kept beside its file
 #include "session/session.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <relume/edit.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "session/session.h"
 
 #include "app/light_list.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <relume/edit.h>
 #include <stdio.h>

@@ -5,8 +5,8 @@
 #include "app/adjust.h"
 #include "app/app.h"
 #include "app/notes.h"
-#include "program/notes_file.h"
-#include "program/state_line.h"
+#include "cli/program/notes_file.h"
+#include "cli/program/state_line.h"
 
 #include <relume/tone.h>
 

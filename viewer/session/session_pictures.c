@@ -1,7 +1,7 @@
 // session_pictures.c - frames and shots as files
 #include "session/session.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <relume/tone.h>
 

@@ -5,7 +5,7 @@
 #include "app/handles_say.h"
 #include "app/handles.h"
 #include "common/vec.h"
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <stdio.h>
 #include <string.h>

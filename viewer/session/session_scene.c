@@ -3,8 +3,8 @@
 #include "session/session.h"
 
 #include "app/light_list.h"
+#include "cli/program/say.h"
 #include "common/vec.h"
-#include "program/say.h"
 
 #include <relume/tableau.h>
 #include <stdio.h>

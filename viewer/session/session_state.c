@@ -1,7 +1,7 @@
 // session_state.c - how the file is seen now, in the line that pages and the tool read (--state)
 #include "session/session.h"
 
-#include "program/state_line.h"
+#include "cli/program/state_line.h"
 
 #include <relume/rig.h>
 #include <relume/tone.h>

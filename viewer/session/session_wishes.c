@@ -2,8 +2,8 @@
 #include "session/session.h"
 
 #include "app/keys.h"
+#include "cli/program/state_line.h"
 #include "common/vec.h"
-#include "program/state_line.h"
 
 #include <math.h>
 #include <stdio.h>

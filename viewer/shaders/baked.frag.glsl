@@ -1,5 +1,5 @@
 #version 330 core
-// What a baked object shows under the lights of its colours. Twin: look_up in src/baked/lit.c.
+// What a baked object shows under the lights of its colours. Twin: look_up in src/world/baked/lit.c.
 uniform sampler2D place, normal_s, tangent_t;  // of the surface
 uniform usamplerBuffer clusters;  // [blocks][texels]
 uniform samplerBuffer weights;    // [blocks][texels][components]

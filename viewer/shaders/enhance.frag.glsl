@@ -1,5 +1,5 @@
 #version 330 core
-// What a pass shows of a relit view; twin of src/analysis/enhance.c, function by function.
+// What a pass shows of a relit view; twin of src/relight/normals/enhance.c, function by function.
 #include "transfer.glsl"
 uniform sampler2D view;
 uniform sampler2D normals;

@@ -1,6 +1,6 @@
 #version 330 core
 // A light that stands near: the basis at every pixel's own direction towards it (Wong 1998, Eq. 7.7
-// with its sign corrected). Twins: relume_weight_grid_place, cells_find of src/relight/cells.c.
+// with its sign corrected). Twins: relume_weight_grid_place, cells_find of src/relight/light/cells.c.
 #include "transfer.glsl"
 #include "texels.glsl"
 #include "cube.glsl"

@@ -1,4 +1,4 @@
-// A look into a panorama; twin of src/view/panorama.c, function by function. A projection's shader
+// A look into a panorama; twin of src/relight/view/panorama.c, function by function. A projection's shader
 // includes this and says what its image shows in a direction: one shader for all would make software
 // renderers compute them all.
 uniform sampler2D view;

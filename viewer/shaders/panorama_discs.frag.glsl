@@ -1,5 +1,5 @@
 #version 330 core
-// A look into a cylinder with end discs; twin of src/view/panorama_discs.c.
+// A look into a cylinder with end discs; twin of src/relight/view/panorama_discs.c.
 #include "footprint.glsl"
 #include "panorama.glsl"
 

@@ -1,4 +1,4 @@
-// Edited reflections: the rotation of a reflected direction at a place. Twins: src/reflect/rotation.c
+// Edited reflections: the rotation of a reflected direction at a place. Twins: src/world/reflect/rotation.c
 // and turn.c, function by function, in single precision.
 uniform samplerBuffer edit;  // of each set of constraints two texels, then what they point to:
                              // centre, radius; border, strokes' points (-1: everywhere; from -2

@@ -1,5 +1,5 @@
 // A ray between four cameras, each where it sees the surface of the ray; twin of
-// src/view/slab_depth.c, function by function. `shade` also returns how sure it is.
+// src/relight/view/slab_depth.c, function by function. `shade` also returns how sure it is.
 uniform sampler2D view00;  // low u, low v
 uniform sampler2D view10;  // high u, low v
 uniform sampler2D view01;

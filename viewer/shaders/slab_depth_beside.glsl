@@ -1,5 +1,5 @@
 // A ray beside the grid by depth, after slab_depth.glsl and slabs_ray.glsl; twin of
-// src/view/slab_depth.c.
+// src/relight/view/slab_depth.c.
 const float MOST_SLOPE = 12.0;
 const float SHALLOW = 1.0 / 3.0;
 const float ENDLESS = -0.98;

@@ -1,5 +1,5 @@
 #version 330 core
-// What one camera adds to a frame through an aperture, and its weight; twin of src/view/slab_lens.c.
+// What one camera adds to a frame through an aperture, and its weight; twin of src/relight/view/slab_lens.c.
 #include "slab_window.glsl"
 #include "texels.glsl"
 uniform sampler2D view;

@@ -1,4 +1,4 @@
-// Linear light to linear light in [0, 1]; twins of the operators in src/post/tone.c.
+// Linear light to linear light in [0, 1]; twins of the operators in src/relight/eye/tone.c.
 const int TONE_REINHARD = 1;  // places in relume_tones
 const int TONE_FILMIC = 2;
 const int TONE_GAMMA = 3;

@@ -1,7 +1,7 @@
 // card_points.c - trees of points in buffers of the graphics card. Twins: tree.glsl, leaves.comp
 #include "transport/card_points.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <stdlib.h>
 #include <string.h>

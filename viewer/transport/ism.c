@@ -1,7 +1,7 @@
 // ism.c - light gathered from virtual lights with imperfect shadow maps, by compute passes
 #include "transport/ism.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 // last; the only file that knows EGL
 #include "window/context_offscreen.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

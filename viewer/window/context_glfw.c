@@ -1,7 +1,7 @@
 // context_glfw.c - OpenGL in a window; the only file that knows GLFW
 #include "window/context.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,7 +1,7 @@
 // context_osmesa.c - OpenGL in memory by Mesa's software renderer; the only file that knows OSMesa
 #include "window/context_offscreen.h"
 
-#include "program/say.h"
+#include "cli/program/say.h"
 
 #include <GL/osmesa.h>
 #include <stdlib.h>

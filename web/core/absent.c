@@ -4,14 +4,14 @@
 // Eigen, threads and logs stay out of what is downloaded. Interpolants ask for one inverse, which
 // is plain C here. What opens dropped files (web/open) has most of the library, and takes only
 // what is plain or missing here in place of Eigen: OPENS_FILES.
-#include "base/log.h"
-#include "base/memory.h"
-#include "base/params.h"
-#include "base/thread.h"
-#include "coder/basis.h"
-#include "coder/interpolant.h"
-#include "coder/pca.h"
-#include "math/lsq.h"
+#include "core/base/log.h"
+#include "core/base/memory.h"
+#include "core/base/params.h"
+#include "core/base/thread.h"
+#include "core/math/lsq.h"
+#include "format/coder/basis.h"
+#include "format/coder/interpolant.h"
+#include "format/coder/pca.h"
 
 #include <math.h>
 #include <string.h>

@@ -11,8 +11,8 @@
 #include <relume/coder.h>
 #include <relume/light.h>
 
-#include "base/memory.h"
-#include "relight/grid.h"
+#include "core/base/memory.h"
+#include "relight/light/grid.h"
 
 #include <math.h>
 #include <stdlib.h>

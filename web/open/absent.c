@@ -1,8 +1,8 @@
 // absent.c - what the reader of dropped files has in place of what only encoding needs, and of
 // processors to choose among
-#include "coder/pca.h"
-#include "lossy/av1.h"
-#include "math/lsq.h"
+#include "core/math/lsq.h"
+#include "format/coder/pca.h"
+#include "format/lossy/av1.h"
 
 #include <sched.h>
 

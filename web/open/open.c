@@ -6,11 +6,11 @@
 // them: nothing is fitted and little is lost, so that it opens at once.
 #include "open.h"
 
-#include "base/half.h"
-#include "base/memory.h"
-#include "math/scalar.h"
-#include "publish/functions.h"
-#include "publish/scene.h"
+#include "core/base/half.h"
+#include "core/base/memory.h"
+#include "core/math/scalar.h"
+#include "site/publish/functions.h"
+#include "site/publish/scene.h"
 
 #include <relume/io.h>
 

@@ -1,5 +1,5 @@
 // bracket.c - the photographs of one radiance map on their way through `relume hdr`
-#include "commands/bracket.h"
+#include "cli/commands/bracket.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef CLI_BRACKET_H
 #define CLI_BRACKET_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 enum { MAX_BRACKET = 64 };
 

@@ -1,5 +1,5 @@
 // bracket_check.c - whether the exposures show one scene, and times fit their brightness
-#include "commands/bracket.h"
+#include "cli/commands/bracket.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // capture_times.c - exposure times from a file
-#include "commands/capture_times.h"
+#include "cli/commands/capture_times.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef CLI_CAPTURE_TIMES_H
 #define CLI_CAPTURE_TIMES_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 // Fills notes[i].time_s from lines "seconds", one for each photograph in order (or for each of
 // every so many: brackets that follow each other), or "name seconds"; seconds as 0.5 or 1/2; #

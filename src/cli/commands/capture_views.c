@@ -1,5 +1,5 @@
 // capture_views.c - what lightfield and panorama share: transfer, lights, what comes next
-#include "commands/capture_views.h"
+#include "cli/commands/capture_views.h"
 
 relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3 **lights,
                             const struct args *args, const struct views_options *o)

@@ -2,7 +2,7 @@
 #ifndef CLI_CAPTURE_VIEWS_H
 #define CLI_CAPTURE_VIEWS_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 struct views_options {
     const char *output, *lights;

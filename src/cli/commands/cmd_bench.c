@@ -1,7 +1,7 @@
 // cmd_bench.c - relume bench: how fast this machine runs the hot loops, beside what it allows
-#include "cli.h"
-#include "measure/loops.h"
-#include "messages.h"
+#include "cli/cli.h"
+#include "cli/measure/loops.h"
+#include "cli/messages.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // cmd_capture.c - relume capture PHOTO ... -o DIR: a light sequence becomes a capture
-#include "frame_options.h"
+#include "cli/frame_options.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // cmd_change.c - relume change: what has changed between two captures of one object
-#include "cli.h"
+#include "cli/cli.h"
 
 struct change_options {
     struct args args;

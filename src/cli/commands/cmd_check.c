@@ -1,5 +1,5 @@
 // cmd_check.c - relume check: reads all of a file and says what is damaged
-#include "cli.h"
+#include "cli/cli.h"
 
 struct check_options {
     struct args args;

@@ -1,5 +1,5 @@
 // cmd_compare.c - relume compare: how different two pictures are
-#include "commands/compare_seen.h"
+#include "cli/commands/compare_seen.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 // cmd_encode.c - relume encode: a capture into a relume file
-#include "book_options.h"
-#include "cli.h"
+#include "cli/book_options.h"
+#include "cli/cli.h"
+#include "cli/kept_notes.h"
 #include "encode_parts.h"
 #include "encode_seen.h"
-#include "kept_notes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // cmd_eval.c - relume eval: a file against every image of a capture
-#include "cli.h"
+#include "cli/cli.h"
 
 #include <math.h>
 #include <string.h>

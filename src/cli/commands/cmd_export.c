@@ -1,5 +1,5 @@
 // cmd_export.c - relume export: a relume file for other programs
-#include "cli.h"
+#include "cli/cli.h"
 
 #include <string.h>
 #include <strings.h>

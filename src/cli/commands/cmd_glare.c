@@ -1,8 +1,8 @@
 // cmd_glare.c - relume glare: a picture as a human eye sees it
-#include "commands/glare_pattern.h"
-#include "develop.h"
-#include "glare_options.h"
-#include "program/film.h"
+#include "cli/commands/glare_pattern.h"
+#include "cli/develop.h"
+#include "cli/glare_options.h"
+#include "cli/program/film.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // cmd_hdr.c - relume hdr: exposures of one picture become one radiance map
-#include "commands/bracket.h"
-#include "commands/capture_times.h"
-#include "fill.h"
+#include "cli/commands/bracket.h"
+#include "cli/commands/capture_times.h"
+#include "cli/fill.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // cmd_import.c - relume import: files of other programs into a relume file
-#include "cli.h"
-#include "kept_notes.h"
+#include "cli/cli.h"
+#include "cli/kept_notes.h"
 
 struct import_options {
     struct args args;

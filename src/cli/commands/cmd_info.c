@@ -1,5 +1,5 @@
 // cmd_info.c - relume info: what a file holds
-#include "cli.h"
+#include "cli/cli.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // cmd_join.c - relume join: the parts of a relume file become the file
-#include "cli.h"
-#include "kept_notes.h"
+#include "cli/cli.h"
+#include "cli/kept_notes.h"
 
 struct join_options {
     struct args args;

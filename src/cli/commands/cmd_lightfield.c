@@ -1,5 +1,5 @@
 // cmd_lightfield.c - relume lightfield: grids and sets of cameras become a light slab, with depth
-#include "commands/capture_views.h"
+#include "cli/commands/capture_views.h"
 
 #include <math.h>
 #include <stdlib.h>

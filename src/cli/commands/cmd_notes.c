@@ -1,9 +1,9 @@
 // cmd_notes.c - relume notes: what people write on a picture or a baked object, kept beside its
 // file
-#include "cli.h"
+#include "cli/cli.h"
 
-#include "commands/notes_object.h"
-#include "program/notes_file.h"
+#include "cli/commands/notes_object.h"
+#include "cli/program/notes_file.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // cmd_panorama.c - relume panorama: photographs all around one point become a capture
-#include "commands/capture_views.h"
+#include "cli/commands/capture_views.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 // cmd_publish.c - relume publish: relightable files as a web site
-#include "cli.h"
+#include "cli/cli.h"
 
 #include <relume/publish.h>
 

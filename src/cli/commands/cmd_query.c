@@ -1,7 +1,7 @@
 // cmd_query.c - relume query: the colour of one ray, or of many
-#include "cli.h"
-#include "frame_options.h"
-#include "rays.h"
+#include "cli/cli.h"
+#include "cli/frame_options.h"
+#include "cli/rays.h"
 
 #include <math.h>
 #include <stdlib.h>

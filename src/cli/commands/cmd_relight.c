@@ -1,9 +1,9 @@
 // cmd_relight.c - relume relight: a file under any lights, as a picture
-#include "cli.h"
-#include "materials/btf_inputs.h"
-#include "develop.h"
-#include "frame_options.h"
-#include "glare_options.h"
+#include "cli/cli.h"
+#include "cli/materials/btf_inputs.h"
+#include "cli/develop.h"
+#include "cli/frame_options.h"
+#include "cli/glare_options.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // cmd_sweep.c - relume sweep: every coder of a grid judged by lights that it has not seen
-#include "book_options.h"
-#include "commands/sweep.h"
-#include "program/clock.h"
+#include "cli/book_options.h"
+#include "cli/commands/sweep.h"
+#include "cli/program/clock.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // cmd_synth.c - relume synth: a built-in scene on the virtual light stage
-#include "materials/btf_inputs.h"
+#include "cli/materials/btf_inputs.h"
 
 #include <stdlib.h>
 #include <string.h>

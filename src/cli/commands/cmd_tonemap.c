@@ -1,5 +1,5 @@
 // cmd_tonemap.c - relume tonemap: an HDR picture for a screen
-#include "develop.h"
+#include "cli/develop.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // compare_seen.c - relume compare --metric jnd|vdp: preparing pictures, looking, telling
-#include "commands/compare_seen.h"
+#include "cli/commands/compare_seen.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #ifndef COMMANDS_COMPARE_SEEN_H
 #define COMMANDS_COMPARE_SEEN_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 enum compare_metric { COMPARE_ERRORS, COMPARE_JND, COMPARE_VDP };
 

@@ -3,7 +3,7 @@
 #ifndef ENCODE_PARTS_H
 #define ENCODE_PARTS_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 // "3/8"; 0 of 0 where nobody asked.
 struct which_part {

@@ -2,7 +2,7 @@
 #ifndef ENCODE_SEEN_H
 #define ENCODE_SEEN_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 // Encodes with that PSNR into `output`; its remarks and warnings go to the log of `args`.
 typedef relume_status encode_trial(void *context, const struct args *args, double psnr_db,

@@ -1,10 +1,10 @@
 // glare_pattern.c - an eye's pattern as pictures and diagrams (`relume glare --psf`)
-#include "commands/glare_pattern.h"
+#include "cli/commands/glare_pattern.h"
 
-#include "fill.h"
+#include "cli/fill.h"
 
-#include "develop.h"
-#include "plot.h"
+#include "cli/develop.h"
+#include "cli/plot.h"
 
 #include <math.h>
 #include <stdlib.h>

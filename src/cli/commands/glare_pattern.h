@@ -2,7 +2,7 @@
 #ifndef CLI_GLARE_PATTERN_H
 #define CLI_GLARE_PATTERN_H
 
-#include "glare_options.h"
+#include "cli/glare_options.h"
 
 // `path` with an extension: the pattern alone; else a folder with psf.exr, psf.png, aperture.png,
 // pupil.svg (Fig. 8.3) and observer.svg (against the CIE's), both as .png too.

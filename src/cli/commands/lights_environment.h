@@ -2,7 +2,7 @@
 #ifndef CLI_LIGHTS_ENVIRONMENT_H
 #define CLI_LIGHTS_ENVIRONMENT_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 enum recipe { RECIPE_NONE, RECIPE_NUKE, RECIPE_NATRON, RECIPE_BLENDER };
 

@@ -1,5 +1,5 @@
 // notes_object.c - relume notes on an object: what an eye sees of them
-#include "commands/notes_object.h"
+#include "cli/commands/notes_object.h"
 
 #include <relume/object.h>
 #include <relume/slab_set.h>

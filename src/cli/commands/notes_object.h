@@ -3,7 +3,7 @@
 #ifndef CLI_NOTES_OBJECT_H
 #define CLI_NOTES_OBJECT_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 #include <relume/notes.h>
 

@@ -2,8 +2,8 @@
 #ifndef CLI_SWEEP_H
 #define CLI_SWEEP_H
 
-#include "book_options.h"
-#include "cli.h"
+#include "cli/book_options.h"
+#include "cli/cli.h"
 
 // One coder and one way of storing.
 struct sweep_row {

@@ -1,6 +1,6 @@
 // sweep_report.c - the table as text, CSV and JSON, and its diagram
-#include "commands/sweep.h"
-#include "plot.h"
+#include "cli/commands/sweep.h"
+#include "cli/plot.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 // hexadecimal floats, and a sum over the line. The key is a hash (FNV-1a) of everything that the
 // figures depend on, so that a changed photograph or option finds nothing. Lines are only ever
 // appended, each under the file's lock, so that several sweeps may keep theirs in one file.
-#include "commands/sweep.h"
+#include "cli/commands/sweep.h"
 
 #include <errno.h>
 #include <inttypes.h>

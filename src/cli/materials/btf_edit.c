@@ -1,6 +1,6 @@
 // btf_edit.c - relume btf edit and make: g-BRDFs that people change and make
-#include "materials/btf_inputs.h"
-#include "edit_options.h"
+#include "cli/materials/btf_inputs.h"
+#include "cli/edit_options.h"
 
 struct btf_edit_options {
     struct args args;

@@ -1,5 +1,5 @@
 // btf_expand.c - relume btf plant and expand: values out of models
-#include "materials/btf_inputs.h"
+#include "cli/materials/btf_inputs.h"
 
 relume_status btf_check_model_output(const struct btf_options *o)
 {

@@ -1,5 +1,5 @@
 // btf_inputs.c - what `relume btf` is given: BTFs, models, names of materials
-#include "materials/btf_inputs.h"
+#include "cli/materials/btf_inputs.h"
 
 #include <errno.h>
 #include <math.h>

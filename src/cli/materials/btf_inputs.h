@@ -2,7 +2,7 @@
 #ifndef CLI_BTF_INPUTS_H
 #define CLI_BTF_INPUTS_H
 
-#include "frame_options.h"
+#include "cli/frame_options.h"
 
 struct btf_options {
     struct args args;

@@ -1,6 +1,6 @@
 // btf_objects.c - relume btf render --mesh, or of a description of objects
-#include "materials/btf_inputs.h"
-#include "frame_options.h"
+#include "cli/materials/btf_inputs.h"
+#include "cli/frame_options.h"
 
 #include <math.h>
 #include <relume/bake.h>

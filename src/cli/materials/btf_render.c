@@ -1,5 +1,5 @@
 // btf_render.c - relume btf render
-#include "materials/btf_inputs.h"
+#include "cli/materials/btf_inputs.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // btf_report.c - the rows of `relume btf compare` and `eval`
-#include "materials/btf_report.h"
+#include "cli/materials/btf_report.h"
 
-#include "program/clock.h"
+#include "cli/program/clock.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #ifndef CLI_BTF_REPORT_H
 #define CLI_BTF_REPORT_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 // What is known of one fitted model.
 struct btf_row {

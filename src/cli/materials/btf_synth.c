@@ -1,6 +1,6 @@
 // btf_synth.c - relume btf synth: more of a texture or a material than there is
-#include "materials/btf_inputs.h"
-#include "program/clock.h"
+#include "cli/materials/btf_inputs.h"
+#include "cli/program/clock.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // btf_tile.c - relume btf tile: a large surface from a sample
-#include "materials/btf_inputs.h"
+#include "cli/materials/btf_inputs.h"
 
 // The model that the surface keeps: the one given, or one fitted to the BTF.
 static relume_status choose_model(relume_btf_fitted **own, const relume_btf_fitted **model,

@@ -1,6 +1,6 @@
 // cmd_bake.c - relume bake: objects with their light computed beforehand
-#include "cli.h"
-#include "frame_options.h"
+#include "cli/cli.h"
+#include "cli/frame_options.h"
 
 #include <string.h>
 

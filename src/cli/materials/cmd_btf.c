@@ -1,7 +1,7 @@
 // cmd_btf.c - relume btf: measured materials, the models that compress them, and how good they are
-#include "materials/btf_inputs.h"
-#include "materials/btf_report.h"
-#include "program/clock.h"
+#include "cli/materials/btf_inputs.h"
+#include "cli/materials/btf_report.h"
+#include "cli/program/clock.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // cmd_maps.c - relume maps: colour, gloss and relief as maps for other programs
-#include "materials/maps_edit.h"
+#include "cli/materials/maps_edit.h"
 
 #include <math.h>
 

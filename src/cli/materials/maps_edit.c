@@ -1,7 +1,7 @@
 // maps_edit.c - relume maps edit: folders of maps that people change
-#include "materials/maps_edit.h"
+#include "cli/materials/maps_edit.h"
 
-#include "edit_options.h"
+#include "cli/edit_options.h"
 
 struct maps_edit_options {
     struct args args;

@@ -2,7 +2,7 @@
 #ifndef CLI_MAPS_EDIT_H
 #define CLI_MAPS_EDIT_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 extern const struct command maps_task_edit;
 

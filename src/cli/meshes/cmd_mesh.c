@@ -1,6 +1,6 @@
 // cmd_mesh.c - relume mesh: surfaces as triangles, of volumes, depth and models
-#include "meshes/mesh_depth.h"
-#include "meshes/mesh_volume.h"
+#include "cli/meshes/mesh_depth.h"
+#include "cli/meshes/mesh_volume.h"
 
 #include <string.h>
 #include <strings.h>

@@ -1,5 +1,5 @@
 // mesh_billboards.c - relume mesh billboards: a cloud of flat pictures in place of a model
-#include "meshes/mesh_tasks.h"
+#include "cli/meshes/mesh_tasks.h"
 
 #include <math.h>
 #include <stdlib.h>

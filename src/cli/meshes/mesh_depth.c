@@ -1,5 +1,5 @@
 // mesh_depth.c - relume mesh FILE.exr: the depth of all views as one surface
-#include "meshes/mesh_depth.h"
+#include "cli/meshes/mesh_depth.h"
 
 #include <stdlib.h>
 

@@ -2,8 +2,8 @@
 #ifndef MESHES_MESH_DEPTH_H
 #define MESHES_MESH_DEPTH_H
 
-#include "meshes/mesh_tasks.h"
-#include "frame_options.h"
+#include "cli/meshes/mesh_tasks.h"
+#include "cli/frame_options.h"
 
 struct depth_options {
     struct light_options lighting;

@@ -1,5 +1,5 @@
 // mesh_made.c - what `relume mesh` and its tasks say of a mesh
-#include "meshes/mesh_tasks.h"
+#include "cli/meshes/mesh_tasks.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // mesh_simplify.c - relume mesh simplify: fewer triangles that look the same
-#include "meshes/mesh_tasks.h"
+#include "cli/meshes/mesh_tasks.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #ifndef MESHES_MESH_TASKS_H
 #define MESHES_MESH_TASKS_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 // Seconds since some moment.
 double mesh_clock(void);

@@ -1,5 +1,5 @@
 // mesh_volume.c - relume mesh VOLUME: where the samples of a volume take a value
-#include "meshes/mesh_volume.h"
+#include "cli/meshes/mesh_volume.h"
 
 #include <math.h>
 #include <stdlib.h>

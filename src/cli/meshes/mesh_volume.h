@@ -2,7 +2,7 @@
 #ifndef MESHES_MESH_VOLUME_H
 #define MESHES_MESH_VOLUME_H
 
-#include "meshes/mesh_tasks.h"
+#include "cli/meshes/mesh_tasks.h"
 
 // "XxYxZ".
 struct volume_size {

@@ -1,5 +1,5 @@
 // cmd_study.c - relume study: asking people, and what their answers say
-#include "studies/study_tasks.h"
+#include "cli/studies/study_tasks.h"
 
 #include <math.h>
 

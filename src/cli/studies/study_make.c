@@ -1,5 +1,5 @@
 // study_make.c - relume study make: stimuli of several conditions in one folder
-#include "studies/study_tasks.h"
+#include "cli/studies/study_tasks.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // study_run.c - relume study run: the page on which a subject chooses
-#include "studies/study_tasks.h"
+#include "cli/studies/study_tasks.h"
 
 struct run_options {
     struct args args;

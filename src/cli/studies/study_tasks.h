@@ -2,7 +2,7 @@
 #ifndef STUDIES_STUDY_TASKS_H
 #define STUDIES_STUDY_TASKS_H
 
-#include "cli.h"
+#include "cli/cli.h"
 
 extern const struct command study_task_make, study_task_run;
 

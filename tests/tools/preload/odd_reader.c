@@ -2,7 +2,7 @@
 // the file's name begins with, as readers of hostile files do. loop: the header takes for ever;
 // rows: so do the rows; sleep, nap: the same without work; hide: the reader closes its channel and
 // sleeps; crash: the rows crash; memory: the header takes a gigabyte.
-#include "image/picture_format.h"
+#include "image/image/picture_format.h"
 
 #include <signal.h>
 #include <stdlib.h>

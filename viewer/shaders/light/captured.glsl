@@ -11,7 +11,7 @@ vec3 pole_from_world(vec3 d)
     return pole_y ? vec3(-d.z, d.x, d.y) : d;
 }
 
-// Twin: that of src/relight/near_lights.c.
+// Twin: that of src/relight/light/near_lights.c.
 bool is_captured(vec3 towards)
 {
     return !hemisphere || pole_from_world(towards).z >= 0.0;

@@ -1,4 +1,4 @@
-// The triangle of lights around a direction. Twin: src/relight/triangles.c.
+// The triangle of lights around a direction. Twin: src/relight/light/triangles.c.
 uniform sampler2D triangles;  // rows of nodes, then inverse and neighbour of each corner; then
                               // starts, 16 a row
 uniform int triangle_count;   // 0: none

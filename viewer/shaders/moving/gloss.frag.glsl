@@ -1,5 +1,5 @@
 #version 330 core
-// A light whose highlights move. Twins: gloss_shown and gloss_wanders of src/shadow/gloss.c.
+// A light whose highlights move. Twins: gloss_shown and gloss_wanders of src/relight/shadow/gloss.c.
 #include "moving/shown.glsl"
 
 uniform sampler2D colours;  // of the view; x of the normal

@@ -1,6 +1,6 @@
 #version 330 core
 // A near light whose shadows move: every pixel has a direction of its own, and captured lights of
-// its own around it. Twins: add_near_pixel and what it calls, of src/shadow/shadows.c.
+// its own around it. Twins: add_near_pixel and what it calls, of src/relight/shadow/shadows.c.
 #include "moving/stage.glsl"
 #include "moving/shown.glsl"
 #include "texels.glsl"

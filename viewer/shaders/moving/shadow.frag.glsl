@@ -1,5 +1,5 @@
 #version 330 core
-// A light whose shadows move. Twins: add_pixel and soften of src/shadow/shadows.c.
+// A light whose shadows move. Twins: add_pixel and soften of src/relight/shadow/shadows.c.
 #include "moving/shown.glsl"
 
 uniform sampler2D colours;     // of the view; black: nothing is known

@@ -1,4 +1,4 @@
-// Rays through the depth of a view. Twin: src/shadow/stage.c, in doubles.
+// Rays through the depth of a view. Twin: src/relight/shadow/stage.c, in doubles.
 const int PARALLEL = 0, EYE = 1, CYLINDER = 2, SPHERE = 3;  // enum relume_shadows_rays
 const int TILE = 8;                                         // RELUME_SHADOW_TILE
 const float STEP = 0.7, START = 1.0, NEAR = 0.25, SAME = 12.0;

@@ -1,6 +1,6 @@
 #version 330 core
 // How many quarters of a pixel a distant light reaches, of a rectangle of a view and a border of
-// one pixel around it. Twin: trace_row of src/shadow/shadows.c.
+// one pixel around it. Twin: trace_row of src/relight/shadow/shadows.c.
 #include "moving/stage.glsl"
 
 uniform vec3 direction;  // of the view

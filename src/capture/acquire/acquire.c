@@ -1,0 +1,450 @@
+// acquire.c - the steps from photographs to a capture folder
+#include "capture/acquire/acquire.h"
+
+#include "core/base/tree.h"
+#include "core/base/log.h"
+#include "core/base/params.h"
+#include "core/base/memory.h"
+#include "core/base/outdir.h"
+#include "core/base/outfile.h"
+#include "core/math/sort.h"
+
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const double OUTLIER = 3.0;         // times what photographs usually miss
+static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
+
+relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...)
+{
+    char text[1024];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (!s->p.skip_bad)
+        return log_fail(s->p.log, RELUME_EUNFIT, "%s", text);
+    char *image = mem_format("%s/%s", outdir_path(s->dir), s->shot[i].name);
+    if (!image)
+        return RELUME_ENOMEM;
+    unlink(image);
+    mem_free(image);
+    const relume_status status = acquire_warn(s, "%s: left out: %s", s->shot[i].path, text);
+    relume_image_destroy(&s->shot[i].small);
+    memmove(&s->shot[i], &s->shot[i + 1], (size_t)(s->shots - i - 1) * sizeof *s->shot);
+    s->shots--;
+    if (!status && s->shots < 3)
+        return log_fail(s->p.log, RELUME_EUNFIT, "fewer than 3 photographs are left");
+    return status;
+}
+
+// ---------------------------------------------------------------- results
+
+void relume_acquisition_destroy(struct relume_acquisition *acquisition)
+{
+    for (int i = 0; acquisition->photo && i < acquisition->lights; i++)
+        mem_free(acquisition->photo[i].path);
+    for (int i = 0; i < acquisition->warnings; i++)
+        mem_free(acquisition->warning[i]);
+    mem_free(acquisition->photo);
+    mem_free(acquisition->direction);
+    mem_free(acquisition->position);
+    mem_free(acquisition->intensity);
+    mem_free(acquisition->ball);
+    mem_free(acquisition->warning);
+    relume_photometric_destroy(&acquisition->photometric);
+    *acquisition = (struct relume_acquisition){0};
+}
+
+static relume_status alloc_result(struct acquisition *s)
+{
+    struct relume_acquisition *out = s->out;
+    const size_t n = (size_t)s->shots;
+    out->photo = mem_zeroed(n, sizeof *out->photo);
+    out->direction = mem_array(n, sizeof *out->direction);
+    out->position = s->p.near ? mem_array(n, sizeof *out->position) : NULL;
+    out->intensity =
+        s->has_intensities || s->p.refine ? mem_array(n, sizeof *out->intensity) : NULL;
+    if (!out->photo || !out->direction || (s->p.near && !out->position) ||
+        ((s->has_intensities || s->p.refine) && !out->intensity))
+        return RELUME_ENOMEM;
+    out->lights = s->shots;
+    return RELUME_OK;
+}
+
+static relume_status fill_result(struct acquisition *s)
+{
+    struct relume_acquisition *out = s->out;
+    out->width = s->width;
+    out->height = s->height;
+    const relume_status status = alloc_result(s);
+    for (int i = 0; !status && i < s->shots; i++) {
+        const struct shot *from = &s->shot[i];
+        out->photo[i] = (struct relume_acquired_photo){
+            .path = mem_text(from->path),
+            .saturated = from->saturated,
+            .black = from->black,
+            .similarity = from->similarity,
+            .sharpness = from->sharpness,
+            .light = from->light,
+            .sigma_deg = from->sigma_deg,
+        };
+        if (!out->photo[i].path)
+            return RELUME_ENOMEM;
+        out->direction[i] = s->p.near ? vec3_unit(from->position) : from->direction;
+        if (out->position) {
+            out->position[i] = from->position;
+            out->position_error += from->position_sigma / vec3_length(from->position) / s->shots;
+        }
+        for (int c = 0; out->intensity && c < 3; c++)
+            out->intensity[i][c] = s->has_intensities ? fmaxf(from->intensity[c], 1e-6f) : 1.0f;
+    }
+    return status;
+}
+
+// ---------------------------------------------------------------- the folder
+
+static struct relume_geometry geometry_of(const struct acquisition *s)
+{
+    struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, s->width, s->height);
+    g.perspective = s->p.fov_deg > 0.0;
+    if (g.perspective)
+        g.camera_z = 1.0 / tan(s->p.fov_deg * M_PI / 360.0);
+    return g;
+}
+
+static relume_status write_manifest(const struct acquisition *s, const char *path)
+{
+    const char **images = mem_array((size_t)s->shots, sizeof *images);
+    if (!images)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < s->shots; i++)
+        images[i] = s->shot[i].name;
+    char *provenance = acquire_provenance(s);
+    const struct relume_manifest_view view = {.images = images,
+                                              .mask = s->p.mask ? "mask.exr" : NULL};
+    const struct relume_manifest m = {
+        .transfer = {.curve = RELUME_CURVE_LINEAR},
+        .geometry = geometry_of(s),
+        .lights = s->shots,
+        .directions = s->out->direction,
+        .positions = s->out->position,
+        .intensities = (const float(*)[3])s->out->intensity,
+        .views = 1,
+        .view = &view,
+        .provenance = provenance,
+    };
+    const relume_status status =
+        provenance ? relume_manifest_write(&m, path, s->p.log) : RELUME_ENOMEM;
+    mem_free(provenance);
+    mem_free(images);
+    return status;
+}
+
+static void print_lp(const void *context, FILE *f)
+{
+    const struct acquisition *s = context;
+    fprintf(f, "%d\n", s->shots);
+    for (int i = 0; i < s->shots; i++) {
+        const vec3 d = s->out->direction[i];
+        fprintf(f, "%s %.7f %.7f %.7f\n", s->shot[i].name, d.x, d.y, d.z);
+    }
+}
+
+static relume_status write_lp(const struct acquisition *s, const char *path)
+{
+    return relume_file_print(path, print_lp, s, s->p.log);
+}
+
+static relume_status copy_mask(const struct acquisition *s, const char *path)
+{
+    const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
+    struct relume_image mask;
+    if (!s->p.mask)
+        return RELUME_OK;
+    relume_status status = relume_image_load(
+        &mask, s->p.mask,
+        relume_image_params(.log = s->p.log, .channels = 1, .transfer = as_stored));
+    if (!status && (mask.width != s->width || mask.height != s->height))
+        status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
+                          s->p.mask, mask.width, mask.height, s->width, s->height);
+    if (!status)
+        status = relume_image_save(&mask, path, relume_image_params(.log = s->p.log, .half = true));
+    relume_image_destroy(&mask);
+    return status;
+}
+
+// Call `write` with a path in the folder.
+static relume_status in_folder(const struct acquisition *s, const char *name,
+                               relume_status (*write)(const struct acquisition *, const char *))
+{
+    char *path = mem_format("%s/%s", outdir_path(s->dir), name);
+    const relume_status status = path ? write(s, path) : RELUME_ENOMEM;
+    mem_free(path);
+    return status;
+}
+
+static relume_status describe(const struct acquisition *s)
+{
+    relume_status status = in_folder(s, "mask.exr", copy_mask);
+    if (!status)
+        status = in_folder(s, "capture.json", write_manifest);
+    return status ? status : in_folder(s, "lights.lp", write_lp);
+}
+
+// ---------------------------------------------------------------- what the images say
+
+static relume_status refine(struct acquisition *s, const relume_capture *capture)
+{
+    struct relume_acquisition *out = s->out;
+    double residual[2], curl[2] = {0.0, 0.0};
+    double *bright = mem_array((size_t)out->lights, sizeof *bright);
+    const struct relume_acquire_refine_params p = {
+        .log = s->p.log,
+        .threads = s->p.threads,
+        .brightness = s->p.brightness,
+        .integrable = s->p.integrable,
+        .curl = curl,
+    };
+    relume_status status =
+        bright ? relume_acquire_refine(out->direction, bright, residual, capture, &p)
+               : RELUME_ENOMEM;
+    for (int i = 0; !status && i < out->lights; i++)
+        for (int c = 0; c < 3; c++)
+            out->intensity[i][c] *= (float)bright[i];
+    mem_free(bright);
+    if (status || residual[1] == residual[0])  // they stay, and that has been said
+        return status ? status : describe(s);
+    log_line(s->p.log, RELUME_NOTE, "%s refined: brightness error %.1f %%, %.1f %% before",
+             s->p.brightness ? "brightness" : "lights", 100.0 * residual[1], 100.0 * residual[0]);
+    if (s->p.integrable)
+        log_line(s->p.log, RELUME_NOTE,
+                 "lights refined: the surface's curl is %.3f of its curvature, %.3f before",
+                 curl[1], curl[0]);
+    return describe(s);
+}
+
+// What matte surfaces miss under a light, of their albedo, mean over the lights.
+static double mean_miss(const struct relume_photometric *p)
+{
+    double sum = 0.0;
+    for (int i = 0; i < p->lights; i++)
+        sum += p->light_residual[i] / p->lights;
+    return sum;
+}
+
+// Photographs that miss far more than most: damaged in a way that no reader sees, taken when
+// something had moved, or under a lamp that is not as it is said to be.
+static relume_status name_outliers(struct acquisition *s)
+{
+    const struct relume_photometric *p = &s->out->photometric;
+    double *sorted = mem_copy(p->light_residual, (size_t)p->lights, sizeof *sorted);
+    if (!sorted)
+        return RELUME_ENOMEM;
+    sort_doubles(sorted, (size_t)p->lights);
+    const double usual = sorted[p->lights / 2];
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < p->lights && !status; i++) {
+        s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
+        if (s->out->photo[i].outlier)
+            status = acquire_warn_alike(
+                s, ALIKE_MISFIT, p->light_residual[i],
+                "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
+                "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
+                s->shot[i].path, 100.0 * p->light_residual[i], 100.0 * usual);
+    }
+    mem_free(sorted);
+    return status;
+}
+
+static relume_status fit(struct acquisition *s, const relume_capture *capture)
+{
+    struct relume_acquisition *out = s->out;
+    relume_status status =
+        s->p.quick && s->width > s->shot[0].small.width
+            ? acquire_fit_small(s, capture)
+            : relume_photometric_fit(
+                  &out->photometric, capture, 0,
+                  relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
+    if (status == RELUME_EUNFIT)  // the lights do not allow it; that has been said
+        return RELUME_OK;
+    if (!status)
+        status = name_outliers(s);
+    if (!status && mean_miss(&out->photometric) > CONTRADICTION)
+        status = acquire_warn(
+            s,
+            "the photographs do not fit the lights: %.0f %% brightness error; wrong order, lamps "
+            "of unequal brightness (--refine-brightness), or linear photographs (--transfer "
+            "linear)?",
+            100.0 * mean_miss(&out->photometric));
+    return status;
+}
+
+static relume_status open_and(struct acquisition *s,
+                              relume_status (*use)(struct acquisition *, const relume_capture *))
+{
+    relume_capture *capture;
+    relume_status status =
+        relume_capture_open(&capture, outdir_path(s->dir), relume_capture_params(.log = s->p.log));
+    if (!status)
+        status = use(s, capture);
+    relume_capture_destroy(&capture);
+    return status;
+}
+
+static relume_status run(struct acquisition *s)
+{
+    relume_status status = acquire_read(s);
+    if (!status)
+        status = acquire_check_pictures(s);
+    if (!status)
+        status = acquire_sum_files(s);
+    if (!status)
+        acquire_say_alike(s);
+    if (!status)
+        status = acquire_find_lights(s);
+    if (!status)
+        status = acquire_whiten(s);
+    if (!status)
+        status = fill_result(s);
+    if (!status)
+        status = acquire_check_lights(s);
+    if (!status)
+        status = describe(s);
+    if (!status && s->p.refine)
+        status = open_and(s, refine);
+    if (!status)
+        status = open_and(s, fit);
+    if (!status)
+        acquire_say_alike(s);
+    return status ? status : acquire_report(s, outdir_path(s->dir));
+}
+
+// The last number in a file's name, -1 where there is none.
+static long number_of(const char *path)
+{
+    const char *name = path_name(path), *dot = strrchr(name, '.');
+    const char *at = dot ? dot : name + strlen(name);
+    while (at > name && !isdigit((unsigned char)at[-1]))
+        at--;
+    while (at > name && isdigit((unsigned char)at[-1]))
+        at--;
+    return isdigit((unsigned char)*at) ? strtol(at, NULL, 10) : -1;
+}
+
+static bool has_number(const char *const *list, int n, long number)
+{
+    for (int i = 0; i < n; i++)
+        if (number_of(list[i]) == number)
+            return true;
+    return false;
+}
+
+// What of `list` has a number that none of `others` has; NULL unless that is all that is too many.
+static const char *odd_one(const char *const *list, int n, const char *const *others, int m)
+{
+    const char *odd = NULL;
+    int count = 0;
+    for (int i = n - 1; i >= 0; i--)
+        if (!has_number(others, m, number_of(list[i]))) {
+            odd = list[i];
+            count++;
+        }
+    return count == n - m ? odd : NULL;
+}
+
+static relume_status check_balls(const struct relume_acquire_params *p)
+{
+    const int balls = p->ball_photograph_count, objects = p->photograph_count;
+    if (!p->ball_photographs || balls == objects)
+        return RELUME_OK;
+    const bool more = balls > objects;
+    const char *odd = more ? odd_one(p->ball_photographs, balls, p->photographs, objects)
+                           : odd_one(p->photographs, objects, p->ball_photographs, balls);
+    const char *what = more ? "photograph of the object" : "photograph of the ball";
+    if (balls == 1)
+        return log_fail(p->log, RELUME_EUNFIT,
+                        "1 photograph of the ball, %d of the object; expected one for each; give "
+                        "the folder of the ball's photographs, not its files (a shell's * leaves "
+                        "all but the first to the object)",
+                        objects);
+    if (odd)
+        return log_fail(p->log, RELUME_EUNFIT,
+                        "%s: there is no %s with this number; expected one for each; found %d of "
+                        "the ball, %d of the object",
+                        odd, what, balls, objects);
+    return log_fail(p->log, RELUME_EUNFIT,
+                    "%d photographs of the ball; expected %d, one for each of the object", balls,
+                    objects);
+}
+
+static relume_status check_params(const struct relume_acquire_params *p)
+{
+    if (p->photograph_count < 3)
+        return log_fail(p->log, RELUME_EUNFIT, "%d photograph%s; expected at least 3",
+                        p->photograph_count, relume_plural(p->photograph_count));
+    const relume_status status = check_balls(p);
+    if (status)
+        return status;
+    if (p->flat_count > 1 && p->flat_count != p->photograph_count)
+        return log_fail(p->log, RELUME_EUNFIT,
+                        "%d flat fields; expected 1, or %d as photographs, each under its light",
+                        p->flat_count, p->photograph_count);
+    if (p->white[2] && p->matte && !p->lights)
+        return log_fail(
+            p->log, RELUME_EINVAL,
+            "--white: the matte ball shows the lamps' colour already; leave out --white");
+    if (p->white[2] && p->chart)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--white: the colour target gives the white balance; leave out --white");
+    if (p->integrable && !p->refine)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "lights are made to fit a surface only where they are refined");
+    if (p->refine && p->near)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "near lights cannot be refined; expected distant ones");
+    return RELUME_OK;
+}
+
+static void release(struct acquisition *s)
+{
+    for (int i = 0; s->shot && i < s->shots; i++)
+        relume_image_destroy(&s->shot[i].small);
+    mem_free(s->shot);
+    relume_image_destroy(&s->first);
+    relume_image_destroy(&s->gain);
+    relume_image_destroy(&s->grey);
+    relume_image_destroy(&s->mean);
+    relume_image_destroy(&s->peak);
+    relume_image_destroy(&s->change);
+}
+
+relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
+                             const struct relume_acquire_params *params)
+{
+    struct acquisition s = {.p = PARAMS_WORK(relume_acquire_params, params), .out = out};
+    params = &s.p;
+    s.shots = params->photograph_count;
+    *out = (struct relume_acquisition){0};
+    relume_status status = check_params(params);
+    if (status)
+        return status;
+    s.shot = mem_zeroed((size_t)s.shots, sizeof *s.shot);
+    for (int i = 0; s.shot && i < s.shots; i++) {
+        s.shot[i].number = i;
+        s.shot[i].path = params->photographs[i];
+        s.shot[i].ball_path = params->ball_photographs ? params->ball_photographs[i] : NULL;
+    }
+    status = s.shot ? outdir_open(&s.dir, dir, params->force, params->log) : RELUME_ENOMEM;
+    if (!status)
+        status = run(&s);
+    status = outdir_end(&s.dir, status);
+    release(&s);
+    if (status)
+        relume_acquisition_destroy(out);
+    return status;
+}

@@ -1,0 +1,129 @@
+// acquire.h - a capture being made of photographs
+#ifndef ACQUIRE_ACQUIRE_H
+#define ACQUIRE_ACQUIRE_H
+
+#include "capture/acquire/sha256.h"
+#include "core/base/outdir.h"
+#include "core/math/vec.h"
+
+#include <relume/photograph.h>
+#include <relume/acquire.h>
+
+// One photograph and, where balls have photographs of their own, that of the ball under its light.
+struct shot {
+    const char *path, *ball_path;  // borrowed
+    int number;                    // among those that were given
+    char name[32];                 // of the image in the folder
+    struct relume_exif notes;
+    struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
+    float saturated, black, similarity;
+    double fine, coarse;       // detail.c: curvature from pixel to pixel, differences farther off
+    char sha256[SHA256_TEXT];  // of the file
+    uint64_t bytes;
+    float sharpness;  // of the ratio of both, relative to the median; NaN: not measured
+    double sigma_deg;
+    struct relume_ball_light light;  // of the first ball
+    vec3 direction, position;
+    float intensity[3];
+    double position_sigma;
+};
+enum { SHOT_SMALL = 168 };
+
+// Warnings that many photographs may share.
+enum acquire_alike {
+    ALIKE_TURNED,
+    ALIKE_SATURATED,
+    ALIKE_BLACK,
+    ALIKE_SCENE,
+    ALIKE_BLURRED,
+    ALIKE_UNALIGNED,
+    ALIKE_RIM,
+    ALIKE_TWO,
+    ALIKE_MISFIT,
+    ALIKE_KINDS
+};
+enum { SHOOT_FEW = 3 };  // said one by one
+struct alike {
+    int count, first[SHOOT_FEW], worst;  // indices of warnings
+    double how_bad;                      // the worst one
+};
+
+struct acquisition {
+    struct relume_acquire_params p;
+    struct relume_acquisition *out;
+    outdir *dir;
+    int shots;
+    struct shot *shot;
+    int width, height;  // of the photographs
+    int orientation;    // of the first, which all have: the camera stands still; 0: none yet
+    struct relume_image first;  // that others are aligned to; empty unless params.align
+    struct relume_image gain;   // that evens out the light, of one flat field; empty: none yet
+    struct relume_image grey;   // sum of what photographs show in params.white
+    bool has_intensities;
+    // of the photographs in which the balls stand
+    struct relume_ball_camera camera;
+    struct relume_image mean, peak;
+    struct relume_image change;  // how light differs between photographs: RMS of its logarithm
+    int summed;
+    struct alike alike[ALIKE_KINDS];
+};
+
+// Log a warning and keep it for the report. RELUME_ENOMEM.
+__attribute__((format(printf, 2, 3))) relume_status acquire_warn(struct acquisition *s,
+                                                                 const char *format, ...);
+// The same for one of a kind, kept for the report; what was kept is said by acquire_say_alike, of
+// more than a few only the worst and their number.
+__attribute__((format(printf, 4, 5))) relume_status acquire_warn_alike(struct acquisition *s,
+                                                                       enum acquire_alike kind,
+                                                                       double how_bad,
+                                                                       const char *format, ...);
+void acquire_say_alike(struct acquisition *s);
+// Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
+__attribute__((format(printf, 3, 4))) relume_status acquire_drop(struct acquisition *s, int i,
+                                                                 const char *format, ...);
+
+// One photograph of the camera that stands still, turned as the first is. `notes` may be NULL. An
+// input status.
+relume_status acquire_load(struct relume_image *out, struct relume_exif *notes,
+                           const struct acquisition *s, const char *path,
+                           struct relume_transfer transfer);
+// Read all photographs into the folder; an input status.
+relume_status acquire_read(struct acquisition *s);
+relume_status acquire_check_size(const struct acquisition *s, const struct relume_image *image,
+                                 const char *path, int width, int height);
+// Multiply a photograph by what its flat field says. RELUME_EUNFIT.
+relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
+                              struct relume_image *image);
+// Make the colours right by the matrix of a colour target, where there is one.
+void acquire_correct(const struct acquisition *s, struct relume_image *image, bool floats);
+// How sharp a photograph is by itself.
+void acquire_measure_detail(struct shot *shot, const struct relume_image *image);
+// Check sums of the photographs' files. An input status, RELUME_ENOMEM.
+relume_status acquire_sum_files(struct acquisition *s);
+// Where the photographs come from, for capture.json: JSON, to be freed; NULL: no memory.
+char *acquire_provenance(const struct acquisition *s);
+// Remember the grey region of a photograph; make its mean the colour of all lights.
+relume_status acquire_add_grey(struct acquisition *s, const struct relume_image *image);
+relume_status acquire_whiten(struct acquisition *s);
+// What is wrong with the pictures themselves: other scenes, clipping, blackness.
+relume_status acquire_check_pictures(struct acquisition *s);
+// The photograph that shows the balls under a shot's light, linear.
+relume_status acquire_load_balls(struct relume_image *out, const struct acquisition *s, int i);
+// Mirror balls found as the horizon of the table they stand on: find their outlines.
+relume_status acquire_seek_tables(struct acquisition *s);
+// Directions, positions, intensities and their errors, from balls or from a file.
+relume_status acquire_find_lights(struct acquisition *s);
+// The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
+bool acquire_has_poses(const char *path);
+relume_status acquire_lights_from_poses(struct acquisition *s);
+// out->photometric by the small photographs; an input status, RELUME_EUNFIT.
+relume_status acquire_fit_small(struct acquisition *s, const relume_capture *capture);
+// Uneven coverage, coplanar lights.
+relume_status acquire_check_lights(struct acquisition *s);
+
+// lights.svg and report.html into the folder `dir`.
+relume_status acquire_report(const struct acquisition *s, const char *dir);
+// The lights on the sphere, as SVG, to be freed; NULL when memory is short.
+char *acquire_light_sphere(const struct relume_acquisition *out);
+
+#endif

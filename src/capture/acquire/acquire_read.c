@@ -1,0 +1,229 @@
+// acquire_read.c - photographs become the images of the folder, one at a time
+#include "capture/acquire/acquire.h"
+
+#include "capture/acquire/ball.h"
+#include "core/base/log.h"
+#include "core/base/memory.h"
+#include "core/base/outdir.h"
+
+#include <relume/align.h>
+#include <stdio.h>
+#include <string.h>
+
+static const float WHITE = 0.998f, BLACK = 0.002f;
+static const float FAINT = 2e-4f;  // about one code of 8 bits in the dark
+
+// Boxes of `step` x `step` pixels.
+static relume_status shrink(struct relume_image *out, const struct relume_image *from)
+{
+    const int side = from->width > from->height ? from->width : from->height;
+    const int step = (side + SHOT_SMALL - 1) / SHOT_SMALL;
+    const int w = from->width / step, h = from->height / step;
+    const relume_status status = relume_image_create(out, w > 0 ? w : 1, h > 0 ? h : 1, 3);
+    if (status)
+        return status;
+    for (int y = 0; y < h * step; y++)
+        for (int x = 0; x < w * step; x++)
+            for (int c = 0; c < 3; c++)
+                out->data[3 * ((size_t)(y / step) * (size_t)w + (size_t)(x / step)) + (size_t)c] +=
+                    from->data[3 * ((size_t)y * (size_t)from->width + (size_t)x) + (size_t)c] /
+                    (float)(step * step);
+    return RELUME_OK;
+}
+
+static void count_ends(struct shot *shot, const struct relume_image *image, bool floats)
+{
+    const size_t n = (size_t)image->width * (size_t)image->height;
+    size_t white = 0, black = 0;
+    for (size_t i = 0; i < n; i++) {
+        const float *p = image->data + 3 * i;
+        white += !floats && (p[0] >= WHITE || p[1] >= WHITE || p[2] >= WHITE);
+        black += p[0] <= BLACK && p[1] <= BLACK && p[2] <= BLACK;
+    }
+    shot->saturated = (float)white / (float)n;
+    shot->black = (float)black / (float)n;
+}
+
+// Means of the logarithm, for finding the balls.
+static relume_status add_to_mean(struct acquisition *s, const struct relume_image *image)
+{
+    if (!s->mean.data) {
+        s->camera = (struct relume_ball_camera){
+            .width = image->width,
+            .height = image->height,
+            .focal_px =
+                s->p.fov_deg > 0.0 ? 0.5 * image->width / tan(s->p.fov_deg * M_PI / 360.0) : 0.0,
+        };
+        relume_status status = relume_image_create(&s->mean, image->width, image->height, 1);
+        if (!status)
+            status = relume_image_create(&s->peak, image->width, image->height, 1);
+        if (!status)
+            status = relume_image_create(&s->change, image->width, image->height, 1);
+        if (status)
+            return status;
+    }
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++) {
+            const size_t at = (size_t)y * (size_t)image->width + (size_t)x;
+            const float v = ball_grey(image, x, y);
+            const float off = logf(fmaxf(v, 0.0f) + FAINT) - s->mean.data[at];
+            s->mean.data[at] += off / (float)(s->summed + 1);
+            s->change.data[at] += off * off * (float)s->summed / (float)(s->summed + 1);
+            s->peak.data[at] = v > s->peak.data[at] ? v : s->peak.data[at];
+        }
+    s->summed++;
+    return RELUME_OK;
+}
+
+static relume_status align(struct acquisition *s, int i, struct relume_image *image)
+{
+    if (!s->p.align)
+        return RELUME_OK;
+    if (!s->first.data) {
+        s->first = *image;
+        s->first.data =
+            mem_copy(image->data, (size_t)image->width * (size_t)image->height, 3 * sizeof(float));
+        return s->first.data ? RELUME_OK : RELUME_ENOMEM;
+    }
+    struct relume_homography h;
+    struct relume_image moved;
+    relume_status status = relume_align_homography(
+        &h, &s->first, image,
+        &(struct relume_align_params){.log = s->p.log, .threads = s->p.threads});
+    if (!status && h.correlation < 0.3)
+        return acquire_warn_alike(s, ALIKE_UNALIGNED, -h.correlation,
+                                  "%s: does not align with the first photograph; left as it is",
+                                  s->shot[i].path);
+    if (!status)
+        status = relume_warp_homography(&moved, NULL, image, &h,
+                                        &(struct relume_align_params){.threads = s->p.threads});
+    if (!status) {
+        relume_image_destroy(image);
+        *image = moved;
+    }
+    return status;
+}
+
+static relume_status save(const struct acquisition *s, const struct shot *shot,
+                          const struct relume_image *image)
+{
+    char *path = mem_format("%s/%s", outdir_path(s->dir), shot->name);
+    const relume_status status =
+        path ? relume_image_save(image, path, relume_image_params(.log = s->p.log, .half = true))
+             : RELUME_ENOMEM;
+    mem_free(path);
+    return status;
+}
+
+relume_status acquire_check_size(const struct acquisition *s, const struct relume_image *image,
+                                 const char *path, int width, int height)
+{
+    if (!width || (image->width == width && image->height == height))
+        return RELUME_OK;
+    return log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as before it",
+                    path, image->width, image->height, width, height);
+}
+
+// What a camera that looks down notes of its orientation is chance.
+relume_status acquire_load(struct relume_image *out, struct relume_exif *notes,
+                           const struct acquisition *s, const char *path,
+                           struct relume_transfer transfer)
+{
+    struct relume_photograph_params p =
+        *relume_photograph_params(.log = s->p.log, .limits = s->p.limits, .transfer = transfer);
+    struct relume_exif own = {0};
+    notes = notes ? notes : &own;
+    const relume_status status = relume_photograph_load(out, notes, path, &p);
+    if (status || !s->orientation || notes->orientation == s->orientation)
+        return status;
+    const bool across = (notes->orientation >= 5) != (s->orientation >= 5);
+    if (s->width != (across ? out->height : out->width) ||
+        s->height != (across ? out->width : out->height))
+        return RELUME_OK;  // turned by another program
+    relume_image_destroy(out);
+    p.orientation = s->orientation;
+    return relume_photograph_load(out, notes, path, &p);
+}
+
+static relume_status warn_of_orientation(struct acquisition *s, const struct shot *shot)
+{
+    if (!s->orientation) {
+        s->orientation = shot->notes.orientation;
+        return RELUME_OK;
+    }
+    if (shot->notes.orientation == s->orientation)
+        return RELUME_OK;
+    return acquire_warn_alike(
+        s, ALIKE_TURNED, 1.0,
+        "%s: its EXIF orientation is not that of the first photograph; ignored, "
+        "because the camera stands still",
+        shot->path);
+}
+
+static relume_status take_ball(struct acquisition *s, int i)
+{
+    struct relume_image image;
+    relume_status status = acquire_load_balls(&image, s, i);
+    if (!status && s->mean.data)
+        status = acquire_check_size(s, &image, s->shot[i].ball_path, s->mean.width, s->mean.height);
+    if (!status)
+        status = add_to_mean(s, &image);
+    relume_image_destroy(&image);
+    return status;
+}
+
+static relume_status take(struct acquisition *s, int i, struct relume_image *image)
+{
+    struct shot *shot = &s->shot[i];
+    relume_status status = acquire_check_size(s, image, shot->path, s->width, s->height);
+    if (!status && shot->ball_path)
+        status = take_ball(s, i);
+    if (!status)
+        status = warn_of_orientation(s, shot);
+    if (status)
+        return status;
+    s->width = image->width;
+    s->height = image->height;
+    count_ends(shot, image, shot->notes.floats);
+    acquire_measure_detail(shot, image);
+    status = acquire_flatten(s, shot, image);
+    if (!status)
+        acquire_correct(s, image, shot->notes.floats);
+    if (!status)
+        status = acquire_add_grey(s, image);
+    if (!status)
+        status = align(s, i, image);
+    if (!status)
+        status = shrink(&shot->small, image);
+    if (!status && !shot->ball_path && !s->p.lights)
+        status = add_to_mean(s, image);
+    return status ? status : save(s, shot, image);
+}
+
+relume_status acquire_read(struct acquisition *s)
+{
+    relume_status status = RELUME_OK;
+    const int all = s->shots;
+    for (int i = 0, done = 0; !status && i < s->shots; done++) {
+        struct relume_image image;
+        struct shot *shot = &s->shot[i];
+        snprintf(shot->name, sizeof shot->name, "light%04d.exr", done);
+        status = acquire_load(&image, &shot->notes, s, shot->path, s->p.transfer);
+        if (!status)
+            status = take(s, i, &image);
+        relume_image_destroy(&image);
+        if (relume_status_is_input(status) && s->p.skip_bad)
+            status = acquire_drop(s, i, "cannot be used");
+        else
+            i++;
+        if (!status && !log_progress(s->p.log, "reading", (done + 1.0) / all))
+            status = RELUME_ECANCEL;
+    }
+    for (size_t i = 0; s->mean.data && i < (size_t)s->mean.width * (size_t)s->mean.height; i++) {
+        s->mean.data[i] = expf(s->mean.data[i]);
+        s->change.data[i] = sqrtf(s->change.data[i] / (float)s->summed);
+    }
+    if (!status && s->shots < 3)
+        status = log_fail(s->p.log, RELUME_EUNFIT, "%d photographs; expected at least 3", s->shots);
+    return status;
+}

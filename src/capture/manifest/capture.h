@@ -1,0 +1,54 @@
+// capture.h - the inside of an opened capture
+#ifndef CAPTURE_CAPTURE_H
+#define CAPTURE_CAPTURE_H
+
+#include "capture/manifest/image_cache.h"
+#include "capture/manifest/manifest.h"
+#include "image/image/image.h"
+
+struct relume_capture {
+    struct draft draft;
+    char *path;
+    struct relume_pictures pictures;  // `data` is NULL: files
+    int pictured;                     // lights of `pictures`
+    void *owned;  // what `pictures` are in, where that is the capture's own (core/base/scratch.h)
+    size_t owned_bytes;
+    const int *light_of;  // [lights]: of those; NULL: the same
+    int width, height;
+    int x, y;     // origin of the images' data windows
+    bool floats;  // an image holds floating-point numbers
+    bool repair;
+    const char *scratch;  // beside which large depth and masks are kept, or NULL
+    double assume_depth;  // of near lights' views without depth; 0: none
+    struct image_cache *cache;
+    struct relume_limits limits;
+    relume_context *context;          // of the log that it was opened with, or NULL
+    struct relume_transfer stated;    // for all images; AUTO: each file's own
+    struct relume_transfer transfer;  // of the first image, never AUTO
+};
+
+// One light at a time: an EXR of layers named by lights, which becomes a capture of pictures; and a
+// folder of pictures with a list of directions, which becomes a draft, and the list's path.
+bool olat_is_stage(const char *path, const struct relume_log *log);
+relume_status olat_open(relume_capture **out, const char *path,
+                        const struct relume_capture_params *p);
+bool olat_is_folder(const char *folder, const struct relume_log *log);
+relume_status olat_read_folder(struct draft *out, char **path, const char *folder,
+                               const struct relume_log *log);
+
+// What opening a capture does after its manifest is known: its images are looked at, defaults
+// filled in. Frees `c` on failure.
+relume_status capture_finish(relume_capture **out, relume_capture *c,
+                             const struct relume_capture_params *p);
+
+// One image of the capture, wherever it is.
+relume_status capture_picture(picture_reader **out, const relume_capture *capture, int view,
+                              int light, const struct relume_limits *limits,
+                              const struct relume_log *log);
+
+// The rows of one image, light intensity divided out, coded by `to`; NaN and infinity are errors
+// unless the capture is repaired.
+relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
+                             int light, struct relume_transfer to, const struct relume_log *log);
+
+#endif

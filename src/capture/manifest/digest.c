@@ -1,0 +1,132 @@
+// digest.c - a fingerprint of a capture, from what can be read quickly
+#include "capture/manifest/capture.h"
+#include "core/base/infile.h"
+#include "core/base/log.h"
+#include "core/base/memory.h"
+#include "core/base/thread.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MIDDLE = 4096 };  // bytes that are looked at
+
+static uint64_t hash(uint64_t h, const void *bytes, size_t n)
+{
+    const unsigned char *b = bytes;
+    for (size_t i = 0; i < n; i++)
+        h = (h ^ b[i]) * 0x100000001b3u;  // FNV-1a
+    return h;
+}
+
+static uint64_t hash_number(uint64_t h, double number)
+{
+    return hash(h, &number, sizeof number);
+}
+
+static uint64_t hash_geometry(uint64_t h, const struct relume_geometry *g)
+{
+    const double numbers[] = {
+        g->projection,  g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
+        g->perspective, g->camera_z,      g->uv_z,          g->st_z,          g->st_min[0],
+        g->st_min[1],   g->st_max[0],     g->st_max[1],     g->v_min,         g->v_max,
+        g->disc,        g->center.x,      g->center.y,      g->center.z};
+    h = hash(h, numbers, sizeof numbers);
+    return hash(h, &g->pose, sizeof g->pose);
+}
+
+static uint64_t hash_manifest(const relume_capture *c)
+{
+    const struct relume_manifest *m = &c->draft.m;
+    uint64_t h = hash_number(0xcbf29ce484222325u, (double)c->width);
+    h = hash_number(h, (double)c->height);
+    h = hash_number(h, (double)m->views);
+    h = hash(h, m->directions, (size_t)m->lights * sizeof *m->directions);
+    if (m->positions)
+        h = hash(h, m->positions, (size_t)m->lights * sizeof *m->positions);
+    if (m->intensities)
+        h = hash(h, m->intensities, (size_t)m->lights * sizeof *m->intensities);
+    h = hash_number(h, (double)m->no_falloff);
+    h = hash_number(h, (double)m->transfer.curve);
+    h = hash_number(h, (double)m->transfer.gamma);
+    h = hash_geometry(h, &m->geometry);
+    for (int i = 0; i < m->slabs; i++)
+        h = hash_geometry(h, &m->slab[i]);
+    for (int i = 0; i < m->views; i++) {
+        h = hash(h, m->view[i].uv, sizeof m->view[i].uv);
+        h = hash_number(h, (double)m->view[i].slab);
+        h = hash_number(h, (double)((m->view[i].depth != NULL) + 2 * (m->view[i].mask != NULL)));
+    }
+    return h;
+}
+
+struct digesting {
+    const relume_capture *capture;
+    const struct relume_log *log;
+    uint64_t *image;  // [views][lights]
+    int *failed;      // [views][lights]: errno
+};
+
+static void digest_file(struct digesting *d, size_t item)
+{
+    const struct relume_manifest *m = &d->capture->draft.m;
+    const size_t lights = (size_t)m->lights;
+    unsigned char bytes[MIDDLE];
+    struct infile in;
+    d->failed[item] = 0;
+    if (!infile_open(&in, m->view[item / lights].images[item % lights], NULL, d->log)) {
+        d->failed[item] = errno ? errno : EIO;
+    } else {
+        const ssize_t n = infile_read(&in, bytes, sizeof bytes, in.size / 2);
+        d->failed[item] = n < 0 ? errno : 0;
+        d->image[item] =
+            hash(hash_number(0xcbf29ce484222325u, (double)in.size), bytes, n < 0 ? 0 : (size_t)n);
+    }
+    infile_close(&in);
+}
+
+static void digest_array(struct digesting *d, size_t item)
+{
+    static const size_t sizes[] = {
+        [RELUME_SAMPLE_FLOAT] = 4, [RELUME_SAMPLE_8] = 1, [RELUME_SAMPLE_16] = 2};
+    const struct relume_pictures *p = &d->capture->pictures;
+    const size_t size =
+        (size_t)p->width * (size_t)p->height * (size_t)p->channels * sizes[p->sample];
+    const char *middle = (const char *)p->data + item * size + size / 2;
+    d->image[item] =
+        hash(0xcbf29ce484222325u, middle, size - size / 2 < MIDDLE ? size - size / 2 : MIDDLE);
+}
+
+static void digest_image(void *context, size_t item, int worker)
+{
+    struct digesting *d = context;
+    (void)worker;
+    if (d->capture->pictures.data)
+        digest_array(d, item);
+    else
+        digest_file(d, item);
+}
+
+relume_status relume_capture_digest(char text[RELUME_DIGEST], const relume_capture *capture,
+                                    const struct relume_log *log)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    const size_t lights = (size_t)m->lights, images = lights * (size_t)m->views;
+    struct digesting d = {.capture = capture, .log = log};
+    d.image = mem_zeroed(images, sizeof *d.image);
+    d.failed = mem_zeroed(images, sizeof *d.failed);
+    relume_status status = d.image && d.failed ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        thread_for(0, images, digest_image, &d);
+    for (size_t i = 0; !status && i < images; i++)
+        if (d.failed[i])
+            status = relume_input_fail(log, m->view[i / lights].images[i % lights],
+                                       "cannot be read", d.failed[i]);
+    if (!status)
+        snprintf(text, RELUME_DIGEST, "%016" PRIx64,
+                 hash(hash_manifest(capture), d.image, images * sizeof *d.image));
+    mem_free(d.image);
+    mem_free(d.failed);
+    return status;
+}

@@ -1,0 +1,68 @@
+// manifest.h - reading what describes a capture into one form; images are not touched here
+#ifndef CAPTURE_MANIFEST_H
+#define CAPTURE_MANIFEST_H
+
+#include "core/base/arena.h"
+#include "core/base/json.h"
+
+#include <relume/capture.h>
+#include <relume/directions.h>
+
+enum { MANIFEST_VERSION = 1 };
+
+// A manifest whose arrays live in `arena` and may still be changed.
+struct draft {
+    struct arena arena;
+    struct relume_manifest m;
+    struct relume_vec3 *directions, *positions;
+    float (*intensities)[3];
+    struct relume_manifest_view *view;
+    struct relume_geometry *slab;
+    bool has_window;  // the manifest states it, else it follows from the image size
+};
+void draft_free(struct draft *draft);
+
+// A .lp file. Image names are as written; lp_resolve finds the files. `positions` holds the vectors
+// as written, `m.positions` is NULL.
+relume_status lp_read(struct draft *out, const char *path, const struct relume_limits *limits,
+                      const struct relume_log *log);
+// Replace the names by existing paths (docs/user-guide: "Names decide"); missing files stay as
+// they are when `skip_missing`. Names that leave the folder mean their base name in it, unless
+// `allow_outside`; in a `project`, also a file of a folder beside it.
+relume_status lp_resolve(struct draft *draft, const char *path, bool project,
+                         const struct relume_capture_params *params);
+
+// A capture.json; paths are made relative to the working folder.
+relume_status manifest_read(struct draft *out, const char *path,
+                            const struct relume_capture_params *params);
+
+// What a draft says, whoever wrote it, is in range; vectors become what the manifest promises, and
+// directions follow from positions where there are none. An input status with a sentence,
+// RELUME_ENOMEM (manifest_check.c).
+relume_status draft_check_lights(struct draft *d, const char *path, const struct relume_log *log);
+relume_status draft_check_geometry(struct draft *d, const char *path, const struct relume_log *log);
+relume_status draft_check_views(const struct draft *d, const char *path,
+                                const struct relume_log *log);
+// The draft's arrays are those of its manifest from now on.
+void draft_publish(struct draft *d);
+
+// "PATH: WHERE; expected ..." as an input status.
+relume_status manifest_wrong(const char *path, const char *where, const char *expected,
+                             const struct relume_log *log);
+#define MANIFEST_INTENSITIES "three numbers from 1e-30 to 1e30 for every light"
+
+// Whether a name is absolute, here or on Windows, or climbs out of the folder that it begins in.
+bool leaves_folder(const char *name);
+
+// Only the lights of the tree of a capture.json or of `relume lights --json`.
+relume_status manifest_lights(struct relume_captured_lights *out, const jvalue *root,
+                              const char *path, const struct relume_log *log);
+// Those of a .dome file; the vectors that it says are in use.
+bool is_dome(const jvalue *root);
+relume_status dome_lights(struct relume_captured_lights *out, const jvalue *root, const char *path,
+                          const struct relume_log *log);
+
+// Normalise; false for a vector that is zero, infinite or NaN.
+bool direction_normalise(struct relume_vec3 *v);
+
+#endif

@@ -1,0 +1,471 @@
+// olat.c - one light at a time: captures as light stages leave them, an EXR with a layer for every
+// light, or a folder of pictures beside a list of directions
+#include "capture/manifest/capture.h"
+#include "core/base/infile.h"
+#include "core/base/log.h"
+#include "core/base/memory.h"
+#include "core/base/scratch.h"
+#include "core/base/tree.h"
+#include "image/image/exr.h"
+#include "image/image/picture.h"
+
+#include <errno.h>
+#include <relume/directions.h>
+#include <relume/photograph.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+enum { LEAST = 3, LAYER = 128 };
+
+// ---------------------------------------------------------------- layers
+
+struct layer {
+    char name[LAYER];
+    int part, channel[3];  // -1: none
+};
+
+struct layers {
+    exr_file *file;
+    struct layer *layer;
+    int count;
+    int width, height;
+    bool even;  // all parts have one size and plain samples
+};
+
+// "light0007.R" of a part, or "R" in a part named light0007: its layer and colour; -1: neither.
+static int colour_of(char layer[LAYER], const char *channel, const char *part)
+{
+    const char *dot = strrchr(channel, '.'), *letter = dot ? dot + 1 : channel;
+    const int length = dot ? (int)(dot - channel) : (int)strlen(part);
+    if (strlen(letter) != 1 || !length || length >= LAYER)
+        return -1;
+    snprintf(layer, LAYER, "%.*s", length, dot ? channel : part);
+    const char *at = strchr("RGBrgb", *letter);
+    return at ? (int)(at - "RGBrgb") % 3 : -1;
+}
+
+static struct layer *find_layer(struct layers *l, const char *name, int part)
+{
+    for (int i = l->count - 1; i >= 0; i--)  // channels of a layer follow each other
+        if (l->layer[i].part == part && !strcmp(l->layer[i].name, name))
+            return &l->layer[i];
+    if (!mem_grow(&l->layer, (size_t)l->count, sizeof *l->layer))
+        return NULL;
+    struct layer *new = &l->layer[l->count++];
+    *new = (struct layer){.part = part, .channel = {-1, -1, -1}};
+    snprintf(new->name, sizeof new->name, "%s", name);
+    return new;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    const struct layer *one = a, *two = b;
+    const int order = strverscmp(one->name, two->name);
+    return order ? order : one->part - two->part;
+}
+
+static relume_status find_layers(struct layers *l)
+{
+    const int parts = exr_part_count(l->file);
+    l->even = true;
+    for (int p = 0; p < parts; p++) {
+        const struct exr_part_info info = exr_part_info(l->file, p);
+        l->even &= info.uniform && info.sample != EXR_SAMPLE_UINT &&
+                   (!p || (info.width == l->width && info.height == l->height));
+        l->width = info.width;
+        l->height = info.height;
+        for (int c = 0; c < info.channels; c++) {
+            char name[LAYER];
+            const int colour =
+                colour_of(name, exr_channel_name(l->file, p, c), parts > 1 ? info.name : "");
+            struct layer *layer = colour < 0 ? NULL : find_layer(l, name, p);
+            if (colour >= 0 && !layer)
+                return RELUME_ENOMEM;
+            if (layer)
+                layer->channel[colour] = c;
+        }
+    }
+    int whole = 0;
+    for (int i = 0; i < l->count; i++)
+        if (l->layer[i].channel[0] >= 0 && l->layer[i].channel[1] >= 0 &&
+            l->layer[i].channel[2] >= 0)
+            l->layer[whole++] = l->layer[i];
+    l->count = whole;
+    if (whole)
+        qsort(l->layer, (size_t)whole, sizeof *l->layer, by_name);
+    return RELUME_OK;
+}
+
+static void close_layers(struct layers *l)
+{
+    mem_free(l->layer);
+    exr_close(&l->file);
+    *l = (struct layers){0};
+}
+
+static bool is_exr(const char *path, const struct relume_log *log)
+{
+    char head[4] = "";
+    FILE *f = input_kind(path, log) == INPUT_FILE ? input_open(path, log) : NULL;
+    const bool is = f && fread(head, 1, 4, f) == 4 && !memcmp(head, "\x76\x2f\x31\x01", 4);
+    if (f)
+        fclose(f);
+    return is;
+}
+
+static relume_status open_layers(struct layers *l, const char *path,
+                                 const struct relume_limits *limits, const struct relume_log *log)
+{
+    *l = (struct layers){0};
+    relume_status status = exr_open(&l->file, path, NULL, limits, log);
+    if (!status)
+        status = find_layers(l);
+    if (status)
+        close_layers(l);
+    return status;
+}
+
+// ---------------------------------------------------------------- lights
+
+// What lists of directions are called, beside the pictures.
+static const char *const lists[] = {"light_dirs", "light_directions", "lights", "directions",
+                                    "dirs",       "LightDirections"};
+static const char *const endings[] = {".txt", ".csv", ".json", ".lp"};
+enum { LISTS = sizeof lists / sizeof *lists, ENDINGS = sizeof endings / sizeof *endings };
+
+static bool exists(char **out, char *path, const struct relume_log *log)
+{
+    if (path && input_exists(path, log)) {
+        *out = path;
+        return true;
+    }
+    mem_free(path);
+    return false;
+}
+
+// "FOLDER/light_dirs.txt" and the like; NULL where there is none.
+static char *list_in(const char *folder, const struct relume_log *log)
+{
+    char *out = NULL;
+    const int some = ENDINGS - 1;  // an .lp file names its pictures: lp.c
+    for (int i = 0; i < LISTS * some; i++)
+        if (exists(&out, mem_format("%s/%s%s", folder, lists[i / some], endings[i % some]), log))
+            return out;
+    return NULL;
+}
+
+// The same of a file's own name, else in its folder.
+static char *list_beside(const char *path, const struct relume_log *log)
+{
+    const char *name = path_name(path), *dot = strrchr(name, '.');
+    const int stem = (int)(dot ? dot - path : (ptrdiff_t)strlen(path));
+    const int length = (int)(name - path);
+    char *out = NULL;
+    for (int i = 0; i < ENDINGS; i++)
+        if (exists(&out, mem_format("%.*s%s", stem, path, endings[i]), log))
+            return out;
+    char *folder = length ? mem_format("%.*s", length - 1, path) : mem_text(".");
+    out = folder ? list_in(folder, log) : NULL;
+    mem_free(folder);
+    return out;
+}
+
+// Whether a list's name is that of a picture, with its ending or without, or of a layer.
+static bool is_named(const char *picture, const char *name)
+{
+    const char *file = path_name(picture), *dot = strrchr(file, '.');
+    const size_t n = strlen(name);
+    return !strcmp(file, name) || (dot && n == (size_t)(dot - file) && !strncmp(file, name, n));
+}
+
+// The lights in the order of the pictures that a list names, names[lights]; as they stand where it
+// names none of these.
+static relume_status order_by_name(struct relume_captured_lights *lights,
+                                   const char *const *pictures, const char *list,
+                                   const struct relume_log *log)
+{
+    const size_t n = (size_t)lights->count;
+    struct relume_vec3 *ordered = mem_array(n, sizeof *ordered);
+    const char *lost = NULL;
+    size_t found = 0;
+    if (!ordered)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; lights->name && i < n; i++) {
+        size_t at = 0;
+        while (at < n && !is_named(pictures[i], lights->name[at]))
+            at++;
+        ordered[i] = lights->direction[at < n ? at : 0];
+        found += at < n;
+        lost = at < n || lost ? lost : path_name(pictures[i]);
+    }
+    if (found == n)
+        memcpy(lights->direction, ordered, n * sizeof *ordered);
+    mem_free(ordered);
+    if (found && lost)
+        return log_fail(
+            log, RELUME_EUNFIT,
+            "%s: it names no light '%s'; expected the names of all pictures, or of none", list,
+            lost);
+    return RELUME_OK;
+}
+
+// The same of layers.
+static relume_status order_by_layer(struct relume_captured_lights *lights, const struct layers *l,
+                                    const char *list, const struct relume_log *log)
+{
+    const char **name = mem_array((size_t)l->count, sizeof *name);
+    for (int i = 0; name && i < l->count; i++)
+        name[i] = l->layer[i].name;
+    const relume_status status = name ? order_by_name(lights, name, list, log) : RELUME_ENOMEM;
+    mem_free(name);
+    return status;
+}
+
+static relume_status directions_of(struct relume_captured_lights *out, const struct layers *l,
+                                   const char *path, const struct relume_log *log)
+{
+    int count;
+    const float *own = exr_get_floats(l->file, 0, "olat.directions", &count);
+    *out = (struct relume_captured_lights){0};
+    if (own && count == 3 * l->count) {
+        out->direction = mem_array((size_t)l->count, sizeof *out->direction);
+        out->count = l->count;
+        for (int i = 0; out->direction && i < l->count; i++)
+            out->direction[i] = (struct relume_vec3){(double)own[3 * i], (double)own[3 * i + 1],
+                                                     (double)own[3 * i + 2]};
+        return out->direction ? RELUME_OK : RELUME_ENOMEM;
+    }
+    char *list = list_beside(path, log);
+    if (!list)
+        return log_fail(
+            log, RELUME_EFORMAT,
+            "%s: %d layers, but no directions of their lights; expected a file beside it "
+            "with a line x y z for each, by its own name (.csv, .txt, .lp) or "
+            "light_dirs.txt",
+            path, l->count);
+    relume_status status = relume_captured_lights_load(out, list, false, log);
+    if (!status && out->count != l->count) {
+        status =
+            log_fail(log, RELUME_EUNFIT, "%s: %d lights; expected %d, one for each layer of %s",
+                     list, out->count, l->count, path);
+    }
+    if (!status)
+        status = order_by_layer(out, l, list, log);
+    if (status)
+        relume_captured_lights_destroy(out);
+    mem_free(list);
+    return status;
+}
+
+// ---------------------------------------------------------------- pictures
+
+struct filling {
+    const struct layers *l;
+    int part;
+    enum exr_sample sample;
+    int channels;
+    float *data;  // [layers][height][width][3]
+};
+
+static void fill(void *context, const struct relume_rect *at, const void *samples)
+{
+    const struct filling *f = context;
+    const struct layers *l = f->l;
+    const size_t bytes = exr_sample_bytes(f->sample), width = (size_t)at->width;
+    float row[256];
+    for (int i = 0; i < l->count; i++)
+        for (int c = 0; l->layer[i].part == f->part && c < 3; c++)
+            for (int y = at->top; y < at->top + at->height; y++) {
+                const char *from =
+                    exr_samples(samples, at, at, y, f->channels, l->layer[i].channel[c], bytes);
+                float *to =
+                    f->data + 3 * (((size_t)i * (size_t)l->height + (size_t)y) * (size_t)l->width +
+                                   (size_t)at->left);
+                for (size_t x = 0; x < width; x += 256) {
+                    const size_t n = width - x < 256 ? width - x : 256;
+                    exr_to_floats(row, f->sample, from + x * bytes, n);
+                    for (size_t k = 0; k < n; k++)
+                        to[3 * (x + k) + (size_t)c] = row[k];
+                }
+            }
+}
+
+static relume_status read_layers(float *data, const struct layers *l, const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (int p = 0; !status && p < exr_part_count(l->file); p++) {
+        const struct exr_part_info info = exr_part_info(l->file, p);
+        struct filling f = {l, p, info.sample, info.channels, data};
+        status = exr_read(l->file, p, NULL, 0, fill, &f, log);
+    }
+    return status;
+}
+
+// What messages and lists call them.
+static relume_status name_pictures(relume_capture *c, const struct layers *l, const char *path)
+{
+    for (int i = 0; i < l->count; i++) {
+        const char *name = arena_format(&c->draft.arena, "%s: %s", path, l->layer[i].name);
+        if (!name)
+            return RELUME_ENOMEM;
+        c->draft.view[0].images[i] = name;
+    }
+    return RELUME_OK;
+}
+
+// Layers become pictures in a temporary file, and these a capture.
+static relume_status capture_layers(relume_capture **out, const struct layers *l, const char *path,
+                                    const struct relume_captured_lights *lights,
+                                    const struct relume_capture_params *p)
+{
+    const size_t bytes = (size_t)l->count * (size_t)l->width * (size_t)l->height * 12;
+    const struct relume_manifest manifest = {.lights = l->count, .directions = lights->direction};
+    float *data = scratch_map(p->scratch, bytes);
+    if (!data)
+        return errno == ENOMEM
+                   ? RELUME_ENOMEM
+                   : log_fail(p->log, RELUME_EIO, "%s: no room for %s of its pictures in %s", path,
+                              memory_text(bytes, 0).text, scratch_folder());
+    const struct relume_pictures pictures = {
+        .width = l->width, .height = l->height, .channels = 3, .data = data};
+    relume_status status = read_layers(data, l, p->log);
+    if (!status)
+        status = relume_capture_create(out, &manifest, &pictures, p);
+    if (status) {
+        scratch_unmap(data, bytes);
+        return status;
+    }
+    (*out)->owned = data;
+    (*out)->owned_bytes = bytes;
+    return name_pictures(*out, l, path);
+}
+
+relume_status olat_open(relume_capture **out, const char *path,
+                        const struct relume_capture_params *p)
+{
+    struct layers l;
+    struct relume_captured_lights lights;
+    relume_status status = open_layers(&l, path, p->limits, p->log);
+    if (status)
+        return status;
+    if (!l.even)
+        status =
+            log_fail(p->log, RELUME_EUNSUPPORTED,
+                     "%s: its layers differ in size or type; expected floats of one size", path);
+    if (!status)
+        status = directions_of(&lights, &l, path, p->log);
+    if (!status) {
+        status = capture_layers(out, &l, path, &lights, p);
+        if (status)
+            relume_capture_destroy(out);
+        relume_captured_lights_destroy(&lights);
+    }
+    close_layers(&l);
+    return status;
+}
+
+bool olat_is_stage(const char *path, const struct relume_log *log)
+{
+    struct layers l;
+    if (!is_exr(path, log) || picture_is_relume(path, log) || open_layers(&l, path, NULL, NULL))
+        return false;
+    const bool is = l.count >= LEAST;
+    close_layers(&l);
+    return is;
+}
+
+// ---------------------------------------------------------------- folders
+
+// The pictures of a folder, or of the only one below that is called as stages call it.
+static relume_status list_pictures(struct relume_photographs *out, const char *folder,
+                                   const struct relume_log *log)
+{
+    static const char *const below[] = {"", "/olat", "/OLAT", "/images", "/Images"};
+    relume_status status = RELUME_EFORMAT;
+    *out = (struct relume_photographs){0};
+    for (size_t i = 0; status && i < sizeof below / sizeof *below; i++) {
+        char *path = mem_format("%s%s", folder, below[i]);
+        const char *paths[] = {path};
+        if (!path)
+            return RELUME_ENOMEM;
+        if (input_kind(path, log) == INPUT_FOLDER)
+            status = relume_photographs_list(
+                out, paths, 1, relume_photographs_params(.quiet = true, .companions = true));
+        if (!status && out->count < LEAST) {
+            relume_photographs_free(out);
+            status = RELUME_EFORMAT;
+        }
+        mem_free(path);
+    }
+    return status;
+}
+
+static int by_number(const void *a, const void *b)
+{
+    return strverscmp(*(char *const *)a, *(char *const *)b);
+}
+
+bool olat_is_folder(const char *folder, const struct relume_log *log)
+{
+    struct relume_photographs list;
+    char *lights = list_in(folder, log);
+    const bool is = lights && !list_pictures(&list, folder, log);
+    if (is)
+        relume_photographs_free(&list);
+    mem_free(lights);
+    return is;
+}
+
+static relume_status draft_of(struct draft *d, const struct relume_photographs *list,
+                              const struct relume_captured_lights *lights)
+{
+    const size_t n = (size_t)lights->count;
+    d->m = (struct relume_manifest){.geometry = relume_geometry_default(RELUME_PLANAR, 1, 1),
+                                    .lights = lights->count,
+                                    .views = 1};
+    d->directions = arena_array(&d->arena, n, sizeof *d->directions);
+    d->view = arena_array(&d->arena, 1, sizeof *d->view);
+    if (!d->directions || !d->view)
+        return RELUME_ENOMEM;
+    memcpy(d->directions, lights->direction, n * sizeof *d->directions);
+    *d->view = (struct relume_manifest_view){.images = arena_array(&d->arena, n, sizeof(char *))};
+    for (size_t i = 0; d->view->images && i < n; i++)
+        if (!(d->view->images[i] = arena_text(&d->arena, list->path[i])))
+            return RELUME_ENOMEM;
+    if (d->view->images && list->mask)
+        d->view->mask = arena_text(&d->arena, list->mask);
+    draft_publish(d);
+    return d->view->images ? RELUME_OK : RELUME_ENOMEM;
+}
+
+relume_status olat_read_folder(struct draft *out, char **path, const char *folder,
+                               const struct relume_log *log)
+{
+    struct relume_photographs list;
+    struct relume_captured_lights lights;
+    char *from = list_in(folder, log);
+    *path = from;
+    relume_status status = from ? list_pictures(&list, folder, log) : RELUME_ENOMEM;
+    if (status)
+        return status;
+    qsort(list.path, (size_t)list.count, sizeof *list.path, by_number);
+    status = relume_captured_lights_load(&lights, from, false, log);
+    if (!status && lights.count != list.count)
+        status = log_fail(log, RELUME_EUNFIT,
+                          "%s: %d lights, but %d pictures in the folder; expected one for each",
+                          from, lights.count, list.count);
+    if (!status)
+        status = order_by_name(&lights, (const char *const *)list.path, from, log);
+    if (!status)
+        status = draft_of(out, &list, &lights);
+    relume_captured_lights_destroy(&lights);
+    relume_photographs_free(&list);
+    return status;
+}
+
+bool relume_capture_is_olat(const char *path, const struct relume_log *log)
+{
+    return input_kind(path, log) == INPUT_FOLDER ? olat_is_folder(path, log)
+                                                 : olat_is_stage(path, log);
+}

@@ -1,0 +1,8 @@
+// turn_avx2.c - rotations between constraints, compiled for AVX2
+#include "core/kernel/kernels.h"
+
+#if defined(__x86_64__)
+#include "core/kernel/turn_blocks.h"
+
+const struct turn_kernels turn_avx2 = {turn_sum, turn_rotation};
+#endif

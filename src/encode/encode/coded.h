@@ -1,0 +1,14 @@
+// coded.h - planes with loss: the steps, and the views of this part by them
+#ifndef ENCODE_CODED_H
+#define ENCODE_CODED_H
+
+#include "encode/encode/material.h"
+
+// Writes `path`, or by the writer of m->p, with what has its steps by m->p->psnr_db or
+// bytes_per_pixel. Of a part these are the tiles of its share; what all parts must know
+// is shared with the team, each part making what its own views say; without a team all is made
+// here. Errors as relume_pack_encode.
+relume_status encode_coded(struct material *m, const char *path,
+                           struct relume_encode_report *report);
+
+#endif

@@ -1,0 +1,40 @@
+// coded_rows.h - coefficients of the rows that are needed, and the steps that all views share
+#ifndef ENCODE_CODED_ROWS_H
+#define ENCODE_CODED_ROWS_H
+
+#include "encode/encode/groups.h"
+#include "encode/encode/material.h"
+
+// What was added up of the rows of a view.
+struct rows_sum {
+    double error, root;
+    size_t measured, lit;
+    struct relume_encode_census census;  // without black images
+};
+
+struct coded_rows {
+    struct material *m;
+    const struct view_groups *groups;
+    const struct relume_team *team;  // or NULL
+    struct range *total;             // [planes]
+    bool masked, settled;            // steps are known
+    int most;                        // rows of tiles in a view
+    bool *there;                     // [views][most]: rows of tiles that are encoded
+    struct rows_sum *sum;            // [views]
+    bool *shone;                     // [views][lights]: a sample is above 0
+};
+
+// To be destroyed also on failure. RELUME_ENOMEM.
+relume_status coded_rows_create(struct coded_rows *out, struct material *m,
+                                const struct view_groups *groups, const struct relume_team *team);
+void coded_rows_destroy(struct coded_rows *r);
+
+// The coefficients that tiles of a group need, in all its views, or a whole view: encoded where
+// they are not there yet. An input status, RELUME_ENOMEM, RELUME_EIO, RELUME_ECANCEL.
+relume_status coded_rows_load(struct coded_rows *r, int group, struct group_share tiles);
+relume_status coded_rows_load_view(struct coded_rows *r, int view);
+// The steps, and the report of each view in m->report: each member of the team encodes the rows of
+// tiles of its share. Errors as above, and those of sharing.
+relume_status coded_rows_find_steps(struct coded_rows *r);
+
+#endif

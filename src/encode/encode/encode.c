@@ -1,0 +1,330 @@
+// encode.c - from a capture to a file in one call
+#include <relume/pack.h>
+
+#include "core/base/log.h"
+#include "core/base/memory.h"
+#include "core/base/params.h"
+#include "encode/encode/coded.h"
+#include "encode/encode/material.h"
+#include "encode/encode/pyramid.h"
+#include "format/team/gather.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool is_coded(const struct relume_pack_encode_params *p)
+{
+    return p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0;
+}
+
+// Indices into the books of view `set`.
+static relume_status assign_view(struct material *m, int i, int set,
+                                 const struct relume_books_params *p)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(m->coefficients[i]);
+    uint16_t **index = m->index + i * RELUME_MOST_BOOKS;
+    for (int b = 0; b < relume_books_info(m->books[set])->books; b++)
+        if (!(index[b] = mem_array((size_t)info->width * (size_t)info->height, sizeof **index)))
+            return RELUME_ENOMEM;
+    const relume_status status =
+        relume_books_assign(index, &m->report[i].store_rms, m->books[set], m->coefficients[i], p);
+    m->view[i].books = m->books[set];
+    m->view[i].index = (const uint16_t *const *)index;
+    return status;
+}
+
+// A reader points masked pixels to one more vector, of nothing (read_mask.c), and indices have 16
+// bits: one vector less is learnt.
+static int most_codes(const struct relume_manifest *m)
+{
+    for (int i = 0; i < m->views; i++)
+        if (m->view[i].mask)
+            return 65535;
+    return 65536;
+}
+
+struct shelf {
+    const relume_books *books;
+    uint16_t *const *index;
+    size_t width;
+};
+
+static void shelf_row(const void *user, int row, float *planes, size_t stride)
+{
+    const struct shelf *s = user;
+    books_row(planes, stride, s->books, s->index, s->width, (size_t)row);
+}
+
+// What relighting reproduces, which was measured before there were books.
+static relume_status judge_books(const struct material *m)
+{
+    relume_status status = RELUME_OK;
+    for (int i = m->first; !status && i < m->end; i++) {
+        const struct shelf shelf = {m->view[i].books, m->index + i * RELUME_MOST_BOOKS,
+                                    (size_t)relume_capture_width(m->capture)};
+        status = encode_judge(&m->report[i].psnr_db, m->coefficients[i], m->capture, i,
+                              &(const struct encode_values){shelf_row, &shelf}, m->encode);
+    }
+    return status;
+}
+
+// A view of another part, for what is learnt from it.
+static relume_status encode_other(void *user, int view, relume_coefficients **out)
+{
+    const struct material *m = user;
+    return relume_encode(out, m->coder, m->capture, view, m->encode);
+}
+
+static relume_status make_books(struct material *m)
+{
+    const struct relume_pack_encode_params *p = m->p;
+    struct relume_books_params books = *p->books;
+    const struct books_team by = {p->team, encode_other, m};
+    relume_status status = RELUME_OK;
+    if (books.codes == 65536)
+        books.codes = most_codes(relume_capture_manifest(m->capture));
+    books.threads = p->threads;
+    books.team = p->share ? p->team : NULL;
+    for (int i = m->first; !status && i < m->end; i++) {
+        const int set = p->share ? 0 : i;
+        if (set == i || i == m->first)
+            status = books_train(&m->books[set],
+                                 (const relume_coefficients *const *)m->coefficients + set,
+                                 p->share ? m->views : 1, &books, books.team ? &by : NULL);
+        if (!status)
+            status = assign_view(m, i, set, &books);
+    }
+    return status;
+}
+
+// Rows of others stay black.
+static relume_status show_rows(void *contents, int row, int rows, float *rgb)
+{
+    const struct relume_pack_contents *c = contents;
+    const struct encode_rows *some = &c->view[c->views / 2].coefficients->some;
+    return row < some->row || row >= some->row + some->rows
+               ? RELUME_OK
+               : relume_pack_preview(contents, row, rows, rgb);
+}
+
+static relume_status write_file(const struct material *m, const struct relume_encode_report *report,
+                                const char *path)
+{
+    struct relume_pack_contents contents;
+    struct relume_pack_share share;
+    char digest[RELUME_DIGEST];
+    material_contents(&contents, m);
+    contents.report = *report;
+    if (m->p->parts) {
+        const relume_status status = material_share(&share, digest, m);
+        if (status)
+            return status;
+        contents.share = &share;
+        contents.report = (struct relume_encode_report){0};
+        const bool middle = m->first <= m->views / 2 && m->views / 2 < m->end;
+        const bool waits = m->rows && !m->coefficients[m->first]->some.stored;
+        contents.preview = !middle || waits ? NULL : m->rows ? show_rows : relume_pack_preview;
+    }
+    return material_write(&contents, path, m->p);
+}
+
+// Which views, or rows of one, this part encodes. Of what is coded with loss the groups say it.
+static relume_status find_share(struct encode_share *out, const relume_capture *capture,
+                                const struct relume_pack_encode_params *p)
+{
+    const int views = relume_capture_manifest(capture)->views;
+    *out = (struct encode_share){.views = views};
+    if (p->parts && (p->part < 1 || p->part > p->parts || (p->books && p->share && !p->team)))
+        return RELUME_EINVAL;
+    if (!p->parts || is_coded(p))
+        return RELUME_OK;
+    const relume_status status = encode_share_find(out, p->part, p->parts, capture, p->log);
+    if (status)
+        return status;
+    if (out->rows && p->books)
+        return log_fail(p->log, RELUME_EUNFIT,
+                        "a codebook is learnt from a whole view; expected at most %d part%s for %d "
+                        "view%s",
+                        views, relume_plural(views), views, relume_plural(views));
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- rows whose view others have too
+
+// Whether parts tell each other their ranges, so that each packs its own rows: in whole blocks, and
+// of views that are no pyramid, whose levels need all rows.
+static bool may_settle(const struct material *m)
+{
+    const struct relume_pack_encode_params *p = m->p;
+    const int width = relume_capture_width(m->capture), height = relume_capture_height(m->capture);
+    struct encode_share share = {0};
+    bool whole = m->rows && p->team && !pyramid_is_wanted(p->pyramid, width, height);
+    for (int i = 1; whole && i <= p->parts; i++) {
+        encode_share_of(&share, i, p->parts, m->views, height);
+        whole = share.row % ENCODE_BLOCK == 0;
+    }
+    return whole;
+}
+
+// The bands of rows that begin with `row`.
+static struct range *bands_at(const relume_coefficients *c, int row)
+{
+    return c->band + (size_t)(row / BAND_ROWS) * (size_t)c->info.planes;
+}
+
+// Which rows a part has; bytes of their bands.
+static size_t bands_of(const struct material *m, int member, struct encode_share *share)
+{
+    const size_t planes = (size_t)relume_coder_info(m->coder)->planes;
+    encode_share_of(share, member + 1, m->p->parts, m->views, relume_capture_height(m->capture));
+    return (size_t)(share->rows + BAND_ROWS - 1) / BAND_ROWS * planes * sizeof(struct range);
+}
+
+// Rows that are not encoded here, since their part has not come yet or writes nothing so far, are
+// encoded for them.
+static relume_status make_ranges(void *context, int member, struct relume_buffer *out)
+{
+    const struct material *m = context;
+    const struct relume_writer writer = relume_buffer_writer(out);
+    const relume_coefficients *own = member == m->p->part - 1 ? m->coefficients[m->first] : NULL;
+    relume_coefficients *made = NULL;
+    struct encode_share share = {0};
+    const size_t size = bands_of(m, member, &share);
+    relume_status status = RELUME_OK;
+    if (!own)
+        status = encode_some_rows(&made, m->coder, m->capture, share.first, share.row, share.rows,
+                                  m->encode);
+    if (!status && !writer.write(writer.user, bands_at(own ? own : made, share.row), size, 0))
+        status = RELUME_ENOMEM;
+    relume_coefficients_destroy(&made);
+    return status;
+}
+
+static relume_status take_ranges(void *context, int member, const struct relume_buffer *piece)
+{
+    const struct material *m = context;
+    struct encode_share share = {0};
+    const size_t size = bands_of(m, member, &share);
+    if (piece->size != size)
+        return RELUME_EDAMAGED;
+    if (share.first == m->first && m->coefficients[m->first])
+        memcpy(bands_at(m->coefficients[m->first], share.row), piece->data, size);
+    return RELUME_OK;
+}
+
+static relume_status share_ranges(struct material *m)
+{
+    return team_gather(m->p->team, "ranges", make_ranges, take_ranges, m, m->p->log);
+}
+
+static relume_status settle_rows(struct material *m)
+{
+    struct relume_image *mask = &m->mask[m->first];
+    relume_status status = share_ranges(m);
+    if (!status && m->row)
+        status = relume_capture_mask(mask, m->capture, m->first, m->p->log);
+    m->view[m->first].mask = mask->data ? mask : NULL;
+    return status ? status
+                  : encode_settle_rows(m->coefficients[m->first], mask,
+                                       relume_encode_curve(m->capture, m->p->display), m->encode);
+}
+
+// What is said of the work on all views, as that of a part.
+struct part_log {
+    struct relume_log log;
+    const struct relume_log *to;
+    double first, extent;
+};
+
+static void pass_message(void *user, enum relume_level level, const char *text)
+{
+    const struct part_log *p = user;
+    if (p->to->message)
+        p->to->message(p->to->user, level, text);
+}
+
+static bool pass_progress(void *user, const char *what, double done)
+{
+    const struct part_log *p = user;
+    return log_progress(p->to, what, fmin(fmax((done - p->first) / p->extent, 0.0), 1.0));
+}
+
+// NULL for no log.
+static const struct relume_log *log_part(struct part_log *p, const struct relume_log *to,
+                                         const struct encode_share *share,
+                                         const relume_capture *capture)
+{
+    const double views = relume_capture_manifest(capture)->views;
+    const double rows = relume_capture_height(capture);
+    if (!to)
+        return NULL;
+    *p = (struct part_log){.log = *to,
+                           .to = to,
+                           .first = (share->first + share->row / rows) / views,
+                           .extent = (share->rows ? share->rows / rows : share->views) / views};
+    p->log.message = pass_message;
+    p->log.progress = pass_progress;
+    p->log.user = p;
+    return &p->log;
+}
+
+static relume_status encode_views(struct material *m)
+{
+    const struct relume_pack_encode_params *p = m->p;
+    relume_status status = RELUME_OK;
+    if (p->learn_only)
+        return may_settle(m) ? share_ranges(m) : RELUME_OK;
+    for (int i = m->first; !status && i < m->end; i++) {
+        status = material_encode(m, i);
+        if (!status)
+            status = material_extras(m, i);
+    }
+    if (!status && may_settle(m))
+        status = settle_rows(m);
+    if (!status && p->books)
+        status = make_books(m);
+    for (int i = m->first; !status && !m->rows && i < m->end; i++)
+        status = material_reduce(m, i);
+    return status;
+}
+
+relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,
+                                 const char *path, struct relume_encode_report *report,
+                                 const struct relume_pack_encode_params *params)
+{
+    const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
+    struct relume_encode_params encode = {
+        .log = p.log,
+        .domain = relume_encode_domain(capture, p.domain),
+        .storage = is_coded(&p) ? RELUME_STORE_12 : p.storage,
+        .step = is_coded(&p) ? RELUME_STEP_COMMON : p.step,
+        .threads = p.threads,
+        .scratch = p.writer ? NULL : path,
+        .display = p.display,
+    };
+    if (!path && !p.writer)
+        return RELUME_EINVAL;
+    struct material m = {.capture = capture, .coder = coder, .p = &p, .encode = &encode};
+    struct relume_encode_report total = {0};
+    struct encode_share share;
+    struct part_log part;
+    relume_status status = find_share(&share, capture, &p);
+    if (!status && p.parts && !is_coded(&p))
+        encode.log = log_part(&part, p.log, &share, capture);
+    if (!status)
+        status = material_create(&m, &share);
+    if (!status && is_coded(&p)) {
+        status = encode_coded(&m, path, &total);
+    } else if (!status) {
+        status = encode_views(&m);
+        if (!status && p.books && report)
+            status = judge_books(&m);
+        total = encode_report_mean(m.report + m.first, m.end - m.first);
+        if (!status && !p.learn_only)
+            status = write_file(&m, &total, path);
+    }
+    if (!status && report)
+        *report = total;
+    material_destroy(&m);
+    return status;
+}

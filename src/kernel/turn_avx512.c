@@ -1,8 +1,0 @@
-// turn_avx512.c - rotations between constraints, compiled for AVX-512
-#include "kernel/kernels.h"
-
-#if defined(__x86_64__)
-#include "kernel/turn_blocks.h"
-
-const struct turn_kernels turn_avx512 = {turn_sum, turn_rotation};
-#endif

@@ -1,0 +1,249 @@
+// edits_file.c - a list of edits on disk (docs/editing.md)
+//
+// Drawings and masks are in the file, not beside it: a list stays what it is when pictures change,
+// and names no file.
+#include "material/gbrdf/edits.h"
+
+#include "core/base/infile.h"
+#include "core/base/json.h"
+#include "core/base/log.h"
+#include "core/base/memory.h"
+#include "core/base/outfile.h"
+#include "material/gbrdf/drawing.h"
+#include "material/gbrdf/operations.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { VERSION = 1 };
+
+char *edits_name(const char *path)
+{
+    const size_t n = strlen(path);
+    return n > 4 && !strcasecmp(path + n - 4, ".exr")
+               ? mem_format("%.*s.edits.json", (int)(n - 4), path)
+               : mem_format("%s/edits.json", path);
+}
+
+// ---------------------------------------------------------------- writing
+
+static bool put_picture(FILE *f, const struct relume_image *image)
+{
+    char *text = drawing_text(image);
+    fprintf(f, "{\"width\": %d, \"height\": %d, \"packed\": \"%s\"}", image->width, image->height,
+            text ? text : "");
+    mem_free(text);
+    return text != NULL;
+}
+
+static bool put_value(FILE *f, const struct edit_parameter *p, const struct relume_edit *edit)
+{
+    const void *value = parameter_of(p, edit);
+    const bool list = p->count > 1;
+    switch (p->kind) {
+    case PARAMETER_NUMBERS:
+        for (int i = 0; i < p->count; i++) {
+            fputs(i ? ", " : list ? "[" : "", f);
+            fputs(jvalue_number_text(((const double *)value)[i]).text, f);
+        }
+        break;
+    case PARAMETER_LABELS:
+        for (int i = 0; i < p->count; i++)
+            fprintf(f, "%s%d", i ? ", " : list ? "[" : "", ((const int *)value)[i]);
+        break;
+    case PARAMETER_CHANNELS: fprintf(f, "\"%s\"", (const char *)value); break;
+    case PARAMETER_PICTURE: return put_picture(f, value);
+    }
+    if (list)
+        fputc(']', f);
+    return true;
+}
+
+static bool put_edit(FILE *f, const struct relume_edit *edit)
+{
+    const struct relume_edit_operation *o = edit->operation;
+    bool good = true;
+    fprintf(f, "{\"operation\": \"%s\"", o->name);
+    for (int k = 0; good && k < MOST_PARAMETERS && o->parameter[k]; k++) {
+        const struct edit_parameter *p = o->parameter[k];
+        if (p->optional && !parameter_given(p, edit))
+            continue;
+        fprintf(f, ", \"%s\": ", p->name);
+        good = put_value(f, p, edit);
+    }
+    fputc('}', f);
+    return good;
+}
+
+relume_status relume_edits_save(const relume_edits *edits, const char *path,
+                                const struct relume_log *log)
+{
+    char *name = edits_name(path), *text = NULL;
+    size_t size = 0;
+    FILE *f = name ? open_memstream(&text, &size) : NULL;
+    bool good = f != NULL;
+    if (f) {
+        fprintf(f,
+                "{\"relumeEdits\": %d, \"fingerprint\": \"%016llx\", \"undone\": %d,\n"
+                "\"operations\": [",
+                VERSION, (unsigned long long)edits->fingerprint, edits->undone);
+        for (int i = 0; good && i < edits->count; i++) {
+            fputs(i ? ",\n" : "\n", f);
+            good = put_edit(f, &edits->edit[i]);
+        }
+        fputs("]}\n", f);
+        good = !fclose(f) && good;
+    }
+    const relume_status status = good ? outfile_save(name, text, size, log) : RELUME_ENOMEM;
+    mem_free_libc(text);
+    mem_free(name);
+    return status;
+}
+
+// ---------------------------------------------------------------- reading
+
+static relume_status wrong(const struct relume_log *log, const char *what, const char *expected)
+{
+    return log_fail(log, RELUME_EFORMAT, "%s; expected %s", what, expected);
+}
+
+static relume_status read_picture(struct relume_image *out, const jvalue *value,
+                                  const struct edit_parameter *p, const struct relume_log *log)
+{
+    const char *text = jvalue_text(jvalue_member(value, "packed"));
+    int width = 0, height = 0;
+    relume_status status;
+    if (!text || !jvalue_whole(jvalue_member(value, "width"), 1, RELUME_EDIT_MOST_SIDE, &width) ||
+        !jvalue_whole(jvalue_member(value, "height"), 1, RELUME_EDIT_MOST_SIDE, &height) ||
+        !drawing_from_text(out, width, height, text, &status))
+        return wrong(log, p->name, "width and height up to 1024, and so many packed pixels");
+    return status;
+}
+
+static bool read_labels(int *out, const jvalue *value, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!jvalue_whole(count > 1 ? jvalue_item(value, (size_t)i) : value, 0,
+                          GBRDF_MOST_MATERIALS - 1, &out[i]))
+            return false;
+    return count == 1 || jvalue_count(value) == (size_t)count;
+}
+
+static relume_status read_value(struct relume_edit *edit, const jvalue *value,
+                                const struct edit_parameter *p, const struct relume_log *log)
+{
+    void *out = parameter_of(p, edit);
+    const char *text = jvalue_text(value);
+    bool good = false;
+    switch (p->kind) {
+    case PARAMETER_NUMBERS:
+        good =
+            p->count > 1 ? jvalue_numbers(value, out, (size_t)p->count) : jvalue_number(value, out);
+        break;
+    case PARAMETER_LABELS: good = read_labels(out, value, p->count); break;
+    case PARAMETER_CHANNELS: good = text && snprintf(out, 4, "%s", text) == 3; break;
+    case PARAMETER_PICTURE: return read_picture(out, value, p, log);
+    }
+    return good && parameter_is_good(p, edit) ? RELUME_OK : wrong(log, p->name, p->form);
+}
+
+// What is not known would be lost, or mean something else.
+static relume_status check_members(const jvalue *value, const struct relume_edit_operation *o,
+                                   const struct relume_log *log)
+{
+    const char *known[MOST_PARAMETERS + 2] = {"operation"};
+    for (int k = 0; k < MOST_PARAMETERS && o->parameter[k]; k++)
+        known[k + 1] = o->parameter[k]->name;
+    const char *other = jvalue_unknown(value, known);
+    return other ? log_fail(log, RELUME_EFORMAT, "has no '%s'; made by a newer relume?", other)
+                 : RELUME_OK;
+}
+
+static relume_status read_edit(struct relume_edit *edit, size_t number, const jvalue *value,
+                               const struct relume_log *log)
+{
+    const char *name = jvalue_text(jvalue_member(value, "operation"));
+    const struct relume_edit_operation *o = name ? relume_edit_operation_find(name) : NULL;
+    if (!o)
+        return log_fail(log, RELUME_EFORMAT,
+                        "edit %zu: operation; expected the name of one that this relume has%s%s%s",
+                        number, name ? "; found '" : "", name ? name : "", name ? "'" : "");
+    struct log_place place;
+    const struct relume_log *at = log_at(&place, log, "edit %zu, %s: ", number, name);
+    *edit = relume_edit_of(o);
+    relume_status status = check_members(value, o, at);
+    for (int k = 0; !status && k < MOST_PARAMETERS && o->parameter[k]; k++) {
+        const struct edit_parameter *p = o->parameter[k];
+        const jvalue *member = jvalue_member(value, p->name);
+        if (member || !p->optional)
+            status = read_value(edit, member, p, at);
+    }
+    return status;
+}
+
+static bool read_fingerprint(uint64_t *out, const jvalue *root)
+{
+    const char *text = jvalue_text(jvalue_member(root, "fingerprint"));
+    unsigned long long number = 0;
+    if (!text || strlen(text) != 16 || strspn(text, "0123456789abcdef") != 16 ||
+        sscanf(text, "%llx", &number) != 1)
+        return false;
+    *out = number;
+    return true;
+}
+
+static relume_status read_list(relume_edits *edits, const jvalue *root,
+                               const struct relume_log *log)
+{
+    const jvalue *operations = jvalue_member(root, "operations");
+    int version = 0;
+    if (!jvalue_whole(jvalue_member(root, "relumeEdits"), 1, 1000, &version))
+        return wrong(log, "no list of edits", "\"relumeEdits\": 1");
+    if (version != VERSION)
+        return log_fail(log, RELUME_EUNSUPPORTED, "expected version %d; found %d", VERSION,
+                        version);
+    if (!read_fingerprint(&edits->fingerprint, root))
+        return wrong(log, "fingerprint", "16 hexadecimal digits");
+    if (!jvalue_is_array(operations) || jvalue_count(operations) > RELUME_EDIT_MOST)
+        return wrong(log, "operations", "a list of at most 256");
+    if (!jvalue_whole(jvalue_member(root, "undone"), 0, (long long)jvalue_count(operations),
+                      &edits->undone))
+        return wrong(log, "undone", "at most as many as there are operations");
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; !status && i < jvalue_count(operations); i++) {
+        if (!mem_grow(&edits->edit, i, sizeof *edits->edit))
+            return RELUME_ENOMEM;
+        edits->edit[i] = (struct relume_edit){.operation = NULL};
+        edits->count++;
+        status = read_edit(&edits->edit[i], i + 1, jvalue_item(operations, i), log);
+    }
+    return status;
+}
+
+relume_status relume_edits_open(relume_edits **out, const char *path, uint64_t fingerprint,
+                                const struct relume_log *log)
+{
+    jvalue *root = NULL;
+    relume_status status = relume_edits_create(out, fingerprint);
+    if (status)
+        return status;
+    char *name = (*out)->file = edits_name(path);
+    struct log_place place;
+    struct relume_log quiet = log ? *log : (struct relume_log){0};
+    quiet.leave_unnoted = true;  // the next list takes its place
+    if (!name)
+        status = RELUME_ENOMEM;
+    else if (input_exists(name, log)) {
+        status = jvalue_load(&root, name, &quiet);
+        if (!status)
+            status = read_list(*out, root, log_at(&place, log, "%s: ", name));
+        if (!status)
+            status = edits_check(*out, fingerprint, path, log);
+    }
+    jvalue_free(&root);
+    if (status)
+        relume_edits_destroy(out);
+    return status;
+}

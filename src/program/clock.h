@@ -1,7 +1,0 @@
-// clock.h - the clock, for the programs
-#ifndef PROGRAM_CLOCK_H
-#define PROGRAM_CLOCK_H
-
-#include "base/clock.h"
-
-#endif

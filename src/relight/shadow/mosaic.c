@@ -1,0 +1,135 @@
+// mosaic.c - small pieces from all over a planar capture, as a capture of its own
+//
+// What neighbours are to each other is kept within a piece. Whether a sample clips has to be told
+// from the mosaic as well: samples are those of the photographs over their white, 16 bits of a
+// display curve, which are finer than theirs; floating-point numbers stay such.
+#include "relight/shadow/mosaic.h"
+
+#include "core/base/log.h"
+#include "core/base/memory.h"
+
+#include <math.h>
+
+enum { PIECE = 8, PIECES = 8 };  // pixels along a side, pieces along a side
+
+static int side_of(int whole)
+{
+    return whole < PIECE * PIECES ? whole : PIECE * PIECES;
+}
+
+// Pieces lie in the middle of equal parts of the whole.
+static void place(int *at, int n, int whole)
+{
+    for (int i = 0; i < n; i++)
+        at[i] =
+            n == whole ? i : (2 * (i / PIECE) + 1) * whole / (2 * PIECES) - PIECE / 2 + i % PIECE;
+}
+
+static void take_picture(const struct mosaic *m, const struct relume_image *image, int light,
+                         struct relume_transfer coded, const float *white)
+{
+    size_t to = 3 * (size_t)light * (size_t)m->rows * (size_t)m->columns;
+    for (int y = 0; y < m->rows; y++)
+        for (int x = 0; x < m->columns; x++) {
+            const float *from =
+                image->data + 3 * ((size_t)m->y[y] * (size_t)image->width + (size_t)m->x[x]);
+            for (int c = 0; c < 3; c++, to++)
+                if (isinf(white[c]))
+                    ((float *)m->pictures)[to] = relume_transfer_encode(coded, from[c]);
+                else
+                    ((uint16_t *)m->pictures)[to] = (uint16_t)lrintf(
+                        65535.0f * relume_transfer_encode(
+                                       coded, fminf(fmaxf(from[c] / white[c], 0.0f), 1.0f)));
+        }
+}
+
+static relume_status take_mask(struct mosaic *m, const relume_capture *capture,
+                               const struct relume_log *log)
+{
+    struct relume_image whole = {0};
+    relume_status status = relume_capture_mask(&whole, capture, 0, log);
+    if (!status && whole.data &&
+        !(m->mask = mem_array((size_t)m->rows * (size_t)m->columns, sizeof *m->mask)))
+        status = RELUME_ENOMEM;
+    for (int y = 0; m->mask && y < m->rows; y++)
+        for (int x = 0; x < m->columns; x++)
+            m->mask[y * m->columns + x] =
+                whole.data[(size_t)m->y[y] * (size_t)whole.width + (size_t)m->x[x]];
+    relume_image_destroy(&whole);
+    return status;
+}
+
+// `bright[lights]`: what their white was divided by.
+static relume_status take_all(struct mosaic *m, const relume_capture *capture, float (*bright)[3],
+                              struct relume_transfer coded, const struct relume_log *log)
+{
+    const int lights = relume_capture_manifest(capture)->lights;
+    relume_status status = take_mask(m, capture, log);
+    for (int i = 0; !status && i < lights; i++) {
+        struct relume_image image = {0};
+        float white[3];
+        if (!log_progress(log, "judging highlights", 0.3 * i / lights))
+            return RELUME_ECANCEL;
+        status = relume_capture_image(&image, capture, 0, i, log);
+        relume_capture_white(capture, i, white);
+        if (!status)
+            take_picture(m, &image, i, coded, white);
+        for (int c = 0; c < 3; c++)
+            bright[i][c] = isinf(white[c]) ? 1.0f : 1.0f / white[c];
+        relume_image_destroy(&image);
+    }
+    return status;
+}
+
+relume_status mosaic_open(struct mosaic *m, const relume_capture *capture,
+                          const struct relume_log *log)
+{
+    const struct relume_manifest *of = relume_capture_manifest(capture);
+    const int width = relume_capture_width(capture), height = relume_capture_height(capture);
+    *m = (struct mosaic){.columns = side_of(width), .rows = side_of(height)};
+    const size_t n = (size_t)of->lights * (size_t)m->rows * (size_t)m->columns;
+    float white[3];
+    relume_capture_white(capture, 0, white);
+    const bool floats = isinf(white[0]);
+    float(*bright)[3] = mem_array((size_t)of->lights, sizeof *bright);
+    m->x = mem_array((size_t)m->columns, sizeof *m->x);
+    m->y = mem_array((size_t)m->rows, sizeof *m->y);
+    m->pictures = mem_array(3 * n, floats ? sizeof(float) : sizeof(uint16_t));
+    struct relume_manifest manifest = {
+        .transfer = of->transfer.curve == RELUME_CURVE_GAMMA
+                        ? of->transfer
+                        : (struct relume_transfer){.curve = floats ? RELUME_CURVE_LINEAR
+                                                                   : RELUME_CURVE_SRGB},
+        .geometry = relume_geometry_default(RELUME_PLANAR, m->columns, m->rows),
+        .lights = of->lights,
+        .directions = of->directions,
+        .intensities = (const float(*)[3])bright};
+    relume_status status = bright && m->x && m->y && m->pictures ? RELUME_OK : RELUME_ENOMEM;
+    if (!status) {
+        place(m->x, m->columns, width);
+        place(m->y, m->rows, height);
+        status = take_all(m, capture, bright, manifest.transfer, log);
+    }
+    if (!status) {
+        const struct relume_pictures pictures = {.sample = floats ? RELUME_SAMPLE_FLOAT
+                                                                  : RELUME_SAMPLE_16,
+                                                 .width = m->columns,
+                                                 .height = m->rows,
+                                                 .channels = 3,
+                                                 .data = m->pictures,
+                                                 .mask = m->mask};
+        status = relume_capture_create(&m->capture, &manifest, &pictures,
+                                       relume_capture_params(.log = log));
+    }
+    mem_free(bright);
+    return status;
+}
+
+void mosaic_close(struct mosaic *m)
+{
+    relume_capture_destroy(&m->capture);
+    mem_free(m->x);
+    mem_free(m->y);
+    mem_free(m->pictures);
+    mem_free(m->mask);
+}

@@ -1,7 +1,8 @@
 // tone.h - linear light becomes what a screen can show: exposure, then a tone operator
 //
 // An operator takes linear light of any size to linear light in [0, 1]; the sRGB curve comes after
-// it, when a picture is saved or presented. Sources stand at each operator in src/relight/eye/tone.c.
+// it, when a picture is saved or presented. Sources stand at each operator in
+// src/relight/eye/tone.c.
 #ifndef RELUME_TONE_H
 #define RELUME_TONE_H
 

@@ -1,5 +1,5 @@
-// test_ciede2000.c - tests of src/image/compare/ciede2000.h: perceived colour difference (Sharma, Wu,
-// Dalal 2005, kL = kC = kH = 1)
+// test_ciede2000.c - tests of src/image/compare/ciede2000.h: perceived colour difference (Sharma,
+// Wu, Dalal 2005, kL = kC = kH = 1)
 #include "test.h"
 
 #include "image/compare/ciede2000.h"

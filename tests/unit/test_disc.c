@@ -1,5 +1,5 @@
-// test_disc.c - tests of src/format/coder/disc.h: cosines on the stereographic discs of the sphere (Wong
-// 1998, 9.1.2)
+// test_disc.c - tests of src/format/coder/disc.h: cosines on the stereographic discs of the sphere
+// (Wong 1998, 9.1.2)
 #include "test.h"
 
 #include "format/coder/disc.h"

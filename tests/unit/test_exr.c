@@ -1,5 +1,5 @@
-// test_exr.c - tests of src/image/image/exr.h: multi-part scanline OpenEXR files: the container under
-// relume files and EXR images
+// test_exr.c - tests of src/image/image/exr.h: multi-part scanline OpenEXR files: the container
+// under relume files and EXR images
 #include "test.h"
 
 #include "core/base/thread.h"

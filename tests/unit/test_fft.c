@@ -1,4 +1,5 @@
-// test_fft.c - tests of src/core/math/fft.h: Fourier and cosine transforms; the folder's door to FFTW
+// test_fft.c - tests of src/core/math/fft.h: Fourier and cosine transforms; the folder's door to
+// FFTW
 // (`make FFT=kiss`: to kissfft)
 #include "core/math/fft2d.h"
 #include "test.h"

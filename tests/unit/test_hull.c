@@ -1,5 +1,5 @@
-// test_hull.c - tests of src/core/math/hull.h: triangulation of directions on the sphere: the convex
-// hull of unit vectors is their spherical Delaunay triangulation (Brown 1979)
+// test_hull.c - tests of src/core/math/hull.h: triangulation of directions on the sphere: the
+// convex hull of unit vectors is their spherical Delaunay triangulation (Brown 1979)
 #include "test.h"
 
 #include "core/base/memory.h"

@@ -1,5 +1,5 @@
-// test_manifest.c - tests of src/capture/manifest/manifest.h: reading what describes a capture into one
-// form; images are not touched here
+// test_manifest.c - tests of src/capture/manifest/manifest.h: reading what describes a capture into
+// one form; images are not touched here
 #include "test.h"
 
 #include "capture/manifest/manifest.h"

@@ -1,5 +1,5 @@
-// test_outdir.c - tests of src/core/base/outdir.h: folders, and files that others write, that appear
-// whole or not at all
+// test_outdir.c - tests of src/core/base/outdir.h: folders, and files that others write, that
+// appear whole or not at all
 #include "test.h"
 
 #include "core/base/beside.h"

@@ -1,5 +1,5 @@
-// test_piz.c - tests of src/image/image/piz.h: blocks of every kind become the bytes that OpenEXR's own
-// library makes of them
+// test_piz.c - tests of src/image/image/piz.h: blocks of every kind become the bytes that OpenEXR's
+// own library makes of them
 #include "test.h"
 
 #include "image/image/piz.h"

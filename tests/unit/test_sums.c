@@ -1,5 +1,5 @@
-// test_sums.c - tests of src/format/coder/sums.h: sums over all lights, of which some are picked, are
-// those of the samples of these lights
+// test_sums.c - tests of src/format/coder/sums.h: sums over all lights, of which some are picked,
+// are those of the samples of these lights
 #include "test.h"
 
 #include "format/coder/sums.h"

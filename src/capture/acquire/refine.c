@@ -1,9 +1,9 @@
 // refine.c - lights and surface from the images, in turn
 //
 // The value of a matte pixel under a light is g.l with g = albedo x normal and l = brightness x
-// direction: a bilinear system, solved for all g with l fixed (robustly, core/math/lambert.h) and for
-// all l with g fixed, by turns. Its solutions are known up to g -> A^-T g, l -> A l. The A that is
-// taken brings the l nearest to the directions given, over all lights: their common error stays,
+// direction: a bilinear system, solved for all g with l fixed (robustly, core/math/lambert.h) and
+// for all l with g fixed, by turns. Its solutions are known up to g -> A^-T g, l -> A l. The A that
+// is taken brings the l nearest to the directions given, over all lights: their common error stays,
 // that of one against the others goes. Where it is asked for, integrability (integrable.h) then
 // corrects part of the common error as well.
 #include <relume/acquire.h>

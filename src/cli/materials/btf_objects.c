@@ -21,8 +21,8 @@ static bool is_baked(const char *path)
 bool btf_is_objects(const struct btf_options *o)
 {
     const char *name = o->args.input[0], *dot = strrchr(name, '.');
-    return o->mesh || (dot && !strcmp(dot, ".json")) ||
-           relume_kind_of(name) == RELUME_KIND_MODEL || is_baked(name);
+    return o->mesh || (dot && !strcmp(dot, ".json")) || relume_kind_of(name) == RELUME_KIND_MODEL ||
+           is_baked(name);
 }
 
 relume_status objects_open(relume_objects **out, const char *path, const char *reflections,

@@ -3,7 +3,8 @@
 // Readers of foreign formats run in relume-helper, a program beside the modules. One is started
 // for the first such file and loads what it needs once (a third of a second); then it forks
 // processes that have the files they are given, little memory and time, and no way to write, to
-// open anything else or to reach the network (src/cli/helper). What crashes there is one sentence here.
+// open anything else or to reach the network (src/cli/helper). What crashes there is one sentence
+// here.
 //
 // A model has a process of its own. Forking one takes 5 ms and more, so pictures share: each goes
 // to a process that has nothing open, then to a new one, and where there are as many as processors

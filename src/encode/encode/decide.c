@@ -27,7 +27,8 @@ static const double CLEARLY_DB = 1.5;
 // captured ones, unless one of the two is ahead there by more than these.
 static const double LEFT_OUT_COUNTS = 8.0, FAR_DB = 6.0;
 
-// Of a number of the functions, as text in the header (format/pack/functions.h), about six bits each.
+// Of a number of the functions, as text in the header (format/pack/functions.h), about six bits
+// each.
 static const double BYTES_EACH = 0.75;
 
 static double wanted(const struct relume_pack_encode_params *p)

@@ -271,7 +271,8 @@ static relume_status check_below(const struct gathering *g, const char *folder)
     look_below(&b, folder, p->log);
     relume_status status = RELUME_OK;
     if (b.most > count) {
-        const char *q = relume_name_quotes(b.folder), *lights = p->command && list->lights ? list->lights : "";
+        const char *q = relume_name_quotes(b.folder),
+                   *lights = p->command && list->lights ? list->lights : "";
         char here[32] = "no photographs", more[32] = "";
         if (count)
             snprintf(here, sizeof here, "%d photograph%s", count, relume_plural(count));

@@ -2,9 +2,9 @@
 //
 // JPEG files and EXR and PNG files of the plain kind, which are most, are read by jpeg.c, exr.c and
 // png.c; all others of the formats that picture_kind.c lists, and EXIF, by OpenImageIO in a process
-// of their own (core/base/helper.h). That one brings over 200 shared libraries, a third of a second at
-// every start: so the C++ that knows it (oiio.cpp) is a module, librelume-oiio.so. The helper opens
-// it when the first file asks for it, picture.c before it writes one; nobody else notices.
+// of their own (core/base/helper.h). That one brings over 200 shared libraries, a third of a second
+// at every start: so the C++ that knows it (oiio.cpp) is a module, librelume-oiio.so. The helper
+// opens it when the first file asks for it, picture.c before it writes one; nobody else notices.
 #ifndef IMAGE_PICTURE_H
 #define IMAGE_PICTURE_H
 
@@ -17,8 +17,8 @@
 extern "C" {
 #endif
 
-// The file `path`, or what `from` reads (core/base/infile.h). An input status with a sentence that names
-// the file.
+// The file `path`, or what `from` reads (core/base/infile.h). An input status with a sentence that
+// names the file.
 relume_status picture_open(picture_reader **out, const char *path, const struct relume_reader *from,
                            const struct relume_limits *limits, const struct relume_log *log);
 

@@ -1,10 +1,10 @@
 // normals.c - robust photometric stereo
 //
 // One band of rows at a time is relit under every captured direction, and each pixel is fitted as a
-// matte surface (core/math/lambert.h). Where it is known from where the surface is seen its material is
-// learned (capture/stereo/field.h), and the normals of a lattice of pixels are found with it, under some of
-// the lights: 32 of 96 do as well as all. What that changes between two pixels of the lattice
-// changes evenly: it depends on the material and on where the surface faces.
+// matte surface (core/math/lambert.h). Where it is known from where the surface is seen its
+// material is learned (capture/stereo/field.h), and the normals of a lattice of pixels are found
+// with it, under some of the lights: 32 of 96 do as well as all. What that changes between two
+// pixels of the lattice changes evenly: it depends on the material and on where the surface faces.
 #include <relume/normals.h>
 #include <relume/relight.h>
 

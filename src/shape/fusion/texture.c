@@ -1,9 +1,10 @@
 // texture.c - what relit views show of a surface, as a picture that lies on it
 //
-// The surface is flattened onto charts (shape/atlas/atlas.h). Each texel knows its place and normal, asks
-// every view, and takes the mean of what they show, those more that see it from before. Where
-// nobody has seen anything the means of ever larger squares of texels step in (push-pull, Gortler
-// et al. 1996), so that no other chart's colour or black shows at borders, nor in smaller versions.
+// The surface is flattened onto charts (shape/atlas/atlas.h). Each texel knows its place and
+// normal, asks every view, and takes the mean of what they show, those more that see it from
+// before. Where nobody has seen anything the means of ever larger squares of texels step in
+// (push-pull, Gortler et al. 1996), so that no other chart's colour or black shows at borders, nor
+// in smaller versions.
 #include "shape/fusion/texture.h"
 
 #include "core/base/log.h"

@@ -1,8 +1,8 @@
 // mesh_other.h - models of every format that Assimp reads, glTF among them
 //
 // Assimp is 10 MB of C++ that only these formats need, so what knows it is a module of its own,
-// librelume-assimp.so. The helper (core/base/helper.h) opens it and reads every model in a process of
-// its own: what is damaged, or made to do harm, does none here.
+// librelume-assimp.so. The helper (core/base/helper.h) opens it and reads every model in a process
+// of its own: what is damaged, or made to do harm, does none here.
 #ifndef MESH_MESH_OTHER_H
 #define MESH_MESH_OTHER_H
 

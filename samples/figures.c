@@ -17,7 +17,7 @@
 //   changes
 //                                   from frame to frame, and how strong that is (RMS, truth: 1)
 #define RELUME_VEC3_SHORT
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <math.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 //     cc -std=c11 memory.c $(pkg-config --cflags --libs relume) -lm -o memory
 //     ./memory
 #include <math.h>
-#include <relume/relume.h>
+#include <relume/extensions.h>
 #include <stdio.h>
 #include <stdlib.h>
 

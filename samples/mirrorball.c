@@ -4,7 +4,7 @@
 //
 //     mirrorball CAPTURE FOLDER      for example: relume synth bust -o bust; mirrorball bust photos
 #define RELUME_VEC3_SHORT
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <errno.h>
 #include <math.h>

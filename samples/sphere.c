@@ -10,7 +10,7 @@
 // Shades: `full` is Lambert + lobe + shadow; `lambert` is albedo max(0, n.l); `wrap` is
 // albedo (1 + n.l) / 2, which four spherical harmonics hold exactly.
 #define RELUME_VEC3_SHORT
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <errno.h>
 #include <math.h>

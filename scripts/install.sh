@@ -24,8 +24,8 @@ put 755 "$build/librelume-oiio.so.$major" "$dest/$lib"
 put 755 "$build/librelume-assimp.so.$major" "$dest/$lib"
 put 755 "$build/relume-helper" "$dest/$lib"
 [ ! -e "$build/librelume-stitch.so.$major" ] || put 755 "$build/librelume-stitch.so.$major" "$dest/$lib"
-for header in "$here"/include/relume/*.h; do
-    put 644 "$header" "$dest/include/relume"
+(cd "$here/include" && find relume -name '*.h') | while read -r header; do
+    put 644 "$here/include/$header" "$dest/include/${header%/*}"
 done
 put 644 "$here/LICENSE" "$dest/share/doc/relume"
 

@@ -9,39 +9,38 @@ set -eu
 cd "$(dirname "$0")/.."
 
 # wing: the public headers whose functions it has; it may use what stands above it
-wings="core:base context io vec
-image:image photograph response jnd directions
-capture:capture align acquire ball chart ingest photometric slab_depth
-format:coder codebook team pack
-relight:light relight relighter rig shadow normals enhance view slab_set viewport frame evaluate renderer tone psf eye glare
-material:btf btf_environment edit surface synthesis maps change
-encode:heldout
-exchange:exchange notes
-shape:mesh simplify billboards volume fusion
-world:transport points object reflection bake scene tableau
-site:publish study"
+wings="core:base context core/vec
+image:image camera image/photograph image/response image/jnd image/directions
+capture:capture capture/align capture/acquire capture/ball capture/chart capture/ingest capture/photometric capture/slab_depth
+format:pack format/coder format/codebook format/team
+relight:light rig frame renderer evaluate relight/relight relight/relighter relight/shadow relight/normals relight/enhance relight/view relight/slab_set relight/viewport relight/tone relight/psf relight/eye relight/glare
+material:material/btf material/btf_environment material/edit material/surface material/synthesis material/maps material/change
+encode:encode/heldout
+exchange:exchange exchange/notes
+shape:shape/mesh shape/simplify shape/billboards shape/volume shape/fusion
+world:world/transport world/points world/object world/reflection world/bake world/scene world/tableau
+site:publish site/study"
 
 # What points up still, FILE>HEADER: to be mended, and never to grow
 still="shape/atlas/atlas.h>world/baked/baked.h shape/atlas/charts.h>world/baked/baked.h
-format/pack/learnt.h>relume/shadow.h format/pack/read_view.c>relume/shadow.h
-image/geometry/geometry.c>relume/capture.h image/geometry/print.h>relume/capture.h image/geometry/camera.h>relume/capture.h
-shape/mesh/tangents.h>relume/object.h"
+format/pack/learnt.h>relume/relight/shadow.h format/pack/read_view.c>relume/relight/shadow.h
+shape/mesh/tangents.h>relume/world/object.h"
 
 # folder of a program: private folders it may include beside its own | public headers it may include (* = all)
-rules="cli/program:core/base:base image notes pack slab_set
+rules="cli/program:core/base:base image exchange/notes pack relight/slab_set
 cli/helper:core/base image/image shape/mesh:base
 cli/measure:core/base core/math core/kernel image/image:*
 cli:cli/program:*
-cli/mpi:cli:io team
+cli/mpi:cli:context format/team
 cli/materials:cli cli/program:*
 cli/studies:cli cli/program:*
 cli/commands:cli cli/materials cli/program cli/measure:*
 cli/meshes:cli cli/program:*
-viewer/common::base vec
+viewer/common::base core/vec
 viewer/app:common cli/program:*
 viewer/gl:common cli/program:base image
 viewer/relit:common cli/program app gl:*
-viewer/glare:common cli/program app gl:base image eye psf glare
+viewer/glare:common cli/program app gl:base image relight/eye relight/psf relight/glare
 viewer/transport:common cli/program app gl:*
 viewer/draw:common cli/program app gl relit glare transport:*
 viewer/panel:common cli/program app gl:*

@@ -63,7 +63,7 @@ without_comment() {
         print FILENAME ": " $0
     }
     /^[^ ].*\{$/ { within = 1 }
-    /^\}/ { within = 0 }' include/relume/*.h
+    /^\}/ { within = 0 }' $(find include/relume -name "*.h" | LC_ALL=C sort)
 }
 
 largest() {

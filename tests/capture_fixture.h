@@ -3,7 +3,7 @@
 #define CAPTURE_FIXTURE_H
 
 #include <math.h>
-#include <relume/relume.h>
+#include <relume/extensions.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 
 #include <math.h>
 #define RELUME_VEC3_SHORT
-#include <relume/relume.h>
+#include <relume/extensions.h>
 #include <stdlib.h>
 
 enum { MADE_WIDTH = 320, MADE_HEIGHT = 240, MADE_RAYS = 3, MADE_BALLS = 4 };

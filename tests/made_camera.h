@@ -5,7 +5,7 @@
 #define MADE_CAMERA_H
 
 #include <math.h>
-#include <relume/relume.h>
+#include <relume/extensions.h>
 #include <stdlib.h>
 
 struct made_shot {

@@ -3,7 +3,7 @@
 #define MADE_CHART_H
 
 #include <math.h>
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 struct made_chart {
     double x, y, pitch, turn_deg;   // where its middle lies, pixels from patch to patch

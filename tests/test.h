@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include <math.h>
-#include <relume/relume.h>
+#include <relume/extensions.h>
 #define RELUME_VEC3_SHORT
-#include <relume/vec.h>
+#include <relume/core/vec.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #include "core/base/arena.h"
 #include "image/image/exr.h"
 
-#include <relume/io.h>
+#include <relume/context.h>
 #include <string.h>
 
 // The attribute that says so goes, the others stay in their order.

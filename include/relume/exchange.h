@@ -3,8 +3,8 @@
 #define RELUME_EXCHANGE_H
 
 #include <relume/base.h>
-#include <relume/coder.h>
-#include <relume/io.h>
+#include <relume/context.h>
+#include <relume/format/coder.h>
 #include <relume/pack.h>
 
 #ifdef __cplusplus

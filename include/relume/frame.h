@@ -4,12 +4,12 @@
 
 #include <relume/base.h>
 #include <relume/capture.h>
-#include <relume/enhance.h>
 #include <relume/image.h>
 #include <relume/pack.h>
-#include <relume/relight.h>
-#include <relume/slab_set.h>
-#include <relume/view.h>
+#include <relume/relight/enhance.h>
+#include <relume/relight/relight.h>
+#include <relume/relight/slab_set.h>
+#include <relume/relight/view.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,7 +3,7 @@
 #define RELUME_IMAGE_H
 
 #include <relume/base.h>
-#include <relume/io.h>
+#include <relume/context.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,7 +34,7 @@ enum relume_curve {
     RELUME_CURVE_LINEAR,
     RELUME_CURVE_SRGB,      // IEC 61966-2-1, continued above 1 and mirrored below 0
     RELUME_CURVE_GAMMA,     // code = linear^(1/gamma)
-    RELUME_CURVE_RESPONSE,  // a camera's, measured (relume/response.h)
+    RELUME_CURVE_RESPONSE,  // a camera's, measured (relume/image/response.h)
     RELUME_CURVE_LOG,  // code = ln(1 + linear / delta) / ln(1 + 1 / delta): black is 0, white 1
 };
 struct relume_response;

@@ -4,11 +4,11 @@
 
 #include <relume/base.h>
 #include <relume/capture.h>
-#include <relume/codebook.h>
-#include <relume/coder.h>
+#include <relume/context.h>
+#include <relume/format/codebook.h>
+#include <relume/format/coder.h>
 #include <relume/image.h>
-#include <relume/io.h>
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -279,19 +279,19 @@ struct relume_pack_info {
     bool has_gloss;   // highlights wander: relume_pack_gloss
     bool has_sums;    // check sums, by which relume_pack_check notices any byte that has changed
     const char *provenance;  // of the photographs, a JSON object (docs/format.md), or NULL
-    const char
-        *notes;  // that the file holds itself, a page of annotations (relume/notes.h), or NULL
+    const char *notes;       // that the file holds itself, a page of annotations
+                             // (relume/exchange/notes.h), or NULL
 };
 // It belongs to the pack.
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
 
 // Most bytes of notes that a file holds itself.
 enum { RELUME_PACK_MOST_NOTES = 1 << 26 };
-// Put a page of annotations (relume/notes.h, UTF-8) into the file `path`, in place of one that it
-// holds; NULL: take it out. All else stays as it is, pictures byte by byte, check sums are made
-// anew; the file is replaced as a whole or not at all, and one that is open goes on to be what it
-// was. RELUME_EFORMAT for what is no relume file, RELUME_ELIMIT for longer notes, an input status,
-// RELUME_EIO, RELUME_ENOMEM.
+// Put a page of annotations (relume/exchange/notes.h, UTF-8) into the file `path`, in place of one
+// that it holds; NULL: take it out. All else stays as it is, pictures byte by byte, check sums are
+// made anew; the file is replaced as a whole or not at all, and one that is open goes on to be what
+// it was. RELUME_EFORMAT for what is no relume file, RELUME_ELIMIT for longer notes, an input
+// status, RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_pack_keep_notes(const char *path, const char *notes,
                                                    const struct relume_log *log);
 

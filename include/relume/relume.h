@@ -1,68 +1,21 @@
-// relume.h - the whole public API
+// relume.h - the core of the public API: capture, encode, open, relight, show, export, publish
+//
+// Extensions have headers of their own, in folders: relume/material/btf.h, relume/shape/mesh.h.
 #ifndef RELUME_H
 #define RELUME_H
 
-#include <relume/align.h>
-#include <relume/btf_environment.h>
 #include <relume/base.h>
-#include <relume/bake.h>
-#include <relume/ball.h>
-#include <relume/billboards.h>
-#include <relume/btf.h>
+#include <relume/camera.h>
 #include <relume/capture.h>
-#include <relume/change.h>
-#include <relume/codebook.h>
-#include <relume/coder.h>
 #include <relume/context.h>
-#include <relume/enhance.h>
 #include <relume/evaluate.h>
 #include <relume/exchange.h>
-#include <relume/eye.h>
 #include <relume/frame.h>
-#include <relume/fusion.h>
-#include <relume/glare.h>
-#include <relume/heldout.h>
 #include <relume/image.h>
-#include <relume/io.h>
-#include <relume/jnd.h>
 #include <relume/light.h>
-#include <relume/maps.h>
-#include <relume/mesh.h>
-#include <relume/slab_depth.h>
-#include <relume/directions.h>
-#include <relume/edit.h>
-#include <relume/normals.h>
-#include <relume/notes.h>
-#include <relume/object.h>
 #include <relume/pack.h>
-#include <relume/photograph.h>
-#include <relume/photometric.h>
-#include <relume/points.h>
-#include <relume/psf.h>
 #include <relume/publish.h>
-#include <relume/reflection.h>
-#include <relume/relight.h>
-#include <relume/relighter.h>
 #include <relume/renderer.h>
-#include <relume/response.h>
 #include <relume/rig.h>
-#include <relume/scene.h>
-#include <relume/acquire.h>
-#include <relume/viewport.h>
-#include <relume/shadow.h>
-#include <relume/simplify.h>
-#include <relume/slab_set.h>
-#include <relume/study.h>
-#include <relume/surface.h>
-#include <relume/synthesis.h>
-#include <relume/tableau.h>
-#include <relume/chart.h>
-#include <relume/team.h>
-#include <relume/tone.h>
-#include <relume/transport.h>
-#include <relume/vec.h>
-#include <relume/view.h>
-#include <relume/volume.h>
-#include <relume/ingest.h>
 
 #endif

@@ -243,7 +243,7 @@ def _kind_in_c(place: str, of) -> str:
 
 
 def _layout_in_c() -> str:
-    lines = ["#include <relume/relume.h>", "#include <stdio.h>"]
+    lines = ["#include <relume/extensions.h>", "#include <stdio.h>"]
     lines += [f'_Static_assert({k} == {v}, "{k}");' for k, v in CONSTANTS.items()]
     lines += [FUNCTIONS, "int main(void)", "{"]
     for name, of in structs.items():

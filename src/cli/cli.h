@@ -6,7 +6,7 @@
 #include "cli/program/output_name.h"
 #include "cli/program/say.h"
 
-#include <relume/relume.h>
+#include <relume/extensions.h>
 #include <stddef.h>
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 #ifndef CLI_FILL_H
 #define CLI_FILL_H
 
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 struct fill {
     const char *path;       // where to write

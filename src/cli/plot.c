@@ -4,7 +4,7 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <math.h>
-#include <relume/io.h>
+#include <relume/context.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

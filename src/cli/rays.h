@@ -2,7 +2,7 @@
 #ifndef CLI_RAYS_H
 #define CLI_RAYS_H
 
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 // One ray a line, eye and direction, six numbers with spaces or commas between them; empty lines
 // and what follows a # are passed over. "-" is stdin. `*out` from malloc. An input status with a

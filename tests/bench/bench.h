@@ -4,7 +4,7 @@
 
 #include "cli/measure/times.h"
 
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <math.h>
 #include <stdio.h>

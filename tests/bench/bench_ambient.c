@@ -8,7 +8,7 @@
 // `ball` are relume_btf_environment on that wall and over orientations all around, the latter
 // relative to all of them.
 #define RELUME_VEC3_SHORT
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -10,10 +10,10 @@
 
 #include <math.h>
 #include <relume/image.h>
-#include <relume/jnd.h>
-#include <relume/object.h>
+#include <relume/image/jnd.h>
+#include <relume/world/object.h>
 #define RELUME_VEC3_SHORT
-#include <relume/vec.h>
+#include <relume/core/vec.h>
 #include <string.h>
 #include <unistd.h>
 

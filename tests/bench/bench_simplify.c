@@ -11,10 +11,10 @@
 #include "shape/mesh/simplify_run.h"
 
 #include <dlfcn.h>
-#include <relume/jnd.h>
-#include <relume/simplify.h>
+#include <relume/image/jnd.h>
+#include <relume/shape/simplify.h>
 #define RELUME_VEC3_SHORT
-#include <relume/vec.h>
+#include <relume/core/vec.h>
 
 #include <string.h>
 #include <unistd.h>

@@ -6,7 +6,7 @@
 // light_directions.txt, light_intensities.txt and normals.npy. Mean angle in degrees for all
 // lights, over five draws of ten of them, and where the lamps' brightness is not known.
 #define RELUME_VEC3_SHORT
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -109,8 +109,7 @@ expect_fail "a tool without its module says so" 3 'module for image formats cann
     alone/relume relight box.exr -o none.jpg
 
 # ---------------------------------------------------------------- headers
-for header in "$prefix"/include/relume/*.h; do
-    name=$(basename "$header")
+for name in $(cd "$prefix/include/relume" && find . -name '*.h' | sed 's|^./||' | LC_ALL=C sort); do
     echo "#include <relume/$name>" >alone.c
     cp alone.c alone.cpp
     check "$name alone, C11" $CC -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \

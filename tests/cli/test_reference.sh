@@ -22,12 +22,12 @@ check 'one for two names is found twice' test "$(grep -c 'of the photographs' "$
 
 # plant NAME LINE: with LINE at the end of a header, it is named
 plant() {
-    cp tree/include/relume/tone.h before.h
-    sed -i "s|^#ifdef __cplusplus\$|&|; \$i $2" tree/include/relume/tone.h
+    cp tree/include/relume/relight/tone.h before.h
+    sed -i "s|^#ifdef __cplusplus\$|&|; \$i $2" tree/include/relume/relight/tone.h
     if refer; then not_ok "$1 is noticed" "doxygen is content with: $2"; else
         check "$1 is noticed" grep -q 'tone.h.*not documented' said.txt
     fi
-    cp before.h tree/include/relume/tone.h
+    cp before.h tree/include/relume/relight/tone.h
 }
 plant 'a function without a comment' 'RELUME_API int relume_planted(int n);'
 plant 'a member without a comment' 'struct relume_planted { int secret; };'

@@ -6,8 +6,8 @@
 #include "capture/multiview/views_colmap.h"
 #include "cli/commands/capture_times.c"
 
-#include <relume/directions.h>
-#include <relume/response.h>
+#include <relume/image/directions.h>
+#include <relume/image/response.h>
 
 static const char *const words[] = {"lightConfiguration",
                                     "directional",

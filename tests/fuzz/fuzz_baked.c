@@ -5,7 +5,7 @@
 #include "core/base/arena.h"
 #include "image/image/exr.h"
 
-#include <relume/bake.h>
+#include <relume/world/bake.h>
 
 // Seeds have parts of a few hundred values.
 static const struct relume_limits limits = {

@@ -3,7 +3,7 @@
 
 #include <dirent.h>
 #include <math.h>
-#include <relume/btf.h>
+#include <relume/material/btf.h>
 #include <sys/stat.h>
 
 enum { SIDE = 2, DIRECTIONS = 4 };

@@ -1,7 +1,7 @@
 // fuzz_edit.c - lists of edits made of noise, read and applied to a g-BRDF
 #include "fuzz.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 static const char *const words[] = {
     "relumeEdits", "fingerprint", "undone",    "operations", "operation", "emboss", "engrave",

@@ -9,7 +9,7 @@
 #include "shape/mesh/mesh.h"
 #include "shape/mesh/mesh_serve.h"
 
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 #include <sys/mman.h>
 
 static const char *const words[] = {"a.bin", "../", "/", "part", "\x80\x3f", "\xc0\x7f", NULL};

@@ -5,8 +5,8 @@
 #include "fuzz.h"
 
 #include <math.h>
-#include <relume/object.h>
-#include <relume/vec.h>
+#include <relume/core/vec.h>
+#include <relume/world/object.h>
 
 static inline void look(const relume_objects *o)
 {

@@ -1,8 +1,8 @@
 // fuzz_manifest.c - capture.json, .lp files and EXRs of light stages made of noise
 #include "fuzz.h"
 
-#include <relume/directions.h>
 #include <relume/exchange.h>
+#include <relume/image/directions.h>
 
 static const struct relume_limits limits = {
     .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};

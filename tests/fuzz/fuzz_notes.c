@@ -2,7 +2,7 @@
 #include "fuzz.h"
 
 #include <math.h>
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 
 static const char *const words[] = {"AnnotationPage",
                                     "items",

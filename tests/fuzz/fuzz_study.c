@@ -2,7 +2,7 @@
 #include "fuzz.h"
 
 #include <math.h>
-#include <relume/study.h>
+#include <relume/site/study.h>
 
 static const char *const words[] = {"subject", "question", "left",  "right", "chosen", "condition",
                                     "score",   "trial",    "\"",    "\"\"",  ",",      "\n",

@@ -4,7 +4,7 @@
 
 #include "material/btf/npy.h"
 
-#include <relume/surface.h>
+#include <relume/material/surface.h>
 
 static const struct relume_limits limits = {
     .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 200};

@@ -2,7 +2,7 @@
 #include "fuzz.h"
 #include "made_ubo.h"
 
-#include <relume/btf.h>
+#include <relume/material/btf.h>
 
 static const struct relume_limits limits = {
     .max_side = 16, .max_pixels = 64, .max_lights = 16, .max_views = 16};

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 
 #include <math.h>
-#include <relume/volume.h>
+#include <relume/shape/volume.h>
 #include <sys/stat.h>
 #include <zlib.h>
 

@@ -6,7 +6,7 @@
 #include "owned.h"
 #include "window/context.h"
 
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <math.h>
 #include <setjmp.h>

@@ -13,7 +13,7 @@
 #include "session/options.h"
 #include "window/context.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 #include <math.h>
 #include <setjmp.h>

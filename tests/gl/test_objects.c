@@ -4,7 +4,7 @@
 #include "fixture.h"
 #include "test.h"
 
-#include <relume/bake.h>
+#include <relume/world/bake.h>
 
 #include <unistd.h>
 

@@ -6,8 +6,8 @@
 #include "relit/exchanger.h"
 
 #include <relume/exchange.h>
-#include <relume/tableau.h>
-#include <relume/transport.h>
+#include <relume/world/tableau.h>
+#include <relume/world/transport.h>
 
 #include <time.h>
 #include <unistd.h>

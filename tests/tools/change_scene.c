@@ -9,7 +9,7 @@
 // is by how much the camera is turned with it, counter-clockwise. The truth has red where the
 // scratch is and green where the stain is, in pixels of this camera.
 #define RELUME_VEC3_SHORT
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <errno.h>
 #include <math.h>

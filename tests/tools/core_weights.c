@@ -5,8 +5,8 @@
 // core's own inverse takes weights from those of the library, of the largest of each case.
 #include <dlfcn.h>
 #include <math.h>
-#include <relume/coder.h>
-#include <relume/directions.h>
+#include <relume/format/coder.h>
+#include <relume/image/directions.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

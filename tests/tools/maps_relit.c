@@ -1,7 +1,7 @@
 // maps_relit.c - maps of a capture, and what the library itself shows of them under some lights
 //
 //   maps_relit CAPTURE DIR ['X Y Z' PNG ...]    writes the folder DIR and each PNG
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <stdio.h>
 

@@ -15,7 +15,7 @@
 //   mkimage sum OUT A B                    A + B, as float EXR
 #include "png_crc.h"
 
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 //                                           components from the fourth on are small noise
 #include "made_ubo.h"
 
-#include <relume/btf.h>
+#include <relume/material/btf.h>
 
 enum { MOST = 151 };
 static double directions[MOST][2];

@@ -4,7 +4,7 @@
 // reads scene.json and the tiles as docs/publish.md has them, relights the view by a distant light
 // and prints the mean and the largest difference from PICTURE, in 255ths of sRGB codes. Of the
 // library it takes what a browser has too: JSON, JPEG, and the functions of the light.
-#include <relume/relume.h>
+#include <relume/extensions.h>
 
 #include "core/base/json.h"
 #include "image/image/jpeg.h"

@@ -2,8 +2,8 @@
 // measure, texels against the surface, pictures of clouds against those of the mesh.
 #include "in_folder.h"
 
-#include <relume/billboards.h>
-#include <relume/object.h>
+#include <relume/shape/billboards.h>
+#include <relume/world/object.h>
 
 static struct relume_mesh mesh_of(const float (*position)[3], size_t vertices,
                                   const uint32_t (*triangle)[3], size_t triangles)

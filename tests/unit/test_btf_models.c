@@ -8,7 +8,7 @@
 #include "material/model/scalar.h"
 #include "core/base/half.h"
 
-#include <relume/scene.h>
+#include <relume/world/scene.h>
 
 typedef double material(size_t texel, int c, vec3 v, vec3 l);
 

@@ -8,7 +8,7 @@
 #include "material/gbrdf/drawing.h"
 #include "material/model/model_gbrdf.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 #include <sys/stat.h>
 
 // Steps of 5 / 255 from column to column are exact in 8 bits.

@@ -1,5 +1,5 @@
-// test_eye.c - tests of include/relume/eye.h: a living eye in time, and what stands in the way of
-// light in it (Ritschel 2009, 8.2)
+// test_eye.c - tests of include/relume/relight/eye.h: a living eye in time, and what stands in the
+// way of light in it (Ritschel 2009, 8.2)
 #include "relight/eye/eye.h"
 #include "test.h"
 

@@ -13,7 +13,7 @@
 #include "material/gbrdf/planted.h"
 #include "core/math/lsq.h"
 
-#include <relume/btf.h>
+#include <relume/material/btf.h>
 
 // ---------------------------------------------------------------- alternating least squares
 

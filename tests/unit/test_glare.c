@@ -1,5 +1,5 @@
-// test_glare.c - tests of include/relume/glare.h: the frame as a living eye would see it: convolved
-// with the eye's pattern (psf.h)
+// test_glare.c - tests of include/relume/relight/glare.h: the frame as a living eye would see it:
+// convolved with the eye's pattern (psf.h)
 #include "core/base/memory.h"
 #include "relight/eye/glare.h"
 #include "test.h"

@@ -5,7 +5,7 @@
 
 #include "relight/shadow/gloss.h"
 
-#include <relume/maps.h>
+#include <relume/material/maps.h>
 
 enum { SIDE = 32, LIGHTS = 40, PIXELS = SIDE * SIDE, MEET = 9 };
 

@@ -4,7 +4,7 @@
 #include "core/base/half.h"
 #include "core/math/vec.h"
 
-#include <relume/scene.h>
+#include <relume/world/scene.h>
 
 enum { DIRECTIONS = 19, SIZE = 10 };
 

@@ -1,5 +1,5 @@
-// test_heldout.c - tests of include/relume/heldout.h: coders judged by lights that they have not
-// seen
+// test_heldout.c - tests of include/relume/encode/heldout.h: coders judged by lights that they have
+// not seen
 #include "test.h"
 
 #include "capture_fixture.h"

@@ -7,7 +7,7 @@
 #include "world/stage/shapes.h"
 #include "world/transport/instant.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 enum { ROWS = 48, COLUMNS = 2 * ROWS };
 static const double radius = 3.0;

@@ -5,8 +5,8 @@
 #include "world/object/levels.h"
 #include "world/object/object.h"
 
-#include <relume/jnd.h>
-#include <relume/object.h>
+#include <relume/image/jnd.h>
+#include <relume/world/object.h>
 
 enum { ACROSS = 96, DOWN = 48, PICTURE = 64 };
 static const double RADIUS = 1.0, TUBE = 0.4, PIXELS = 0.25;

@@ -1,5 +1,5 @@
 // Meshes written and read again, in every format; what no file can hold is refused.
-#include <relume/mesh.h>
+#include <relume/shape/mesh.h>
 
 #include <math.h>
 #include <setjmp.h>

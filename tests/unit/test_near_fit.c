@@ -3,7 +3,7 @@
 
 #include "format/coder/near_fit.h"
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 enum { PIXELS = BUMP_SIDE * BUMP_SIDE, MOST_PLANES = 48 };
 

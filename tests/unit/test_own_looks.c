@@ -3,8 +3,8 @@
 #include "capture_fixture.h"
 #include "in_folder.h"
 
-#include <relume/btf.h>
-#include <relume/object.h>
+#include <relume/material/btf.h>
+#include <relume/world/object.h>
 
 static char last[1024];
 

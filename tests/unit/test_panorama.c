@@ -1,7 +1,7 @@
 // test_panorama.c - tests of src/capture/multiview/panorama.h: the sources of panoramas
 #include "core/math/vec.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 #include <math.h>
 #include <setjmp.h>

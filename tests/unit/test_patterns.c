@@ -1,7 +1,7 @@
 // Light patterns, their discrepancy, and reading directions from files.
 #include "core/math/vec.h"
 
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 #include "world/stage/shapes.h"
 #include "world/transport/points.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 enum { COUNT = 4096 };
 

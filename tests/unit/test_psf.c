@@ -1,5 +1,5 @@
-// test_psf.c - tests of include/relume/psf.h: what one point source leaves on the retina of an eye
-// (Ritschel 2009, 8.3, 8.4)
+// test_psf.c - tests of include/relume/relight/psf.h: what one point source leaves on the retina of
+// an eye (Ritschel 2009, 8.3, 8.4)
 #include "relight/eye/aperture.h"
 #include "relight/eye/psf.h"
 #include "test.h"

@@ -1,7 +1,7 @@
 // Loops of patterns: those of the eye where nothing fades, no seam, no light lost.
 #include "test.h"
 
-#include <relume/psf.h>
+#include <relume/relight/psf.h>
 
 static const double luminance = 3.0, fps = 20.0, seconds = 1.0, fade = 0.25;
 

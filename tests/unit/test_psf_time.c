@@ -1,7 +1,7 @@
 // Patterns in time: what changes from frame to frame is the eye's and nothing else
 #include "test.h"
 
-#include <relume/psf.h>
+#include <relume/relight/psf.h>
 
 #include <string.h>
 

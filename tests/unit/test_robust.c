@@ -1,8 +1,8 @@
 // Fits that outliers do not pull: the coefficients that made the samples are known
 #include "test.h"
 
-#include <relume/coder.h>
-#include <relume/directions.h>
+#include <relume/format/coder.h>
+#include <relume/image/directions.h>
 
 enum { LIGHTS = 48, K = 6, STRAY = 9 };
 

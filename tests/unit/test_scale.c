@@ -5,7 +5,7 @@
 #include "image/image/footprint.h"
 
 #include <relume/image.h>
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 static double uniform(uint64_t *state)
 {

@@ -3,7 +3,7 @@
 #include "in_folder.h"
 #include "test.h"
 
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 enum { SIDE = 64, LIGHTS = 48, PIXELS = SIDE * SIDE, MEET = 9 };
 

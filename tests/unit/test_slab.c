@@ -1,5 +1,5 @@
 // test_slab.c - one slab: rays, blends and frames against closed forms
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 #include <math.h>
 #include <setjmp.h>

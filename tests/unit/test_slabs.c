@@ -1,7 +1,7 @@
 // Several slabs around a painted ball: what any eye sees of it is known in closed form
 #include "test.h"
 
-#include <relume/slab_set.h>
+#include <relume/relight/slab_set.h>
 
 #define PI 3.14159265358979323846
 

@@ -1,8 +1,8 @@
 // Normals of a sphere whose reflectance obeys no law that the solver knows by name
 #include "test.h"
 
-#include <relume/photometric.h>
-#include <relume/vec.h>
+#include <relume/capture/photometric.h>
+#include <relume/core/vec.h>
 
 enum { SIDE = 12, LIGHTS = 24, PIXELS = SIDE * SIDE };
 

@@ -2,7 +2,7 @@
 // stand for; nothing known, wrong sizes.
 #include "test.h"
 
-#include <relume/points.h>
+#include <relume/world/points.h>
 
 #include <stdio.h>
 

@@ -3,8 +3,8 @@
 #include "world/stage/render.h"
 
 #include <relume/capture.h>
-#include <relume/directions.h>
-#include <relume/view.h>
+#include <relume/image/directions.h>
+#include <relume/relight/view.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
-// test_tone.c - tests of include/relume/tone.h: linear light becomes what a screen can show:
-// exposure, then a tone operator
+// test_tone.c - tests of include/relume/relight/tone.h: linear light becomes what a screen can
+// show: exposure, then a tone operator
 #include "test.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 static void apply(const struct relume_tone *tone, float out[3], float r, float g, float b)
 {

@@ -1,7 +1,7 @@
 // How frames show the world: places and rays, solid angles, lamps in view and what hides them
 #include "test.h"
 
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
 #include "core/math/vec.h"
 
 #include <relume/light.h>
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 #include <string.h>
 
 enum { RING = 16, LIGHTS = 2 * RING + 1 };

@@ -8,7 +8,7 @@
 #include "cli/program/say.h"
 #include "common/vec.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 static void choose_framing(struct relume_camera *camera, const struct app_file *file,
                            bool look_ahead)

@@ -5,7 +5,7 @@
 #include "app/gizmo.h"
 #include "app/place.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 struct frame_request {
     const struct app_file *file;  // borrowed from the app

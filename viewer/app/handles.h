@@ -1,9 +1,9 @@
-// handles.h - reflections of mirrors edited by hand (relume/reflection.h): constraints and regions
-// of all objects, what is chosen of them, and the way back and forth
+// handles.h - reflections of mirrors edited by hand (relume/world/reflection.h): constraints and
+// regions of all objects, what is chosen of them, and the way back and forth
 #ifndef VIEWER_HANDLES_H
 #define VIEWER_HANDLES_H
 
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 // What a press on a mirror begins.
 enum handles_tool {

@@ -9,7 +9,7 @@
 #include "app/orbit.h"
 #include "app/way.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 #include <math.h>
 

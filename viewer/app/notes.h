@@ -1,5 +1,5 @@
-// notes.h - notes on the picture (relume/notes.h): the list, what is chosen of it, and what the
-// mouse is drawing
+// notes.h - notes on the picture (relume/exchange/notes.h): the list, what is chosen of it, and
+// what the mouse is drawing
 //
 // A press begins or goes on with a note of the tool's kind. A point is done at once; a line or a
 // polygon by Enter, or by a press on its last place, of a polygon also on its first one. Backspace
@@ -9,7 +9,7 @@
 
 #include "app/state.h"
 
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 
 // Fields are read by whoever shows them. Thread-safety: main thread only.
 struct notes {

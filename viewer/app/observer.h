@@ -5,7 +5,7 @@
 #ifndef VIEWER_OBSERVER_H
 #define VIEWER_OBSERVER_H
 
-#include <relume/glare.h>
+#include <relume/relight/glare.h>
 
 enum observer_mode {
     OBSERVER_AUTO = 0,  // what suits the frame

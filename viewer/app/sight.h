@@ -4,7 +4,7 @@
 
 #include "app/frame_request.h"
 
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
 
 // Of a captured picture; a slab's as it looks from `eye`.
 struct relume_viewport sight_of_picture(const struct app_file *file, struct relume_vec3 eye);

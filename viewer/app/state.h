@@ -7,11 +7,11 @@
 
 #include "app/observer.h"
 
-#include <relume/enhance.h>
 #include <relume/frame.h>
-#include <relume/object.h>
-#include <relume/relight.h>
-#include <relume/slab_set.h>
+#include <relume/relight/enhance.h>
+#include <relume/relight/relight.h>
+#include <relume/relight/slab_set.h>
+#include <relume/world/object.h>
 
 enum { APP_LIGHTS = 65536 };  // lights at once, as RELUME_RIG_MOST
 

@@ -1,7 +1,7 @@
 // way.c - ways of light between objects and scene, as people choose them
 #include "app/way.h"
 
-#include <relume/transport.h>
+#include <relume/world/transport.h>
 
 #include <stdio.h>
 #include <string.h>

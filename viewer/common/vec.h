@@ -3,7 +3,7 @@
 #define VIEWER_VEC_H
 
 #define RELUME_VEC3_SHORT
-#include <relume/vec.h>
+#include <relume/core/vec.h>
 
 static inline double clamp(double x, double low, double high)
 {

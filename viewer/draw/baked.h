@@ -4,7 +4,7 @@
 
 #include "draw/draw.h"
 
-#include <relume/bake.h>
+#include <relume/world/bake.h>
 
 enum { BAKED_BUFFERS = 4 };
 

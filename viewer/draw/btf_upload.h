@@ -6,7 +6,7 @@
 #include "gl/program.h"
 #include "relit/light_uniforms.h"
 
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 enum { BTF_ARRAYS = 5, BTF_MESHES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_MESHES + 1, BTF_LEVELS = 17 };
 

@@ -10,8 +10,8 @@
 #include "gl/program.h"
 #include "gl/target.h"
 
-#include <relume/slab_set.h>
-#include <relume/view.h>
+#include <relume/relight/slab_set.h>
+#include <relume/relight/view.h>
 
 // Where and how bright; pixels from the frame's top left corner.
 struct place {

@@ -7,7 +7,7 @@
 
 #include "gl/gl.h"
 
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 // Of one object.
 struct mirror_fields {

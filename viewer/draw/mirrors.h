@@ -5,7 +5,7 @@
 #include "draw/draw.h"
 #include "draw/mirror_distances.h"
 
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 // The relit panorama that mirrors show, with the places that it shows; without one they show
 // environments.

@@ -4,7 +4,7 @@
 #include "cli/program/say.h"
 #include "draw/renderer_parts.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 #include <math.h>
 #include <stdlib.h>

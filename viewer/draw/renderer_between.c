@@ -2,7 +2,7 @@
 #include "draw/renderer.h"
 #include "draw/renderer_parts.h"
 
-#include <relume/transport.h>
+#include <relume/world/transport.h>
 
 enum { BOUNCES = 2 };  // as relume_render_params
 static const struct {

@@ -5,7 +5,7 @@
 #include "draw/renderer.h"
 #include "draw/renderer_parts.h"
 
-#include <relume/transport.h>
+#include <relume/world/transport.h>
 
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 
 #include "gl/program.h"
 
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 enum { SHADOW_LAYERS = 6 };
 

@@ -5,7 +5,7 @@
 
 #include "gl/gl.h"
 
-#include <relume/btf_environment.h>
+#include <relume/material/btf_environment.h>
 
 struct sky_map {
     uint64_t of;  // fingerprint of the environment

@@ -7,7 +7,7 @@
 #include "app/frame_request.h"
 #include "relit/loader.h"
 
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
 
 // Where views stand, and where their pixels lie. `source` and `uv` must outlive it.
 struct hiding_scene {

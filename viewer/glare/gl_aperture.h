@@ -5,7 +5,7 @@
 
 #include "gl/program.h"
 
-#include <relume/eye.h>
+#include <relume/relight/eye.h>
 
 // Row 0 of the square textures is the top, texel (size / 2, size / 2) is centred on the axis.
 struct gl_aperture {

@@ -5,7 +5,7 @@
 #include "gl/target.h"
 #include "glare/gl_psf.h"
 
-#include <relume/glare.h>
+#include <relume/relight/glare.h>
 
 // For frames of one size and patterns of one size in pixels.
 struct gl_convolver {

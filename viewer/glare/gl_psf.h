@@ -5,7 +5,7 @@
 #include "glare/gl_aperture.h"
 #include "glare/gl_fft.h"
 
-#include <relume/psf.h>
+#include <relume/relight/psf.h>
 
 struct gl_psf {
     struct relume_psf_geometry shape;

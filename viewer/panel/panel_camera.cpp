@@ -8,7 +8,7 @@ extern "C" {
 
 #include <algorithm>
 #include <cmath>
-#include <relume/vec.h>
+#include <relume/core/vec.h>
 
 static bool float_slider(const char *label, float *value, float usual, float least, float most,
                          const char *format, const char *what)

@@ -2,7 +2,7 @@
 #include "panel/panel_parts.h"
 
 extern "C" {
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 }
 
 #include <cstdio>

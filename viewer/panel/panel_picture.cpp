@@ -2,7 +2,7 @@
 // histogram
 #include "panel/panel_parts.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 #include <cstdio>
 

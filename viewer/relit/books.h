@@ -4,7 +4,7 @@
 
 #include "gl/gl.h"
 
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 enum { TABLE_WIDTH = 1024 };
 

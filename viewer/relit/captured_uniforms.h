@@ -5,7 +5,7 @@
 
 #include "gl/gl.h"
 
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 // The uniforms of a zone, one after the other.
 enum zone_uniform {

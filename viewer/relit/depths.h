@@ -4,7 +4,7 @@
 
 #include "gl/gl.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 // Where depth comes from: a pack, or a test. The caller destroys the image.
 struct depth_source {

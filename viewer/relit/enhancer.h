@@ -5,8 +5,8 @@
 #include "relit/relighter.h"
 
 #include <relume/capture.h>
-#include <relume/enhance.h>
-#include <relume/slab_set.h>
+#include <relume/relight/enhance.h>
+#include <relume/relight/slab_set.h>
 
 struct enhanced_view {
     GLuint normal, albedo, detail;  // 0: not fitted yet

@@ -6,7 +6,7 @@
 #include "relit/exchange_request.h"
 
 #include <relume/renderer.h>
-#include <relume/tableau.h>
+#include <relume/world/tableau.h>
 
 enum { EXCHANGER_SLOTS = 2 };  // pictures that are compared
 

@@ -3,7 +3,7 @@
 #define VIEWER_EXCHANGE_REQUEST_H
 
 #include <relume/frame.h>
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 struct exchange_request {
     const struct relume_transport *transport;

@@ -2,8 +2,8 @@
 #ifndef VIEWER_LOADER_H
 #define VIEWER_LOADER_H
 
-#include <relume/shadow.h>
-#include <relume/coder.h>
+#include <relume/relight/shadow.h>
+#include <relume/format/coder.h>
 
 // Where codes come from: a pack, or a test. `drop` (may be NULL) hears that one who asked for a
 // view's codes no longer looks at them. `surface` (may be NULL) gives the places of a view's

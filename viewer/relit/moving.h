@@ -1,5 +1,6 @@
 // moving.h - shadows and highlights that move, on the GPU: a light's relit picture and what the
-// model of the file adds to it (relume/shadow.h), by rays through the depth of the view or by gloss
+// model of the file adds to it (relume/relight/shadow.h), by rays through the depth of the view or
+// by gloss
 #ifndef VIEWER_MOVING_H
 #define VIEWER_MOVING_H
 

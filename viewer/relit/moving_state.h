@@ -6,8 +6,8 @@
 #include "gl/target.h"
 #include "relit/light_uniforms.h"
 
-#include <relume/coder.h>
-#include <relume/shadow.h>
+#include <relume/format/coder.h>
+#include <relume/relight/shadow.h>
 
 // Of near lights (moving_near.c).
 struct moving_near {

@@ -7,7 +7,7 @@
 #include "gl/target.h"
 #include "relit/light_uniforms.h"
 
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 // What all views of a file share.
 struct nearby {

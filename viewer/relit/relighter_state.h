@@ -8,8 +8,8 @@
 #include "relit/moving_state.h"
 #include "relit/nearby.h"
 
-#include <relume/relight.h>
-#include <relume/relighter.h>
+#include <relume/relight/relight.h>
+#include <relume/relight/relighter.h>
 
 struct relit_view {
     bool present;

@@ -6,7 +6,7 @@
 #ifndef VIEWER_WEIGHTS_H
 #define VIEWER_WEIGHTS_H
 
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 enum { LANES = 4, CHANNELS = 6 };
 

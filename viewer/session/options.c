@@ -7,9 +7,9 @@
 #include "cli/program/options.h"
 #include "cli/program/say.h"
 
-#include <relume/tableau.h>
-#include <relume/tone.h>
-#include <relume/transport.h>
+#include <relume/relight/tone.h>
+#include <relume/world/tableau.h>
+#include <relume/world/transport.h>
 
 #include <math.h>
 #include <stdio.h>

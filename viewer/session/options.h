@@ -6,8 +6,8 @@
 #include "session/record.h"
 #include "session/session.h"
 
+#include <relume/relight/tone.h>
 #include <relume/rig.h>
-#include <relume/tone.h>
 
 struct options {
     bool help;         // was asked for, and nothing else is known

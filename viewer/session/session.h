@@ -11,11 +11,11 @@
 #include "session/record.h"
 #include "window/context.h"
 
-#include <relume/edit.h>
-#include <relume/maps.h>
-#include <relume/object.h>
+#include <relume/material/edit.h>
+#include <relume/material/maps.h>
 #include <relume/pack.h>
 #include <relume/rig.h>
+#include <relume/world/object.h>
 
 enum { SESSION_LINES = 10, SESSION_TEXT = 256 };
 
@@ -134,8 +134,8 @@ bool session_is_maps(const char *path);
 relume_status session_open_maps(struct session *s, const char *path, const struct app_state *start);
 // The renderer of one. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status session_make_maps(struct session *s);
-// For session_open: a scene file (relume/tableau.h), under its own lights where none are named.
-// RELUME_EINVAL with a sentence, errors of relume_tableau_open. Then the renderer of one.
+// For session_open: a scene file (relume/world/tableau.h), under its own lights where none are
+// named. RELUME_EINVAL with a sentence, errors of relume_tableau_open. Then the renderer of one.
 bool session_is_scene(const char *path);
 relume_status session_open_scene(struct session *s, const char *path,
                                  const struct app_state *start);
@@ -221,9 +221,9 @@ relume_status session_map(struct session *s, const char *path);
 const char *session_map_in_use(const struct session *s);
 // Whether a g-BRDF is shown alone, or a folder of maps, which can be edited.
 bool session_can_edit(const struct session *s);
-// "undo", "redo" or an operation of relume/edit.h: "OPERATION VALUE [PARAMETER VALUE ...]", quotes
-// around what holds blanks. It is kept beside the file, and shown. RELUME_EINVAL, RELUME_EUNFIT,
-// an input status with a sentence.
+// "undo", "redo" or an operation of relume/material/edit.h: "OPERATION VALUE [PARAMETER VALUE
+// ...]", quotes around what holds blanks. It is kept beside the file, and shown. RELUME_EINVAL,
+// RELUME_EUNFIT, an input status with a sentence.
 relume_status session_edit(struct session *s, const char *words, const struct relume_log *log);
 // The same of maps; "write DIR" writes them as they are now (relume_maps_write).
 relume_status session_edit_maps(struct session *s, const char *words, const struct relume_log *log);

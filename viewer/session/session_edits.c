@@ -1,9 +1,10 @@
-// session_edits.c - edits of the g-BRDF that is shown (relume/edit.h), kept beside its file
+// session_edits.c - edits of the g-BRDF that is shown (relume/material/edit.h), kept beside its
+// file
 #include "session/session.h"
 
 #include "cli/program/say.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -1,11 +1,11 @@
-// session_found.c - folders of maps (relume/maps.h): shown under the lights as they are edited, by
-// the library
+// session_found.c - folders of maps (relume/material/maps.h): shown under the lights as they are
+// edited, by the library
 #include "session/session.h"
 
 #include "app/light_list.h"
 #include "cli/program/say.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>

@@ -8,7 +8,7 @@
 #include "cli/program/notes_file.h"
 #include "cli/program/state_line.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 #include <stdio.h>
 #include <string.h>

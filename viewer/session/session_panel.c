@@ -3,7 +3,7 @@
 
 #include "app/handles.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 #include <limits.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "cli/program/say.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 static bool sees_something(const struct session *s)
 {

@@ -6,7 +6,7 @@
 #include "cli/program/say.h"
 #include "common/vec.h"
 
-#include <relume/tableau.h>
+#include <relume/world/tableau.h>
 #include <stdio.h>
 
 bool session_is_scene(const char *path)

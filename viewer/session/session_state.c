@@ -3,8 +3,8 @@
 
 #include "cli/program/state_line.h"
 
+#include <relume/relight/tone.h>
 #include <relume/rig.h>
-#include <relume/tone.h>
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "gl/program.h"
 #include "gl/target.h"
 
-#include <relume/points.h>
+#include <relume/world/points.h>
 
 // Of the scene, of the objects, and of the backs of what is lit from both sides.
 enum { CARD_SCENE, CARD_OBJECTS, CARD_BACKS, CARD_TREES };

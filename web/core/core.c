@@ -8,7 +8,7 @@
 // so that f is asked of a coder without functions of its own, and T and mean are applied here.
 #include "core.h"
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 #include <relume/light.h>
 
 #include "core/base/memory.h"

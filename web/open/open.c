@@ -12,7 +12,7 @@
 #include "site/publish/functions.h"
 #include "site/publish/scene.h"
 
-#include <relume/io.h>
+#include <relume/context.h>
 
 #include <errno.h>
 #include <math.h>

@@ -24,7 +24,7 @@ const void *open_tile(struct opened *o, int view, int level, int x, int y);
 const void *open_picture(struct opened *o, int view, int mask);
 // depth_min and depth_step of the last depth.
 const double *open_range(const struct opened *o);
-// [height][width][8]: what shadows or highlights of a view move by (relume/shadow.h), of files
+// [height][width][8]: what shadows or highlights of a view move by (relume/relight/shadow.h), of files
 // where scene.json says that they do.
 const float *open_model(struct opened *o, int view);
 void open_close(struct opened *o);

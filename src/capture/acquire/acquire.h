@@ -6,8 +6,8 @@
 #include "core/base/outdir.h"
 #include "core/math/vec.h"
 
-#include <relume/photograph.h>
-#include <relume/acquire.h>
+#include <relume/image/photograph.h>
+#include <relume/capture/acquire.h>
 
 // One photograph and, where balls have photographs of their own, that of the ball under its light.
 struct shot {

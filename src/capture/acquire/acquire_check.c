@@ -7,7 +7,7 @@
 #include "core/math/lsq.h"
 #include "core/math/sort.h"
 
-#include <relume/align.h>
+#include <relume/capture/align.h>
 #include <stdio.h>
 
 enum { PAIRS = 5, GRID = 1500 };

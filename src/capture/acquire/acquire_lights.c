@@ -8,7 +8,7 @@
 #include "core/base/memory.h"
 #include "image/image/photograph.h"
 
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 #include <stdio.h>
 #include <string.h>
 

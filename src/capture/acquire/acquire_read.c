@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
 
-#include <relume/align.h>
+#include <relume/capture/align.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/ball.h>
+#include <relume/capture/ball.h>
 
 struct ball_point {
     double x, y;

@@ -2,7 +2,7 @@
 #ifndef CHART_CHART_H
 #define CHART_CHART_H
 
-#include <relume/chart.h>
+#include <relume/capture/chart.h>
 
 enum {
     CHART_COLUMNS = RELUME_CHART_COLUMNS,

@@ -8,7 +8,7 @@
 //     Z_k = -div_k / (4 - 2 cos(pi i / W) - 2 cos(pi j / H) + screen).
 // Pixels without a normal have no slope of their own and take those of their neighbours where these
 // are known; else 0.
-#include <relume/photometric.h>
+#include <relume/capture/photometric.h>
 
 #include "capture/acquire/stepped.h"
 #include "core/base/params.h"

@@ -7,7 +7,7 @@
 #include "core/math/luminance.h"
 
 #include <math.h>
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 #include <string.h>
 
 enum { SMALL = 1024, PHOTOGRAPHS = 8, SAMPLES = 4, MOST_STEPS = 200 };

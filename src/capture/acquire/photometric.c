@@ -1,5 +1,5 @@
 // photometric.c - normals and albedo from the photographs of a view, band by band
-#include <relume/photometric.h>
+#include <relume/capture/photometric.h>
 
 #include "capture/manifest/near_view.h"
 #include "capture/stereo/field.h"

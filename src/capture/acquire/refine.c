@@ -6,7 +6,7 @@
 // is taken brings the l nearest to the directions given, over all lights: their common error stays,
 // that of one against the others goes. Where it is asked for, integrability (integrable.h) then
 // corrects part of the common error as well.
-#include <relume/acquire.h>
+#include <relume/capture/acquire.h>
 
 #include "capture/acquire/integrable.h"
 #include "core/base/log.h"

@@ -2,7 +2,7 @@
 //
 // The point with the least sum of squared distances solves sum (1 - d d') x = sum (1 - d d') o; its
 // covariance is the inverse of that matrix times the variance of the distances.
-#include <relume/ball.h>
+#include <relume/capture/ball.h>
 
 #include "core/math/lsq.h"
 #include "core/math/vec.h"

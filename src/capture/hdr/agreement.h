@@ -2,7 +2,7 @@
 #ifndef HDR_AGREEMENT_H
 #define HDR_AGREEMENT_H
 
-#include <relume/response.h>
+#include <relume/image/response.h>
 
 // Fills report[n] (or NULL). RELUME_EUNFIT when no exposure resolves any pixel, RELUME_ENOMEM.
 relume_status agreement(struct relume_exposure_report *report, const struct relume_image *codes,

@@ -6,7 +6,7 @@
 // follow a roll of atan(2/8) = 14 degrees. Here a roll is undone before or afterwards, blocks above
 // 64 pixels are matched on a pyramid where they have 64 x 64 samples, and the last level is refined
 // below a pixel by a parabola.
-#include <relume/align.h>
+#include <relume/capture/align.h>
 
 #include "capture/hdr/align_guess.h"
 #include "capture/hdr/blocks.h"

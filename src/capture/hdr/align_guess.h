@@ -2,7 +2,7 @@
 #ifndef HDR_ALIGN_GUESS_H
 #define HDR_ALIGN_GUESS_H
 
-#include <relume/align.h>
+#include <relume/capture/align.h>
 
 // The homography (relume_align_homography) of the two exposures made small. `correlation` is 0
 // where they have nothing in common. RELUME_ENOMEM.

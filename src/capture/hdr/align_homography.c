@@ -6,7 +6,7 @@
 //
 // A homography of one level takes the anchor's pixels, from the middle and in units of half the
 // longer side, to those of the image; so its entries mean the same on every level.
-#include <relume/align.h>
+#include <relume/capture/align.h>
 
 #include "capture/hdr/pyramid.h"
 #include "capture/hdr/structure.h"

@@ -1,5 +1,5 @@
 // anchor.c - the exposure that shows most
-#include <relume/align.h>
+#include <relume/capture/align.h>
 
 #include "core/math/luminance.h"
 

@@ -9,7 +9,7 @@
 // the way to the judged one that is not. Where the way ends at the judged one itself nothing else
 // knows the pixel, and it stays, unless most of its window could be judged and was a ghost: single
 // saturated pixels of a place that something covered.
-#include <relume/align.h>
+#include <relume/capture/align.h>
 
 #include "capture/hdr/tones.h"
 #include "core/base/log.h"

@@ -1,5 +1,5 @@
 // group.c - which photographs of a memory card belong to one bracket
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 
 #include "core/base/memory.h"
 

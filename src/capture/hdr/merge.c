@@ -2,7 +2,7 @@
 //
 // Per channel ln E = sum_i w_i (ln f(c_i) - ln t_i) / sum_i w_i (Debevec, Malik 1997, Eq. 6), with
 // weights that leave both ends of the code range with value and slope 0.
-#include <relume/response.h>
+#include <relume/image/response.h>
 
 #include "capture/hdr/agreement.h"
 #include "core/base/log.h"

@@ -4,7 +4,7 @@
 //     sum_ij w(z_ij)^2 (g(z_ij) - ln E_i - ln t_j)^2 + lambda^2 sum_z w(z)^2 g''(z)^2,  g(128) = 0.
 // Every ln E_i stands in its own samples alone and is eliminated, so that the system has the 256
 // unknowns of g however many samples there are.
-#include <relume/response.h>
+#include <relume/image/response.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -1,5 +1,5 @@
 // warp.c - a picture as the anchor's camera would have seen it
-#include <relume/align.h>
+#include <relume/capture/align.h>
 
 #include "core/base/log.h"
 #include "core/base/thread.h"

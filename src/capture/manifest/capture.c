@@ -6,7 +6,7 @@
 #include "core/base/scratch.h"
 #include "core/math/vec.h"
 
-#include <relume/response.h>
+#include <relume/image/response.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -8,7 +8,7 @@
 #include "core/base/params.h"
 #include "core/math/vec.h"
 
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,7 +6,7 @@
 #include "image/image/picture_kind.h"
 
 #include <errno.h>
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 #include <stdio.h>
 #include <string.h>
 

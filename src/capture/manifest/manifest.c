@@ -11,7 +11,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <libgen.h>
-#include <relume/response.h>
+#include <relume/image/response.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>

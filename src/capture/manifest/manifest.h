@@ -6,7 +6,7 @@
 #include "core/base/json.h"
 
 #include <relume/capture.h>
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 
 enum { MANIFEST_VERSION = 1 };
 

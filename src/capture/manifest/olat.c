@@ -10,8 +10,8 @@
 #include "image/image/picture.h"
 
 #include <errno.h>
-#include <relume/directions.h>
-#include <relume/photograph.h>
+#include <relume/image/directions.h>
+#include <relume/image/photograph.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>

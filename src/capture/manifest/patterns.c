@@ -7,7 +7,7 @@
 #include "core/math/random.h"
 #include "core/math/vec.h"
 
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 #include <string.h>
 
 static double radical_inverse_2(uint32_t k)

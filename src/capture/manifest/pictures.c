@@ -4,7 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 
-#include <relume/response.h>
+#include <relume/image/response.h>
 #include <string.h>
 
 // All that a manifest of a program points to becomes the draft's own.

@@ -4,7 +4,7 @@
 
 #include "capture/multiview/plane_sweep.h"
 
-#include <relume/slab_depth.h>
+#include <relume/capture/slab_depth.h>
 
 enum { DEPTH_LIGHTS = 4 };
 

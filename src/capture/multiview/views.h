@@ -6,7 +6,7 @@
 #include "core/base/outdir.h"
 
 #include <relume/capture.h>
-#include <relume/ingest.h>
+#include <relume/capture/ingest.h>
 
 // One camera: what was named, and its photographs, one a light.
 struct camera_photos {

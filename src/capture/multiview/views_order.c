@@ -16,7 +16,7 @@
 #include "core/base/memory.h"
 
 #include <math.h>
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 #include <string.h>
 
 enum { MOST_WIDTH = 320, AROUND = 9, WINDOW = 2, NEAR = 5 };

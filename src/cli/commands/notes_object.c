@@ -1,9 +1,9 @@
 // notes_object.c - relume notes on an object: what an eye sees of them
 #include "cli/commands/notes_object.h"
 
-#include <relume/object.h>
-#include <relume/slab_set.h>
-#include <relume/vec.h>
+#include <relume/core/vec.h>
+#include <relume/relight/slab_set.h>
+#include <relume/world/object.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 
 #include "cli/cli.h"
 
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 
 struct notes_sight {
     const struct args *args;        // the object's file is their first input

@@ -3,9 +3,9 @@
 #include "cli/frame_options.h"
 
 #include <math.h>
-#include <relume/bake.h>
+#include <relume/core/vec.h>
 #include <relume/exchange.h>
-#include <relume/vec.h>
+#include <relume/world/bake.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -8,12 +8,12 @@
 #include "core/math/random.h"
 #include "image/image/trellis.h"
 
-#include <relume/codebook.h>
-#include <relume/directions.h>
-#include <relume/eye.h>
-#include <relume/glare.h>
-#include <relume/psf.h>
-#include <relume/relight.h>
+#include <relume/format/codebook.h>
+#include <relume/image/directions.h>
+#include <relume/relight/eye.h>
+#include <relume/relight/glare.h>
+#include <relume/relight/psf.h>
+#include <relume/relight/relight.h>
 #include <string.h>
 #if defined(__x86_64__)
 #include <cpuid.h>

@@ -1,7 +1,7 @@
 // notes_file.c - what notes on a relume file are on
 #include "cli/program/notes_file.h"
 
-#include <relume/slab_set.h>
+#include <relume/relight/slab_set.h>
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
-// notes_file.h - what notes on a relume file are on (relume/notes.h)
+// notes_file.h - what notes on a relume file are on (relume/exchange/notes.h)
 #ifndef PROGRAM_NOTES_FILE_H
 #define PROGRAM_NOTES_FILE_H
 
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 #include <relume/pack.h>
 
 // A picture, or the object that several slabs stand around: between corners as far from its middle

@@ -1,4 +1,5 @@
-// infile.c - an input that is open: a file, or what the caller gives in place of one (relume/io.h)
+// infile.c - an input that is open: a file, or what the caller gives in place of one
+// (relume/context.h)
 #include "core/base/infile.h"
 
 #include "core/base/channel.h"

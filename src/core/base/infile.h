@@ -1,4 +1,5 @@
-// infile.h - an input that is open: a file, or what the caller gives in place of one (relume/io.h)
+// infile.h - an input that is open: a file, or what the caller gives in place of one
+// (relume/context.h)
 #ifndef BASE_INFILE_H
 #define BASE_INFILE_H
 

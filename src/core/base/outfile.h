@@ -2,7 +2,7 @@
 #ifndef BASE_OUTFILE_H
 #define BASE_OUTFILE_H
 
-#include <relume/io.h>
+#include <relume/context.h>
 #include <sys/types.h>
 
 // A file being written: without a name as long as the file system allows, then beside its final one

@@ -9,7 +9,7 @@
 #define MATH_VEC_H
 
 #define RELUME_VEC3_SHORT
-#include <relume/vec.h>
+#include <relume/core/vec.h>
 
 static inline bool vec3_is_zero(vec3 a)
 {

@@ -5,7 +5,7 @@
 #include "format/coder/sums.h"
 #include "image/image/encoder.h"
 
-#include <relume/heldout.h>
+#include <relume/encode/heldout.h>
 
 // Rows of one view that follow each other in memory.
 struct strip {

@@ -7,7 +7,7 @@
 #include "format/coder/basis.h"
 #include "image/image/encoder.h"
 
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 #include <string.h>
 
 enum { BAND = 64, READ_ROWS = 16 };

@@ -1,5 +1,5 @@
 // rate.c - what is worth choosing among points of rate and quality
-#include <relume/heldout.h>
+#include <relume/encode/heldout.h>
 
 #include <math.h>
 

@@ -8,7 +8,7 @@
 #include "format/coder/coefficients.h"
 #include "image/image/image.h"
 
-#include <relume/team.h>
+#include <relume/format/team.h>
 #include <string.h>
 
 enum { DEFAULT_PIXELS = 65536, LEAST_PIXELS = 4096, ONE_LIGHT = 1 << 20 };

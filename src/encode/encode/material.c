@@ -3,7 +3,7 @@
 
 #include "core/base/memory.h"
 
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 #include <math.h>
 

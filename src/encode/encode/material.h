@@ -6,8 +6,8 @@
 #include "format/coder/coefficients.h"
 #include "format/lossy/lossy.h"
 
+#include <relume/format/team.h>
 #include <relume/pack.h>
-#include <relume/team.h>
 
 struct material {
     const relume_capture *capture;

@@ -3,7 +3,7 @@
 
 #include "core/base/memory.h"
 
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 #include <string.h>
 
 // Rows of the planes, one plane behind the other; `*memory` is the caller's to free.

@@ -6,7 +6,7 @@
 #include "format/lossy/lossy.h"
 
 #include <relume/capture.h>
-#include <relume/team.h>
+#include <relume/format/team.h>
 
 // Where the search begins, which is about what a usual quality takes.
 enum { RATE_FIRST_GUESS = 30 * AV1_STEPS };

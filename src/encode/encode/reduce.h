@@ -2,7 +2,7 @@
 #ifndef ENCODE_REDUCE_H
 #define ENCODE_REDUCE_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // Half of a side; an odd one keeps its last pixel.
 static inline int reduced(int side)

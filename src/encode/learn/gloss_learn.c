@@ -11,7 +11,7 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 
-#include <relume/maps.h>
+#include <relume/material/maps.h>
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 #include <math.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 #include "core/math/lsq.h"
 #include "core/math/luminance.h"
 
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 #include <math.h>
 #include <string.h>

@@ -7,8 +7,8 @@
 #include "core/math/lsq.h"
 #include "core/math/vec.h"
 
-#include <relume/directions.h>
-#include <relume/relight.h>
+#include <relume/image/directions.h>
+#include <relume/relight/relight.h>
 #include <string.h>
 
 // More numbers than these are replaced by pictures under so many directions.

@@ -7,7 +7,7 @@
 #ifndef FOREIGN_SOURCE_H
 #define FOREIGN_SOURCE_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 struct source {
     const struct relume_codes *codes;

@@ -17,7 +17,7 @@
 #include "image/block/dds.h"
 
 #include <math.h>
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 #include <stdio.h>
 #include <string.h>
 

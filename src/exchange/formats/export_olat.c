@@ -12,7 +12,7 @@
 #include "image/image/exr.h"
 
 #include <math.h>
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 #include <stdio.h>
 
 enum { NAME = 24, PLAIN = 3 };  // channels without a layer

@@ -13,7 +13,7 @@
 #include "core/base/params.h"
 #include "core/math/vec.h"
 
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>

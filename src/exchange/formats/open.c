@@ -14,7 +14,7 @@
 
 #include <errno.h>
 #include <relume/capture.h>
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>

@@ -4,7 +4,7 @@
 
 #include "exchange/foreign/foreign.h"
 
-#include <relume/io.h>
+#include <relume/context.h>
 
 // PTM_FORMAT_RGB, LRGB, JPEG_RGB and JPEG_LRGB. An input status with a sentence.
 relume_status ptm_read(struct foreign *out, const char *path, const struct relume_limits *limits,

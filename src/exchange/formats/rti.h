@@ -4,7 +4,7 @@
 
 #include "exchange/foreign/foreign.h"
 
-#include <relume/io.h>
+#include <relume/context.h>
 
 // An input status with a sentence. `old`: the header's numbers are (min, max), not (scale, min).
 relume_status rti_read(struct foreign *out, const char *path, bool old,

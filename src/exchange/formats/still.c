@@ -6,7 +6,7 @@
 #include "core/base/half.h"
 
 #include <math.h>
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 
 #define MOST_HALF 65504.0f
 

@@ -4,7 +4,7 @@
 
 #include "core/base/log.h"
 
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 
 struct kept_note {
     struct relume_note note;  // its texts and places are its own

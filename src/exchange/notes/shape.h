@@ -4,7 +4,7 @@
 
 #include "core/base/json.h"
 
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 #include <stdio.h>
 
 struct shape {

@@ -2,7 +2,7 @@
 #ifndef NOTES_WRITE_H
 #define NOTES_WRITE_H
 
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 #include <stdio.h>
 
 // As JSON; false: no memory.

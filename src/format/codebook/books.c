@@ -12,7 +12,7 @@
 #include "format/coder/basis.h"
 #include "format/coder/coefficients.h"
 
-#include <relume/team.h>
+#include <relume/format/team.h>
 #include <math.h>
 #include <string.h>
 

@@ -4,7 +4,7 @@
 
 #include "format/codebook/nearest.h"
 
-#include <relume/codebook.h>
+#include <relume/format/codebook.h>
 
 // Number d of a vector as a reader sees it.
 float book_number(const struct relume_book *book, int d, int code);

@@ -4,7 +4,7 @@
 
 #include "format/codebook/nearest.h"
 
-#include <relume/codebook.h>
+#include <relume/format/codebook.h>
 
 struct relume_codebook {
     struct relume_codebook_info info;

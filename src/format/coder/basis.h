@@ -8,7 +8,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // The captured lights as a triangulated sphere (mesh.c).
 typedef struct mesh mesh;

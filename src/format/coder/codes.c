@@ -1,6 +1,6 @@
 // codes.c - stored coefficients: the kinds of codes by name and bound, and codes as numbers. Nobody
 // else needs to know how a code lies in memory.
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 #include "core/base/memory.h"
 #include "format/coder/codes.h"

@@ -4,7 +4,7 @@
 
 #include "image/image/exr.h"
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // What a file holds codes as: halves where these hold all of them.
 enum exr_sample codes_sample(enum relume_storage storage);

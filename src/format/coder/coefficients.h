@@ -2,7 +2,7 @@
 #ifndef CODER_COEFFICIENTS_H
 #define CODER_COEFFICIENTS_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 #include <sys/types.h>
 
 // Bands are encoded together; the blocks of a file have no more rows than this, or a part of it.

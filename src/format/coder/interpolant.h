@@ -2,7 +2,7 @@
 #ifndef CODER_INTERPOLANT_H
 #define CODER_INTERPOLANT_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 extern const struct relume_interpolant interpolant_chord;
 extern const struct relume_interpolant interpolant_delaunay;

@@ -2,7 +2,7 @@
 #ifndef CODER_SUMS_H
 #define CODER_SUMS_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // Arrays are NULL until they are known.
 struct relume_sample_sums {

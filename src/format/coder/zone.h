@@ -2,7 +2,7 @@
 #ifndef CODER_ZONE_H
 #define CODER_ZONE_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 struct zone_params {
     bool hemispherical, pole_y;

@@ -10,7 +10,7 @@
 
 #include "format/lossy/av1.h"
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // What is coded: `planes` of codes 0 .. 4095, of three colours each where `colour` is set (plane
 // 3 k + c), the pictures one after the other in `order` (NULL: as they are numbered).

@@ -2,7 +2,7 @@
 #ifndef PACK_FORMAT_H
 #define PACK_FORMAT_H
 
-#include <relume/codebook.h>
+#include <relume/format/codebook.h>
 
 #define FORMAT_NAME "relume"
 

@@ -6,7 +6,7 @@
 #include "format/pack/format.h"
 #include "format/pack/reader.h"
 
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 #include <math.h>
 #include <stdatomic.h>

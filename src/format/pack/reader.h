@@ -6,7 +6,7 @@
 #include "format/pack/learnt.h"
 #include "image/image/exr.h"
 
-#include <relume/codebook.h>
+#include <relume/format/codebook.h>
 #include <relume/pack.h>
 
 // Some of the words of a part.

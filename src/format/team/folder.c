@@ -5,7 +5,7 @@
 // their sum, and then the bytes. While one is being made there is the file "samples.3of8.begun",
 // which grows. That is a courtesy: others wait for the piece while it does, and then make it
 // themselves, which comes to the same bytes.
-#include <relume/team.h>
+#include <relume/format/team.h>
 
 #include "core/base/infile.h"
 #include "core/base/log.h"

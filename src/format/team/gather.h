@@ -2,7 +2,7 @@
 #ifndef TEAM_GATHER_H
 #define TEAM_GATHER_H
 
-#include <relume/team.h>
+#include <relume/format/team.h>
 
 // Takes the piece of `member`, of which nothing may be believed: RELUME_EDAMAGED where it is none.
 typedef relume_status team_take(void *context, int member, const struct relume_buffer *piece);

@@ -1,7 +1,7 @@
 // colours.c - the colours of one picture brought to those of another by a 3 x 3 matrix (Meseth
 // 2008, section 13.4.1, where photographs are held against renderings); least squares of a linear
 // model, so in closed form
-#include <relume/jnd.h>
+#include <relume/image/jnd.h>
 
 #include "core/base/memory.h"
 #include "core/math/lsq.h"

@@ -6,7 +6,7 @@
 
 #include "core/math/fft2d.h"
 
-#include <relume/jnd.h>
+#include <relume/image/jnd.h>
 
 // Bands of an octave around 0.5, 1, ... 32 cycles per degree; the first one holds all that is
 // coarser, the last one all that is finer

@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/capture.h>
+#include <relume/camera.h>
 
 struct camera {
     struct relume_geometry geometry;

@@ -2,7 +2,7 @@
 #include "core/base/names.h"
 #include "core/math/vec.h"
 
-#include <relume/capture.h>
+#include <relume/camera.h>
 #include <string.h>
 
 static const char *const names[] = {

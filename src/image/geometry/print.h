@@ -2,7 +2,7 @@
 #ifndef GEOMETRY_PRINT_H
 #define GEOMETRY_PRINT_H
 
-#include <relume/capture.h>
+#include <relume/camera.h>
 #include <stdio.h>
 
 // Its "projection".

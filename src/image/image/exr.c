@@ -10,7 +10,7 @@
 #include "image/image/exr_sums.h"
 #include "image/image/piz.h"
 
-#include <relume/io.h>
+#include <relume/context.h>
 
 #include <errno.h>
 #include <openexr.h>

@@ -1,5 +1,5 @@
 // falloff.c - vignetting and the fall-off of the lamp, from a photograph of an evenly lit surface
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

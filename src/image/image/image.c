@@ -14,7 +14,7 @@
 
 #include <errno.h>
 #include <math.h>
-#include <relume/response.h>
+#include <relume/image/response.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef IMAGE_PHOTOGRAPH_H
 #define IMAGE_PHOTOGRAPH_H
 
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 
 // relume_exif_read, of files within `limits`.
 relume_status photograph_notes(struct relume_exif *out, const char *path,

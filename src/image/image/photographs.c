@@ -1,5 +1,5 @@
 // photographs.c - which of the files that somebody named are photographs
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -10,8 +10,8 @@
 
 #include "image/image/picture_info.h"
 
-#include <relume/io.h>
-#include <relume/photograph.h>
+#include <relume/context.h>
+#include <relume/image/photograph.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -5,8 +5,8 @@
 #include "image/image/picture_info.h"
 #include "image/image/picture_kind.h"
 
-#include <relume/io.h>
-#include <relume/photograph.h>
+#include <relume/context.h>
+#include <relume/image/photograph.h>
 #include <stdio.h>
 
 #ifdef __cplusplus

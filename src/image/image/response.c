@@ -1,5 +1,5 @@
 // response.c - response curves: evaluated, made of known curves, read and written
-#include <relume/response.h>
+#include <relume/image/response.h>
 
 #include "core/base/infile.h"
 #include "core/base/log.h"

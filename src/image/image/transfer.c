@@ -1,6 +1,6 @@
 // transfer.c - code values and linear light (IEC 61966-2-1 for sRGB)
 #include <relume/image.h>
-#include <relume/response.h>
+#include <relume/image/response.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // white.c - the colour of the light and the primaries: gains and matrices on linear images
-#include <relume/photograph.h>
+#include <relume/image/photograph.h>
 
 #include "core/base/log.h"
 

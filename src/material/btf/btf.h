@@ -5,7 +5,7 @@
 #include "core/math/vec.h"
 #include "material/btf/npy.h"
 
-#include <relume/btf.h>
+#include <relume/material/btf.h>
 
 struct relume_btf {
     struct relume_btf_info info;  // owns what it points to

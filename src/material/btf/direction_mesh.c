@@ -5,7 +5,7 @@
 #include "core/math/hull.h"
 #include "core/math/vec.h"
 
-#include <relume/btf.h>
+#include <relume/material/btf.h>
 #include <string.h>
 
 struct relume_direction_mesh {

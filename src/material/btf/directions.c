@@ -1,7 +1,7 @@
 // directions.c - the direction sets of the Bonn laboratory and dome, and a coarse one for trials
 #include "core/math/vec.h"
 
-#include <relume/btf.h>
+#include <relume/material/btf.h>
 #include <string.h>
 
 static const struct relume_btf_set bonn = {

@@ -1,5 +1,5 @@
 // change.c - from two captures to what has changed between them
-#include <relume/change.h>
+#include <relume/material/change.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -4,7 +4,7 @@
 
 #include "material/change/surface.h"
 
-#include <relume/change.h>
+#include <relume/material/change.h>
 
 // From two surfaces that lie on each other: fills degrees, delta_e, significance, changed and the
 // measures of noise of `out`, whose size is set. RELUME_ENOMEM.

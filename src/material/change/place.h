@@ -4,7 +4,7 @@
 
 #include "material/change/surface.h"
 
-#include <relume/align.h>
+#include <relume/capture/align.h>
 
 // Displacements on nodes, and a homography of what is displaced.
 struct place {

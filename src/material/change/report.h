@@ -2,7 +2,7 @@
 #ifndef CHANGE_REPORT_H
 #define CHANGE_REPORT_H
 
-#include <relume/change.h>
+#include <relume/material/change.h>
 
 // What is white in the pictures.
 enum { RAMP_DEGREES = 15, RAMP_DELTA_E = 15, RAMP_SIGNIFICANCE = 20 };

@@ -4,7 +4,7 @@
 
 #include "material/gbrdf/gbrdf.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 // All edits that are not undone, in `maps`, which have memory
 // of their own (material/gbrdf/fit.h); then no texel sends back more than it gets.

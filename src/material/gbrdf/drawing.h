@@ -2,7 +2,7 @@
 #ifndef EDIT_DRAWING_H
 #define EDIT_DRAWING_H
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 // A copy of at most RELUME_EDIT_MOST_SIDE a side and 256 levels from 0 to 1; empty of an empty one.
 // RELUME_ENOMEM.

@@ -4,7 +4,7 @@
 
 #include "core/base/log.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 struct relume_edits {
     uint64_t fingerprint;

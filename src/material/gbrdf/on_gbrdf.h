@@ -4,7 +4,7 @@
 
 #include "material/gbrdf/gbrdf.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 enum { GBRDF_MOST_MATERIALS = 64 };
 

@@ -1,8 +1,8 @@
-// on_maps.h - the operations on maps (relume/maps.h)
+// on_maps.h - the operations on maps (relume/material/maps.h)
 #ifndef EDIT_ON_MAPS_H
 #define EDIT_ON_MAPS_H
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 relume_status maps_emboss(struct relume_maps *maps, const struct relume_edit *edit, int threads,
                           const struct relume_log *log);

@@ -4,7 +4,7 @@
 
 #include "material/gbrdf/on_gbrdf.h"
 
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 enum parameter_kind {
     PARAMETER_NUMBERS,   // double[count]

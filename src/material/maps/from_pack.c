@@ -7,8 +7,8 @@
 #include "core/base/scratch.h"
 #include "core/math/vec.h"
 
-#include <relume/maps.h>
-#include <relume/relight.h>
+#include <relume/material/maps.h>
+#include <relume/relight/relight.h>
 #include <errno.h>
 #include <string.h>
 

@@ -8,7 +8,7 @@
 #include "core/math/sort.h"
 #include "material/maps/materials.h"
 
-#include <relume/photometric.h>
+#include <relume/capture/photometric.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -4,7 +4,7 @@
 
 #include "material/maps/photos.h"
 
-#include <relume/maps.h>
+#include <relume/material/maps.h>
 
 // As relume_maps_relight, under a light of the capture as each pixel sees it: near ones by `near`.
 struct maps_light {

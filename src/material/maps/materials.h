@@ -4,7 +4,7 @@
 
 #include "material/maps/fit.h"
 
-#include <relume/maps.h>
+#include <relume/material/maps.h>
 
 // A pixel that the codebook is learned from.
 struct learner {

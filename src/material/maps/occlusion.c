@@ -10,7 +10,7 @@
 #include "core/math/bilinear.h"
 #include "core/math/vec.h"
 
-#include <relume/maps.h>
+#include <relume/material/maps.h>
 
 enum { PLANES = 8, STEPS = 30 };
 

@@ -4,7 +4,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 
-#include <relume/maps.h>
+#include <relume/material/maps.h>
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef APPEARANCE_WRITE_H
 #define APPEARANCE_WRITE_H
 
-#include <relume/maps.h>
+#include <relume/material/maps.h>
 #include <stdio.h>
 
 struct writing {

@@ -4,7 +4,7 @@
 
 #include "material/model/model.h"
 
-#include <relume/btf_environment.h>
+#include <relume/material/btf_environment.h>
 
 struct relume_prefiltered_maps {
     int width, height;

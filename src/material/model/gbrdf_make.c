@@ -1,5 +1,5 @@
 // gbrdf_make.c - a g-BRDF from two photographs (Menzel 2011, section 6.4: the last of its edits)
-#include <relume/edit.h>
+#include <relume/material/edit.h>
 
 #include "core/base/half.h"
 #include "core/base/log.h"

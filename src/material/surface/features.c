@@ -3,7 +3,7 @@
 // coding, so that a step counts as it is seen.
 #include "material/surface/features.h"
 
-#include <relume/surface.h>
+#include <relume/material/surface.h>
 
 #include "core/base/memory.h"
 #include "core/base/thread.h"

@@ -4,7 +4,7 @@
 
 #include "material/model/ambient.h"
 
-#include <relume/surface.h>
+#include <relume/material/surface.h>
 
 enum { SURFACE_LEVELS = 17 };
 

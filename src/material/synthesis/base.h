@@ -2,7 +2,7 @@
 #ifndef SYNTHESIS_BASE_H
 #define SYNTHESIS_BASE_H
 
-#include <relume/synthesis.h>
+#include <relume/material/synthesis.h>
 
 enum { BASE_MOST = 12 };  // candidates
 // From a multiple, periods of the sample: what is farther is another wave.

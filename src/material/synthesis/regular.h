@@ -2,7 +2,7 @@
 #ifndef SYNTHESIS_REGULAR_H
 #define SYNTHESIS_REGULAR_H
 
-#include <relume/synthesis.h>
+#include <relume/material/synthesis.h>
 
 enum { REGULAR_CHANNELS = 3, MASK_VALUES = 4 };
 

@@ -2,7 +2,7 @@
 #ifndef SYNTHESIS_TEXTURE_H
 #define SYNTHESIS_TEXTURE_H
 
-#include <relume/synthesis.h>
+#include <relume/material/synthesis.h>
 
 // RELUME_EUNFIT with a sentence for what is no sample.
 relume_status texture_check(const struct relume_texture *t, const struct relume_log *log);

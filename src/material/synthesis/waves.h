@@ -2,7 +2,7 @@
 #ifndef SYNTHESIS_WAVES_H
 #define SYNTHESIS_WAVES_H
 
-#include <relume/synthesis.h>
+#include <relume/material/synthesis.h>
 
 // One channel, in steps of 1/255, its mean among the waves.
 struct plane {

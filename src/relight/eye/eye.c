@@ -1,5 +1,5 @@
 // eye.c - an eye in time: the clock, the pupil, and the list of what stands in the way
-#include <relume/eye.h>
+#include <relume/relight/eye.h>
 
 #include "core/base/memory.h"
 #include "core/math/random.h"

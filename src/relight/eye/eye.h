@@ -2,7 +2,7 @@
 #ifndef POST_EYE_H
 #define POST_EYE_H
 
-#include <relume/eye.h>
+#include <relume/relight/eye.h>
 
 // Every field within the range that eye.h states; else its dotted name and the range in words.
 bool subject_valid(const struct relume_subject *subject, char why[160]);

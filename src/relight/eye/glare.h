@@ -2,7 +2,7 @@
 #ifndef POST_GLARE_H
 #define POST_GLARE_H
 
-#include <relume/glare.h>
+#include <relume/relight/glare.h>
 
 // `params` (NULL: all default) with defaults filled in. RELUME_EINVAL with a sentence.
 relume_status glare_defaults(struct relume_glare_params *out,

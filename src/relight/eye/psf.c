@@ -2,7 +2,7 @@
 //
 // Seen from inside, light that leaves the pupil with the phase exp(2 pi i f x) seems to come from
 // the angle -lambda f, so coefficient k of the transform is stored at -k.
-#include <relume/psf.h>
+#include <relume/relight/psf.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"

@@ -4,7 +4,7 @@
 
 #include "core/kernel/kernels.h"
 
-#include <relume/psf.h>
+#include <relume/relight/psf.h>
 
 #define PSF_NM 575.0  // the wavelength that is computed; the others are scaled copies (8.4.3)
 

@@ -2,7 +2,7 @@
 //
 // A loop must end as it begins, and an eye does not: the loop's first part fades over from what the
 // eye shows after the loop's end. Patterns are light, and a mean of two of them is one.
-#include <relume/psf.h>
+#include <relume/relight/psf.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -2,7 +2,7 @@
 //
 // Colour matching functions: Wyman, Sloan, Shirley 2013, "Simple analytic approximations to the CIE
 // XYZ color matching functions", Eq. 4: within 1 % of the CIE 1931 observer.
-#include <relume/psf.h>
+#include <relume/relight/psf.h>
 
 #include "core/base/log.h"
 #include "relight/eye/psf.h"

@@ -1,5 +1,5 @@
 // subject.c - one person's measures: defaults, ranges and their file
-#include <relume/eye.h>
+#include <relume/relight/eye.h>
 
 #include "core/base/infile.h"
 #include "core/base/json.h"

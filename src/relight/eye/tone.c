@@ -1,5 +1,5 @@
 // tone.c - tone operators: constant tables of curves from linear light to [0, 1]
-#include <relume/tone.h>
+#include <relume/relight/tone.h>
 
 #include "core/base/params.h"
 

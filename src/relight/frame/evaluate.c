@@ -1,6 +1,6 @@
 // evaluate.c - a file relit with every light of a capture and compared with every image
 #include <relume/evaluate.h>
-#include <relume/jnd.h>
+#include <relume/image/jnd.h>
 #include <relume/renderer.h>
 
 #include "core/base/context.h"

@@ -2,7 +2,7 @@
 #include "core/base/log.h"
 #include "relight/frame/renderer.h"
 
-#include <relume/slab_set.h>
+#include <relume/relight/slab_set.h>
 
 #include <math.h>
 

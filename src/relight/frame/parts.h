@@ -2,7 +2,7 @@
 #ifndef FRAME_PARTS_H
 #define FRAME_PARTS_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // Of one view: the rectangle `at`, and what is known of it.
 struct part {

@@ -6,7 +6,7 @@
 #include "core/base/memory.h"
 #include "relight/frame/renderer.h"
 
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
 
 // Relighting two texels costs about as much as a thousand of many.
 enum { FEW = 64 };

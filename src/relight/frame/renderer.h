@@ -4,9 +4,9 @@
 
 #include "core/math/vec.h"
 
-#include <relume/relighter.h>
+#include <relume/relight/relighter.h>
+#include <relume/relight/slab_set.h>
 #include <relume/renderer.h>
-#include <relume/slab_set.h>
 
 // What is noted of a frame, once: the same words are not said of the next.
 enum note { NOTE_BESIDE, NOTE_BORDERS, NOTES };

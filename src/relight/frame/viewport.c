@@ -1,5 +1,5 @@
 // viewport.c - the ray of a pixel and the pixel of a point, for every kind of frame
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
 
 #include "core/math/vec.h"
 

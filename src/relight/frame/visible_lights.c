@@ -1,5 +1,5 @@
 // visible_lights.c - lights that stand in the frame, so that they can dazzle
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
 
 #include "core/base/memory.h"
 #include "core/math/bilinear.h"

@@ -2,7 +2,7 @@
 #ifndef RELIGHT_BOOKS_H
 #define RELIGHT_BOOKS_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // What the vectors of one book add under one weight vector: rgb[v][c] = bias[c] + sum over k of
 // weights[c K + k] x coefficient (k, c) of vector v.

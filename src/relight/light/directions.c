@@ -7,7 +7,7 @@
 // there like sqrt(cos theta). Interpolants have cusps at the lights (the angular one opposite to
 // them as well), around which cells are divided (cells.c). What is linear over triangles of lights
 // is kept at the lights (triangles.c).
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 #include "core/base/memory.h"
 #include "core/base/params.h"

@@ -1,7 +1,7 @@
 // environment.c - distant radiance from all directions (Wong 1998, Eq. 7.6): a map becomes cells
 // with exact solid angles and the directions from where their energy comes
 #include <relume/light.h>
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -4,7 +4,7 @@
 
 #include "image/image/curve.h"
 
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 // A point-like light, or a patch of an area light.
 struct near_source {

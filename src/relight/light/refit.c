@@ -3,7 +3,7 @@
 // An environment is a sum over thousands of directions, and in the display domain every one would
 // have to be decoded and made linear on its own. So the file is decoded once at the directions that
 // it was captured from, in linear light, and `pca` learns that.
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

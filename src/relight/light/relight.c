@@ -3,7 +3,7 @@
 //     sum_i E_i sum_k c_k b_k(L_i) = sum_k c_k w_k     with w_k = sum_i E_i b_k(L_i),
 // so any number of lights costs one pass. In the display domain each light is decoded on its own,
 // made linear, then added.
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -1,5 +1,5 @@
 // relighter.c - views relit again and again: grids, refits and pictures that are kept
-#include <relume/relighter.h>
+#include <relume/relight/relighter.h>
 
 #include "core/base/memory.h"
 #include "core/base/params.h"
@@ -8,7 +8,7 @@
 #include "relight/light/grid.h"
 
 #include <math.h>
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 #include <string.h>
 
 struct group {

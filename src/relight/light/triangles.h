@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/relight.h>
+#include <relume/relight/relight.h>
 
 struct triangles {
     int points, count;

@@ -5,7 +5,7 @@
 // gradient is zero, so that f'(L) = f(N) + g (f(L) - f(N)) for their polynomials, and f(N) is the
 // albedo. Written so, it holds for every basis. Kept at the maximum alone it leaves little of a
 // coin or a raking light but black: what is kept is chosen from the picture (enhance_range.c).
-#include <relume/enhance.h>
+#include <relume/relight/enhance.h>
 
 #include "core/base/memory.h"
 #include "core/base/names.h"

@@ -1,6 +1,6 @@
 // enhance_range.c - what a pass scales to the picture, so that gold coins and black paintings are
 // seen as well as plaster: percentiles of a grid of pixels
-#include <relume/enhance.h>
+#include <relume/relight/enhance.h>
 
 #include "core/base/memory.h"
 #include "core/math/luminance.h"

@@ -5,8 +5,8 @@
 // material is learned (capture/stereo/field.h), and the normals of a lattice of pixels are found
 // with it, under some of the lights: 32 of 96 do as well as all. What that changes between two
 // pixels of the lattice changes evenly: it depends on the material and on where the surface faces.
-#include <relume/normals.h>
-#include <relume/relight.h>
+#include <relume/relight/normals.h>
+#include <relume/relight/relight.h>
 
 #include "capture/stereo/field.h"
 #include "core/base/log.h"

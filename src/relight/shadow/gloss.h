@@ -7,10 +7,10 @@
 
 #include "core/math/vec.h"
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 #include <relume/image.h>
 #include <relume/light.h>
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 // What pixel[RELUME_GLOSS_CHANNELS] shows under a light, its share left aside: at most 1, as
 // photographs do.

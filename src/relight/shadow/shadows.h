@@ -4,7 +4,7 @@
 
 #include "relight/shadow/stage.h"
 
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 struct relume_shadows {
     struct stage stage;

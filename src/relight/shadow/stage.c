@@ -8,7 +8,7 @@
 #include "core/base/memory.h"
 
 #include <math.h>
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 #include <string.h>
 
 // In pixels: how far rays go at once, how far from the surface they start and are behind it before

@@ -1,5 +1,5 @@
 // interpolation.c - the names of enum relume_interpolation
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 #include "core/base/names.h"
 

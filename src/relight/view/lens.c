@@ -5,7 +5,7 @@
 // the largest blur.
 #include "core/math/vec.h"
 
-#include <relume/slab_set.h>
+#include <relume/relight/slab_set.h>
 
 enum { FEWEST = 8, MOST = 64 };
 // Of how near and how far things lie, by how far away the window is.

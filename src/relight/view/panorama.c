@@ -6,7 +6,7 @@
 // elevations; a cube is six faces side by side. Texels beyond a border are the ones that lie there
 // on the sphere, so that a bilinear value is continuous over the wrap, the poles and the cube's
 // edges.
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 #include "core/base/params.h"
 #include "core/base/thread.h"

@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 struct panorama {
     const struct relume_geometry *geometry;

@@ -4,7 +4,7 @@
 
 #include "image/image/footprint.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 struct relume_slab {
     struct relume_geometry geometry;

@@ -5,7 +5,7 @@
 #include "core/math/vec.h"
 #include "relight/view/slab.h"
 
-#include <relume/slab_set.h>
+#include <relume/relight/slab_set.h>
 
 struct relume_slab_set {
     int count, views;

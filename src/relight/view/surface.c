@@ -1,6 +1,6 @@
 // surface.c - pixel, eye and depth become a point of the world: P = E + d V / |V| (Wong
 // 1998, 7.5.5)
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 #include "core/math/vec.h"
 

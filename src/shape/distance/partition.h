@@ -4,7 +4,7 @@
 
 #include "shape/distance/plane.h"
 
-#include <relume/billboards.h>
+#include <relume/shape/billboards.h>
 
 // Triangles of a plane are a list: `head` of a plane, `next` of a triangle; NOBODY ends it.
 #define NOBODY 0xffffffffu

@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/mesh.h>
+#include <relume/shape/mesh.h>
 
 // Triangles with an extent, about the middle of their box.
 struct soup {

@@ -5,7 +5,7 @@
 #include "core/math/scalar.h"
 
 #include <math.h>
-#include <relume/billboards.h>
+#include <relume/shape/billboards.h>
 #include <string.h>
 
 // Empty texels around each rectangle, which show what is beside them: pictures are looked at

@@ -8,7 +8,7 @@
 #include "shape/fusion/seen.h"
 #include "shape/fusion/texture.h"
 
-#include <relume/fusion.h>
+#include <relume/shape/fusion.h>
 
 // Where none is given: one light from before, in panoramas a weaker one from each side.
 #define DISTANT(x, y, z, value)                                                                    \

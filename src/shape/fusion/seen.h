@@ -4,8 +4,8 @@
 
 #include "shape/fusion/witness.h"
 
-#include <relume/mesh.h>
 #include <relume/renderer.h>
+#include <relume/shape/mesh.h>
 
 // Leave out triangles of which two vertices lie farther than `near` from what any view sees, or
 // no view sees from its front, and vertices that are left without; normals are made anew.

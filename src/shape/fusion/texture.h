@@ -4,8 +4,8 @@
 
 #include "shape/fusion/witness.h"
 
-#include <relume/mesh.h>
 #include <relume/renderer.h>
+#include <relume/shape/mesh.h>
 
 struct texture {
     relume_renderer *renderer;  // under the lights that it is to show

@@ -5,7 +5,7 @@
 #include "core/math/fnv.h"
 #include "shape/mesh/mesh_read.h"
 
-#include <relume/mesh.h>
+#include <relume/shape/mesh.h>
 #include <string.h>
 
 void relume_mesh_free(struct relume_mesh *mesh)

@@ -4,7 +4,7 @@
 
 #include "core/base/outfile.h"
 
-#include <relume/mesh.h>
+#include <relume/shape/mesh.h>
 
 enum { SINK_BYTES = 1 << 20 };
 

@@ -9,7 +9,7 @@
 #include "core/base/memory.h"
 #include "core/math/vec.h"
 
-#include <relume/simplify.h>
+#include <relume/shape/simplify.h>
 
 #define NOTHING UINT32_MAX
 

@@ -10,7 +10,7 @@
 
 #include <math.h>
 #include <relume/image.h>
-#include <relume/jnd.h>
+#include <relume/image/jnd.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846

@@ -18,7 +18,7 @@
 #include "core/math/sh.h"
 
 #include <math.h>
-#include <relume/jnd.h>
+#include <relume/image/jnd.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846

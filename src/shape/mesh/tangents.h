@@ -6,7 +6,7 @@
 
 #include "shape/mesh/mesh.h"
 
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 struct tangents {
     struct relume_object_vertex *vertices;

@@ -4,7 +4,7 @@
 
 #include "shape/mesh/mesh.h"
 
-#include <relume/billboards.h>
+#include <relume/shape/billboards.h>
 
 // Triangles ready for rays. Never changes. Thread-safety: safe.
 typedef struct tracer tracer;

@@ -2,7 +2,7 @@
 #ifndef VOLUME_VOLUME_H
 #define VOLUME_VOLUME_H
 
-#include <relume/volume.h>
+#include <relume/shape/volume.h>
 
 // In memory samples are of these, of the machine's byte order; others became floats, or 16 bits.
 enum volume_type { VOLUME_U8, VOLUME_U16, VOLUME_I16, VOLUME_F32, VOLUME_TYPES };

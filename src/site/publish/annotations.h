@@ -4,7 +4,7 @@
 
 #include "site/publish/page.h"
 
-#include <relume/notes.h>
+#include <relume/exchange/notes.h>
 #include <relume/pack.h>
 
 // What the list of `path` says; empty where there is none. As relume_notes_open.

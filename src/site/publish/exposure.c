@@ -7,8 +7,8 @@
 #include "site/publish/picture.h"
 
 #include <math.h>
-#include <relume/tone.h>
-#include <relume/vec.h>
+#include <relume/core/vec.h>
+#include <relume/relight/tone.h>
 
 enum { SIDE = 128 };
 #define MOST_EV    2.0

@@ -2,7 +2,7 @@
 #ifndef PUBLISH_FUNCTIONS_H
 #define PUBLISH_FUNCTIONS_H
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 
 // The coder whose weights these functions are: the basis's own, or the weights of the pictures
 // between which it interpolates. Errors of relume_coder_create.

@@ -7,7 +7,7 @@
 #include "world/baked/baked.h"
 
 #include <math.h>
-#include <relume/mesh.h>
+#include <relume/shape/mesh.h>
 #include <string.h>
 
 enum { AROUND = 32 };  // lights of all sides, in golden angles

@@ -4,7 +4,7 @@
 
 #include "site/publish/page.h"
 
-#include <relume/bake.h>
+#include <relume/world/bake.h>
 
 // NAME/model.glb, glTF 2.0 with a texture of what the surface shows under light from everywhere
 // (of a fixed one: what it shows), seen along its normal; and NAME/iiif/texture.jpg, which is in

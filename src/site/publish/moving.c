@@ -7,7 +7,7 @@
 
 #include <float.h>
 #include <math.h>
-#include <relume/shadow.h>
+#include <relume/relight/shadow.h>
 
 _Static_assert(MOVING_NUMBERS == (int)RELUME_SHADOW_CHANNELS &&
                    MOVING_NUMBERS == (int)RELUME_GLOSS_CHANNELS,

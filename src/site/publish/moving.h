@@ -1,4 +1,4 @@
-// moving.h - what shadows or highlights of a view move by (relume/shadow.h)
+// moving.h - what shadows or highlights of a view move by (relume/relight/shadow.h)
 //
 // NAME/v0/moving.bin has the form of a tile (levels.h) with three pictures: eight numbers a pixel,
 // in the order of the file's, as codes of 8 bits, and a ninth that means nothing. A number is

@@ -7,8 +7,8 @@
 #include "image/image/picture.h"
 
 #include <math.h>
+#include <relume/context.h>
 #include <relume/frame.h>
-#include <relume/io.h>
 
 // Of the quantiser, in codes of luminance: no block is seen.
 #define STEP 6.0

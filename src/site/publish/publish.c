@@ -15,8 +15,8 @@
 #include "site/publish/picture.h"
 #include "site/publish/scene.h"
 
-#include <relume/bake.h>
 #include <relume/exchange.h>
+#include <relume/world/bake.h>
 #include <string.h>
 
 enum { POSTER_SIDE = 800 };

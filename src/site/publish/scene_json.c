@@ -5,7 +5,7 @@
 #include "image/geometry/print.h"
 #include "site/publish/guide.h"
 
-#include <relume/coder.h>
+#include <relume/format/coder.h>
 #include <string.h>
 
 // Little-endian on every machine that the library runs on.

@@ -7,7 +7,7 @@
 #include "site/publish/picture.h"
 
 #include <math.h>
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 // As the page opens: from a little above, lit from the upper left of who looks.
 static relume_status write_one(const struct site *site, const struct page *page,

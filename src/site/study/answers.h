@@ -2,7 +2,7 @@
 #ifndef STUDY_ANSWERS_H
 #define STUDY_ANSWERS_H
 
-#include <relume/study.h>
+#include <relume/site/study.h>
 #include <stddef.h>
 
 // Different texts, each with a number.

@@ -1,5 +1,5 @@
 // statistics.c - distributions that studies ask for
-#include <relume/study.h>
+#include <relume/site/study.h>
 
 #include <math.h>
 

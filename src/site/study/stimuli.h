@@ -3,7 +3,7 @@
 #ifndef STUDY_STIMULI_H
 #define STUDY_STIMULI_H
 
-#include <relume/study.h>
+#include <relume/site/study.h>
 
 enum { STUDY_SCENES = 1024, STUDY_FRAMES = 2048 };
 

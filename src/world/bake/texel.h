@@ -6,7 +6,7 @@
 #include "world/bake/convolve.h"
 #include "world/object/object.h"
 
-#include <relume/bake.h>
+#include <relume/world/bake.h>
 
 // What is baked, and how.
 struct baking {

@@ -4,7 +4,7 @@
 
 #include "image/geometry/frame.h"
 
-#include <relume/bake.h>
+#include <relume/world/bake.h>
 
 enum { BAKED_NONE = 0xffff };  // the cluster of a texel that holds nothing
 

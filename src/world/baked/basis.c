@@ -6,7 +6,7 @@
 #include "core/math/bilinear.h"
 #include "core/math/haar.h"
 
-#include <relume/directions.h>
+#include <relume/image/directions.h>
 #include <string.h>
 
 // ---------------------------------------------------------------- the cube

@@ -8,7 +8,7 @@
 #include "core/math/lsq.h"
 
 #include <math.h>
-#include <relume/codebook.h>
+#include <relume/format/codebook.h>
 #include <string.h>
 
 enum { ROWS = 64, COLUMNS = 512, REDUCED = 32, CANDIDATES = 4 };

@@ -1,5 +1,5 @@
-// exchange.c - light between a captured scene and the objects in it (relume/transport.h), at the
-// pixels of a frame
+// exchange.c - light between a captured scene and the objects in it (relume/world/transport.h), at
+// the pixels of a frame
 //
 // A frame has two layers: the scene, and the objects where they are before it. For each light of
 // the rig the way of transport gathers what arrives at every pixel of both; what neighbours have

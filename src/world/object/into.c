@@ -10,7 +10,7 @@
 #include "world/object/object.h"
 #include "world/object/skin.h"
 
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
 #include <string.h>
 
 // ---------------------------------------------------------------- the scene, in their shadow

@@ -15,8 +15,8 @@
 #include "world/object/object.h"
 #include "world/object/skin.h"
 
-#include <relume/billboards.h>
-#include <relume/simplify.h>
+#include <relume/shape/billboards.h>
+#include <relume/shape/simplify.h>
 #include <string.h>
 
 // Of the diagonal: an object whose error that is covers a few pixels.

@@ -2,8 +2,8 @@
 #ifndef OBJECT_LEVELS_H
 #define OBJECT_LEVELS_H
 
-#include <relume/object.h>
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
+#include <relume/world/object.h>
 
 // The states of a progressive mesh that an object is shown in.
 struct object_levels;

@@ -9,7 +9,7 @@
 #include "world/object/object.h"
 
 #include <relume/light.h>
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 bool objects_have_mirrors(const relume_objects *o)
 {

@@ -9,7 +9,7 @@
 #include "world/transport/scattering.h"
 #include "world/transport/transport.h"
 
-#include <relume/object.h>
+#include <relume/world/object.h>
 
 // A material that light goes into and leaves elsewhere.
 struct translucent {

@@ -1,4 +1,5 @@
-// object_points.c - surfaces as points, for those who gather light themselves (relume/points.h)
+// object_points.c - surfaces as points, for those who gather light themselves
+// (relume/world/points.h)
 #include "world/object/object.h"
 
 #include "core/base/memory.h"
@@ -6,7 +7,7 @@
 #include "world/object/skin.h"
 #include "world/transport/pieces.h"
 
-#include <relume/points.h>
+#include <relume/world/points.h>
 #include <string.h>
 
 enum { SCENE_SPOTS = 1 << 16, OBJECT_SPOTS = 1 << 14 };  // as instant.c

@@ -4,7 +4,7 @@
 
 #include "world/reflect/rotation.h"
 
-#include <relume/reflection.h>
+#include <relume/world/reflection.h>
 
 // Constraints that count together: those of a region, or all.
 struct gathered {

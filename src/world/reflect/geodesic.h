@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/reflection.h>
+#include <relume/world/reflection.h>
 
 // The surface with vertices in equal places joined, and what meets at each.
 struct geodesic_mesh {

@@ -4,7 +4,7 @@
 
 #include "core/math/vec.h"
 
-#include <relume/scene.h>
+#include <relume/world/scene.h>
 
 // Of a periodic sample of size x size texels. Thread-safety: one thread a worker number.
 typedef struct apparatus apparatus;

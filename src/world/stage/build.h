@@ -6,7 +6,7 @@
 #include "world/stage/material.h"
 #include "world/stage/shapes.h"
 
-#include <relume/scene.h>
+#include <relume/world/scene.h>
 
 enum { MAX_MATERIALS = 64, MAX_PICTURES = 8 };
 

@@ -4,7 +4,7 @@
 
 #include "world/stage/material.h"
 
-#include <relume/scene.h>
+#include <relume/world/scene.h>
 
 enum { RELIEF_LAYERS = 2 };
 

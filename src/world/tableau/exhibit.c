@@ -13,7 +13,7 @@
 #include "core/math/bilinear.h"
 
 #include <relume/exchange.h>
-#include <relume/view.h>
+#include <relume/relight/view.h>
 
 #include <string.h>
 

@@ -5,9 +5,9 @@
 #include "image/geometry/frame.h"
 #include "world/transport/scenery.h"
 
+#include <relume/relight/viewport.h>
 #include <relume/renderer.h>
-#include <relume/tableau.h>
-#include <relume/viewport.h>
+#include <relume/world/tableau.h>
 
 struct exhibit {
     const char *name;  // for sentences; borrowed

@@ -5,7 +5,7 @@
 #include "shape/mesh/places.h"
 #include "world/transport/bright.h"
 
-#include <relume/view.h>
+#include <relume/relight/view.h>
 #include <string.h>
 
 // Neighbours are one surface where none is farther from the eye than the other by more than a

@@ -7,8 +7,8 @@
 
 #include "world/transport/scenery.h"
 
-#include <relume/transport.h>
-#include <relume/viewport.h>
+#include <relume/relight/viewport.h>
+#include <relume/world/transport.h>
 
 // A place of a surface that light arrives at.
 struct site {

@@ -1,0 +1,10 @@
+// compat.h - names of version 0.1, for one version more
+//
+// In 0.1 relume.h had every header. Programs written for it include this one instead; new programs
+// include relume.h and the extensions that they use.
+#ifndef RELUME_COMPAT_H
+#define RELUME_COMPAT_H
+
+#include <relume/extensions.h>
+
+#endif

@@ -1,0 +1,94 @@
+// enhance.h - passes that show more of a surface than its photograph: normals, enhanced shading,
+// luminance, differences
+#ifndef RELUME_ENHANCE_H
+#define RELUME_ENHANCE_H
+
+#include <relume/base.h>
+#include <relume/image.h>
+#include <relume/light.h>
+#include <relume/relight/normals.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// What a frame shows of a surface.
+enum relume_pass {
+    RELUME_PASS_COLOUR = 0,
+    RELUME_PASS_NORMALS,       // the unit vectors themselves, -1 to 1
+    RELUME_PASS_SPECULAR,      // specular enhancement (Malzbender et al. 2001, 4.2)
+    RELUME_PASS_DIFFUSE_GAIN,  // the same, 4.1
+    RELUME_PASS_UNSHARP,       // shading by normals whose detail is exaggerated
+    RELUME_PASS_LUMINANCE,     // Rec. 709
+    RELUME_PASS_FALSE_COLOUR,  // luminance from dark blue (`low`) to yellow (`top`); 0 is black
+    RELUME_PASS_DIFFERENCE,    // absolute, from `reference`
+    RELUME_PASSES
+};
+// "colour", "normals", "specular", "diffuse-gain", "unsharp", "luminance", "false-colour",
+// "difference"; NULL when out of range.
+RELUME_API const char *relume_pass_name(enum relume_pass pass);
+// RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_pass_parse(enum relume_pass *out, const char *name);
+// Whether the pass needs to know normals.
+RELUME_API bool relume_pass_needs_normals(enum relume_pass pass);
+// Whether the pass is scaled to the picture.
+RELUME_API bool relume_pass_needs_range(enum relume_pass pass);
+
+// The default of `gain`.
+#define RELUME_PASS_GAIN 2.0f
+
+// What a pass scales to the picture, luminances.
+struct relume_pass_range {
+    float low, high;  // a hundredth of the picture is darker, or brighter; background left out
+    float pivot;      // diffuse gain: the share of the full shading that stays as it is
+    float scale;      // diffuse gain: a factor, so that the brightest stays as bright; specular: of
+                      // the highlight
+};
+
+// How a pass shows a picture. Values are those of linear light; pictures are borrowed during the
+// call.
+struct relume_pass_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    float gain;      // diffuse gain: of the shading's curvature; unsharp: of the detail; default 2
+    float specular;  // the highlight where it is brightest, in `high`s of the picture; default 0.6
+    float exponent;  // of the highlight; default 40
+    int radius;      // unsharp: detail is finer than this, pixels; default 4
+    float low, top;  // false colour: from here to there; default: from the picture
+    bool fixed;      // nothing is scaled to the picture: low 0, high, pivot and scale 1
+    const struct relume_pass_range
+        *range;   // measured before; default: of the picture that is given
+    int threads;  // default: all cores
+    // Specular: unit vectors towards the viewer, three channels. Default: +z everywhere.
+    const struct relume_image *towards;
+    const struct relume_image *reference;  // difference: a linear picture of the same size
+};
+#define relume_pass_params(...)                                                                    \
+    (&(const struct relume_pass_params){RELUME_SIZED(relume_pass_params), __VA_ARGS__})
+
+// Replace `image`, a view relit by `lights`, by what `pass` shows of it; linear, three channels.
+// `normals` may be NULL where the pass needs none. Only directional lights are enhanced; what
+// others add stays as it is. RELUME_EINVAL for sizes that disagree, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_pass_apply(struct relume_image *image, enum relume_pass pass,
+                                              const struct relume_normals *normals,
+                                              const struct relume_light *lights, int n,
+                                              const struct relume_pass_params *params);
+
+// Every so many pixels of a picture of that size, along and down, are measured.
+RELUME_API int relume_pass_step(int width, int height);
+// What `pass` would scale of `image`, relit by `lights`, whose normals' albedo is given (NULL where
+// the pass needs none). A picture of every relume_pass_step-th pixel alone has the same range.
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_pass_measure(
+    struct relume_pass_range *out, const struct relume_image *image, enum relume_pass pass,
+    const struct relume_image *albedo, const struct relume_light *lights, int n, float gain);
+
+// `normal` less its mean over (2 radius + 1)^2 pixels: what unsharp exaggerates. `out` is created.
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_normals_detail(struct relume_image *out,
+                                                  const struct relume_image *normal, int radius,
+                                                  int threads);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,289 @@
+// object.h - things covered with measured materials: meshes with texture coordinates and tangent
+// frames, on each part a BTF or a model of one (btf.h), shown under the lights of a rig
+//
+// At each point the directions to the eye and the light are turned into the frame of the surface
+// (x along growing s, z along the normal) and the material is asked; its values hold n.l already
+// (Meseth 2008, chapter 9, Eq. 9.3 without its second cosine). Light reaches a point when nothing
+// of the objects lies between: shadows are hard, there is no light from object to object. Pixels
+// that cover many texels show means of them: levels of detail of the model, where it has such.
+//
+// Under an environment a material shows what relume_btf_environment says, times the share of the
+// light that reaches the point, in each colour: of 64 light samples drawn from the environment,
+// each times n.l, what nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire
+// 2018).
+//
+// A part may be a mirror instead: it shows its surroundings, which are the relit panorama that it
+// stands in, or the environment lights of the rig where there is none; no objects, and of other
+// lights no highlights. What it shows can be edited (reflection.h).
+#ifndef RELUME_OBJECT_H
+#define RELUME_OBJECT_H
+
+#include <relume/base.h>
+#include <relume/frame.h>
+#include <relume/image.h>
+#include <relume/light.h>
+#include <relume/material/btf.h>
+#include <relume/material/surface.h>
+#include <relume/relight/slab_set.h>
+#include <relume/renderer.h>
+#include <relume/world/reflection.h>
+#include <relume/world/transport.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---------------------------------------------------------------- what there is
+
+// Thread-safety: safe while nobody chooses.
+typedef struct relume_objects relume_objects;
+// An object with its light computed beforehand (bake.h).
+typedef struct relume_baked relume_baked;
+
+struct relume_objects_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    const char *scratch;  // as relume_btf_params
+    int threads;          // default: all cores
+};
+#define relume_objects_params(...)                                                                 \
+    (&(const struct relume_objects_params){RELUME_SIZED(relume_objects_params), __VA_ARGS__})
+
+// Read a description (docs/objects.md). Meshes are OBJ, PLY or what Assimp reads, such as glTF;
+// materials are folders of BTFs, of fitted models or of surfaces, .btf files of Bonn's data base,
+// or g-BRDFs as .exr; parts without one show what their mesh's file says. What a mesh lacks is
+// made, with a warning: normals, texture coordinates (from the three axes). An input status with a
+// sentence, RELUME_ENOMEM, RELUME_ESYSTEM when Embree or the reader of a format is missing. A baked
+// object (.exr) or a model is opened as the only one, as relume_objects_of_mesh does without
+// materials.
+RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
+                                                const struct relume_objects_params *params);
+// One mesh, all of it of the first of `count` materials (0: as its file says,
+// what it says nothing of in matte grey, with a note), its texture
+// repeated `repeat` times (0: 1) in each direction; `mesh` NULL: a cushion, which shows all of a
+// sample from many sides. Likewise.
+RELUME_RESULT relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
+                                                   const char *const *materials, int count,
+                                                   double repeat,
+                                                   const struct relume_objects_params *params);
+RELUME_API void relume_objects_destroy(relume_objects **objects);
+
+// A corner of triangles.
+struct relume_object_vertex {
+    float position[3], normal[3];  // world; unit
+    float tangent[4];  // unit, along growing s; the fourth is the handedness h: the other tangent,
+                       // up in the picture, is h * cross(normal, tangent)
+    float texture[2];  // (s, t) in repeats of the sample, t down from the upper edge
+};
+
+// What is there of a surface, and what it sends of its own.
+enum relume_object_cover {
+    RELUME_COVER_WHOLE,    // all of it
+    RELUME_COVER_CUT,      // where its opacity is `cutoff` or more
+    RELUME_COVER_BLENDED,  // by its opacity: the rest of the light passes
+};
+struct relume_object_skin {
+    enum relume_object_cover cover;
+    float cutoff;  // [0, 1]
+    bool sends;    // not everywhere 0
+    // Of four channels, each half as wide and high as the one before, to 1 x 1: what it sends,
+    // linear; the opacity, [0, 1]. They repeat like the material; the first alone says what is
+    // there.
+    const struct relume_image *texels;  // [levels]
+    int levels;
+};
+
+// One material of the objects; pointers belong to them.
+struct relume_object_material {
+    const char *name;                   // of its folder
+    const char *model;                  // "measured", or what relume_btf_model_name says
+    const relume_btf *btf;              // one of the two
+    const relume_btf_fitted *fitted;    // or NULL
+    const relume_btf_surface *surface;  // of either, with all levels of detail
+    bool mapped;                        // the surface has a map; else it is the sample
+    int width, height;                  // texels of one repeat
+    uint64_t bytes;                     // of its arrays
+    // A mirror has no arrays: of what it reflects it shows F + (1 - F) (1 - cos)^5, the angle from
+    // its normal to the eye (Schlick 1994, "An inexpensive BRDF model for physically-based
+    // rendering").
+    bool mirror;
+    // Light goes into it and leaves elsewhere, where ray tracing shows it. `fitted` is a matte
+    // surface that is as bright in even light.
+    bool translucent;
+    float reflectance[3];       // F, of a mirror, or of a matte surface; in [0, 1]
+    const relume_baked *baked;  // then it has nothing of the above but name, size and bytes; of
+                                // all others NULL
+    const struct relume_object_skin *skin;  // NULL: whole, and sends nothing
+};
+
+// Triangles of one mesh that show one material.
+struct relume_object_part {
+    const char *name;     // in its mesh
+    int material;         // that it is shown in
+    bool bilinear;        // between texels; else the nearest
+    size_t first, count;  // triangles
+    int object;           // of the description that it belongs to, from 0
+};
+
+// Everything belongs to the objects.
+struct relume_objects_info {
+    const struct relume_object_vertex *vertices;
+    size_t vertex_count;
+    // Linear, what the material's values are multiplied by: colours of vertices, where a mesh shows
+    // its own look; 1 elsewhere. [vertex_count], or NULL: 1 everywhere.
+    const float (*tint)[3];
+    const uint32_t (*triangles)[3];  // counter-clockwise as seen from where the normals point
+    size_t triangle_count;
+    const struct relume_object_part *part;  // [parts]
+    int parts;
+    const struct relume_object_material *material;  // [materials]
+    int materials;
+    struct relume_vec3 min, max;  // of the vertices
+    int objects;                  // of the description
+    unsigned reflections_set;     // how often: another number, other edits
+};
+// It belongs to the objects.
+RELUME_API const struct relume_objects_info *relume_objects_info(const relume_objects *objects);
+
+// Show a part in another of the materials. RELUME_EINVAL when there is no such part or material.
+RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int part, int material);
+
+// ---------------------------------------------------------------- seen from afar
+
+// The objects as they are drawn for an eye in `eye` that sees `pixel` at a distance of 1 under a
+// pixel: parts whose description asks for levels of detail have the fewest triangles that are off
+// by no more pixels than it says, closed where parts of an object meet, which move to the next
+// level's as the eye does (relume_lod_choose; geomorphs, Hoppe 1996). Pictures do so themselves;
+// this is for those who draw. `*shown` is NULL at first, later what the last call left: it stays
+// where the eye sees the same, else it is another one, and NULL where all is shown in full, as for
+// a `pixel` of 0. Parts and materials are numbered as in `objects`, which must outlive it; `rays`:
+// it can be ray traced, too. It is for relume_objects_info, relume_objects_render and
+// relume_objects_destroy alone. RELUME_ENOMEM, RELUME_ESYSTEM; then it is as before.
+RELUME_RESULT relume_status relume_objects_shown(relume_objects **shown,
+                                                 const relume_objects *objects,
+                                                 struct relume_vec3 eye, double pixel, bool rays);
+
+// ---------------------------------------------------------------- reflections
+
+// Edit the reflections of an object's mirrors from now on; NULL: as they are. Copied. Errors of
+// relume_reflection_create; then all is as before.
+RELUME_RESULT relume_status relume_objects_set_reflections(
+    relume_objects *objects, int object, const struct relume_reflection_edit *edit,
+    const struct relume_reflection_params *params);
+// How the reflections of an object are edited, until they are set again; NULL: as they are.
+RELUME_API const relume_reflection *relume_objects_reflections(const relume_objects *objects,
+                                                               int object);
+// The edits of a file (docs/reflections.md), which replace those of the objects that it names: all
+// or, with an input status and a sentence or errors of relume_reflection_create, none.
+RELUME_RESULT relume_status relume_objects_load_reflections(
+    relume_objects *objects, const char *path, const struct relume_reflection_params *params);
+// Write all edits to such a file. What is there and is no such file stays, RELUME_EINVAL with a
+// sentence. RELUME_EIO with a sentence, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_objects_save_reflections(const relume_objects *objects,
+                                                            const char *path,
+                                                            const struct relume_log *log);
+
+// What a mirror of the objects shows of their reflections at a place that a ray from `eye` hits.
+struct relume_object_reflection {
+    struct relume_reflection_place place;  // vertices are those of relume_objects_info
+    int object;                            // which one of the description, from 0
+    int part;                              // ... and which of its parts
+    struct relume_vec3 normal;             // unit, towards the eye
+    struct relume_vec3 original, edited;   // unit
+};
+// False where the ray (of any length but 0) hits nothing; any part reflects here, also if it is no
+// mirror.
+RELUME_API bool relume_objects_reflect(struct relume_object_reflection *out,
+                                       const relume_objects *objects, struct relume_vec3 eye,
+                                       struct relume_vec3 direction);
+// Where a ray from a mirror at `place` along the unit vector `direction` ends in a panorama, as
+// mirrors show it; `places`: the position that each pixel of the panorama shows, of three channels.
+// False where that is the far distance.
+RELUME_API bool relume_objects_reflected_place(struct relume_vec3 *out,
+                                               const struct relume_geometry *panorama,
+                                               const struct relume_image *places,
+                                               struct relume_vec3 place,
+                                               struct relume_vec3 direction);
+
+// ---------------------------------------------------------------- lights
+
+// A light as drawing takes it: from one direction at each point.
+struct relume_object_light {
+    bool is_patch;                    // of an area light: `patch`, not `light`, is what it sends
+    bool is_sky;                      // of an environment: where it arrives, not what it shows
+    int number;                       // of the light that it is of
+    struct relume_light light;        // never area or environment
+    struct relume_light_patch patch;  // of an area light
+};
+
+enum { RELUME_OBJECT_LIGHTS_MOST = 64 };  // of one light
+// The lights as samples, `*n` of them: areas in as many patches as the objects' distance asks for,
+// at most 36; environments in RELUME_OBJECT_LIGHTS_MOST directional lights
+// (relume_environment_sample). Free `*out` with relume_free(). RELUME_ENOMEM;
+// RELUME_EINVAL for a light that relume_light_check refuses.
+RELUME_RESULT relume_status relume_objects_lights(struct relume_object_light **out, int *n,
+                                                  const relume_objects *objects,
+                                                  const struct relume_light *lights, int count);
+// What it sends to `point` and the unit direction towards it, as relume_light_at; `*distance` may
+// be infinite.
+RELUME_API bool relume_object_light_at(struct relume_vec3 *towards, float rgb[3], double *distance,
+                                       const struct relume_object_light *light_sample,
+                                       struct relume_vec3 point);
+
+// ---------------------------------------------------------------- pictures
+
+// How objects are ray traced. Borrowed during the call; a renderer copies it
+// (relume_renderer_set_objects) and goes on using `log`.
+struct relume_render_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    int samples;      // rays along each side of a pixel, [1, 16]; default 1, through its middle
+    bool no_shadows;  // all light samples reach all points; no light goes between
+    int threads;      // default: all cores
+    // In a renderer's scene: how light goes between it and the objects. NULL or "none": not.
+    const struct relume_transport *transport;
+    int transport_samples;  // directions at each pixel, [1, 65536]; default: the way's own
+    int bounces;  // of light off objects, at most 16; default 2; below 0: objects only hide light
+    // Light is gathered at every so many pixels each way, [1, 16], and between them where what the
+    // pixels around show is no one surface or differs; default: the way's own. Ways whose
+    // directions are shared by neighbours gather at each.
+    int transport_spacing;
+    // Cameras that look at the objects from other sides than the frame's, at most 16, for ways that
+    // go by what is on the screen; default: the way's own; below 0: none.
+    int transport_cameras;
+};
+#define relume_render_params(...)                                                                  \
+    (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})
+
+// The window through which `eye` sees all of the objects (`look_at`: all zero is their middle, +y
+// up and the least square view that holds them). False as relume_slab_set_window.
+RELUME_API bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
+                                      struct relume_vec3 eye, const struct relume_look_at *look_at,
+                                      int width, int height);
+
+// Ray trace the objects as seen through the window before black, linear: the reference of all other
+// ways to draw them. `out` has three channels and the wanted size already. RELUME_EINVAL (lights,
+// samples), RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_objects_render(struct relume_image *out,
+                                                  const relume_objects *objects,
+                                                  const struct relume_window *window,
+                                                  const struct relume_light *lights, int n,
+                                                  const struct relume_render_params *params);
+
+// The objects that stand in a renderer's scene from now on, borrowed until others are set or the
+// renderer is destroyed; NULL: none. relume_renderer_frame and _draw show them where they stand
+// before what the file's depth says, under the renderer's lights, and with their shadows on the
+// scene: each light sample is relit alone and reaches a point of the scene when no object lies
+// between. Scenes throw no shadows on objects, unless light goes between them (`transport`). A pass
+// shows the scene alone: leave it at colour. Rays, single pixels and places are those of the scene.
+// `params` are copied. RELUME_ENOMEM, RELUME_EINVAL (of transport); then all is as before. Frames
+// also fail with RELUME_EINVAL (samples) and RELUME_EUNFIT (a file without depth).
+RELUME_RESULT relume_status relume_renderer_set_objects(relume_renderer *renderer,
+                                                        const relume_objects *objects,
+                                                        const struct relume_render_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

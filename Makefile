@@ -141,7 +141,7 @@ VIEWER   := $B/relume-view
 .PHONY: all lib cli viewer samples deps deps-web web deps-stitch deps-mpi deps-python demo demo-web tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
         clean
 .DELETE_ON_ERROR:
-all: lib cli viewer
+all: lib cli viewer $B/layers.ok
 lib: $B/librelume.a $B/librelume.so $(MODULE) $(MESHES) $(HELPER) $(STITCH)
 cli: $B/relume $(MPI)
 viewer: $(VIEWER)
@@ -280,6 +280,10 @@ $B/librelume.a: $(LIB_O)
 	$(Q)rm -f $@
 	$(call say,AR)
 	$(Q)$(AR) rcs $@ $^
+# The law of the wings, of symbols; that of includes: make layers
+$B/layers.ok: $(LIB_O) scripts/layers.sh
+	$(Q)scripts/layers.sh --symbols $(filter %.o,$^)
+	@touch $@
 # Where a program or library looks for the module: first where the build left it. Sanitizers open
 # libraries in its name, which only the older kind of run path allows.
 run_path = $(if $(filter no,$(RUN_PATH)),,'-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer msan,$(config)),$(comma)--disable-new-dtags))

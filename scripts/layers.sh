@@ -1,30 +1,26 @@
 #!/bin/sh
 # Who may use whom (docs/architecture.md): a wing of src may use itself and the wings before it, by quoted includes and by
 # public headers; rooms of one wing include each other in one direction; programs stand beside each other by a table; external
-# libraries are known to one file each; no file may need itself by way of others. What objects ask of each other is looked at by
-# symbols (nm), which takes a build: not here.
+# libraries are known to one file each; no file may need itself by way of others.
+# layers.sh --symbols OBJECT... asks the same of objects: each undefined symbol (nm) is looked up in the object that defines it,
+# whose wing must not have a larger number; rooms of one wing need each other in one direction. The build runs it.
 # One awk over all includes: tests/cli/test_build.sh runs it ten times.
 # layers.sh --table prints the rules as docs/architecture.md shows them.
 set -eu
 cd "$(dirname "$0")/.."
 
-# wing: the public headers whose functions it has; it may use what stands above it
-wings="core:base context core/vec
-image:image camera image/photograph image/response image/jnd image/directions
-capture:capture capture/align capture/acquire capture/ball capture/chart capture/ingest capture/photometric capture/slab_depth
-format:pack format/coder format/codebook format/team
-relight:light rig frame renderer evaluate relight/relight relight/relighter relight/shadow relight/normals relight/enhance relight/view relight/slab_set relight/viewport relight/tone relight/psf relight/eye relight/glare
-material:material/btf material/btf_environment material/edit material/surface material/synthesis material/maps material/change
-encode:encode/heldout
-exchange:exchange exchange/notes
-shape:shape/mesh shape/simplify shape/billboards shape/volume shape/fusion
-world:world/transport world/points world/object world/reflection world/bake world/scene world/tableau
-site:publish site/study"
-
-# What points up still, FILE>HEADER: to be mended, and never to grow
-still="shape/atlas/atlas.h>world/baked/baked.h shape/atlas/charts.h>world/baked/baked.h
-format/pack/learnt.h>relume/relight/shadow.h format/pack/read_view.c>relume/relight/shadow.h
-shape/mesh/tangents.h>relume/world/object.h"
+# wing: the headers of the public core that are its own (extensions: relume/WING/*.h); it may use what stands above it
+wings="core:base context
+image:image camera
+capture:capture
+format:pack
+relight:light rig frame renderer evaluate
+material:
+encode:
+exchange:exchange
+shape:
+world:
+site:publish"
 
 # folder of a program: private folders it may include beside its own | public headers it may include (* = all)
 rules="cli/program:core/base:base image exchange/notes pack relight/slab_set
@@ -49,10 +45,12 @@ viewer/session:common cli/program app gl relit glare transport draw panel window
 samples::*"
 
 if [ "${1:-}" = --table ]; then
-    echo "| wing | rooms | public headers |"
-    echo "|---|---|---|"
+    commas() { sed 's/ $//; s/ /, /g; s/^$/-/'; }
+    echo "| wing | rooms | headers of the core | extensions |"
+    echo "|---|---|---|---|"
     echo "$wings" | while IFS=: read -r wing headers; do
-        echo "| $wing | $(ls "src/$wing" | tr '\n' ' ' | sed 's/ $//; s/ /, /g') | $(echo "$headers" | sed 's/ /, /g') |"
+        echo "| $wing | $(ls "src/$wing" | tr '\n' ' ' | commas) | $(echo "$headers" | commas) |" \
+            "$(ls "include/relume/$wing" 2>/dev/null | sed 's/[.]h$//' | tr '\n' ' ' | commas) |"
     done
     echo
     echo "$rules" | awk -F : '
@@ -62,6 +60,71 @@ if [ "${1:-}" = --table ]; then
         }
         BEGIN { print "| folder | private | public headers |\n|---|---|---|" }
         { print "| " $1 " | " commas($2, "-") " | " commas($3, "-") " |" }'
+    exit
+fi
+
+# Objects instead of sources: BUILD/obj/src/WING/ROOM/NAME.o
+if [ "${1:-}" = --symbols ]; then
+    shift
+    nm -A -P "$@" | awk -v wings="$wings" '
+    function complain(what) {
+        print "layers: " what >"/dev/stderr"
+        bad = 1
+    }
+    # Marks what a room of a wing reaches from `at` on.
+    function reach(start, at,    i, n, to) {
+        n = split(onward[at], to, " ")
+        for (i = 1; i <= n; i++)
+            if (!((start, to[i]) in reached)) {
+                reached[start, to[i]] = 1
+                reach(start, to[i])
+            }
+    }
+    BEGIN {
+        n = split(wings, line, "\n")
+        for (i = 1; i <= n; i++) {
+            sub(/:.*/, "", line[i])
+            number[line[i]] = i
+        }
+    }
+    {
+        object = $1
+        sub(/.*obj\/src\//, "", object)
+        sub(/:$/, "", object)
+        if ($3 == "U")
+            wanted[object] = wanted[object] " " $2
+        else if ($3 ~ /^[A-Z]$/) {
+            defined[$2] = object
+            count[$2]++
+        }
+        split(object, part, "/")
+        wing[object] = $1 ~ /obj\/src\// ? part[1] : ""
+        room[object] = part[1] "/" part[2]
+    }
+    END {
+        for (object in wanted) {
+            n = split(wanted[object], name, " ")
+            for (i = 1; i <= n; i++) {
+                from = defined[name[i]]
+                if (count[name[i]] != 1 || !(wing[object] in number) || wing[from] == "")  # files that are embedded
+                    continue
+                if (!(wing[from] in number) || number[wing[from]] > number[wing[object]])
+                    complain(object " needs " name[i] " of " from ", a wing above")
+                if (wing[from] == wing[object] && room[from] != room[object] && !((room[object], room[from]) in known)) {
+                    known[room[object], room[from]] = object " needs " name[i]
+                    onward[room[object]] = onward[room[object]] " " room[from]
+                }
+            }
+        }
+        for (r in onward)
+            reach(r, r)
+        for (pair in known) {
+            split(pair, end, SUBSEP)
+            if ((end[2], end[1]) in reached)
+                complain("rooms that need each other: " end[1] ", " end[2] ": " known[pair])
+        }
+        exit bad
+    }'
     exit
 fi
 
@@ -117,7 +180,7 @@ found=$(grep -rlE '(^|[^a-z_>.])(malloc|calloc|realloc|reallocarray|free|strdup|
 }
 
 grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.h' --include='*.cpp' |
-    awk -F : -v rules="$rules" -v wings="$wings" -v still="$still" -v external="$external" '
+    awk -F : -v rules="$rules" -v wings="$wings" -v external="$external" '
     function complain(what) {
         print "layers: " what >"/dev/stderr"
         bad = 1
@@ -146,7 +209,6 @@ grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.
             for (k = 1; k <= m; k++)
                 wing_of["relume/" headers[k] ".h"] = i
         }
-        gsub("\n", " ", still)
         externals = split(external, line, "\n")
         for (i = 1; i <= externals; i++) {
             split(line[i], part, ":")
@@ -166,8 +228,12 @@ grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.
         sub("/.*", "", wing)
     }
     folder in number && name ~ "/" && (own || name ~ "^relume/") {
-        above = own ? (wing in number ? number[wing] : 99) : name in wing_of ? wing_of[name] : 99
-        if (above > number[folder] && !has(still, substr(file, 5) ">" name))
+        if (!own && name ~ "/.*/") {
+            wing = name
+            gsub("^relume/|/[^/]*$", "", wing)
+        }
+        above = !own && name in wing_of ? wing_of[name] : wing in number ? number[wing] : 99
+        if (above > number[folder])
             complain(file " includes " (own ? name : "<" name ">"))
     }
     own && folder in private && name ~ "/" && dir != folder && "viewer/" dir != folder && !has(private[folder], dir) {

@@ -7,4 +7,7 @@
 
 #include <relume/extensions.h>
 
+#define relume_object_vertex relume_mesh_vertex
+#define relume_pack_shadows  relume_shadows_open
+
 #endif

@@ -8,7 +8,6 @@
 #include <relume/format/codebook.h>
 #include <relume/format/coder.h>
 #include <relume/image.h>
-#include <relume/relight/shadow.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -323,15 +322,32 @@ RELUME_RESULT relume_status relume_pack_depth_level(struct relume_image *out, re
 // Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 
-// What shadows of a view are traced with (shadow.h), as it was coded; empty when the file has none.
+// Channels of a model of moving shadows (relight/shadow.h).
+enum {
+    RELUME_SHADOW_THICK = 0,     // world units behind the surface, along the axis of the view or
+                                 // away from its eye, in which light is stopped; above 0
+    RELUME_SHADOW_COLOUR = 1,    // r, g, b of luminance 1, or black
+    RELUME_SHADOW_MATTE = 4,     // a, then b in the world
+    RELUME_SHADOW_CHANNELS = 8,  // in all
+};
+
+// Channels of a model of moving highlights.
+enum {
+    RELUME_GLOSS_COLOUR = 0,     // r, g, b: of the matte surface, or what a metal shines like;
+                                 // linear, 0 or more
+    RELUME_GLOSS_NORMAL = 3,     // x and y of a unit vector towards the viewer
+    RELUME_GLOSS_ROUGHNESS = 5,  // glTF's, 0 to 1
+    RELUME_GLOSS_SHINE = 6,      // reflectance at normal incidence; below 0: a metal
+    RELUME_GLOSS_SHARE = 7,      // of that which counts, 0 or more
+    RELUME_GLOSS_CHANNELS = 8,   // in all
+};
+
+// Model of the moving shadows of a view, as it was coded; empty when the file has none.
 RELUME_RESULT relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack,
                                                int view);
-// What highlights of a view wander by (shadow.h); empty when the file has none.
+// Model of the moving highlights of a view; empty when the file has none.
 RELUME_RESULT relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack,
                                               int view);
-// Either, ready to be added; NULL when the file has neither, or where one keeps going and it is
-// damaged: a warning says so once. The caller destroys it.
-RELUME_RESULT relume_status relume_pack_shadows(relume_shadows **out, relume_pack *pack, int view);
 
 // Read all of a file, or of a part, compare it with its check sums (docs/format.md) and call
 // `found` for each run of rows of a part that has changed, is missing or cannot be decoded, rows

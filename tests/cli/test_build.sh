@@ -88,7 +88,33 @@ plant() {
     fi
     cp before "tree/$2"
 }
+# symbols NAME CODE OBJECT DEFINES PATTERN: an object of that name made of CODE, beside one that defines what it calls, is refused
+symbols() {
+    mkdir -p "obj/src/${3%/*}" "obj/src/${4%/*}"
+    echo "int other(void); $2" | $CC -x c -c -o "obj/src/$3" -
+    echo 'int other(void) { return 1; }' | $CC -x c -c -o "obj/src/$4" -
+    if "$TOP/scripts/layers.sh" --symbols "$PWD/obj/src/$3" "$PWD/obj/src/$4" >layers.txt 2>&1; then
+        not_ok "$1" "$3 may call $4"
+    else
+        check "$1" grep -q "$5" layers.txt
+    fi
+    rm -r obj
+}
+call='int call(void) { return other(); }'
+symbols "a function of a wing above, without its header" "$call" core/math/a.o image/image/b.o \
+    '^layers: core/math/a.o needs other of image/image/b.o, a wing above$'
+symbols "a function of a program" "$call" site/publish/a.o cli/measure/b.o '^layers: site/publish/a.o needs other of cli/measure/b.o'
 plant "a header of a wing above" src/core/math/sh.c '#include "image/image/image.h"' image/image/image.h
+mkdir -p obj/src/core/base obj/src/core/math
+echo 'int there(void); int back(void) { return 1; } int go(void) { return there(); }' | $CC -x c -c -o obj/src/core/base/a.o -
+echo 'int back(void); int there(void) { return back(); }' | $CC -x c -c -o obj/src/core/math/b.o -
+check "rooms that call each other" sh -c \
+    '! "$TOP/scripts/layers.sh" --symbols "$PWD/obj/src/core/base/a.o" "$PWD/obj/src/core/math/b.o" 2>layers.txt && grep -q "rooms that need each other: core/base, core/math" layers.txt'
+check "a function of a wing below is allowed" sh -c \
+    'mkdir -p obj/src/image/image && mv obj/src/core/base/a.o obj/src/image/image/a.o &&
+     echo "int back(void); int there(void) { return 0; }" | '"$CC"' -x c -c -o obj/src/core/math/b.o - &&
+     "$TOP/scripts/layers.sh" --symbols "$PWD/obj/src/image/image/a.o" "$PWD/obj/src/core/math/b.o"'
+rm -r obj
 plant "a private header of a stranger" src/cli/commands/cmd_info.c '#include "format/pack/format.h"' format/pack/format.h
 plant "a private header in the viewer" viewer/app/app.c '#include "core/base/log.h"' core/base/log.h
 plant "a header of a room above" viewer/gl/gl.c '#include "draw/draw.h"' draw/draw.h

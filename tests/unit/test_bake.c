@@ -203,7 +203,7 @@ static bool place_of(vec3 *out, double place[2], const relume_baked *b, size_t t
     place[0] = ((int)(texel % (size_t)width) + 0.5) / width;
     place[1] = ((int)(texel / (size_t)width) + 0.5) / b->info.height;
     for (size_t i = 0; i < b->info.triangles; i++) {
-        const struct baked_corner *c = b->triangle[i];
+        const struct atlas_corner *c = b->triangle[i];
         double w[3], area = 0.0;
         for (int k = 0; k < 3; k++) {
             const float *p = c[(k + 1) % 3].place, *q = c[(k + 2) % 3].place;

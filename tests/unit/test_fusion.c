@@ -293,7 +293,7 @@ static void test_small_charts(void **state)
 {
     (void)state;
     enum { ACROSS = 24, TRIANGLES = 2 * ACROSS * ACROSS };
-    static struct baked_corner triangle[TRIANGLES][3];
+    static struct atlas_corner triangle[TRIANGLES][3];
     static const int corner[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1, 1}, {0, 1}}};
     struct charts as_they_are, merged;
     for (int i = 0; i < TRIANGLES; i++)

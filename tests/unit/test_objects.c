@@ -72,7 +72,7 @@ static void frames_follow_the_texture(void **state)
     assert_int_equal(i->triangle_count, 4);
     for (size_t t = 0; t < i->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
-            const struct relume_object_vertex *v = &i->vertices[i->triangles[t][k]];
+            const struct relume_mesh_vertex *v = &i->vertices[i->triangles[t][k]];
             const float side = t < 2 ? 1.0f : -1.0f;
             // s grows to the right, on the mirrored half to the left; up is up on both:
             // h cross((0, 0, 1), (side, 0, 0)) = (0, h side, 0)
@@ -489,7 +489,7 @@ static void what_is_missing_is_made(void **state)
     const struct relume_objects_info *i = relume_objects_info(o);
     assert_int_equal(warnings, 2);  // texture coordinates, normals
     for (size_t k = 0; k < i->vertex_count; k++) {
-        const struct relume_object_vertex *v = &i->vertices[k];
+        const struct relume_mesh_vertex *v = &i->vertices[k];
         const float *n = v->normal, *t = v->tangent;
         assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-5);
         assert_float_equal(t[0] * t[0] + t[1] * t[1] + t[2] * t[2], 1, 1e-5);
@@ -531,7 +531,7 @@ static void gltf_is_read(void **state)
     assert_float_equal(i->min.z, 2, 1e-6);
     assert_int_equal(warnings, 1);  // normals
     for (int k = 0; k < 3; k++) {
-        const struct relume_object_vertex *v = &i->vertices[i->triangles[0][k]];
+        const struct relume_mesh_vertex *v = &i->vertices[i->triangles[0][k]];
         // t is 1 - y: the upper edge of the sample is up
         assert_float_equal(v->texture[0], v->position[0], 1e-6);
         assert_float_equal(v->texture[1], 1 - v->position[1], 1e-6);

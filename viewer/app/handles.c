@@ -108,7 +108,7 @@ static void find_red(struct handles_mark *mark, const relume_objects *objects, i
         if (part->object != object || !is_mirror(info, part))
             continue;
         for (size_t i = 3 * part->first; i < 3 * (part->first + part->count); i++) {
-            const struct relume_object_vertex *v = &info->vertices[info->triangles[i / 3][i % 3]];
+            const struct relume_mesh_vertex *v = &info->vertices[info->triangles[i / 3][i % 3]];
             const vec3 at =
                 vec3_of((double)v->position[0], (double)v->position[1], (double)v->position[2]);
             const vec3 normal =

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-_Static_assert(sizeof(struct relume_object_vertex) == 12 * sizeof(float),
+_Static_assert(sizeof(struct relume_mesh_vertex) == 12 * sizeof(float),
                "mirror.glsl reads a vertex as three texels");
 
 // What shaders take for infinite: its square in thousandths of the surface's size is a number yet.

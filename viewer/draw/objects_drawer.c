@@ -127,10 +127,10 @@ static void upload_mesh(struct objects_drawer *t, const struct relume_objects_in
     static const struct {
         GLint numbers;
         size_t offset;
-    } attribute[] = {{3, offsetof(struct relume_object_vertex, position)},
-                     {3, offsetof(struct relume_object_vertex, normal)},
-                     {4, offsetof(struct relume_object_vertex, tangent)},
-                     {2, offsetof(struct relume_object_vertex, texture)}};
+    } attribute[] = {{3, offsetof(struct relume_mesh_vertex, position)},
+                     {3, offsetof(struct relume_mesh_vertex, normal)},
+                     {4, offsetof(struct relume_mesh_vertex, tangent)},
+                     {2, offsetof(struct relume_mesh_vertex, texture)}};
     gl->GenVertexArrays(1, &t->array);
     gl->BindVertexArray(t->array);
     gl->GenBuffers(1, &t->vertices);
@@ -139,7 +139,7 @@ static void upload_mesh(struct objects_drawer *t, const struct relume_objects_in
     for (GLuint i = 0; i < 4; i++) {
         gl->EnableVertexAttribArray(i);
         gl->VertexAttribPointer(i, attribute[i].numbers, GL_FLOAT, GL_FALSE,
-                                sizeof(struct relume_object_vertex),
+                                sizeof(struct relume_mesh_vertex),
                                 (const void *)attribute[i].offset);
     }
     create_tints(t, info);

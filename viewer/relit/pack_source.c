@@ -152,7 +152,7 @@ static relume_status find_shadows(relume_shadows **out, void *user, int view)
 {
     struct pack_source *s = user;
     pthread_mutex_lock(&s->lock);
-    const relume_status status = relume_pack_shadows(out, s->pack, view);
+    const relume_status status = relume_shadows_open(out, s->pack, view);
     pthread_mutex_unlock(&s->lock);
     return status;
 }

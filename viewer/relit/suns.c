@@ -1,6 +1,6 @@
 // suns.c - environments of files where shadows or highlights move, on the GPU: each sun is relit
 // alone and exchanged in the picture of the whole for what it shows with those. Twin: exchange_suns
-// of src/relight/light/relighter.c
+// of src/relight/frame/relighter.c
 #include "common/vec.h"
 #include "relit/moving.h"
 #include "relit/relighter.h"

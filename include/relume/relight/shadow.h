@@ -25,19 +25,11 @@
 #include <relume/format/coder.h>
 #include <relume/image.h>
 #include <relume/light.h>
+#include <relume/pack.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-// Channels of what is learnt of a pixel.
-enum {
-    RELUME_SHADOW_THICK = 0,     // world units behind the surface, along the axis of the view or
-                                 // away from its eye, in which light is stopped; above 0
-    RELUME_SHADOW_COLOUR = 1,    // r, g, b of luminance 1, or black
-    RELUME_SHADOW_MATTE = 4,     // a, then b in the world
-    RELUME_SHADOW_CHANNELS = 8,  // in all
-};
 
 // Whether rays can be traced through views of that geometry: not cubes and cylinders with discs.
 RELUME_API bool relume_shadows_suit(const struct relume_geometry *geometry);
@@ -54,6 +46,11 @@ RELUME_RESULT relume_status relume_shadows_create(relume_shadows **out,
                                                   const struct relume_image *depth,
                                                   const struct relume_image *model);
 RELUME_API void relume_shadows_destroy(relume_shadows **shadows);
+// Shadows or highlights of a view of a file, ready to be added; NULL when the file has neither.
+// Where the file was opened with `keep_going` a damaged model is a warning, said once, and NULL.
+// The caller destroys `*out`. RELUME_EINVAL for a view that is not there, RELUME_EDAMAGED,
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_open(relume_shadows **out, relume_pack *pack, int view);
 // What is kept, bytes: it grows with the captured lights that were asked for.
 RELUME_API uint64_t relume_shadows_bytes(const relume_shadows *shadows);
 
@@ -93,17 +90,6 @@ RELUME_RESULT relume_status relume_shadows_judge(struct relume_shadows_gain *out
                                                  const relume_capture *capture, int view,
                                                  bool display,
                                                  const struct relume_shadows_params *params);
-
-// Channels of a view whose highlights wander.
-enum {
-    RELUME_GLOSS_COLOUR = 0,     // r, g, b: of the matte surface, or what a metal shines like;
-                                 // linear, 0 or more
-    RELUME_GLOSS_NORMAL = 3,     // x and y of a unit vector towards the viewer
-    RELUME_GLOSS_ROUGHNESS = 5,  // glTF's, 0 to 1
-    RELUME_GLOSS_SHINE = 6,      // reflectance at normal incidence; below 0: a metal
-    RELUME_GLOSS_SHARE = 7,      // of that which counts, 0 or more
-    RELUME_GLOSS_CHANNELS = 8,   // in all
-};
 
 // As relume_shadows_create, of what relume_gloss_learn found, for planar views that are seen
 // orthographically. RELUME_EINVAL for other channels, RELUME_ENOMEM.

@@ -33,6 +33,14 @@ struct relume_mesh {
 };
 RELUME_API void relume_mesh_free(struct relume_mesh *mesh);
 
+// A corner of triangles with the frame in which its surface reflects.
+struct relume_mesh_vertex {
+    float position[3], normal[3];  // world; unit
+    float tangent[4];  // unit, along growing s; the fourth is the handedness h: the other tangent,
+                       // up in the picture, is h * cross(normal, tangent)
+    float texture[2];  // (s, t) in repeats of the sample, t down from the upper edge
+};
+
 // How meshes are read and written.
 struct relume_mesh_params {
     size_t struct_size;  // filled by the macro (base.h)

@@ -26,6 +26,7 @@
 #include <relume/material/surface.h>
 #include <relume/relight/slab_set.h>
 #include <relume/renderer.h>
+#include <relume/shape/mesh.h>
 #include <relume/world/reflection.h>
 #include <relume/world/transport.h>
 
@@ -68,14 +69,6 @@ RELUME_RESULT relume_status relume_objects_of_mesh(relume_objects **out, const c
                                                    double repeat,
                                                    const struct relume_objects_params *params);
 RELUME_API void relume_objects_destroy(relume_objects **objects);
-
-// A corner of triangles.
-struct relume_object_vertex {
-    float position[3], normal[3];  // world; unit
-    float tangent[4];  // unit, along growing s; the fourth is the handedness h: the other tangent,
-                       // up in the picture, is h * cross(normal, tangent)
-    float texture[2];  // (s, t) in repeats of the sample, t down from the upper edge
-};
 
 // What is there of a surface, and what it sends of its own.
 enum relume_object_cover {
@@ -128,7 +121,7 @@ struct relume_object_part {
 
 // Everything belongs to the objects.
 struct relume_objects_info {
-    const struct relume_object_vertex *vertices;
+    const struct relume_mesh_vertex *vertices;
     size_t vertex_count;
     // Linear, what the material's values are multiplied by: colours of vertices, where a mesh shows
     // its own look; 1 elsewhere. [vertex_count], or NULL: 1 everywhere.

@@ -10,7 +10,7 @@
 
 #include "format/lossy/lossy.h"
 
-#include <relume/relight/shadow.h>
+#include <relume/pack.h>
 
 enum { LEARNT = 8 };
 _Static_assert(LEARNT == (int)RELUME_SHADOW_CHANNELS && LEARNT == (int)RELUME_GLOSS_CHANNELS,

@@ -430,7 +430,7 @@ relume_status renderer_shadows(relume_shadows **out, relume_renderer *r, int vie
     if (!(r->info->has_shadow || r->info->has_gloss))
         return RELUME_OK;
     const relume_status status =
-        k->shadows ? RELUME_OK : relume_pack_shadows(&k->shadows, r->pack, view);
+        k->shadows ? RELUME_OK : relume_shadows_open(&k->shadows, r->pack, view);
     *out = k->shadows;
     return status;
 }

@@ -2,6 +2,7 @@
 #include "shape/atlas/atlas.h"
 
 #include "core/base/memory.h"
+#include "core/math/vec.h"
 #include "shape/atlas/charts.h"
 
 #include <math.h>
@@ -14,7 +15,7 @@ struct corners {
     double x[3], y[3];  // texels, their middles at whole numbers
 };
 
-static struct corners corners_of(const struct baked_corner t[3], int width, int height)
+static struct corners corners_of(const struct atlas_corner t[3], int width, int height)
 {
     struct corners c;
     for (int k = 0; k < 3; k++) {
@@ -86,7 +87,7 @@ static double nearest(double weight[3], const struct corners *c, double x, doubl
 // ---------------------------------------------------------------- whether triangles overlap
 
 // Triangles with a texel's middle well within them that another one has too; true: there are some.
-static bool find_doubles(bool *twice, struct baked_corner (*triangle)[3], size_t n, uint32_t *owner,
+static bool find_doubles(bool *twice, struct atlas_corner (*triangle)[3], size_t n, uint32_t *owner,
                          int width, int height)
 {
     const double WELL = 1e-3;
@@ -110,7 +111,7 @@ static bool find_doubles(bool *twice, struct baked_corner (*triangle)[3], size_t
 }
 
 // Within the picture, and of some extent.
-static bool lies_within(struct baked_corner (*triangle)[3], size_t n)
+static bool lies_within(struct atlas_corner (*triangle)[3], size_t n)
 {
     double area = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -125,7 +126,7 @@ static bool lies_within(struct baked_corner (*triangle)[3], size_t n)
 
 // ---------------------------------------------------------------- texels
 
-static void fill(struct atlas *a, struct baked_corner (*triangle)[3], size_t n, float *square)
+static void fill(struct atlas *a, struct atlas_corner (*triangle)[3], size_t n, float *square)
 {
     for (size_t i = 0; i < (size_t)a->width * (size_t)a->height; i++) {
         a->texel[i] = (struct atlas_texel){.triangle = UINT32_MAX};
@@ -151,7 +152,7 @@ static void fill(struct atlas *a, struct baked_corner (*triangle)[3], size_t n, 
 }
 
 // The area of so many texels, where half of the picture holds the surface.
-static double area_of(struct baked_corner (*triangle)[3], size_t n, const struct atlas *a,
+static double area_of(struct atlas_corner (*triangle)[3], size_t n, const struct atlas *a,
                       double texels)
 {
     double area = 0.0;
@@ -165,7 +166,7 @@ static double area_of(struct baked_corner (*triangle)[3], size_t n, const struct
 }
 
 // Charts that fold over themselves lose the triangles on top, which become charts.
-static relume_status make_places(struct atlas *a, struct baked_corner (*triangle)[3], size_t n,
+static relume_status make_places(struct atlas *a, struct atlas_corner (*triangle)[3], size_t n,
                                  bool *alone, uint32_t *owner, double small_texels,
                                  const struct relume_log *log)
 {
@@ -186,7 +187,7 @@ static relume_status make_places(struct atlas *a, struct baked_corner (*triangle
     return status;
 }
 
-relume_status atlas_make(struct atlas *out, struct baked_corner (*triangle)[3], size_t n, int width,
+relume_status atlas_make(struct atlas *out, struct atlas_corner (*triangle)[3], size_t n, int width,
                          int height, double small, const struct relume_log *log)
 {
     const size_t texels = (size_t)width * (size_t)height;

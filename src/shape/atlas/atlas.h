@@ -1,8 +1,8 @@
 // atlas.h - a mesh flattened onto a picture: which place of which triangle each texel holds
-#ifndef BAKED_ATLAS_H
-#define BAKED_ATLAS_H
+#ifndef SHAPE_ATLAS_H
+#define SHAPE_ATLAS_H
 
-#include "world/baked/baked.h"
+#include "shape/atlas/charts.h"
 
 // What a texel holds; texels within one and a half of a triangle hold its nearest place, so that
 // what is between texels is always known.
@@ -23,7 +23,7 @@ struct atlas {
 // neighbours that face the same of six ways, seen from there, which are packed in rows. Charts of
 // fewer texels than `small`, about, become parts of larger ones beside them where they can; 0:
 // none. RELUME_EUNFIT with a sentence where the picture is too small for all charts, RELUME_ENOMEM.
-relume_status atlas_make(struct atlas *out, struct baked_corner (*triangle)[3], size_t n, int width,
+relume_status atlas_make(struct atlas *out, struct atlas_corner (*triangle)[3], size_t n, int width,
                          int height, double small, const struct relume_log *log);
 void atlas_free(struct atlas *atlas);
 

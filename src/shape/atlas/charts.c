@@ -3,23 +3,24 @@
 
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "core/math/vec.h"
 
 #include <math.h>
 #include <string.h>
 
-static vec3 at(const struct baked_corner *c)
+static vec3 at(const struct atlas_corner *c)
 {
     return vec3_of((double)c->position[0], (double)c->position[1], (double)c->position[2]);
 }
 
 // Twice the area, times the normal.
-static vec3 across(const struct baked_corner t[3])
+static vec3 across(const struct atlas_corner t[3])
 {
     return vec3_cross(vec3_sub(at(&t[1]), at(&t[0])), vec3_sub(at(&t[2]), at(&t[0])));
 }
 
 // 2 k for the axis k that it faces most, 2 k + 1 the other way.
-static uint8_t facing(const struct baked_corner t[3])
+static uint8_t facing(const struct atlas_corner t[3])
 {
     const vec3 n = across(t);
     const double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
@@ -27,7 +28,7 @@ static uint8_t facing(const struct baked_corner t[3])
 }
 
 // The cosine between a triangle's normal and a way that a chart faces.
-static double cosine_to(const struct baked_corner t[3], int face)
+static double cosine_to(const struct atlas_corner t[3], int face)
 {
     const vec3 n = across(t);
     const double length = vec3_length(n), along = face < 2 ? n.x : face < 4 ? n.y : n.z;
@@ -48,7 +49,7 @@ static int by_ends(const void *a, const void *b)
     return order ? order : (x->triangle > y->triangle) - (x->triangle < y->triangle);
 }
 
-static void set_edge(struct edge *to, const struct baked_corner *a, const struct baked_corner *b,
+static void set_edge(struct edge *to, const struct atlas_corner *a, const struct atlas_corner *b,
                      size_t triangle)
 {
     const bool turned = memcmp(a->position, b->position, sizeof a->position) > 0;
@@ -78,7 +79,7 @@ static bool do_share(const struct edge *edge, size_t i)
 }
 
 struct grouping {
-    struct baked_corner (*triangle)[3];
+    struct atlas_corner (*triangle)[3];
     size_t n;
     const bool *alone;
     struct edge *edge;  // [3 n], in order
@@ -154,7 +155,7 @@ static relume_status make_groups(struct charts *out, struct grouping *g, double 
     return RELUME_OK;
 }
 
-relume_status charts_make(struct charts *out, struct baked_corner (*triangle)[3], size_t n,
+relume_status charts_make(struct charts *out, struct atlas_corner (*triangle)[3], size_t n,
                           const bool *alone, double small)
 {
     struct grouping g = {.triangle = triangle,
@@ -190,7 +191,7 @@ struct chart {
 };
 
 // A place as it is seen from where a chart faces.
-static void flat(double out[2], const struct baked_corner *c, int face)
+static void flat(double out[2], const struct atlas_corner *c, int face)
 {
     const double p[3] = {(double)c->position[0], (double)c->position[1], (double)c->position[2]};
     out[0] = p[(face / 2 + 1) % 3] * (face % 2 ? -1.0 : 1.0);
@@ -198,7 +199,7 @@ static void flat(double out[2], const struct baked_corner *c, int face)
 }
 
 static void measure(struct chart *chart, const struct charts *charts,
-                    struct baked_corner (*triangle)[3], size_t n)
+                    struct atlas_corner (*triangle)[3], size_t n)
 {
     for (size_t i = 0; i < charts->count; i++)
         chart[i] = (struct chart){.least = {INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY}};
@@ -281,7 +282,7 @@ static double find_scale(const struct packing *p)
     return least;
 }
 
-static void place(struct baked_corner (*triangle)[3], size_t n, const struct charts *charts,
+static void place(struct atlas_corner (*triangle)[3], size_t n, const struct charts *charts,
                   const struct packing *p, const size_t *where, double scale)
 {
     for (size_t i = 0; i < n; i++) {
@@ -297,7 +298,7 @@ static void place(struct baked_corner (*triangle)[3], size_t n, const struct cha
     }
 }
 
-relume_status charts_place(const struct charts *charts, struct baked_corner (*triangle)[3],
+relume_status charts_place(const struct charts *charts, struct atlas_corner (*triangle)[3],
                            size_t n, int width, int height, const struct relume_log *log)
 {
     struct chart *chart = mem_array(charts->count, sizeof *chart);

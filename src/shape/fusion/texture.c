@@ -22,7 +22,7 @@
 struct painting {
     const struct texture *t;
     struct atlas atlas;
-    struct baked_corner (*triangle)[3];
+    struct atlas_corner (*triangle)[3];
     const struct witness *witness;
     struct relume_image relit;
     float (*sum)[4];  // of red, green, blue, each times its weight, and of the weights
@@ -35,7 +35,7 @@ static relume_status flatten(struct painting *p, const struct relume_mesh *m)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < m->triangle_count; i++)
         for (int k = 0; k < 3; k++) {
-            struct baked_corner *c = &p->triangle[i][k];
+            struct atlas_corner *c = &p->triangle[i][k];
             memcpy(c->position, m->position[m->triangle[i][k]], sizeof c->position);
             memcpy(c->normal, m->normal[m->triangle[i][k]], sizeof c->normal);
         }
@@ -52,7 +52,7 @@ static void place_of(vec3 *place, vec3 *normal, const struct painting *p,
                               (double)texel->v};
     *place = *normal = vec3_of(0, 0, 0);
     for (int k = 0; k < 3; k++) {
-        const struct baked_corner *c = &p->triangle[texel->triangle][k];
+        const struct atlas_corner *c = &p->triangle[texel->triangle][k];
         *place = vec3_along(*place, vec3_floats(c->position), weight[k]);
         *normal = vec3_along(*normal, vec3_floats(c->normal), weight[k]);
     }
@@ -177,7 +177,7 @@ static uint32_t vertex_at(struct splitting *s, uint32_t v, const float at[2])
     return v;
 }
 
-static relume_status split(struct relume_mesh *m, struct baked_corner (*triangle)[3])
+static relume_status split(struct relume_mesh *m, struct atlas_corner (*triangle)[3])
 {
     const size_t most = m->vertex_count + 3 * m->triangle_count;
     struct splitting s = {.next = mem_zeroed(most, sizeof *s.next),

@@ -63,7 +63,7 @@ static void join(struct tangents *out, const struct corner *corner, size_t corne
 {
     for (size_t i = 0; i < corners; i++) {
         if (!i || memcmp(corner[i].key, corner[i - 1].key, sizeof corner[i].key)) {
-            struct relume_object_vertex *v = &out->vertices[out->vertex_count++];
+            struct relume_mesh_vertex *v = &out->vertices[out->vertex_count++];
             const float *key = corner[i].key;
             memcpy(v->position, key, sizeof v->position);
             memcpy(v->normal, key + 3, sizeof v->normal);
@@ -77,7 +77,7 @@ static void join(struct tangents *out, const struct corner *corner, size_t corne
     }
 }
 
-static vec3 normal_of(const struct relume_object_vertex *v)
+static vec3 normal_of(const struct relume_mesh_vertex *v)
 {
     return vec3_of((double)v->normal[0], (double)v->normal[1], (double)v->normal[2]);
 }
@@ -138,7 +138,7 @@ relume_status tangents_make(struct tangents *out, const struct mesh *mesh, float
         add_tangents(sum, out, mesh);
     }
     for (size_t i = 0; room && i < out->vertex_count; i++) {
-        struct relume_object_vertex *v = &out->vertices[i];
+        struct relume_mesh_vertex *v = &out->vertices[i];
         const bool flat = !(vec3_length(sum[i]) > 1e-12);
         const vec3 t = flat ? across(normal_of(v)) : vec3_unit(off_normal(sum[i], normal_of(v)));
         v->tangent[0] = (float)t.x, v->tangent[1] = (float)t.y, v->tangent[2] = (float)t.z;

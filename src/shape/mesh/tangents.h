@@ -6,10 +6,10 @@
 
 #include "shape/mesh/mesh.h"
 
-#include <relume/world/object.h>
+#include <relume/shape/mesh.h>
 
 struct tangents {
-    struct relume_object_vertex *vertices;
+    struct relume_mesh_vertex *vertices;
     size_t vertex_count;
     float (*tint)[3];          // of each vertex, or NULL
     uint32_t (*triangles)[3];  // as many as the mesh has, in its order

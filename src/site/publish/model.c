@@ -98,13 +98,13 @@ static relume_status write_texture(const struct site *site, const char *name, co
 // ---------------------------------------------------------------- mesh
 
 struct numbered {
-    struct baked_corner corner;
+    struct atlas_corner corner;
     size_t number;
 };
 
 static int compare(const void *a, const void *b)
 {
-    return memcmp(a, b, sizeof(struct baked_corner));
+    return memcmp(a, b, sizeof(struct atlas_corner));
 }
 
 // Corners that are alike in everything are one vertex; arrays are of the caller.
@@ -122,7 +122,7 @@ static relume_status fill(struct relume_mesh *m, const relume_baked *b)
     if (room)
         qsort(all, corners, sizeof *all, compare);
     for (size_t i = 0; room && i < corners; i++) {
-        const struct baked_corner *c = &all[i].corner;
+        const struct atlas_corner *c = &all[i].corner;
         if (!i || compare(&all[i], &all[i - 1])) {
             const size_t at = m->vertex_count++;
             memcpy(m->position[at], c->position, sizeof *m->position);

@@ -73,7 +73,7 @@ static relume_status encode(struct moving *m, struct sheet_result *sheets,
 static relume_status find_sound(bool *sound, relume_pack *pack, int view)
 {
     relume_shadows *shadows = NULL;
-    const relume_status status = relume_pack_shadows(&shadows, pack, view);
+    const relume_status status = relume_shadows_open(&shadows, pack, view);
     *sound = shadows != NULL;
     relume_shadows_destroy(&shadows);
     return status;

@@ -63,7 +63,7 @@ static struct corner_code *find_vertices(struct arrays *a, const relume_baked *b
 {
     struct corner_code *code = mem_array(a->corners, sizeof *code);
     for (size_t i = 0; code && i < a->corners; i++) {
-        const struct baked_corner *corner = &b->triangle[i / 3][i % 3];
+        const struct atlas_corner *corner = &b->triangle[i / 3][i % 3];
         code[i].number = (uint32_t)i;
         for (int c = 0; c < 3; c++)
             code[i].at[c] = code_of(corner->position[c], a->box[0][c], a->box[1][c]);

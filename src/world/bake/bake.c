@@ -132,7 +132,7 @@ static relume_status check_materials(bool *matte, const relume_objects *o,
     return RELUME_OK;
 }
 
-static void set_corner(struct baked_corner *to, const struct relume_object_vertex *v)
+static void set_corner(struct atlas_corner *to, const struct relume_mesh_vertex *v)
 {
     memcpy(to->position, v->position, sizeof to->position);
     memcpy(to->normal, v->normal, sizeof to->normal);

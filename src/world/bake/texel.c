@@ -28,7 +28,7 @@ void scratch_free(struct texel_scratch *s)
 
 // Steps of a texel of the atlas in the texture of the material.
 static void find_steps(struct surface_point *p, const struct baking *b,
-                       const struct baked_corner corner[3])
+                       const struct atlas_corner corner[3])
 {
     const struct relume_objects_info *i = &b->o->info;
     const uint32_t *v = i->triangles[p->triangle];
@@ -168,7 +168,7 @@ static vec3 ray_direction(const struct surface_point *p, int i, int n, const dou
     return vec3_along(flat, p->normal, sqrt(fmax(1.0 - u, 0.0)));
 }
 
-static vec3 position(const struct baked_corner *c)
+static vec3 position(const struct atlas_corner *c)
 {
     return vec3_of((double)c->position[0], (double)c->position[1], (double)c->position[2]);
 }
@@ -182,7 +182,7 @@ static uint32_t meet(const struct baking *b, vec3 origin, vec3 direction)
     struct trace_hit hit;
     if (!trace_closest(b->o->tracer, from, along, &hit))
         return UINT32_MAX;
-    const struct baked_corner *c = b->triangle[hit.triangle];
+    const struct atlas_corner *c = b->triangle[hit.triangle];
     const vec3 first = position(&c[0]);
     const vec3 normal =
         vec3_cross(vec3_sub(position(&c[1]), first), vec3_sub(position(&c[2]), first));

@@ -12,7 +12,7 @@
 struct baking {
     const relume_objects *o;
     const struct baked_basis *basis;
-    struct baked_corner (*triangle)[3];  // as many as the objects have, in their order
+    struct atlas_corner (*triangle)[3];  // as many as the objects have, in their order
     struct atlas atlas;
     uint32_t *used;                     // [atlas.used]: texels that hold something
     uint32_t *number;                   // [texels]: of these, which one; UINT32_MAX: none

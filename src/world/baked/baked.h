@@ -3,6 +3,7 @@
 #define BAKED_BAKED_H
 
 #include "image/geometry/frame.h"
+#include "shape/atlas/atlas.h"
 
 #include <relume/world/bake.h>
 
@@ -29,15 +30,10 @@ relume_status basis_analyse(float *out, const struct baked_basis *b, float *samp
 void basis_add(float *weights, const struct baked_basis *b, vec3 direction, const float rgb[3]);
 void basis_finish(float *weights, const struct baked_basis *b);
 
-struct baked_corner {
-    float position[3], normal[3];
-    float place[2];  // in the atlas, 0 to 1, from its upper left corner
-};
-
 struct relume_baked {
     struct relume_baked_info info;
     struct baked_basis basis;
-    struct baked_corner (*triangle)[3];
+    struct atlas_corner (*triangle)[3];
     int blocks, views;  // clusters and components of their own, each of `views` views
     uint16_t *cluster;  // [blocks][texels]
     float *weight;      // [blocks][texels][components]

@@ -43,7 +43,7 @@ static size_t number_at(const relume_baked *b, int x, int y)
     return vector * (size_t)b->kept + (size_t)(x % b->kept);
 }
 
-static struct baked_corner *corner_at(const relume_baked *b, int x, int y)
+static struct atlas_corner *corner_at(const relume_baked *b, int x, int y)
 {
     const size_t triangle = (size_t)y * ACROSS + (size_t)(x / 3);
     return triangle < b->info.triangles ? &b->triangle[triangle][x % 3] : NULL;
@@ -78,14 +78,14 @@ static float get_places(const relume_baked *b, int x, int y, int c)
 }
 
 // In the order of the channels' names.
-static float *mesh_value(struct baked_corner *corner, int c)
+static float *mesh_value(struct atlas_corner *corner, int c)
 {
     return c < 3 ? &corner->normal[c] : c < 5 ? &corner->place[c - 3] : &corner->position[c - 5];
 }
 
 static float get_mesh(const relume_baked *b, int x, int y, int c)
 {
-    struct baked_corner *corner = corner_at(b, x, y);
+    struct atlas_corner *corner = corner_at(b, x, y);
     return corner ? *mesh_value(corner, c) : 0.0f;
 }
 
@@ -128,7 +128,7 @@ static bool set_places(const relume_baked *b, int x, int y, int c, float value)
 static bool set_mesh(const relume_baked *b, int x, int y, int c, float value)
 {
     const float MOST = 1e15f;  // squares of lengths still have room
-    struct baked_corner *corner = corner_at(b, x, y);
+    struct atlas_corner *corner = corner_at(b, x, y);
     if (corner)
         *mesh_value(corner, c) = value;
     return fabsf(value) < MOST;

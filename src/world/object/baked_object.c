@@ -10,7 +10,7 @@
 
 // ---------------------------------------------------------------- in the world
 
-static void add_triangle(relume_objects *o, const struct baked_corner corner[3],
+static void add_triangle(relume_objects *o, const struct atlas_corner corner[3],
                          const struct frame *frame)
 {
     uint32_t made[3];

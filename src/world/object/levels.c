@@ -114,7 +114,7 @@ static relume_status take_mesh(struct relume_mesh *out, const struct object_leve
     if (!out->position || !out->normal || !out->texture || !out->triangle || !out->part)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < l->vertices; i++) {
-        const struct relume_object_vertex *v = &o->vertices[l->vertex[i]];
+        const struct relume_mesh_vertex *v = &o->vertices[l->vertex[i]];
         memcpy(out->position[i], v->position, sizeof out->position[i]);
         memcpy(out->normal[i], v->normal, sizeof out->normal[i]);
         memcpy(out->texture[i], v->texture, sizeof out->texture[i]);
@@ -486,10 +486,10 @@ static uint32_t shown_vertex(relume_objects *to, uint32_t *number, const relume_
 {
     if (number[p->at] != UINT32_MAX)
         return number[p->at];
-    const struct relume_object_vertex *a = &o->vertices[p->at], *b = &o->vertices[p->to[0]],
-                                      *c = &o->vertices[p->to[1]];
+    const struct relume_mesh_vertex *a = &o->vertices[p->at], *b = &o->vertices[p->to[0]],
+                                    *c = &o->vertices[p->to[1]];
     const size_t n = to->info.vertex_count;
-    struct relume_object_vertex *v = &to->vertices[n];
+    struct relume_mesh_vertex *v = &to->vertices[n];
     *v = *a;
     blend(v->position, a->position, b->position, c->position, 3, p);
     blend(v->normal, a->normal, b->normal, c->normal, 3, p);

@@ -30,7 +30,7 @@ struct relume_objects {
     tracer *tracer;
     struct trace_cloud *cloud;  // [clouds]: of objects that are shown as billboards; owned
     int clouds;
-    struct relume_object_vertex *vertices;
+    struct relume_mesh_vertex *vertices;
     uint32_t (*triangles)[3];
     float (*tint)[3];                 // of each vertex, as relume_objects_info; NULL: none has one
     float (*vertex_tint)[3];          // the same of the mesh's, until the objects are finished

@@ -14,7 +14,7 @@ static const double LOWEST = 1e-3;
 
 // The frame between the corners: the normal, the tangent across it, and the other as the corners'
 // handedness says (one for all three).
-static void interpolate(struct surface_point *p, const struct relume_object_vertex *v[3],
+static void interpolate(struct surface_point *p, const struct relume_mesh_vertex *v[3],
                         const double weight[3])
 {
     vec3 normal = {0, 0, 0}, tangent = {0, 0, 0};
@@ -37,7 +37,7 @@ static void interpolate(struct surface_point *p, const struct relume_object_vert
 // Onto the surface that the corners' normals mean, where it stands over the flat triangle: flat
 // ones of a smooth mesh would shade each other along the border of the light (Hanika, "Hacking the
 // Shadow Terminator", 2021).
-static vec3 lift(const struct surface_point *p, const struct relume_object_vertex *v[3],
+static vec3 lift(const struct surface_point *p, const struct relume_mesh_vertex *v[3],
                  const double weight[3], double side)
 {
     vec3 lifted = p->position;
@@ -53,7 +53,7 @@ static vec3 lift(const struct surface_point *p, const struct relume_object_verte
 void objects_point(struct surface_point *out, const relume_objects *o, const struct trace_hit *hit,
                    vec3 direction)
 {
-    const struct relume_object_vertex *v[3];
+    const struct relume_mesh_vertex *v[3];
     for (int k = 0; k < 3; k++)
         v[k] = &o->vertices[o->triangles[hit->triangle][k]];
     const double u = (double)hit->u, w = (double)hit->v;
@@ -164,7 +164,7 @@ static vec3 step_over(const struct surface_point *p, const struct ray *ray,
 // A step over the triangle's plane in texture coordinates.
 static void step_in_texture(double out[2], const relume_objects *o, size_t triangle, vec3 step)
 {
-    const struct relume_object_vertex *v[3];
+    const struct relume_mesh_vertex *v[3];
     for (int k = 0; k < 3; k++)
         v[k] = &o->vertices[o->triangles[triangle][k]];
     const vec3 a = vec3_sub(vec3_floats(v[1]->position), vec3_floats(v[0]->position));

@@ -10,7 +10,7 @@ uniform Transfer display;  // what the codes are interpolated in
 uniform vec3 rgb;          // the light, linear
 uniform ivec2 origin;      // of the picture in the view
 uniform bool exchanges;    // the light is the sun of an environment ...
-uniform sampler2D whole;   // ... whose picture this is; twin: exchange_sun of src/relight/light/relighter.c
+uniform sampler2D whole;   // ... whose picture this is; twin: exchange_sun of src/relight/frame/relighter.c
 out vec4 color;
 
 vec3 encoded(vec3 v)

@@ -65,6 +65,18 @@ done
 check "a function takes no more than 96 kB of stack" grep -q 'frame-larger-than' make.txt
 check "one that takes less is built" grep -qx 90000 fits.txt
 
+# ---------------------------------------------------------------- symbols
+nm -D --defined-only "$BUILD/librelume.so" | awk '{ print $3 }' >exported.txt
+check "the library exports something" test "$(wc -l <exported.txt)" -gt 300
+alien=$(grep -v '^relume_' exported.txt || true)
+[ -z "$alien" ] && ok "the library exports names that begin with relume_ alone" ||
+    not_ok "the library exports names that begin with relume_ alone" "found: $(echo $alien)"
+# what headers declare is exported, and nothing else
+cat "$TOP"/include/relume/*.h "$TOP"/include/relume/*/*.h >headers.txt
+hidden=$(grep -oE '^relume_[a-z0-9_]+$' exported.txt | while read -r name; do grep -qw "$name" headers.txt || echo "$name"; done)
+[ -z "$hidden" ] && ok "what the library exports stands in a public header" ||
+    not_ok "what the library exports stands in a public header" "found: $(echo $hidden)"
+
 # ---------------------------------------------------------------- layers
 check "layers hold" "$TOP/scripts/layers.sh"
 "$TOP/scripts/layers.sh" --table >table.txt

@@ -10,8 +10,7 @@
 bool slopes_of(float slope[2], const float normal[3]);
 
 // As relume_height_integrate, in pixels and with any mean; `screen` above 0.
-RELUME_RESULT relume_status stepped_integrate(struct relume_image *out,
-                                              const struct relume_image *normal,
-                                              const struct relume_height_params *params);
+relume_status stepped_integrate(struct relume_image *out, const struct relume_image *normal,
+                                const struct relume_height_params *params);
 
 #endif

@@ -26,8 +26,8 @@ struct stereo_field {
 
 // `direction[lights]` and the side from which it is seen are shared by all pixels, or NULL; one
 // pixel in `every` learns. RELUME_ENOMEM; `out` may be destroyed in any case.
-RELUME_RESULT relume_status stereo_field_create(struct stereo_field *out, int lights, int threads,
-                                                const vec3 *direction, vec3 eye, size_t every);
+relume_status stereo_field_create(struct stereo_field *out, int lights, int threads,
+                                  const vec3 *direction, vec3 eye, size_t every);
 void stereo_field_destroy(struct stereo_field *field);
 
 // Whether the next pixel learns. One that is known is then added by its normal as a matte
@@ -36,7 +36,7 @@ void stereo_field_destroy(struct stereo_field *field);
 bool stereo_field_next(struct stereo_field *field);
 float *stereo_field_add(struct stereo_field *field, vec3 normal, const vec3 *direction, vec3 eye);
 // From those that were added.
-RELUME_RESULT relume_status stereo_field_learn(struct stereo_field *field);
+relume_status stereo_field_learn(struct stereo_field *field);
 
 // The values of a worker's pixel are set here, as above; those behind the last light are below 0.
 float *stereo_field_values(struct stereo_field *field, int worker);

@@ -25,7 +25,7 @@ struct stereo_room {
     float *memory;
     float *parts, *matte, *gloss, *expected, *base, *weight, *spare, *cosines;
 };
-RELUME_RESULT relume_status stereo_room_create(struct stereo_room *room, int lights);
+relume_status stereo_room_create(struct stereo_room *room, int lights);
 void stereo_room_destroy(struct stereo_room *room);
 
 #endif

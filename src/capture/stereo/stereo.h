@@ -33,10 +33,8 @@ bool stereo_learn(struct stereo_material *out, struct stereo_pixel *pixel, int n
 struct stereo_table {
     float *matte, *gloss;  // [normals][stride]
 };
-RELUME_RESULT relume_status stereo_table_create(struct stereo_table *out,
-                                                const struct stereo_material *material,
-                                                const struct reflect_lights *lights,
-                                                struct stereo_room *room);
+relume_status stereo_table_create(struct stereo_table *out, const struct stereo_material *material,
+                                  const struct reflect_lights *lights, struct stereo_room *room);
 void stereo_table_destroy(struct stereo_table *table);
 
 // Find the normal; `table` may be NULL. False where it is too dark.

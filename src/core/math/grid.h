@@ -23,8 +23,7 @@ struct grid {
 };
 
 // RELUME_ENOMEM; `out` may be destroyed in any case.
-RELUME_RESULT relume_status grid_create(struct grid *out, int width, int height, float screen,
-                                        int threads);
+relume_status grid_create(struct grid *out, int width, int height, float screen, int threads);
 void grid_destroy(struct grid *grid);
 
 // At most `steps` of the conjugate gradients, until the error has fallen to `share` of what it was

@@ -11,8 +11,8 @@ typedef void lanczos_product(const void *context, const double *v, double *out);
 // within the space that `steps` products span (count <= steps; at most n are made) from start[n]
 // on. Exact for steps >= n; beyond the start, directions that it has nothing of follow where the
 // space is exhausted. The sign makes the largest component positive. RELUME_ENOMEM.
-RELUME_RESULT relume_status lanczos_eigenvectors(int n, int count, int steps, const double *start,
-                                                 lanczos_product *product, const void *context,
-                                                 double *values, double *vectors);
+relume_status lanczos_eigenvectors(int n, int count, int steps, const double *start,
+                                   lanczos_product *product, const void *context, double *values,
+                                   double *vectors);
 
 #endif

@@ -21,7 +21,7 @@ bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *
 bool lsq_solve(double *matrix, int n, double *b, int count);
 
 // The inverse of a square matrix, in place. RELUME_EUNFIT when it is singular, RELUME_ENOMEM.
-RELUME_RESULT relume_status lsq_invert(double *matrix, int n);
+relume_status lsq_invert(double *matrix, int n);
 
 // gram[n][n] += rows^T rows for rows[count][n]; both triangles.
 void lsq_add_gram(double *gram, int n, const double *rows, int count);

@@ -57,7 +57,7 @@ for f in relume relume-view librelume.so librelume.a; do
 done
 
 # ---------------------------------------------------------------- stacks
-cp -r "$TOP/Makefile" "$TOP/include" "$TOP/scripts" . && mkdir -p src/core/base
+cp -r "$TOP/Makefile" "$TOP/make" "$TOP/include" "$TOP/scripts" . && mkdir -p src/core/base
 for bytes in 90000 100000; do
     echo "int deep(int (*f)(char *)); int deep(int (*f)(char *)) { char room[$bytes]; return f(room) + room[1]; }" >src/core/base/deep$bytes.c
     make -s config=release build/obj/src/core/base/deep$bytes.o >make.txt 2>&1 && echo $bytes >>fits.txt
@@ -71,7 +71,7 @@ check "layers hold" "$TOP/scripts/layers.sh"
 sed -n '/^| wing | rooms/,/^Each external/p' "$TOP/docs/architecture.md" | sed '$d' | sed '$d' >documented.txt
 same "docs/architecture.md has the tables of scripts/layers.sh" table.txt documented.txt
 mkdir tree
-(cd "$TOP" && tar cf - --exclude=__pycache__ src include viewer scripts samples tests Makefile) |
+(cd "$TOP" && tar cf - --exclude=__pycache__ src include viewer scripts samples tests Makefile make) |
     (cd tree && tar xf -)
 check "layers hold in a copy" tree/scripts/layers.sh
 

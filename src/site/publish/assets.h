@@ -1,5 +1,5 @@
 // assets.h - what every site holds: the viewer, its core, the style of the pages; made by the
-// Makefile of web/
+// make/web.mk of web/
 #ifndef PUBLISH_ASSETS_H
 #define PUBLISH_ASSETS_H
 

@@ -1,6 +1,6 @@
 # tests.mk - tests, benches, fuzz targets, and checks of the sources.
 
-.PHONY: test check check-threads compile-tests bench fuzz fuzzers replay golden headers layers metrics lint format
+.PHONY: test check check-threads coverage compile-tests bench fuzz fuzzers replay golden headers layers metrics lint lint-code lint-words format
 
 UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/threads/*.c)
 GL_C     := $(wildcard tests/gl/*.c)
@@ -87,6 +87,9 @@ check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS) $B/tests/core.so $(if $(filter asan 
 	@tests/check.sh $B
 check-threads: $(THREADS)
 	@ONLY_BINARIES=1 tests/check.sh $B
+# Lines of src and viewer that make check runs; what failed does not stop the count.
+coverage:
+	@find build/coverage -name '*.gcda' -delete 2>/dev/null; TEST_LIMIT_S=1200 $(MAKE) -s config=coverage check; tests/coverage.sh build/coverage
 # Does every test still compile? A minute where check takes five.
 compile-tests: $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(FUZZ_C) $(BENCH_C))
 
@@ -124,18 +127,25 @@ $B/headers/python.ok: python/relume/_abi.py $(HEADERS) | $(DEPS)
 layers:
 	@scripts/layers.sh
 
-# The sources in numbers
-metrics:
-	@scripts/metrics.sh
+# The sources in numbers: docs/measurements/house.md
+metrics: all
+	@scripts/metrics.sh $B >$B/house.md && mv $B/house.md docs/measurements/house.md
+	@sed -n 's/^| \([^|]*\) | \([^|]*\) |$$/\2  \1/p' docs/measurements/house.md
 
 # What cppcheck finds is mended, or said to be none in scripts/lint.supp. Short names of vectors are
 # for programs that use the library: with them every source would be looked at twice.
 LINTED := src viewer
-lint:
+lint: lint-code lint-words
+lint-code:
 	@mkdir -p $B/lint
 	@cppcheck -q -j2 --std=c11 --enable=warning,portability --suppressions-list=scripts/lint.supp --error-exitcode=1 \
 	    --cppcheck-build-dir=$B/lint -URELUME_VEC3_SHORT -Uvec3_of \
 	    -Iinclude -Isrc -Iviewer $(LINTED)
+# Findings in the language of pages, comments, help and messages never grow; when some go, save the new totals:
+# scripts/words.py --summary . > scripts/words.ceiling
+lint-words:
+	@if command -v python3 >/dev/null; then python3 scripts/words.py --ceiling scripts/words.ceiling .; \
+	    else echo "skipped: lint-words: no python3"; fi
 
 format:
 	clang-format -i $(LIB_C) $(MODULE_CXX) src/core/kernel/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(wildcard src/cli/mpi/*.c) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \

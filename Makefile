@@ -4,7 +4,7 @@
 #   make/web.mk          the page of a published file
 #   make/tests.mk        tests, benches, checks of the sources
 #
-#   config=release (default, into build/) | debug | asan | tsan | fuzzer | msan   (into build/CONFIG/)
+#   config=release (default, into build/) | debug | coverage | asan | tsan | fuzzer | msan   (into build/CONFIG/)
 #   FFT=fftw (default) | kiss   (a library without parts under the GPL; after make clean)
 #   LIBDIR=lib (default)        where `make install` puts libraries, below PREFIX
 #   RUN_PATH=no                 for packages: programs look for libraries where the system does, no more
@@ -38,6 +38,7 @@ COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off \
 release  := -O3 -DNDEBUG -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3 -fstack-protector-strong \
             -fstack-clash-protection
 debug    := -O0
+coverage := -O1 -g0 -DNDEBUG --coverage
 MODE      = $($(config))
 LINK      = $(CC)
 # Threads may have stacks of 128 kB (docs/architecture.md); those of tests are large. Checked by test_build.sh.
@@ -252,7 +253,7 @@ clean:
 
 include make/web.mk make/tests.mk make/sanitizers.mk
 ifeq ($(MODE),)
-$(error config=$(config): expected release, debug, asan, tsan, fuzzer or msan)
+$(error config=$(config): expected release, debug, coverage, asan, tsan, fuzzer or msan)
 endif
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 %.d: ;

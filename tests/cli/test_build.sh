@@ -19,7 +19,7 @@ fi
 if make -C "$TOP" config=fast all >make.txt 2>&1; then
     not_ok "an unknown config is refused" "status 0"
 else
-    check "an unknown config is refused" grep -q "expected release, debug, asan, tsan, fuzzer or msan" make.txt
+    check "an unknown config is refused" grep -q "expected release, debug, coverage, asan, tsan, fuzzer or msan" make.txt
 fi
 
 # On a fresh machine the compiler comes with make deps, after this file was read.
@@ -117,8 +117,27 @@ cp tree/src/core/math/sh.c before
 echo 'void f(void *p) { free(p); }' >>tree/src/core/math/sh.c
 check "a file that frees by itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "frees itself; expected mem_array.*src/core/math/sh.c" layers.txt'
 cp before tree/src/core/math/sh.c
-"$TOP/scripts/metrics.sh" >metrics.txt
-check "no folder has more than 45 files" awk '$1 == "largest_folder" && $2 <= 45 { found = 1 } END { exit !found }' metrics.txt
+
+# ---------------------------------------------------------------- the sources in numbers
+if [ $config = release ]; then
+    "$TOP/scripts/metrics.sh" "$BUILD" >house.txt 2>err.txt
+    check "make metrics says all it counts" sh -c '! grep -qE "[|] *[|]$" house.txt && [ ! -s err.txt ] && grep -q "^| lines of src and viewer.* | [0-9]* |$" house.txt'
+    "$TOP/scripts/metrics.sh" --state "$BUILD" | grep -v '^src/cli/mpi/' >state.txt
+    sed '1,/^## State of the process/d' "$TOP/docs/architecture.md" |
+        awk -F ' [|] |^[|] ' '/^[|] (src|viewer)/ && $2 !~ /cli.mpi/ {
+            n = split($3, name, ", ")
+            for (i = 1; i <= n; i++)
+                print $2 ": " name[i]
+        }' | sed 's/[.]c[p]*: /: /' | LC_ALL=C sort >listed.txt
+    LC_ALL=C sort -o state.txt state.txt
+    if changed=$(diff listed.txt state.txt); then ok "architecture.md lists all variables that outlive a call"; else
+        not_ok "architecture.md lists all variables that outlive a call" "$changed"
+    fi
+fi
+printf '%s\n' 'int twice(int a);' 'int twice(int a)' '{' '    a += 1;' '    a *= 2;' '    return a;' '}' >copied.c
+cat copied.c >>tree/src/core/math/sh.c
+cat copied.c >>tree/src/core/math/hsh.c
+check "a function that stands twice is counted" sh -c 'tree/scripts/metrics.sh --copies | grep -qx "src/core/math/sh.c: twice is src/core/math/hsh.c: twice"'
 cat >>tree/src/core/math/sh.c <<'END'
 static int small(int a)
 {

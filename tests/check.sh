@@ -12,7 +12,7 @@ export LSAN_OPTIONS="suppressions=$here/gl/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$here/threads/tsan.supp"
 logs=$(mktemp -d) || exit 1
 trap 'rm -rf "$logs"' EXIT
-passed=0 failed=0 skipped=0
+passed=0 failed=0 skipped=0 total=0
 
 # Starting the tool hundreds of times is slow under sanitizers. They see the scripts with hostile
 # input and the window; not what is installed, documented and shown by a browser, nor values that
@@ -51,7 +51,10 @@ report() { # test
     [ "$f" -ne 0 ] && { echo "---- $name (status $status)"; cat "$log"; }
     grep -E '^skipped:' "$log" | sed "s|^|$name: |"
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
-    printf '%-28s %3d passed %d failed %d skipped %4d s\n' "$name" "$p" "$f" "$s" "$(cat "$log.seconds")"
+    # minutes and seconds of the children, user's and system's, as the shell's `times` prints them
+    spent=$(sed -n '2s/[ms]/ /gp' "$log.times" | awk '{ printf "%.1f", 60 * ($1 + $3) + $2 + $4 }')
+    total=$(echo "$total $spent" | awk '{ print $1 + $2 }')
+    printf '%-28s %3d passed %d failed %d skipped %4d s %6.1f s of processor time\n' "$name" "$p" "$f" "$s" "$(cat "$log.seconds")" "$spent"
 }
 
 tests >"$logs/list"
@@ -63,7 +66,9 @@ while read -r t; do printf '%s\n%s\n' "$t" "$(log_of "$t")"; done <"$logs/list" 
         run() { timeout "${TEST_LIMIT_S:-300}" "$0" >"$1" 2>&1; echo $? >"$1.status"; }
         run "$1"
         grep -q "^Tracer caught signal" "$1" && run "$1"
-        echo $(($(date +%s) - a)) >"$1.seconds"'
+        echo $(($(date +%s) - a)) >"$1.seconds"
+        times >"$1.times"'
 while read -r t; do report "$t"; done <"$logs/list"
+echo "tests took $total s of processor time"
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

@@ -19,7 +19,7 @@ fi
 if make -C "$TOP" config=fast all >make.txt 2>&1; then
     not_ok "an unknown config is refused" "status 0"
 else
-    check "an unknown config is refused" grep -q "expected release, debug, asan, tsan, fuzzer or msan" make.txt
+    check "an unknown config is refused" grep -q "expected release, debug, coverage, asan, tsan, fuzzer or msan" make.txt
 fi
 
 # On a fresh machine the compiler comes with make deps, after this file was read.
@@ -57,7 +57,7 @@ for f in relume relume-view librelume.so librelume.a; do
 done
 
 # ---------------------------------------------------------------- stacks
-cp -r "$TOP/Makefile" "$TOP/include" "$TOP/scripts" . && mkdir -p src/core/base
+cp -r "$TOP/Makefile" "$TOP/make" "$TOP/include" "$TOP/scripts" . && mkdir -p src/core/base
 for bytes in 90000 100000; do
     echo "int deep(int (*f)(char *)); int deep(int (*f)(char *)) { char room[$bytes]; return f(room) + room[1]; }" >src/core/base/deep$bytes.c
     make -s config=release build/obj/src/core/base/deep$bytes.o >make.txt 2>&1 && echo $bytes >>fits.txt
@@ -83,7 +83,7 @@ check "layers hold" "$TOP/scripts/layers.sh"
 sed -n '/^| wing | rooms/,/^Each external/p' "$TOP/docs/architecture.md" | sed '$d' | sed '$d' >documented.txt
 same "docs/architecture.md has the tables of scripts/layers.sh" table.txt documented.txt
 mkdir tree
-(cd "$TOP" && tar cf - --exclude=__pycache__ src include viewer scripts samples tests Makefile) |
+(cd "$TOP" && tar cf - --exclude=__pycache__ src include viewer scripts samples tests Makefile make) |
     (cd tree && tar xf -)
 check "layers hold in a copy" tree/scripts/layers.sh
 
@@ -155,8 +155,27 @@ cp tree/src/core/math/sh.c before
 echo 'void f(void *p) { free(p); }' >>tree/src/core/math/sh.c
 check "a file that frees by itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "frees itself; expected mem_array.*src/core/math/sh.c" layers.txt'
 cp before tree/src/core/math/sh.c
-"$TOP/scripts/metrics.sh" >metrics.txt
-check "no folder has more than 45 files" awk '$1 == "largest_folder" && $2 <= 45 { found = 1 } END { exit !found }' metrics.txt
+
+# ---------------------------------------------------------------- the sources in numbers
+if [ $config = release ]; then
+    "$TOP/scripts/metrics.sh" "$BUILD" >house.txt 2>err.txt
+    check "make metrics says all it counts" sh -c '! grep -qE "[|] *[|]$" house.txt && [ ! -s err.txt ] && grep -q "^| lines of src and viewer.* | [0-9]* |$" house.txt'
+    "$TOP/scripts/metrics.sh" --state "$BUILD" | grep -v '^src/cli/mpi/' >state.txt
+    sed '1,/^## State of the process/d' "$TOP/docs/architecture.md" |
+        awk -F ' [|] |^[|] ' '/^[|] (src|viewer)/ && $2 !~ /cli.mpi/ {
+            n = split($3, name, ", ")
+            for (i = 1; i <= n; i++)
+                print $2 ": " name[i]
+        }' | sed 's/[.]c[p]*: /: /' | LC_ALL=C sort >listed.txt
+    LC_ALL=C sort -o state.txt state.txt
+    if changed=$(diff listed.txt state.txt); then ok "architecture.md lists all variables that outlive a call"; else
+        not_ok "architecture.md lists all variables that outlive a call" "$changed"
+    fi
+fi
+printf '%s\n' 'int twice(int a);' 'int twice(int a)' '{' '    a += 1;' '    a *= 2;' '    return a;' '}' >copied.c
+cat copied.c >>tree/src/core/math/sh.c
+cat copied.c >>tree/src/core/math/hsh.c
+check "a function that stands twice is counted" sh -c 'tree/scripts/metrics.sh --copies | grep -qx "src/core/math/sh.c: twice is src/core/math/hsh.c: twice"'
 cat >>tree/src/core/math/sh.c <<'END'
 static int small(int a)
 {

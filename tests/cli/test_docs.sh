@@ -12,7 +12,8 @@ docs="$TOP/docs"
     done
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
 # options of other programs that the texts use, a mistake that they show, and old spellings
-printf '%s\n' --cflags --libs --static --info --version --rm --entrypoint --user --userns --lihgt --table --hdr --slab --panorama --no-build-isolation >>known.txt
+printf '%s\n' --cflags --libs --static --info --version --rm --entrypoint --user --userns --lihgt --table --hdr --slab --panorama --no-build-isolation \
+    --coverage --arrows --copies --inside --small --state --without-comment >>known.txt
 # anchors of a page: its headings as web pages of Git hosts name them, once each, and its own <a id>
 anchors() { grep '^#' "$1" | sed 's/^#* //' | tr 'A-Z' 'a-z' | sed 's/\[\([^]]*\)\]([^)]*)/\1/g; s/[^a-z0-9 _-]//g; s/ /-/g'
     sed -n 's/.*<a id="\([^"]*\)">.*/\1/p' "$1"; }
@@ -43,12 +44,13 @@ untold=$({
 } | sed -n 's/^  \(--[a-z-]*\) .*/\1/p' | sort -u | grep -vxF -f explained.txt | tr '\n' ' ')
 if [ -z "$untold" ]; then ok 'docs explain every option'; else not_ok 'docs explain every option' "none of: $untold"; fi
 
-# Pages for users are short; measurements stand in docs/measurements, and these are records or for
-# programmers.
-for page in "$docs"/*.md "$docs"/reference/*.md "$docs"/tutorials/*.md "$TOP/README.md"; do
-    case $(basename "$page") in architecture.md | changes.md | format.md | reliability.md) continue ;; esac
-    below "$(basename "$page"): words of a page for users" "$(wc -w <"$page")" 1500
-done
+# Pages about the program itself are made of it.
+"$TOP/scripts/commands.sh" --print "$RELUME" >commands.txt
+sed -n '/^<!-- commands/,/^<!-- end/p' "$docs/user-guide.md" | sed '1d;$d' >documented.txt
+same "user-guide.md lists the commands of --help (scripts/commands.sh build/relume writes them)" commands.txt documented.txt
+fuzzed=$(sed -n 's/^| \(fuzz_[a-z]*\) .*/\1/p' "$docs/reliability.md" | sort)
+check "reliability.md has a row for every fuzz target" \
+    test "$fuzzed" = "$(cd "$TOP/tests/fuzz" && ls fuzz_*.c | sed 's/[.]c$//' | sort)"
 
 grep -o '"relume\.[a-z]*"' "$TOP/src/format/pack/format.h" | tr -d '"' | sort -u >written.txt
 grep -o '^| `relume\.[a-z]*`' "$docs/format.md" | tr -d '|` ' | sort -u >documented.txt

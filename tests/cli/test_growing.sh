@@ -1,6 +1,6 @@
 #!/bin/sh
 # A basis and a model of BTFs are one file and one line each: build/tests/growing/relume is the tool with
-# tests/growing/*.c and a line in the list of bases, and of models (Makefile), and nothing else.
+# tests/growing/*.c and a line in the list of bases, and of models (make/tests.mk), and nothing else.
 . "$(dirname "$0")/lib.sh"
 grown="$BUILD/tests/growing/relume"
 [ -x "$grown" ] || { echo "skipped: the grown tool is not built (make build/tests/growing/relume)"; exit 0; }

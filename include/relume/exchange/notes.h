@@ -142,6 +142,7 @@ RELUME_API void relume_profile_destroy(struct relume_profile *profile);
 
 // ---------------------------------------------------------------- for other programs
 
+// Formats that lists of notes are written in.
 enum relume_notes_format {
     RELUME_NOTES_CSV = 0,  // a row a note: id, kind, places, length, area, angle, text, state
     RELUME_NOTES_SVG,      // an overlay of the picture's size

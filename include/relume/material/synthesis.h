@@ -42,6 +42,7 @@ struct relume_wave {
     double above;   // power over what its surroundings in the spectrum have; 0: the mean
 };
 
+// The structure that repeats in a sample.
 struct relume_regular_info {
     int count;                       // of waves
     const struct relume_wave *wave;  // the means first, then by falling size
@@ -88,6 +89,7 @@ RELUME_RESULT relume_status relume_regular_mask(struct relume_image *out,
 
 // ---------------------------------------------------------------- maps
 
+// Methods that grow a map from a sample.
 enum relume_grow_method {
     RELUME_GROW_PATCH = 0,  // squares joined along the cuts that show least
     RELUME_GROW_PIXEL,      // texel by texel, from coarse to fine, by what stands around
@@ -131,6 +133,7 @@ RELUME_RESULT relume_status relume_texture_apply(struct relume_image *out, const
 
 // ---------------------------------------------------------------- how good a map is
 
+// Measures of how well a grown map resembles its sample.
 struct relume_grow_quality {
     // The highest correlation of the map with itself moved, without its regular structure and
     // beyond what is near; 1 for the sample laid side by side.
@@ -144,6 +147,7 @@ struct relume_grow_quality {
     double coverage;  // share of the sample's texels that the map uses
     double cuts;      // share of neighbours in the map that are none in the sample
 };
+// Parameters of relume_grow_judge; 0 is the default of each field.
 struct relume_grow_quality_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -23,6 +23,7 @@ struct relume_study_condition {
 };
 enum { RELUME_STUDY_CONDITIONS = 32, RELUME_STUDY_QUESTIONS = 16 };
 
+// Parameters of relume_study_make; 0 is the default of each field.
 struct relume_study_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

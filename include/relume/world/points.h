@@ -36,6 +36,7 @@ struct relume_points_node {
     int32_t child;  // node of the first of RELUME_POINTS_WAYS children; -1: it is a leaf
 };
 
+// A leaf of the tree of points: a small piece of a surface.
 struct relume_points_leaf {
     float place[3], normal[3];  // somewhere in it; unit, on the side that light gets to
     bool is_far;                // background: only `normal` counts, which is the way it sends
@@ -73,6 +74,7 @@ struct relume_points {
     double area;  // that each of them stands for
 };
 
+// Parameters of relume_points_of_scene and relume_points_of_objects; 0 is the default of each field.
 struct relume_points_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -1,5 +1,5 @@
-// assets.h - what every site holds: the viewer, its core, the style of the pages; made by the
-// Makefile of web/
+// assets.h - what every site holds: the viewer, its core, the style of the pages; made of web/ by
+// make/web.mk
 #ifndef PUBLISH_ASSETS_H
 #define PUBLISH_ASSETS_H
 

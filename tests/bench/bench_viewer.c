@@ -5,7 +5,7 @@
 #include "bench.h"
 
 #include "draw/draw.h"
-#include "relit/relighter.h"
+#include "relit/gl_relighter.h"
 #include "session/session.h"
 #include "window/context_offscreen.h"
 

@@ -3,7 +3,7 @@
 #define TESTS_REQUEST_H
 
 #include "app/frame_request.h"
-#include "draw/renderer.h"
+#include "draw/gl_renderer.h"
 
 static inline relume_status draw_app(struct renderer *r, const struct app *app)
 {

@@ -2,7 +2,7 @@
 #include "app/notes.h"
 
 #include "app/gizmo.h"
-#include "app/place.h"
+#include "app/view_geometry.h"
 #include "common/vec.h"
 
 #include <math.h>

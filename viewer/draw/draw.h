@@ -5,7 +5,7 @@
 #define VIEWER_DRAW_H
 
 #include "app/gizmo.h"
-#include "app/place.h"
+#include "app/view_geometry.h"
 #include "draw/visible_lights.h"
 #include "gl/program.h"
 #include "gl/target.h"

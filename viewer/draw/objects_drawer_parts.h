@@ -55,7 +55,7 @@ static inline const struct relume_objects_info *objects_drawer_drawn(const struc
     return relume_objects_info(t->seen ? t->seen : t->objects);
 }
 
-// skins.c: RELUME_ENOMEM, RELUME_ESYSTEM.
+// object_skins.c: RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status objects_drawer_upload_skins(struct objects_drawer *t);
 void objects_drawer_forget_skins(struct objects_drawer *t);
 // For the program in use.
@@ -72,7 +72,7 @@ struct relume_light objects_drawer_light_of(const struct relume_object_light *li
 relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int material,
                                        const struct relume_light *light);
 
-// objects_drawer_sky.c
+// object_sky.c
 relume_status objects_drawer_create_sky(struct objects_drawer *t);
 // What an environment shows on the surface where nothing hides it, into t->shown.
 relume_status objects_drawer_show_sky(struct objects_drawer *t, const struct relume_light *light,

@@ -4,7 +4,7 @@
 
 extern "C" {
 #include "app/notes.h"
-#include "app/place.h"
+#include "app/view_geometry.h"
 }
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // codes_upload.c - codes of a view become array textures
 #include "relit/books.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter_parts.h"
 #include "relit/weights.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // linear_copy.c - environments on codes of the display domain: a relighter of linear codes, made
 // once from them
-#include "relit/relighter.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter.h"
+#include "relit/gl_relighter_parts.h"
 
 #include <stdlib.h>
 

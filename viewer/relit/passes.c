@@ -2,7 +2,7 @@
 #include "common/vec.h"
 #include "relit/books.h"
 #include "relit/moving.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter_parts.h"
 #include "relit/weights.h"
 
 #include <stdlib.h>

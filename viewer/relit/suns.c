@@ -3,8 +3,8 @@
 // of src/relight/frame/relighter.c
 #include "common/vec.h"
 #include "relit/moving.h"
-#include "relit/relighter.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter.h"
+#include "relit/gl_relighter_parts.h"
 
 static relume_status need_room(struct relighter *r, const struct relit_view *v)
 {

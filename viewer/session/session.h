@@ -2,11 +2,11 @@
 #ifndef VIEWER_SESSION_H
 #define VIEWER_SESSION_H
 
-#include "draw/renderer.h"
+#include "draw/gl_renderer.h"
 #include "panel/draw_panel.h"
 #include "relit/pack_source.h"
 #include "session/inspect.h"
-#include "session/maps.h"
+#include "session/environment_list.h"
 #include "cli/program/film.h"
 #include "session/record.h"
 #include "window/context.h"

@@ -1,8 +1,8 @@
-// renderer.h - what the app says becomes a frame: relit views, then the drawing of the framing
-#ifndef VIEWER_RENDERER_H
-#define VIEWER_RENDERER_H
+// gl_renderer.h - what the app says becomes a frame: relit views, then the drawing of the framing
+#ifndef VIEWER_GL_RENDERER_H
+#define VIEWER_GL_RENDERER_H
 
-#include "draw/renderer_state.h"
+#include "draw/gl_renderer_state.h"
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs places
 // them. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EUNFIT.

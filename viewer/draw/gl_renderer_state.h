@@ -1,6 +1,6 @@
-// renderer_state.h - what a renderer keeps from frame to frame
-#ifndef VIEWER_RENDERER_STATE_H
-#define VIEWER_RENDERER_STATE_H
+// gl_renderer_state.h - what a renderer keeps from frame to frame
+#ifndef VIEWER_GL_RENDERER_STATE_H
+#define VIEWER_GL_RENDERER_STATE_H
 
 #include "app/frame_request.h"
 #include "draw/between.h"
@@ -10,7 +10,7 @@
 #include "relit/depths.h"
 #include "relit/enhancer.h"
 #include "relit/exchanger.h"
-#include "relit/relighter.h"
+#include "relit/gl_relighter.h"
 #include "relit/tile_map.h"
 
 // Who shows a planar view under lights in place of codes.

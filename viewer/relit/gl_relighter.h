@@ -1,4 +1,5 @@
-// relighter.h - views of a file on the GPU: codes are uploaded once, relit when the lights change
+// gl_relighter.h - views of a file on the GPU: codes are uploaded once, relit when the lights
+// change
 //
 // Linear-domain codes fold all distant lights into one weight vector and one pass; display-domain
 // codes take two small passes for each light: the dot product, then decoding and adding in linear
@@ -6,10 +7,10 @@
 // lights are a pass each (nearby.h). What moves (moving.h) takes each light alone, and each sun of
 // an environment. Where OpenGL is software the library does all of it, several times faster
 // (relume_relighter).
-#ifndef VIEWER_RELIGHTER_H
-#define VIEWER_RELIGHTER_H
+#ifndef VIEWER_GL_RELIGHTER_H
+#define VIEWER_GL_RELIGHTER_H
 
-#include "relit/relighter_state.h"
+#include "relit/gl_relighter_state.h"
 
 // `gl`, `log` and the source must outlive it. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status relighter_create(struct relighter *relighter, const struct gl *gl,

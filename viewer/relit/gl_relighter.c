@@ -1,10 +1,11 @@
-// relighter.c - views of a file on the GPU: codes are uploaded once, relit when the lights change
-#include "relit/relighter.h"
+// gl_relighter.c - views of a file on the GPU: codes are uploaded once, relit when the lights
+// change
+#include "relit/gl_relighter.h"
 
 #include "cli/program/say.h"
 #include "relit/books.h"
 #include "relit/moving.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter_parts.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-// relighter_state.h - what a relighter keeps of the views of a file
-#ifndef VIEWER_RELIGHTER_STATE_H
-#define VIEWER_RELIGHTER_STATE_H
+// gl_relighter_state.h - what a relighter keeps of the views of a file
+#ifndef VIEWER_GL_RELIGHTER_STATE_H
+#define VIEWER_GL_RELIGHTER_STATE_H
 
 #include "gl/program.h"
 #include "gl/target.h"

@@ -1,4 +1,5 @@
-// session_objects.c - objects: in the scene of a file, or alone on a stage that the eye goes around
+// document_objects.c - objects: in the scene of a file, or alone on a stage that the eye goes
+// around
 #include "session/session.h"
 
 #include "common/vec.h"

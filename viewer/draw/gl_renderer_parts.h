@@ -1,8 +1,8 @@
-// renderer_parts.h - what the files of the renderer know of each other
-#ifndef VIEWER_RENDERER_PARTS_H
-#define VIEWER_RENDERER_PARTS_H
+// gl_renderer_parts.h - what the files of the renderer know of each other
+#ifndef VIEWER_GL_RENDERER_PARTS_H
+#define VIEWER_GL_RENDERER_PARTS_H
 
-#include "draw/renderer_state.h"
+#include "draw/gl_renderer_state.h"
 
 // A target of that size, made anew where it had another.
 relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,

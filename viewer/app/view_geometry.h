@@ -1,6 +1,6 @@
-// place.h - where what the file shows lies in the frame
-#ifndef VIEWER_PLACE_H
-#define VIEWER_PLACE_H
+// view_geometry.h - where what the file shows lies in the frame
+#ifndef VIEWER_VIEW_GEOMETRY_H
+#define VIEWER_VIEW_GEOMETRY_H
 
 #include "app/state.h"
 

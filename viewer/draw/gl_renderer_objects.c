@@ -1,11 +1,11 @@
-// renderer_objects.c - frames with objects in them: the scene under each light alone, kept off
+// gl_renderer_objects.c - frames with objects in them: the scene under each light alone, kept off
 // where an object stands between, then the objects where they stand before it. Twin:
 // relume_renderer_set_objects.
 #include "app/handles.h"
 #include "cli/program/clock.h"
 #include "common/vec.h"
-#include "draw/renderer.h"
-#include "draw/renderer_parts.h"
+#include "draw/gl_renderer.h"
+#include "draw/gl_renderer_parts.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-// maps.c - environment maps that lie in one folder, for the panel to choose from
-#include "session/maps.h"
+// environment_list.c - environment maps that lie in one folder, for the panel to choose from
+#include "session/environment_list.h"
 
 #include <dirent.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
-// relighter_parts.h - what the files of the relighter know of each other
-#ifndef VIEWER_RELIGHTER_PARTS_H
-#define VIEWER_RELIGHTER_PARTS_H
+// gl_relighter_parts.h - what the files of the relighter know of each other
+#ifndef VIEWER_GL_RELIGHTER_PARTS_H
+#define VIEWER_GL_RELIGHTER_PARTS_H
 
-#include "relit/relighter_state.h"
+#include "relit/gl_relighter_state.h"
 
 // How GL stores the codes of each kind; `unit` turns its normalised values back into codes.
 struct code_format {

@@ -1,5 +1,5 @@
-// session_scene.c - scene files: several captures and objects in one world, drawn by the library in
-// a thread of its own (relit/exchanger.h) for an eye that goes around in it
+// document_scene.c - scene files: several captures and objects in one world, drawn by the library
+// in a thread of its own (relit/exchanger.h) for an eye that goes around in it
 #include "session/session.h"
 
 #include "app/light_list.h"

@@ -1,7 +1,7 @@
-// renderer_tiles.c - a large view in its own pixels: tiles of the level that the frame asks for,
+// gl_renderer_tiles.c - a large view in its own pixels: tiles of the level that the frame asks for,
 // over all of it at a coarser one
-#include "draw/renderer.h"
-#include "draw/renderer_parts.h"
+#include "draw/gl_renderer.h"
+#include "draw/gl_renderer_parts.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-// place.c - where what the file shows lies in the frame
-#include "app/place.h"
+// view_geometry.c - where what the file shows lies in the frame
+#include "app/view_geometry.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-// skins.c - opacity and emission of materials on the GPU. Twin: world/object/skin.c
+// object_skins.c - opacity and emission of materials on the GPU. Twin: world/object/skin.c
 #include "draw/objects_drawer_parts.h"
 
 #include <stdlib.h>

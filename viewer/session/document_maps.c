@@ -1,4 +1,4 @@
-// session_found.c - folders of maps (relume/material/maps.h): shown under the lights as they are
+// document_maps.c - folders of maps (relume/material/maps.h): shown under the lights as they are
 // edited, by the library
 #include "session/session.h"
 

@@ -1,4 +1,4 @@
-// session_wishes.c - what keys and the panel ask for and the app cannot do
+// session_actions.c - what keys and the panel ask for and the app cannot do
 #include "session/session.h"
 
 #include "app/keys.h"

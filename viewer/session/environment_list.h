@@ -1,6 +1,6 @@
-// maps.h - environment maps that lie in one folder, for the panel to choose from
-#ifndef VIEWER_MAPS_H
-#define VIEWER_MAPS_H
+// environment_list.h - environment maps that lie in one folder, for the panel to choose from
+#ifndef VIEWER_ENVIRONMENT_LIST_H
+#define VIEWER_ENVIRONMENT_LIST_H
 
 #include <relume/base.h>
 

@@ -1,4 +1,4 @@
-// objects_drawer_sky.c - environments on objects: what the materials show of them in the open,
+// object_sky.c - environments on objects: what the materials show of them in the open,
 // times the share that arrives. Twins: add_sky, share_of_sky.
 #include "draw/objects_drawer_parts.h"
 

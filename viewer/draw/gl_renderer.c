@@ -1,8 +1,8 @@
-// renderer.c - what the app says becomes a frame: relit views, then the drawing of the framing
-#include "draw/renderer.h"
+// gl_renderer.c - what the app says becomes a frame: relit views, then the drawing of the framing
+#include "draw/gl_renderer.h"
 
 #include "cli/program/say.h"
-#include "draw/renderer_parts.h"
+#include "draw/gl_renderer_parts.h"
 
 #include <relume/relight/tone.h>
 

@@ -1,9 +1,9 @@
-// renderer_ways.c - frames with light between the scene and the objects in it: as the library makes
-// them in a thread of its own, and until then with the hard shadows of renderer_objects.c
+// gl_renderer_ways.c - frames with light between the scene and the objects in it: as the library
+// makes them in a thread of its own, and until then with the hard shadows of gl_renderer_objects.c
 #include "app/way.h"
 #include "cli/program/clock.h"
-#include "draw/renderer.h"
-#include "draw/renderer_parts.h"
+#include "draw/gl_renderer.h"
+#include "draw/gl_renderer_parts.h"
 
 #include <relume/world/transport.h>
 
@@ -48,7 +48,7 @@ relume_status renderer_wait(struct renderer *r)
 
 // ---------------------------------------------------------------- asking
 
-// Ways that are passes, too (renderer_between.c): those of relume_transports that say so.
+// Ways that are passes, too (gl_renderer_between.c): those of relume_transports that say so.
 static const struct passes {
     const char *way;
     enum between_way as;

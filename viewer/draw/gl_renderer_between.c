@@ -1,6 +1,6 @@
-// renderer_between.c - frames of a panorama with objects in it and light between them, by passes
-#include "draw/renderer.h"
-#include "draw/renderer_parts.h"
+// gl_renderer_between.c - frames of a panorama with objects in it and light between them, by passes
+#include "draw/gl_renderer.h"
+#include "draw/gl_renderer_parts.h"
 
 #include <relume/world/transport.h>
 

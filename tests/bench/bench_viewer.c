@@ -124,7 +124,7 @@ static void move_lights(struct relume_light *lights, int n, enum relume_light_ki
 }
 
 struct scene {
-    struct relighter relighter;
+    struct gl_relighter relighter;
     struct program panorama;
     struct target frame;
 };
@@ -133,14 +133,14 @@ struct scene {
 static double draw_frame(struct scene *s, const struct relume_light *lights, int n)
 {
     const struct relume_geometry g = relume_geometry_default(RELUME_SPHERICAL, width, height);
-    const struct place place = {.width = width, .height = height, .exposure = 1.0f};
+    const struct frame_area area = {.width = width, .height = height, .exposure = 1.0f};
     const struct target *view;
     const double start = now_s();
-    bench_check(relighter_begin(&s->relighter, lights, n));
-    bench_check(relighter_view(&view, &s->relighter, 0));
+    bench_check(gl_relighter_begin(&s->relighter, lights, n));
+    bench_check(gl_relighter_view(&view, &s->relighter, 0));
     gl.BindVertexArray(s->relighter.vertices);
     target_begin(&s->frame, &gl);
-    draw_panorama(&s->panorama, &gl, &place, &g, (struct relume_pan_tilt){.zoom = 1.0}, view);
+    draw_panorama(&s->panorama, &gl, &area, &g, (struct relume_pan_tilt){.zoom = 1.0}, view);
     gl.Finish();
     return now_s() - start;
 }
@@ -167,7 +167,7 @@ static void open_scene(struct scene *s, struct file *f)
 {
     const struct code_source source = {.codes = fetch, NULL, f, find_surface};
     *s = (struct scene){.frame = {0}};
-    bench_check(relighter_create(&s->relighter, &gl, &source, 1, NULL));
+    bench_check(gl_relighter_create(&s->relighter, &gl, &source, 1, NULL));
     s->relighter.by_library = by_library;
     const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
     bench_check(draw_panorama_create(&s->panorama, &gl, &sphere, NULL));
@@ -178,7 +178,7 @@ static void close_scene(struct scene *s)
 {
     target_destroy(&s->frame, &gl);
     program_destroy(&s->panorama, &gl);
-    relighter_destroy(&s->relighter);
+    gl_relighter_destroy(&s->relighter);
 }
 
 static void bench_codebook(void)

@@ -8,11 +8,11 @@ static const struct relume_light lights[] = {
 };
 enum { LIGHTS = sizeof lights / sizeof *lights, W = 37, H = 23 };
 
-static double compare_view(struct relighter *r, struct fixture_file *f, int view, int n)
+static double compare_view(struct gl_relighter *r, struct fixture_file *f, int view, int n)
 {
     const struct target *target;
     struct relume_image got;
-    assert_int_equal(relighter_view(&target, r, view), RELUME_OK);
+    assert_int_equal(gl_relighter_view(&target, r, view), RELUME_OK);
     assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
     struct relume_image want = fixture_relight(f, view, lights, n);
     const double difference = fixture_difference(&got, &want);
@@ -21,13 +21,13 @@ static double compare_view(struct relighter *r, struct fixture_file *f, int view
     return difference;
 }
 
-static void compare_lights(struct relighter *r, struct fixture_file *f, const char *what,
+static void compare_lights(struct gl_relighter *r, struct fixture_file *f, const char *what,
                            double bound)
 {
     for (int n = 0; n <= LIGHTS; n++) {
         char text[64];
         snprintf(text, sizeof text, "%s, %d lights", what, n);
-        assert_int_equal(relighter_begin(r, lights, n), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(r, lights, n), RELUME_OK);
         assert_below(text, compare_view(r, f, 0, n), bound);
     }
 }
@@ -37,10 +37,10 @@ static void run(enum relume_storage storage, enum relume_domain domain, const ch
 {
     struct fixture_file f = fixture_make(1, W, H, storage, domain, false);
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct relighter r;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    struct gl_relighter r;
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     compare_lights(&r, &f, what, bound);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     fixture_free(&f);
 }
 
@@ -82,7 +82,7 @@ static void run_coder(const struct relume_basis *basis, const struct relume_code
         struct fixture_file f = fixture_make(1, W, H, storage, domain, false);
         const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
         relume_coder *sh = f.coder;
-        struct relighter r;
+        struct gl_relighter r;
         assert_int_equal(relume_coder_create(&f.coder, basis, relume_coder_info(sh)->directions,
                                              FIXTURE_LIGHTS, p),
                          RELUME_OK);
@@ -90,9 +90,9 @@ static void run_coder(const struct relume_basis *basis, const struct relume_code
         f.codes[0].coder = f.coder;
         f.codes[0].planes = relume_coder_info(f.coder)->planes;
         assert_true(f.codes[0].planes < FIXTURE_PLANES);
-        assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+        assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
         compare_lights(&r, &f, what, d ? display_bound : linear_bound);
-        relighter_destroy(&r);
+        gl_relighter_destroy(&r);
         fixture_free(&f);
     }
 }
@@ -137,10 +137,10 @@ static void run_curve(struct relume_transfer curve, const char *what, double bou
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     f.codes[0].display = curve;
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct relighter r;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    struct gl_relighter r;
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     compare_lights(&r, &f, what, bound);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     fixture_free(&f);
 }
 
@@ -163,11 +163,11 @@ static void many_arrays(void **state)
         const enum relume_domain domain = d ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
         struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, domain, false);
         const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-        struct relighter r;
-        assert_int_equal(relighter_create(&r, &narrow, &source, 1, &fixture_log), RELUME_OK);
+        struct gl_relighter r;
+        assert_int_equal(gl_relighter_create(&r, &narrow, &source, 1, &fixture_log), RELUME_OK);
         compare_lights(&r, &f, "two layers an array", d ? display_bound : linear_bound);
         assert_int_equal(r.view[0].arrays, 4);
-        relighter_destroy(&r);
+        gl_relighter_destroy(&r);
         fixture_free(&f);
     }
 }
@@ -177,17 +177,17 @@ static void codes_are_fetched_once(void **state)
     (void)state;
     struct fixture_file f = fixture_make(3, 8, 8, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct relighter r;
+    struct gl_relighter r;
     const struct target *target;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
     for (int frame = 0; frame < 4; frame++) {
-        assert_int_equal(relighter_begin(&r, lights, 1 + frame / 2), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(&r, lights, 1 + frame / 2), RELUME_OK);
         assert_true(r.view[1].fresh == (frame == 1 || frame == 3));
-        assert_int_equal(relighter_view(&target, &r, 1), RELUME_OK);
+        assert_int_equal(gl_relighter_view(&target, &r, 1), RELUME_OK);
     }
     assert_int_equal(f.asked, 1);
     assert_null(r.view[0].array);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     fixture_free(&f);
 }
 
@@ -197,21 +197,21 @@ static void old_views_leave_a_full_memory(void **state)
     (void)state;
     struct fixture_file f = fixture_make(3, 8, 8, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct relighter r;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
+    struct gl_relighter r;
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
     r.budget = 8 * 8 * (7 * 4 + 16) * 3 / 2;
     for (int frame = 0; frame < 6; frame++) {
-        assert_int_equal(relighter_begin(&r, lights, LIGHTS), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(&r, lights, LIGHTS), RELUME_OK);
         assert_true(compare_view(&r, &f, frame % 3, LIGHTS) < linear_bound);
         assert_true(r.bytes <= r.budget);
     }
     // One frame that needs them all gets them all.
-    assert_int_equal(relighter_begin(&r, lights, LIGHTS), RELUME_OK);
+    assert_int_equal(gl_relighter_begin(&r, lights, LIGHTS), RELUME_OK);
     for (int i = 0; i < 3; i++)
         assert_true(compare_view(&r, &f, i, LIGHTS) < linear_bound);
     assert_non_null(r.view[0].array);
     assert_non_null(r.view[1].array);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     fixture_free(&f);
 }
 
@@ -226,13 +226,13 @@ static void a_broken_source_is_passed_on(void **state)
 {
     (void)state;
     const struct code_source source = {refuse, NULL, NULL, NULL, NULL};
-    struct relighter r;
+    struct gl_relighter r;
     const struct target *target;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
-    assert_int_equal(relighter_begin(&r, lights, 1), RELUME_OK);
-    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EDAMAGED);
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_begin(&r, lights, 1), RELUME_OK);
+    assert_int_equal(gl_relighter_view(&target, &r, 0), RELUME_EDAMAGED);
     assert_null(target);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
 }
 
 int main(void)

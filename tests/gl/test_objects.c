@@ -180,14 +180,14 @@ static struct relume_image draw(struct objects_drawer *t, const struct relume_wi
     GLuint array;
     gl->GenVertexArrays(1, &array);
     gl->BindVertexArray(array);
-    const struct place place = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
-    assert_true(frame_projection_of_window(&projection, w, place.picture, SIDE, SIDE, info->min,
-                                           info->max));
+    const struct frame_area area = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
+    assert_true(
+        frame_projection_of_window(&projection, w, area.picture, SIDE, SIDE, info->min, info->max));
     assert_int_equal(objects_drawer_light(t, lights, n), RELUME_OK);
     assert_int_equal(objects_drawer_shade(t, &projection, SIDE, SIDE, -1), RELUME_OK);
     assert_int_equal(target_create(&frame, gl, SIDE, SIDE, &fixture_log), RELUME_OK);
     target_begin(&frame, gl);
-    objects_drawer_over(t, &place, 0, false);
+    objects_drawer_over(t, &area, 0, false);
     assert_int_equal(target_read(&image, &frame, gl), RELUME_OK);
     target_destroy(&frame, gl);
     gl->DeleteVertexArrays(1, &array);

@@ -482,16 +482,16 @@ static void passes_are_those_of_the_library(void **state)
         struct fixture_file f =
             fixture_make(1, W, H, RELUME_STORE_16, RELUME_DOMAIN_LINEAR, turned);
         const struct code_source source = {.codes = fixture_fetch, .user = &f};
-        struct relighter relighter;
+        struct gl_relighter relighter;
         struct enhancer enhancer;
-        assert_int_equal(relighter_create(&relighter, &fixture_gl, &source, 1, &fixture_log),
+        assert_int_equal(gl_relighter_create(&relighter, &fixture_gl, &source, 1, &fixture_log),
                          RELUME_OK);
         assert_int_equal(
             enhancer_create(&enhancer, &fixture_gl, &source, geometry, NULL, 1, &fixture_log),
             RELUME_OK);
         const struct target *relit, *shown;
-        assert_int_equal(relighter_begin(&relighter, lights, 2), RELUME_OK);
-        assert_int_equal(relighter_view(&relit, &relighter, 0), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(&relighter, lights, 2), RELUME_OK);
+        assert_int_equal(gl_relighter_view(&relit, &relighter, 0), RELUME_OK);
         struct relume_normals normals;
         const struct relume_codes *codes;
         fixture_fetch(&codes, &f, 0);
@@ -532,7 +532,7 @@ static void passes_are_those_of_the_library(void **state)
         relume_image_destroy(&towards);
         relume_normals_destroy(&normals);
         enhancer_destroy(&enhancer);
-        relighter_destroy(&relighter);
+        gl_relighter_destroy(&relighter);
         fixture_free(&f);
     }
 }

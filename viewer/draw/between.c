@@ -315,9 +315,9 @@ static void use_eye(const struct between *b, GLint at, const struct between_view
 static void draw_whole(const struct between *b, const struct program *program,
                        const struct target *onto)
 {
-    const struct place place = {.width = onto->width, .height = onto->height};
+    const struct frame_area area = {.width = onto->width, .height = onto->height};
     b->gl->BindVertexArray(b->array);
-    objects_drawer_draw_whole(b->gl, program, &place);
+    objects_drawer_draw_whole(b->gl, program, &area);
 }
 
 static void draw_added(const struct between *b, const struct program *program,
@@ -653,12 +653,12 @@ static void add_shaded(struct between *b, struct objects_drawer *t)
         return;
     }
     const int width = shaded.width, height = shaded.height;
-    const struct place place = {width, height, {0, 0, width, height}, 1};
+    const struct frame_area area = {width, height, {0, 0, width, height}, 1};
     b->gl->BindVertexArray(b->array);
     target_resume(&b->sum, b->gl);
     b->gl->Enable(GL_BLEND);
     b->gl->BlendFunc(GL_ONE, GL_ONE);
-    draw_picture(&b->picture, b->gl, &place, &shaded);
+    draw_picture(&b->picture, b->gl, &area, &shaded);
     b->gl->Disable(GL_BLEND);
 }
 

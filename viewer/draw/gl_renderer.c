@@ -12,7 +12,7 @@
 
 // ---------------------------------------------------------------- making
 
-static relume_status create_programs(struct renderer *r)
+static relume_status create_programs(struct gl_renderer *r)
 {
     const struct {
         struct program *program;
@@ -38,12 +38,12 @@ static relume_status create_programs(struct renderer *r)
     return status;
 }
 
-relume_status renderer_create(struct renderer *r, const struct gl *gl,
-                              const struct code_source *source,
-                              const struct relume_geometry *geometry, const double (*uv)[2],
-                              int views, const struct relume_log *log)
+relume_status gl_renderer_create(struct gl_renderer *r, const struct gl *gl,
+                                 const struct code_source *source,
+                                 const struct relume_geometry *geometry, const double (*uv)[2],
+                                 int views, const struct relume_log *log)
 {
-    *r = (struct renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
+    *r = (struct gl_renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
     glare_begin(&r->glare, gl, log);
     gl->GenVertexArrays(1, &r->vertices);
     r->uv = calloc((size_t)views, sizeof *r->uv);
@@ -56,7 +56,7 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
         (struct hiding_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
     relume_status status = r->uv && r->needed && r->part && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = relighter_create(&r->relighter, gl, source, views, log);
+        status = gl_relighter_create(&r->relighter, gl, source, views, log);
     if (!status)
         status = enhancer_create(&r->enhancer, gl, source, geometry, uv, views, log);
     if (!status)
@@ -67,12 +67,12 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
             status = say(log, RELUME_EUNFIT, "the slab's cameras do not stand on a grid");
     }
     if (status)
-        renderer_destroy(r);
+        gl_renderer_destroy(r);
     return status;
 }
 
-void renderer_use_slabs(struct renderer *r, const relume_slab_set *slabs, const double (*uv)[2],
-                        const int *slab_of)
+void gl_renderer_use_slabs(struct gl_renderer *r, const relume_slab_set *slabs,
+                           const double (*uv)[2], const int *slab_of)
 {
     r->around = slabs;
     r->slab_of = slab_of;
@@ -80,7 +80,7 @@ void renderer_use_slabs(struct renderer *r, const relume_slab_set *slabs, const 
     enhancer_use_slabs(&r->enhancer, slabs, (const double(*)[2])r->uv, slab_of);
 }
 
-relume_status renderer_use_depth(struct renderer *r, const struct depth_source *source)
+relume_status gl_renderer_use_depth(struct gl_renderer *r, const struct depth_source *source)
 {
     const relume_slab *slab[RELUME_MOST_SLABS] = {r->grid};
     int slabs = r->grid != NULL;
@@ -94,8 +94,8 @@ relume_status renderer_use_depth(struct renderer *r, const struct depth_source *
     return status;
 }
 
-void renderer_use_parts(struct renderer *r, const struct part_source *parts,
-                        const struct relume_pack_info *info)
+void gl_renderer_use_parts(struct gl_renderer *r, const struct part_source *parts,
+                           const struct relume_pack_info *info)
 {
     const struct relume_codes codes = {.width = info->width,
                                        .height = info->height,
@@ -104,16 +104,16 @@ void renderer_use_parts(struct renderer *r, const struct part_source *parts,
     r->relighter.parts = *parts;
     r->size[0] = info->width;
     r->size[1] = info->height;
-    r->view_bytes = relighter_view_bytes(&codes);
+    r->view_bytes = gl_relighter_view_bytes(&codes);
     r->display = info->domain == RELUME_DOMAIN_DISPLAY;
 }
 
-void renderer_use_capture(struct renderer *r, const relume_capture *capture)
+void gl_renderer_use_capture(struct gl_renderer *r, const relume_capture *capture)
 {
     r->enhancer.capture = capture;
 }
 
-void renderer_destroy(struct renderer *r)
+void gl_renderer_destroy(struct gl_renderer *r)
 {
     if (!r->gl)
         return;
@@ -122,8 +122,8 @@ void renderer_destroy(struct renderer *r)
                                         &r->ball,    &r->source,      &r->present,    &r->apart};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
-    relighter_destroy(&r->relighter);
-    renderer_tiles_destroy(r);
+    gl_relighter_destroy(&r->relighter);
+    gl_renderer_tiles_destroy(r);
     enhancer_destroy(&r->enhancer);
     glare_end(&r->glare);
     hiding_scene_forget(&r->backdrop);
@@ -134,8 +134,8 @@ void renderer_destroy(struct renderer *r)
     target_destroy(&r->sum, r->gl);
     target_destroy(&r->beside, r->gl);
     target_destroy(&r->pinholes, r->gl);
-    renderer_ways_destroy(r);
-    renderer_objects_destroy(r);
+    gl_renderer_ways_destroy(r);
+    gl_renderer_objects_destroy(r);
     if (r->depths.views)
         depths_destroy(&r->depths);
     r->gl->DeleteVertexArrays(1, &r->vertices);
@@ -144,13 +144,13 @@ void renderer_destroy(struct renderer *r)
     free(r->needed);
     free(r->part);
     free(r->relit);
-    *r = (struct renderer){0};
+    *r = (struct gl_renderer){0};
 }
 
 // ---------------------------------------------------------------- framings
 
-relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,
-                               int height)
+relume_status gl_renderer_prepare(struct target *target, const struct gl_renderer *r, int width,
+                                  int height)
 {
     if (target->width == width && target->height == height)
         return RELUME_OK;
@@ -158,7 +158,7 @@ relume_status renderer_prepare(struct target *target, const struct renderer *r, 
     return target_create(target, r->gl, width, height, r->log);
 }
 
-static void mark_view(struct renderer *r, const struct frame_request *q)
+static void mark_view(struct gl_renderer *r, const struct frame_request *q)
 {
     r->needed[q->camera.view] = true;
 }
@@ -171,7 +171,7 @@ static int picture_width(const struct frame_request *q)
     return (int)lround(q->picture.right - q->picture.left);
 }
 
-static void mark_eye(struct renderer *r, const struct frame_request *q)
+static void mark_eye(struct gl_renderer *r, const struct frame_request *q)
 {
     if (r->around) {
         if (q->has_window)
@@ -182,19 +182,19 @@ static void mark_eye(struct renderer *r, const struct frame_request *q)
     (void)relume_slab_needs(r->needed, r->grid, q->camera.eye, &q->view);
 }
 
-static void mark_look(struct renderer *r, const struct frame_request *q)
+static void mark_look(struct gl_renderer *r, const struct frame_request *q)
 {
     (void)q;
     r->needed[0] = true;
 }
 
-static relume_status draw_framed_view(struct renderer *r, const struct frame_request *q,
-                                      const struct place *place)
+static relume_status draw_framed_view(struct gl_renderer *r, const struct frame_request *q,
+                                      const struct frame_area *area)
 {
     if (r->map)
-        renderer_draw_tiles(r, place, r->relit[q->camera.view]);
+        gl_renderer_draw_tiles(r, area, r->relit[q->camera.view]);
     else
-        draw_picture(&r->picture, r->gl, place, r->relit[q->camera.view]);
+        draw_picture(&r->picture, r->gl, area, r->relit[q->camera.view]);
     return RELUME_OK;
 }
 
@@ -204,7 +204,7 @@ static bool takes_lens(const struct frame_request *q)
 }
 
 // An eye at a slab's camera sees its view alone, whatever the depth.
-static bool takes_depth(const struct renderer *r, const struct frame_request *q)
+static bool takes_depth(const struct gl_renderer *r, const struct frame_request *q)
 {
     const enum relume_interpolation i = q->view.interpolation;
     int views = 0;
@@ -214,38 +214,38 @@ static bool takes_depth(const struct renderer *r, const struct frame_request *q)
            (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
 }
 
-static relume_status draw_lens(struct renderer *r, const struct frame_request *q,
-                               const struct place *place, const struct slab_inputs *in)
+static relume_status draw_lens(struct gl_renderer *r, const struct frame_request *q,
+                               const struct frame_area *area, const struct slab_inputs *in)
 {
-    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
+    relume_status status = gl_renderer_prepare(&r->sum, r, area->width, area->height);
     if (status)
         return status;
     target_begin(&r->sum, r->gl);
-    draw_slab_lens(&r->slab_lens, r->gl, place, in, q->view.aperture, q->view.focus);
+    draw_slab_lens(&r->slab_lens, r->gl, area, in, q->view.aperture, q->view.focus);
     target_resume(&r->frame, r->gl);
-    draw_mean(&r->mean, r->gl, place, &r->sum);
+    draw_mean(&r->mean, r->gl, area, &r->sum);
     return RELUME_OK;
 }
 
 // The mean of `in`, by way of `sum`, added to what `onto` holds.
-static void add_mean(struct renderer *r, const struct frame_request *q, const struct place *place,
-                     const struct target *onto, const struct slabs_inputs *in,
-                     const struct target *sum)
+static void add_mean(struct gl_renderer *r, const struct frame_request *q,
+                     const struct frame_area *area, const struct target *onto,
+                     const struct slabs_inputs *in, const struct target *sum)
 {
     target_begin(sum, r->gl);
     if (in->disparity)
-        draw_slabs_depth(&r->slabs_depth, r->gl, place, in);
+        draw_slabs_depth(&r->slabs_depth, r->gl, area, in);
     else
-        draw_slabs(&r->slabs, r->gl, place, in,
+        draw_slabs(&r->slabs, r->gl, area, in,
                    q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
     target_resume(onto, r->gl);
     r->gl->Enable(GL_BLEND);
-    draw_mean(&r->mean, r->gl, place, sum);
+    draw_mean(&r->mean, r->gl, area, sum);
     r->gl->Disable(GL_BLEND);
 }
 
 // Whether there are rays that pass the cameras of no slab, looked for at places so far apart.
-static bool has_others(const struct renderer *r, const struct relume_window *window)
+static bool has_others(const struct gl_renderer *r, const struct relume_window *window)
 {
     enum { PLACES = 32 };
     for (int i = 0; i < PLACES * PLACES; i++)
@@ -256,8 +256,8 @@ static bool has_others(const struct renderer *r, const struct relume_window *win
 }
 
 // All slabs through one window, added to what `onto` holds.
-static relume_status add_around(struct renderer *r, const struct frame_request *q,
-                                const struct place *place, const struct target *onto,
+static relume_status add_around(struct gl_renderer *r, const struct frame_request *q,
+                                const struct frame_area *area, const struct target *onto,
                                 const struct relume_window *window, bool by_depth)
 {
     struct slabs_inputs in = {
@@ -268,25 +268,25 @@ static relume_status add_around(struct renderer *r, const struct frame_request *
         .range = (const double(*)[2])r->depths.range,
     };
     in.others = has_others(r, window);
-    add_mean(r, q, place, onto, &in, &r->sum);
+    add_mean(r, q, area, onto, &in, &r->sum);
     if (!in.others)
         return RELUME_OK;
-    const relume_status status = renderer_prepare(&r->beside, r, place->width, place->height);
+    const relume_status status = gl_renderer_prepare(&r->beside, r, area->width, area->height);
     in.passed = &r->sum;
     if (!status)
-        add_mean(r, q, place, onto, &in, &r->beside);
+        add_mean(r, q, area, onto, &in, &r->beside);
     return status;
 }
 
 // Twin of relume_slab_set_frame: the mean over the pinholes that show anything.
-static relume_status draw_around_lens(struct renderer *r, const struct frame_request *q,
-                                      const struct place *place, const struct relume_window *window,
-                                      bool by_depth)
+static relume_status draw_around_lens(struct gl_renderer *r, const struct frame_request *q,
+                                      const struct frame_area *area,
+                                      const struct relume_window *window, bool by_depth)
 {
     const double aperture = q->view.aperture, focus = q->view.focus;
     const int width = picture_width(q);
-    struct place plain = *place;
-    relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
+    struct frame_area plain = *area;
+    relume_status status = gl_renderer_prepare(&r->pinholes, r, area->width, area->height);
     if (status || !relume_lens_fits(window, aperture, focus))
         return status;
     plain.exposure = 1;
@@ -298,27 +298,27 @@ static relume_status draw_around_lens(struct renderer *r, const struct frame_req
         status = add_around(r, q, &plain, &r->pinholes, &from, by_depth);
     }
     target_resume(&r->frame, r->gl);
-    draw_mean(&r->mean, r->gl, place, &r->pinholes);
+    draw_mean(&r->mean, r->gl, area, &r->pinholes);
     return status;
 }
 
-static relume_status draw_around(struct renderer *r, const struct frame_request *q,
-                                 const struct place *place)
+static relume_status draw_around(struct gl_renderer *r, const struct frame_request *q,
+                                 const struct frame_area *area)
 {
     double range[2];
-    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
+    relume_status status = gl_renderer_prepare(&r->sum, r, area->width, area->height);
     const bool by_depth = takes_depth(r, q);
     if (!status && by_depth)
         status = depths_use(&r->depths, r->needed, range);
     if (status || !q->has_window)
         return status;
     if (takes_lens(q))
-        return draw_around_lens(r, q, place, &q->window, by_depth);
-    return add_around(r, q, place, &r->frame, &q->window, by_depth);
+        return draw_around_lens(r, q, area, &q->window, by_depth);
+    return add_around(r, q, area, &r->frame, &q->window, by_depth);
 }
 
-static relume_status draw_framed_eye(struct renderer *r, const struct frame_request *q,
-                                     const struct place *place)
+static relume_status draw_framed_eye(struct gl_renderer *r, const struct frame_request *q,
+                                     const struct frame_area *area)
 {
     const struct slab_inputs in = {r->grid,
                                    &r->geometry,
@@ -332,12 +332,11 @@ static relume_status draw_framed_eye(struct renderer *r, const struct frame_requ
     if (!any)
         return RELUME_OK;
     if (r->around)
-        return draw_around(r, q, place);
+        return draw_around(r, q, area);
     if (takes_lens(q))
-        return draw_lens(r, q, place, &in);
+        return draw_lens(r, q, area, &in);
     if (!takes_depth(r, q)) {
-        draw_slab(&r->slab, r->gl, place, &in,
-                  q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
+        draw_slab(&r->slab, r->gl, area, &in, q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
         return RELUME_OK;
     }
     double range[2];
@@ -345,22 +344,22 @@ static relume_status draw_framed_eye(struct renderer *r, const struct frame_requ
                                      ? depths_use_parts(&r->depths, r->needed, r->part, range)
                                      : depths_use(&r->depths, r->needed, range);
     if (!status)
-        draw_slab_depth(&r->slab_depth, r->gl, place, &in, r->depths.texture, range);
+        draw_slab_depth(&r->slab_depth, r->gl, area, &in, r->depths.texture, range);
     return status;
 }
 
-static relume_status draw_framed_look(struct renderer *r, const struct frame_request *q,
-                                      const struct place *place)
+static relume_status draw_framed_look(struct gl_renderer *r, const struct frame_request *q,
+                                      const struct frame_area *area)
 {
-    draw_panorama(&r->panorama, r->gl, place, &r->geometry, q->camera.look, r->relit[0]);
+    draw_panorama(&r->panorama, r->gl, area, &r->geometry, q->camera.look, r->relit[0]);
     return RELUME_OK;
 }
 
 // Which views a framing needs, and how it is drawn from them.
 static const struct framing {
-    void (*mark)(struct renderer *r, const struct frame_request *q);
-    relume_status (*draw)(struct renderer *r, const struct frame_request *q,
-                          const struct place *place);
+    void (*mark)(struct gl_renderer *r, const struct frame_request *q);
+    relume_status (*draw)(struct gl_renderer *r, const struct frame_request *q,
+                          const struct frame_area *area);
 } framings[] = {
     [RELUME_FRAME_VIEW] = {mark_view, draw_framed_view},
     [RELUME_FRAME_EYE] = {mark_eye, draw_framed_eye},
@@ -370,18 +369,18 @@ static const struct framing {
 // ---------------------------------------------------------------- frame
 
 // How far apart the cameras of two views stand, squared.
-static double apart(const struct renderer *r, int a, int b)
+static double apart(const struct gl_renderer *r, int a, int b)
 {
     const double du = r->uv[a][0] - r->uv[b][0], dv = r->uv[a][1] - r->uv[b][1];
     return du * du + dv * dv;
 }
 
 // The view on the GPU that stands nearest to a missing one of the same slab, or -1.
-static int nearest_present(const struct renderer *r, int missing)
+static int nearest_present(const struct gl_renderer *r, int missing)
 {
     int nearest = -1;
     for (int i = 0; i < r->views; i++)
-        if (relighter_has(&r->relighter, i) &&
+        if (gl_relighter_has(&r->relighter, i) &&
             (!r->slab_of || r->slab_of[i] == r->slab_of[missing]) &&
             (nearest < 0 || apart(r, i, missing) < apart(r, nearest, missing)))
             nearest = i;
@@ -389,7 +388,7 @@ static int nearest_present(const struct renderer *r, int missing)
 }
 
 // Of several slabs those that are not there yet say nothing while others do.
-static relume_status stand_in(struct renderer *r)
+static relume_status stand_in(struct gl_renderer *r)
 {
     relume_status status = RELUME_OK;
     bool any = false;
@@ -401,17 +400,17 @@ static relume_status stand_in(struct renderer *r)
         const int nearest = nearest_present(r, i);
         if (nearest < 0 && any)
             continue;
-        status = nearest < 0 ? relighter_wait(&r->relit[i], &r->relighter, i)
-                             : relighter_view(&r->relit[i], &r->relighter, nearest);
+        status = nearest < 0 ? gl_relighter_wait(&r->relit[i], &r->relighter, i)
+                             : gl_relighter_view(&r->relit[i], &r->relighter, nearest);
     }
     return status;
 }
 
 // Whether the views that a slab's eye needs would be too much for the graphics memory, whole, and
 // may be parts: light alone, that falls from afar and is not refitted.
-static bool takes_parts(const struct renderer *r, const struct frame_request *q)
+static bool takes_parts(const struct gl_renderer *r, const struct frame_request *q)
 {
-    const struct relighter *l = &r->relighter;
+    const struct gl_relighter *l = &r->relighter;
     size_t views = 0;
     for (int i = 0; i < r->views; i++)
         views += r->needed[i];
@@ -424,7 +423,7 @@ static bool takes_parts(const struct renderer *r, const struct frame_request *q)
            !takes_lens(q) && views * r->view_bytes > l->budget;
 }
 
-static relume_status relight_parts(struct renderer *r, const struct frame_request *q)
+static relume_status relight_parts(struct gl_renderer *r, const struct frame_request *q)
 {
     const int *size = r->size;
     const int frame[2] = {picture_width(q), (int)lround(q->picture.bottom - q->picture.top)};
@@ -441,13 +440,13 @@ static relume_status relight_parts(struct renderer *r, const struct frame_reques
     for (int i = 0; !status && i < r->views; i++) {
         r->relit[i] = NULL;
         if (r->part[i].width)
-            status = relighter_part(&r->relit[i], &r->part[i], &r->relighter, i, size);
+            status = gl_relighter_part(&r->relit[i], &r->part[i], &r->relighter, i, size);
     }
     return status;
 }
 
 // Anew when the lights have changed.
-static relume_status paint_view(struct renderer *r, const struct relume_light *lights, int count)
+static relume_status paint_view(struct gl_renderer *r, const struct relume_light *lights, int count)
 {
     const size_t bytes = (size_t)count * sizeof *lights;
     struct relume_image image;
@@ -473,24 +472,24 @@ static relume_status paint_view(struct renderer *r, const struct relume_light *l
     return status;
 }
 
-void renderer_use_painter(struct renderer *r, const struct view_painter *painter)
+void gl_renderer_use_painter(struct gl_renderer *r, const struct view_painter *painter)
 {
     r->painter = *painter;
     r->is_painted = false;
 }
 
-relume_status renderer_relight_views(struct renderer *r, const struct frame_request *q,
-                                     const struct relume_light *lights, int count)
+relume_status gl_renderer_relight_views(struct gl_renderer *r, const struct frame_request *q,
+                                        const struct relume_light *lights, int count)
 {
     if (r->painter.paint)
         return paint_view(r, lights, count);
     r->enhancer.params = q->enhance;
-    relume_status status = relighter_begin(&r->relighter, lights, count);
+    relume_status status = gl_relighter_begin(&r->relighter, lights, count);
     r->by_parts = takes_parts(r, q);
     if (!status && r->by_parts)
         return relight_parts(r, q);
-    relume_status (*const look_up)(const struct target **, struct relighter *, int) =
-        q->pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
+    relume_status (*const look_up)(const struct target **, struct gl_relighter *, int) =
+        q->pass == RELUME_PASS_COLOUR ? gl_relighter_view : gl_relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
         r->relit[i] = NULL;
         if (r->needed[i])
@@ -500,22 +499,22 @@ relume_status renderer_relight_views(struct renderer *r, const struct frame_requ
                 enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], q->pass, lights, count);
     }
     if (!status && r->map)
-        status = renderer_relight_tiles(r, q, lights, count);
+        status = gl_renderer_relight_tiles(r, q, lights, count);
     return status ? status : stand_in(r);
 }
 
-relume_status renderer_frame(struct renderer *r, const struct frame_request *q,
-                             const struct place *place)
+relume_status gl_renderer_frame(struct gl_renderer *r, const struct frame_request *q,
+                                const struct frame_area *area)
 {
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->frame, r->gl);
-    return framings[q->camera.framing].draw(r, q, place);
+    return framings[q->camera.framing].draw(r, q, area);
 }
 
 // The views that the frame needs.
-static relume_status prepare(struct renderer *r, const struct frame_request *q)
+static relume_status prepare(struct gl_renderer *r, const struct frame_request *q)
 {
-    relume_status status = renderer_prepare(&r->frame, r, q->width, q->height);
+    relume_status status = gl_renderer_prepare(&r->frame, r, q->width, q->height);
     memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
     if (!r->stage && !r->empty)
         framings[q->camera.framing].mark(r, q);
@@ -523,7 +522,7 @@ static relume_status prepare(struct renderer *r, const struct frame_request *q)
 }
 
 // Normals and the like are for looking up, not at.
-static relume_status see(struct renderer *r, const struct frame_request *q)
+static relume_status see(struct gl_renderer *r, const struct frame_request *q)
 {
     r->shown = &r->frame;
     if (!q->observer.on || q->pass != RELUME_PASS_COLOUR)
@@ -533,8 +532,8 @@ static relume_status see(struct renderer *r, const struct frame_request *q)
     return status;
 }
 
-static relume_status draw_lights_in_view(struct renderer *r, const struct frame_request *q,
-                                         const struct place *place)
+static relume_status draw_lights_in_view(struct gl_renderer *r, const struct frame_request *q,
+                                         const struct frame_area *area)
 {
     if (!q->observer.sources || q->pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
@@ -542,14 +541,14 @@ static relume_status draw_lights_in_view(struct renderer *r, const struct frame_
     if (!sources)
         return RELUME_ENOMEM;
     const int n = visible_lights(sources, q, q->light, q->lights, &r->backdrop);
-    draw_sources(&r->source, r->gl, place, sources, n);
+    draw_sources(&r->source, r->gl, area, sources, n);
     free(sources);
     return RELUME_OK;
 }
 
-relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
+relume_status gl_renderer_draw(struct gl_renderer *r, const struct frame_request *q)
 {
-    const struct place place = {
+    const struct frame_area area = {
         .width = q->width,
         .height = q->height,
         .picture = q->picture,
@@ -559,13 +558,13 @@ relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
     if (!status && r->empty)
         target_begin(&r->frame, r->gl);
     else if (!status && (r->drawer.gl || r->exchange.scene))
-        status = renderer_draw_ways(r, q, &place, q->light, q->lights);
+        status = gl_renderer_draw_ways(r, q, &area, q->light, q->lights);
     else if (!status)
-        status = renderer_relight_views(r, q, q->light, q->lights);
+        status = gl_renderer_relight_views(r, q, q->light, q->lights);
     if (!status && !r->drawer.gl && !r->exchange.scene && !r->empty)
-        status = renderer_frame(r, q, &place);
+        status = gl_renderer_frame(r, q, &area);
     if (!status)
-        status = draw_lights_in_view(r, q, &place);
+        status = draw_lights_in_view(r, q, &area);
     if (!status)
         status = see(r, q);
     if (status)
@@ -573,40 +572,40 @@ relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
     target_resume(r->shown, r->gl);
     r->gl->BindVertexArray(r->vertices);
     if (q->ball)
-        draw_ball(&r->ball, r->gl, &place, q->ball_place, q->ball_light, q->ball_rgb);
+        draw_ball(&r->ball, r->gl, &area, q->ball_place, q->ball_light, q->ball_rgb);
     return gl_check(r->gl, "drawing", r->log);
 }
 
-relume_status renderer_stream(struct renderer *r)
+relume_status gl_renderer_stream(struct gl_renderer *r)
 {
-    const relume_status status = relighter_stream(&r->relighter);
-    return status || !r->map ? status : relighter_stream(&r->tiles);
+    const relume_status status = gl_relighter_stream(&r->relighter);
+    return status || !r->map ? status : gl_relighter_stream(&r->tiles);
 }
 
-bool renderer_is_pending(const struct renderer *r)
+bool gl_renderer_is_pending(const struct gl_renderer *r)
 {
     return r->relighter.pending || r->tiles.pending;
 }
 
-relume_status renderer_read(struct relume_image *out, const struct renderer *r)
+relume_status gl_renderer_read(struct relume_image *out, const struct gl_renderer *r)
 {
     return target_read(out, r->shown, r->gl);
 }
 
-relume_status renderer_meter(double *ev, struct renderer *r)
+relume_status gl_renderer_meter(double *ev, struct gl_renderer *r)
 {
     enum { SIDE = 128 };
     const int width = r->frame.width < SIDE ? r->frame.width : SIDE;
     const int height = r->frame.height < SIDE ? r->frame.height : SIDE;
-    const struct place place = {width, height, {0, 0, width, height}, 1};
+    const struct frame_area area = {width, height, {0, 0, width, height}, 1};
     struct relume_image image;
     *ev = 0;
-    relume_status status = renderer_prepare(&r->small, r, width, height);
+    relume_status status = gl_renderer_prepare(&r->small, r, width, height);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->small, r->gl);
-    draw_picture(&r->picture, r->gl, &place, &r->frame);
+    draw_picture(&r->picture, r->gl, &area, &r->frame);
     status = target_read(&image, &r->small, r->gl);
     if (!status)
         *ev = relume_tone_meter(&image);
@@ -614,8 +613,8 @@ relume_status renderer_meter(double *ev, struct renderer *r)
     return status;
 }
 
-void renderer_present(const struct renderer *r, const struct window_place *window, int tone,
-                      double white, GLuint framebuffer)
+void gl_renderer_present(const struct gl_renderer *r, const struct window_place *window, int tone,
+                         double white, GLuint framebuffer)
 {
     r->gl->BindVertexArray(r->vertices);
     draw_present(&r->present, r->gl, r->shown, window, tone, white, framebuffer);

@@ -26,54 +26,54 @@ static void swap(struct target *a, struct target *b)
     *b = was;
 }
 
-static relume_status prepare(struct renderer *r, const struct place *place)
+static relume_status prepare(struct gl_renderer *r, const struct frame_area *area)
 {
-    relume_status status = renderer_prepare(&r->scene, r, place->width, place->height);
-    return status ? status : renderer_prepare(&r->lit, r, place->width, place->height);
+    relume_status status = gl_renderer_prepare(&r->scene, r, area->width, area->height);
+    return status ? status : gl_renderer_prepare(&r->lit, r, area->width, area->height);
 }
 
-relume_status renderer_need_points(struct renderer *r, const struct frame_request *q,
-                                   enum between_way way)
+relume_status gl_renderer_need_points(struct gl_renderer *r, const struct frame_request *q,
+                                      enum between_way way)
 {
     return between_need(&r->between, &r->drawer, &r->geometry, &r->place[0], way,
                         samples_of(q, way));
 }
 
-relume_status renderer_need_between(struct renderer *r, const struct frame_request *q,
-                                    const struct place *place)
+relume_status gl_renderer_need_between(struct gl_renderer *r, const struct frame_request *q,
+                                       const struct frame_area *area)
 {
     if (r->between.gl)
         return RELUME_OK;
     r->gl->BindVertexArray(r->vertices);
-    relume_status status = prepare(r, place);
+    relume_status status = prepare(r, area);
     if (!status)
-        status = renderer_find_scene(r, q, *place);  // r->place is known then
+        status = gl_renderer_find_scene(r, q, *area);  // r->place is known then
     return status ? status : between_create(&r->between, r->gl, &r->geometry, &r->place[0], r->log);
 }
 
-static relume_status add_light(struct renderer *r, const struct frame_request *q,
-                               const struct place *place, const struct between_view *view,
+static relume_status add_light(struct gl_renderer *r, const struct frame_request *q,
+                               const struct frame_area *area, const struct between_view *view,
                                const struct relume_light *light)
 {
-    struct place plain = *place;
+    struct frame_area plain = *area;
     plain.exposure = 1.0f;
-    relume_status status = renderer_relight_views(r, q, light, 1);
+    relume_status status = gl_renderer_relight_views(r, q, light, 1);
     if (!status)
-        status = renderer_frame(r, q, &plain);
+        status = gl_renderer_frame(r, q, &plain);
     r->drawer.panorama = (struct mirror_panorama){&r->geometry, r->relit[0], &r->place[0]};
     return status ? status
                   : between_light(&r->between, &r->drawer, view, light, r->relit[0], &r->frame,
-                                  &r->lit, place->exposure);
+                                  &r->lit, area->exposure);
 }
 
-static relume_status draw(struct renderer *r, const struct frame_request *q,
-                          const struct place *place, const struct between_view *view,
+static relume_status draw(struct gl_renderer *r, const struct frame_request *q,
+                          const struct frame_area *area, const struct between_view *view,
                           const struct relume_light *lights, int count)
 {
     relume_status status = between_begin(&r->between, &r->drawer, view);
     target_begin(&r->lit, r->gl);
     for (int i = 0; i < count && !status; i++)
-        status = add_light(r, q, place, view, &lights[i]);
+        status = add_light(r, q, area, view, &lights[i]);
     if (status)
         return status;
     swap(&r->frame, &r->lit);
@@ -81,28 +81,29 @@ static relume_status draw(struct renderer *r, const struct frame_request *q,
     r->gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, r->gl);
     r->drawer.returned = r->between.thrown.texture;
-    objects_drawer_over(&r->drawer, place, r->scene.texture, false);
+    objects_drawer_over(&r->drawer, area, r->scene.texture, false);
     r->drawer.returned = 0;
     return RELUME_OK;
 }
 
-relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struct frame_request *q,
-                                    const struct place *place, const struct relume_light *lights,
-                                    int count, enum between_way way)
+relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
+                                       const struct frame_request *q, const struct frame_area *area,
+                                       const struct relume_light *lights, int count,
+                                       enum between_way way)
 {
     struct frame_projection projection;
     *drawn = r->with_depth && r->geometry.projection >= RELUME_CYLINDRICAL && r->views == 1 &&
-             renderer_projection(&projection, r, q, place);
+             gl_renderer_projection(&projection, r, q, area);
     if (!*drawn)
         return RELUME_OK;
-    relume_status status = renderer_need_between(r, q, place);
+    relume_status status = gl_renderer_need_between(r, q, area);
     r->gl->BindVertexArray(r->vertices);
     if (!status)
-        status = prepare(r, place);
+        status = prepare(r, area);
     if (!status)
         status = objects_drawer_see(&r->drawer, &projection);
     if (!status)
-        status = renderer_find_scene(r, q, *place);
+        status = gl_renderer_find_scene(r, q, *area);
     if (status)
         return status;
     const int bounces = q->bounces ? q->bounces : BOUNCES;
@@ -111,13 +112,13 @@ relume_status renderer_draw_between(bool *drawn, struct renderer *r, const struc
         .panorama_places = &r->place[0],
         .scene = &r->scene,
         .projection = &projection,
-        .width = place->width,
-        .height = place->height,
+        .width = area->width,
+        .height = area->height,
         .way = way,
         .bounces = bounces > 0 ? bounces : 0,
         .samples = samples_of(q, way),
         .pattern = ways[way].pattern,
         .spacing = relume_transport_spacing(relume_transport_find(ways[way].name)),
         .sends = count ? 1.0f / (float)count : 0.0f};
-    return draw(r, q, place, &view, lights, count);
+    return draw(r, q, area, &view, lights, count);
 }

@@ -10,8 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-relume_status renderer_use_objects(struct renderer *r, relume_objects *objects,
-                                   const struct depth_source *places)
+relume_status gl_renderer_use_objects(struct gl_renderer *r, relume_objects *objects,
+                                      const struct depth_source *places)
 {
     r->stage = !places;
     if (places)
@@ -20,7 +20,7 @@ relume_status renderer_use_objects(struct renderer *r, relume_objects *objects,
     return r->place ? objects_drawer_create(&r->drawer, r->gl, objects, r->log) : RELUME_ENOMEM;
 }
 
-void renderer_objects_destroy(struct renderer *r)
+void gl_renderer_objects_destroy(struct gl_renderer *r)
 {
     for (int i = 0; r->place && i < r->views; i++)
         target_destroy(&r->place[i], r->gl);
@@ -30,11 +30,11 @@ void renderer_objects_destroy(struct renderer *r)
     objects_drawer_destroy(&r->drawer);
 }
 
-relume_status renderer_replace_objects(struct renderer *r, relume_objects *objects)
+relume_status gl_renderer_replace_objects(struct gl_renderer *r, relume_objects *objects)
 {
-    renderer_objects_destroy(r);
+    gl_renderer_objects_destroy(r);
     r->place = NULL;
-    return renderer_use_objects(r, objects, NULL);
+    return gl_renderer_use_objects(r, objects, NULL);
 }
 
 // ---------------------------------------------------------------- where the eye is
@@ -69,7 +69,7 @@ static struct relume_window look_window(const struct frame_request *q)
     };
 }
 
-static struct relume_window slab_view_window(const struct renderer *r, int view)
+static struct relume_window slab_view_window(const struct gl_renderer *r, int view)
 {
     const struct relume_geometry *g =
         r->around ? relume_slab_set_geometry(r->around, r->slab_of ? r->slab_of[view] : 0)
@@ -79,7 +79,7 @@ static struct relume_window slab_view_window(const struct renderer *r, int view)
 }
 
 // The window of the frame; false for frames that are not flat: unfolded panoramas, little planets.
-static bool find_window(struct relume_window *w, const struct renderer *r,
+static bool find_window(struct relume_window *w, const struct gl_renderer *r,
                         const struct frame_request *q)
 {
     const struct relume_camera *camera = &q->camera;
@@ -100,19 +100,19 @@ static bool find_window(struct relume_window *w, const struct renderer *r,
     return r->geometry.projection <= RELUME_SLAB;
 }
 
-bool renderer_projection(struct frame_projection *out, const struct renderer *r,
-                         const struct frame_request *q, const struct place *place)
+bool gl_renderer_projection(struct frame_projection *out, const struct gl_renderer *r,
+                            const struct frame_request *q, const struct frame_area *area)
 {
     const struct relume_objects_info *info = relume_objects_info(r->drawer.objects);
     const struct relume_geometry *g = &r->geometry;
     struct relume_window window;
     if (g->projection == RELUME_PLANAR && !g->perspective) {
-        frame_projection_of_plane(out, g->window_min, g->window_max, place->picture, place->width,
-                                  place->height, info->min, info->max);
+        frame_projection_of_plane(out, g->window_min, g->window_max, area->picture, area->width,
+                                  area->height, info->min, info->max);
         return true;
     }
     return find_window(&window, r, q) &&
-           frame_projection_of_window(out, &window, place->picture, place->width, place->height,
+           frame_projection_of_window(out, &window, area->picture, area->width, area->height,
                                       info->min, info->max);
 }
 
@@ -126,7 +126,7 @@ static void swap(struct target *a, struct target *b)
 }
 
 // Where the views that the frame needs see the scene, as if that were their light.
-static relume_status use_places(struct renderer *r)
+static relume_status use_places(struct gl_renderer *r)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; i < r->views && !status; i++) {
@@ -147,78 +147,78 @@ static relume_status use_places(struct renderer *r)
     return status;
 }
 
-relume_status renderer_find_scene(struct renderer *r, const struct frame_request *q,
-                                  struct place place)
+relume_status gl_renderer_find_scene(struct gl_renderer *r, const struct frame_request *q,
+                                     struct frame_area area)
 {
     relume_status status = use_places(r);
-    place.exposure = 1.0f;
+    area.exposure = 1.0f;
     if (!status)
-        status = renderer_frame(r, q, &place);
+        status = gl_renderer_frame(r, q, &area);
     swap(&r->frame, &r->scene);
     return status;
 }
 
 // r->frame becomes the sum of all lights where they reach.
-static relume_status light_scene(struct renderer *r, const struct frame_request *q,
-                                 const struct place *place, const struct relume_light *lights,
+static relume_status light_scene(struct gl_renderer *r, const struct frame_request *q,
+                                 const struct frame_area *area, const struct relume_light *lights,
                                  int count)
 {
     relume_status status = RELUME_OK;
     target_begin(&r->lit, r->gl);
     for (int i = 0; i < count && !status; i++) {
-        status = renderer_relight_views(r, q, &lights[i], 1);
+        status = gl_renderer_relight_views(r, q, &lights[i], 1);
         if (!status)
-            status = renderer_frame(r, q, place);
+            status = gl_renderer_frame(r, q, area);
         if (!status)
             status = objects_drawer_light(&r->drawer, &lights[i], 1);
         target_resume(&r->lit, r->gl);
         for (int k = 0; k < r->drawer.light_samples && !status; k++)
-            objects_drawer_cast(&r->drawer, place, k, r->scene.texture, &r->frame);
+            objects_drawer_cast(&r->drawer, area, k, r->scene.texture, &r->frame);
     }
     swap(&r->frame, &r->lit);
     return status;
 }
 
 // The panorama that mirrors show, under all lights.
-static relume_status find_surround(struct renderer *r, const struct frame_request *q,
+static relume_status find_surround(struct gl_renderer *r, const struct frame_request *q,
                                    const struct relume_light *lights, int count)
 {
     r->drawer.panorama = (struct mirror_panorama){.geometry = NULL};
     if (r->geometry.projection < RELUME_CYLINDRICAL || !handles_mirror(r->drawer.objects))
         return RELUME_OK;
-    const relume_status status = renderer_relight_views(r, q, lights, count);
+    const relume_status status = gl_renderer_relight_views(r, q, lights, count);
     if (!status && r->relit[0] && r->place[0].texture)
         r->drawer.panorama = (struct mirror_panorama){&r->geometry, r->relit[0], &r->place[0]};
     return status;
 }
 
-static relume_status draw_scene(struct renderer *r, const struct frame_request *q,
-                                const struct place *place, const struct relume_light *lights,
+static relume_status draw_scene(struct gl_renderer *r, const struct frame_request *q,
+                                const struct frame_area *area, const struct relume_light *lights,
                                 int count, bool seen)
 {
     if (r->stage) {
         target_begin(&r->frame, r->gl);
         return RELUME_OK;
     }
-    relume_status status = renderer_prepare(&r->scene, r, place->width, place->height);
+    relume_status status = gl_renderer_prepare(&r->scene, r, area->width, area->height);
     if (!status)
-        status = renderer_prepare(&r->lit, r, place->width, place->height);
+        status = gl_renderer_prepare(&r->lit, r, area->width, area->height);
     if (!seen || q->pass != RELUME_PASS_COLOUR) {
         if (!status)
-            status = renderer_relight_views(r, q, lights, count);
-        return status ? status : renderer_frame(r, q, place);
+            status = gl_renderer_relight_views(r, q, lights, count);
+        return status ? status : gl_renderer_frame(r, q, area);
     }
     if (!status)
-        status = renderer_find_scene(r, q, *place);
+        status = gl_renderer_find_scene(r, q, *area);
     if (!status)
-        status = light_scene(r, q, place, lights, count);
+        status = light_scene(r, q, area, lights, count);
     return status ? status : find_surround(r, q, lights, count);
 }
 
 // ---------------------------------------------------------------- the objects
 
 // Objects in their materials, or all in one; `ms` is what it took where the panel shows it.
-static relume_status shade(struct renderer *r, const struct frame_request *q,
+static relume_status shade(struct gl_renderer *r, const struct frame_request *q,
                            const struct frame_projection *projection, int only, double *ms)
 {
     if (q->timed)
@@ -233,21 +233,21 @@ static relume_status shade(struct renderer *r, const struct frame_request *q,
 }
 
 // The right half in the other material, and a line between.
-static void draw_split(const struct renderer *r, const struct place *place, GLuint scene)
+static void draw_split(const struct gl_renderer *r, const struct frame_area *area, GLuint scene)
 {
     const struct gl *gl = r->gl;
-    const int middle = place->width / 2;
+    const int middle = area->width / 2;
     gl->Enable(GL_SCISSOR_TEST);
-    gl->Scissor(middle, 0, place->width - middle, place->height);
-    objects_drawer_over(&r->drawer, place, scene, false);
-    gl->Scissor(middle - 1, 0, 2, place->height);
+    gl->Scissor(middle, 0, area->width - middle, area->height);
+    objects_drawer_over(&r->drawer, area, scene, false);
+    gl->Scissor(middle - 1, 0, 2, area->height);
     gl->ClearColor(0.5f, 0.5f, 0.5f, 1.0f);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     gl->Disable(GL_SCISSOR_TEST);
 }
 
-static relume_status draw_objects(struct renderer *r, const struct frame_request *q,
-                                  const struct place *place,
+static relume_status draw_objects(struct gl_renderer *r, const struct frame_request *q,
+                                  const struct frame_area *area,
                                   const struct frame_projection *projection)
 {
     const GLuint scene = r->stage ? 0 : r->scene.texture;
@@ -262,26 +262,26 @@ static relume_status draw_objects(struct renderer *r, const struct frame_request
         return status;
     r->gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, r->gl);
-    objects_drawer_over(&r->drawer, place, scene, q->split == APP_SPLIT_DIFFERENCE);
+    objects_drawer_over(&r->drawer, area, scene, q->split == APP_SPLIT_DIFFERENCE);
     if (q->split == APP_SPLIT_SIDES) {
         objects_drawer_swap(&r->drawer);
-        draw_split(r, place, scene);
+        draw_split(r, area, scene);
     }
     return RELUME_OK;
 }
 
-relume_status renderer_draw_objects(struct renderer *r, const struct frame_request *q,
-                                    const struct place *place, const struct relume_light *lights,
-                                    int count)
+relume_status gl_renderer_draw_objects(struct gl_renderer *r, const struct frame_request *q,
+                                       const struct frame_area *area,
+                                       const struct relume_light *lights, int count)
 {
     struct frame_projection projection;
-    const bool seen = renderer_projection(&projection, r, q, place);
+    const bool seen = gl_renderer_projection(&projection, r, q, area);
     r->gl->BindVertexArray(r->vertices);
     relume_status status = seen ? objects_drawer_see(&r->drawer, &projection) : RELUME_OK;
     if (!status)
-        status = draw_scene(r, q, place, lights, count, seen);
+        status = draw_scene(r, q, area, lights, count, seen);
     if (status || !seen || q->pass != RELUME_PASS_COLOUR)
         return status;
     status = objects_drawer_light(&r->drawer, lights, count);
-    return status ? status : draw_objects(r, q, place, &projection);
+    return status ? status : draw_objects(r, q, area, &projection);
 }

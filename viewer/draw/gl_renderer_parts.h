@@ -5,49 +5,51 @@
 #include "draw/gl_renderer_state.h"
 
 // A target of that size, made anew where it had another.
-relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,
-                               int height);
+relume_status gl_renderer_prepare(struct target *target, const struct gl_renderer *r, int width,
+                                  int height);
 // The views that are needed, relit.
-relume_status renderer_relight_views(struct renderer *r, const struct frame_request *request,
-                                     const struct relume_light *lights, int count);
+relume_status gl_renderer_relight_views(struct gl_renderer *r, const struct frame_request *request,
+                                        const struct relume_light *lights, int count);
 // r->relit as the framing shows them, into r->frame.
-relume_status renderer_frame(struct renderer *r, const struct frame_request *request,
-                             const struct place *place);
+relume_status gl_renderer_frame(struct gl_renderer *r, const struct frame_request *request,
+                                const struct frame_area *area);
 
 // The tiles of a large view that a frame shows finer than the view as a whole, relit; and both
 // drawn.
-relume_status renderer_relight_tiles(struct renderer *r, const struct frame_request *request,
-                                     const struct relume_light *lights, int count);
-void renderer_draw_tiles(struct renderer *r, const struct place *place, const struct target *view);
-void renderer_tiles_destroy(struct renderer *r);
+relume_status gl_renderer_relight_tiles(struct gl_renderer *r, const struct frame_request *request,
+                                        const struct relume_light *lights, int count);
+void gl_renderer_draw_tiles(struct gl_renderer *r, const struct frame_area *area,
+                            const struct target *view);
+void gl_renderer_tiles_destroy(struct gl_renderer *r);
 
 // The frame with objects, into r->frame.
-relume_status renderer_draw_objects(struct renderer *r, const struct frame_request *request,
-                                    const struct place *place, const struct relume_light *lights,
-                                    int count);
-void renderer_objects_destroy(struct renderer *r);
+relume_status gl_renderer_draw_objects(struct gl_renderer *r, const struct frame_request *request,
+                                       const struct frame_area *area,
+                                       const struct relume_light *lights, int count);
+void gl_renderer_objects_destroy(struct gl_renderer *r);
 
 // The same with light between the scene and them, in the ways that the frame asks for.
-relume_status renderer_draw_ways(struct renderer *r, const struct frame_request *request,
-                                 const struct place *place, const struct relume_light *lights,
-                                 int count);
-void renderer_ways_destroy(struct renderer *r);
+relume_status gl_renderer_draw_ways(struct gl_renderer *r, const struct frame_request *request,
+                                    const struct frame_area *area,
+                                    const struct relume_light *lights, int count);
+void gl_renderer_ways_destroy(struct gl_renderer *r);
 // What they are drawn with, of a panorama with depth. RELUME_ESYSTEM, RELUME_ENOMEM.
-relume_status renderer_need_between(struct renderer *r, const struct frame_request *request,
-                                    const struct place *place);
+relume_status gl_renderer_need_between(struct gl_renderer *r, const struct frame_request *request,
+                                       const struct frame_area *area);
 // What a way needs besides. Likewise.
-relume_status renderer_need_points(struct renderer *r, const struct frame_request *request,
-                                   enum between_way way);
+relume_status gl_renderer_need_points(struct gl_renderer *r, const struct frame_request *request,
+                                      enum between_way way);
 // By passes, in that way; false in *drawn where there are none for it.
-relume_status renderer_draw_between(bool *drawn, struct renderer *r,
-                                    const struct frame_request *request, const struct place *place,
-                                    const struct relume_light *lights, int count,
-                                    enum between_way way);
+relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
+                                       const struct frame_request *request,
+                                       const struct frame_area *area,
+                                       const struct relume_light *lights, int count,
+                                       enum between_way way);
 // How objects appear in the frame; false where it is not flat.
-bool renderer_projection(struct frame_projection *out, const struct renderer *r,
-                         const struct frame_request *request, const struct place *place);
+bool gl_renderer_projection(struct frame_projection *out, const struct gl_renderer *r,
+                            const struct frame_request *request, const struct frame_area *area);
 // Where the frame sees the scene, into r->scene.
-relume_status renderer_find_scene(struct renderer *r, const struct frame_request *request,
-                                  struct place place);
+relume_status gl_renderer_find_scene(struct gl_renderer *r, const struct frame_request *request,
+                                     struct frame_area area);
 
 #endif

@@ -20,11 +20,11 @@ struct view_painter {
                            int n);
 };
 
-struct renderer {
+struct gl_renderer {
     const struct gl *gl;
     const struct relume_log *log;
-    struct relighter relighter;
-    struct relighter tiles;      // of a large view, which the other knows smaller; empty: none ...
+    struct gl_relighter relighter;
+    struct gl_relighter tiles;   // of a large view, which the other knows smaller; empty: none ...
     const struct tile_map *map;  // ... by number; NULL: none
     const struct target **tile;  // [tiles]: relit; NULL where not needed or not there yet
     struct enhancer enhancer;

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-relume_status renderer_use_tiles(struct renderer *r, const struct code_source *source,
-                                 const struct tile_map *map)
+relume_status gl_renderer_use_tiles(struct gl_renderer *r, const struct code_source *source,
+                                    const struct tile_map *map)
 {
     const int tiles = map->first[map->levels];
     if (!tiles || r->views > 1)
@@ -16,7 +16,7 @@ relume_status renderer_use_tiles(struct renderer *r, const struct code_source *s
     r->tile = calloc((size_t)tiles, sizeof *r->tile);
     if (!r->tile)
         return RELUME_ENOMEM;
-    const relume_status status = relighter_create(&r->tiles, r->gl, source, tiles, r->log);
+    const relume_status status = gl_relighter_create(&r->tiles, r->gl, source, tiles, r->log);
     if (!status)
         r->map = map;
     r->tiles.by_library = r->relighter.by_library;
@@ -26,9 +26,9 @@ relume_status renderer_use_tiles(struct renderer *r, const struct code_source *s
     return status;
 }
 
-void renderer_tiles_destroy(struct renderer *r)
+void gl_renderer_tiles_destroy(struct gl_renderer *r)
 {
-    relighter_destroy(&r->tiles);
+    gl_relighter_destroy(&r->tiles);
     free(r->tile);
 }
 
@@ -46,7 +46,7 @@ static void find_range(struct tiles_seen *s, int axis, double from, double to, d
     s->end[axis] = (int)fmin(ceil(to * scale / TILE_SIDE), most);
 }
 
-static struct tiles_seen find_seen(const struct renderer *r, const struct frame_request *q,
+static struct tiles_seen find_seen(const struct gl_renderer *r, const struct frame_request *q,
                                    int level)
 {
     const struct app_rectangle *p = &q->picture;
@@ -64,7 +64,7 @@ static int count(const struct tiles_seen *s)
     return wide > 0 && high > 0 ? wide * high : 0;
 }
 
-static size_t tile_bytes(const struct renderer *r)
+static size_t tile_bytes(const struct gl_renderer *r)
 {
     return r->view_bytes
                ? r->view_bytes / (size_t)r->size[0] * TILE_SIDE / (size_t)r->size[1] * TILE_SIDE
@@ -73,7 +73,7 @@ static size_t tile_bytes(const struct renderer *r)
 
 // The level that has at least a pixel for each of the frame, coarser where its tiles would be more
 // than the memory; map->levels: all of it is fine enough.
-static struct tiles_seen choose_level(const struct renderer *r, const struct frame_request *q)
+static struct tiles_seen choose_level(const struct gl_renderer *r, const struct frame_request *q)
 {
     const double each = r->map->width[0] / fmax(q->picture.right - q->picture.left, 1e-6);
     int level = 0;
@@ -85,8 +85,8 @@ static struct tiles_seen choose_level(const struct renderer *r, const struct fra
     return seen;
 }
 
-relume_status renderer_relight_tiles(struct renderer *r, const struct frame_request *q,
-                                     const struct relume_light *lights, int n)
+relume_status gl_renderer_relight_tiles(struct gl_renderer *r, const struct frame_request *q,
+                                        const struct relume_light *lights, int n)
 {
     const struct tiles_seen seen = choose_level(r, q);
     const bool suits = q->camera.framing == RELUME_FRAME_VIEW && q->pass == RELUME_PASS_COLOUR;
@@ -97,18 +97,19 @@ relume_status renderer_relight_tiles(struct renderer *r, const struct frame_requ
     r->tiles.pending = false;
     if (!suits || near || seen.level == r->map->levels)
         return RELUME_OK;
-    relume_status status = relighter_begin(&r->tiles, lights, n);
+    relume_status status = gl_relighter_begin(&r->tiles, lights, n);
     for (int y = seen.begin[1]; !status && y < seen.end[1]; y++)
         for (int x = seen.begin[0]; !status && x < seen.end[0]; x++) {
             const int number = tile_map_number(r->map, seen.level, x, y);
-            status = relighter_view(&r->tile[number], &r->tiles, number);
+            status = gl_relighter_view(&r->tile[number], &r->tiles, number);
         }
     return status;
 }
 
 // A rectangle of a level in the frame.
-static struct app_rectangle place_of(const struct renderer *r, const struct app_rectangle *picture,
-                                     int level, const struct relume_rect *rect)
+static struct app_rectangle place_of(const struct gl_renderer *r,
+                                     const struct app_rectangle *picture, int level,
+                                     const struct relume_rect *rect)
 {
     const double x = ldexp((picture->right - picture->left) / r->map->width[0], level);
     const double y = ldexp((picture->bottom - picture->top) / r->map->height[0], level);
@@ -124,22 +125,24 @@ static struct app_rectangle clipped(struct app_rectangle a, const struct app_rec
 }
 
 // What a level's last pixel covers may reach beyond the view.
-static void draw_rect(struct renderer *r, const struct place *place, const struct target *relit,
-                      int level, const struct relume_rect *rect, const struct relume_rect *inner)
+static void draw_rect(struct gl_renderer *r, const struct frame_area *area,
+                      const struct target *relit, int level, const struct relume_rect *rect,
+                      const struct relume_rect *inner)
 {
-    const struct app_rectangle within = place_of(r, &place->picture, level, inner);
-    struct place own = *place;
-    own.picture = place_of(r, &place->picture, level, rect);
-    draw_picture_within(&r->picture, r->gl, &own, relit, clipped(within, &place->picture));
+    const struct app_rectangle within = place_of(r, &area->picture, level, inner);
+    struct frame_area own = *area;
+    own.picture = place_of(r, &area->picture, level, rect);
+    draw_picture_within(&r->picture, r->gl, &own, relit, clipped(within, &area->picture));
 }
 
-void renderer_draw_tiles(struct renderer *r, const struct place *place, const struct target *view)
+void gl_renderer_draw_tiles(struct gl_renderer *r, const struct frame_area *area,
+                            const struct target *view)
 {
     const struct relume_rect all = {0, 0, view->width, view->height};
-    draw_rect(r, place, view, r->map->levels, &all, &all);
+    draw_rect(r, area, view, r->map->levels, &all, &all);
     for (int i = 0; i < r->map->first[r->map->levels]; i++) {
         const struct tile tile = tile_map_tile(r->map, i);
         if (r->tile[i])
-            draw_rect(r, place, r->tile[i], tile.level, &tile.rect, &tile.inner);
+            draw_rect(r, area, r->tile[i], tile.level, &tile.rect, &tile.inner);
     }
 }

@@ -10,13 +10,13 @@
 #include <math.h>
 #include <string.h>
 
-void renderer_use_exchange(struct renderer *r, const struct exchange_source *exchange)
+void gl_renderer_use_exchange(struct gl_renderer *r, const struct exchange_source *exchange)
 {
     r->exchange = *exchange;
     r->stage |= exchange->scene;
 }
 
-void renderer_ways_destroy(struct renderer *r)
+void gl_renderer_ways_destroy(struct gl_renderer *r)
 {
     exchanger_destroy(&r->exchanger);
     for (int i = 0; i < EXCHANGER_SLOTS; i++)
@@ -25,23 +25,23 @@ void renderer_ways_destroy(struct renderer *r)
     between_destroy(&r->between);
 }
 
-void renderer_let_go(struct renderer *r)
+void gl_renderer_let_go(struct gl_renderer *r)
 {
     if (r->exchanger)
         exchanger_rest(r->exchanger);
 }
 
-bool renderer_expects(const struct renderer *r)
+bool gl_renderer_expects(const struct gl_renderer *r)
 {
     return r->exchanger && exchanger_is_busy(r->exchanger);
 }
 
-bool renderer_has_news(const struct renderer *r)
+bool gl_renderer_has_news(const struct gl_renderer *r)
 {
     return r->exchanger && exchanger_has_news(r->exchanger);
 }
 
-relume_status renderer_wait(struct renderer *r)
+relume_status gl_renderer_wait(struct gl_renderer *r)
 {
     return exchanger_wait(r->exchanger);
 }
@@ -64,7 +64,7 @@ static bool need_compute(const struct passes *p)
 }
 
 // NULL: there are none of that way; for any of them (NULL), what stands in for it.
-static const struct passes *passes_of(const struct renderer *r, const char *way)
+static const struct passes *passes_of(const struct gl_renderer *r, const char *way)
 {
     for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
         if ((!way || !strcmp(passes[i].way, way)) && !(need_compute(&passes[i]) && r->no_points))
@@ -75,7 +75,7 @@ static const struct passes *passes_of(const struct renderer *r, const char *way)
 // Two ways, or two materials; the latter are compared in hard shadows. Of a scene file hard shadows
 // are the library's, too.
 enum { NO_WAY = -1 };
-static bool goes_between(const struct renderer *r, const struct frame_request *q, int way)
+static bool goes_between(const struct gl_renderer *r, const struct frame_request *q, int way)
 {
     return r->exchange.file && way != NO_WAY && (r->exchange.scene || way_gathers(way)) &&
            q->pass == RELUME_PASS_COLOUR && q->split == APP_SPLIT_NONE;
@@ -94,26 +94,26 @@ static void find_size(struct relume_camera *camera, const struct frame_request *
 }
 
 // Looks into a panorama with depth.
-static bool takes_passes(const struct renderer *r, const struct frame_request *q)
+static bool takes_passes(const struct gl_renderer *r, const struct frame_request *q)
 {
     return !r->ways_by_library && r->with_depth && q->camera.framing == RELUME_FRAME_LOOK &&
            !q->camera.look.stereographic && r->views == 1;
 }
 
-static bool is_drawn_by_passes(const struct renderer *r, const struct frame_request *q, int way)
+static bool is_drawn_by_passes(const struct gl_renderer *r, const struct frame_request *q, int way)
 {
     return takes_passes(r, q) && passes_of(r, way_name(way));
 }
 
 // Own passes, or some that stand in until the library is done.
-static bool wants_passes(const struct renderer *r, const struct frame_request *q, int way)
+static bool wants_passes(const struct gl_renderer *r, const struct frame_request *q, int way)
 {
     return goes_between(r, q, way) && takes_passes(r, q) &&
            (!r->waits || is_drawn_by_passes(r, q, way));
 }
 
 // Where OpenGL cannot do it, as it has said then, the library does.
-static relume_status leave_to_library(struct renderer *r, bool *left, relume_status status)
+static relume_status leave_to_library(struct gl_renderer *r, bool *left, relume_status status)
 {
     if (status != RELUME_ESYSTEM)
         return status;
@@ -123,37 +123,37 @@ static relume_status leave_to_library(struct renderer *r, bool *left, relume_sta
     return RELUME_OK;
 }
 
-static void do_without_compute(struct renderer *r)
+static void do_without_compute(struct gl_renderer *r)
 {
     r->log->message(r->log->user, RELUME_NOTE,
                     "micro and ism are gathered by the library: passes of theirs need OpenGL 4.3");
     r->no_points = true;
 }
 
-static relume_status check_points(struct renderer *r, const struct frame_request *q, int way)
+static relume_status check_points(struct gl_renderer *r, const struct frame_request *q, int way)
 {
     const struct passes *by = way == NO_WAY ? NULL : passes_of(r, way_name(way));
     if (!by || !need_compute(by) || !wants_passes(r, q, way))
         return RELUME_OK;
     if (r->gl->compute)
-        return leave_to_library(r, &r->no_points, renderer_need_points(r, q, by->as));
+        return leave_to_library(r, &r->no_points, gl_renderer_need_points(r, q, by->as));
     do_without_compute(r);
     return RELUME_OK;
 }
 
-static relume_status check_passes(struct renderer *r, const struct frame_request *q,
-                                  const struct place *place)
+static relume_status check_passes(struct gl_renderer *r, const struct frame_request *q,
+                                  const struct frame_area *area)
 {
     if (!wants_passes(r, q, q->way) && !wants_passes(r, q, q->other_way))
         return RELUME_OK;
     relume_status status =
-        leave_to_library(r, &r->ways_by_library, renderer_need_between(r, q, place));
+        leave_to_library(r, &r->ways_by_library, gl_renderer_need_between(r, q, area));
     if (!status)
         status = check_points(r, q, q->way);
     return status || q->ways == APP_SPLIT_NONE ? status : check_points(r, q, q->other_way);
 }
 
-static relume_status ask(struct renderer *r, const struct frame_request *q, int slot, int way,
+static relume_status ask(struct gl_renderer *r, const struct frame_request *q, int slot, int way,
                          const struct relume_light *lights, int count)
 {
     if (!goes_between(r, q, way) || is_drawn_by_passes(r, q, way))
@@ -180,7 +180,7 @@ static relume_status ask(struct renderer *r, const struct frame_request *q, int 
 }
 
 // Where somebody waits, a way that cannot be drawn is an error.
-static relume_status wait_for_all(struct renderer *r)
+static relume_status wait_for_all(struct gl_renderer *r)
 {
     struct exchange_state state[EXCHANGER_SLOTS];
     relume_status status = exchanger_wait(r->exchanger);
@@ -193,7 +193,8 @@ static relume_status wait_for_all(struct renderer *r)
 
 // ---------------------------------------------------------------- drawing
 
-static relume_status show(bool *shown, struct renderer *r, const struct place *place, int slot)
+static relume_status show(bool *shown, struct gl_renderer *r, const struct frame_area *area,
+                          int slot)
 {
     const struct relume_image *image;
     struct target *target = &r->way[slot];
@@ -202,33 +203,33 @@ static relume_status show(bool *shown, struct renderer *r, const struct place *p
     if (!*shown)
         return RELUME_OK;
     const bool other = target->width != image->width || target->height != image->height;
-    const relume_status status = renderer_prepare(target, r, image->width, image->height);
+    const relume_status status = gl_renderer_prepare(target, r, image->width, image->height);
     if (status)
         return status;
     if (fresh || other)
         target_write(target, r->gl, image);
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->frame, r->gl);
-    draw_picture(&r->picture, r->gl, place, target);
+    draw_picture(&r->picture, r->gl, area, target);
     return RELUME_OK;
 }
 
-static relume_status draw_passes(bool *drawn, struct renderer *r, const struct frame_request *q,
-                                 const struct place *place, const struct relume_light *lights,
+static relume_status draw_passes(bool *drawn, struct gl_renderer *r, const struct frame_request *q,
+                                 const struct frame_area *area, const struct relume_light *lights,
                                  int count, double *ms, const struct passes *by)
 {
     if (q->timed)
         r->gl->Finish();
     const double start = now_s();
-    const relume_status status = renderer_draw_between(drawn, r, q, place, lights, count, by->as);
+    const relume_status status = gl_renderer_draw_between(drawn, r, q, area, lights, count, by->as);
     if (q->timed)
         r->gl->Finish();
     *ms = *drawn ? 1e3 * (now_s() - start) : 0.0;
     return status;
 }
 
-static relume_status draw_way(struct renderer *r, const struct frame_request *q,
-                              const struct place *place, const struct relume_light *lights,
+static relume_status draw_way(struct gl_renderer *r, const struct frame_request *q,
+                              const struct frame_area *area, const struct relume_light *lights,
                               int count, int slot, int way)
 {
     const struct passes *own = passes_of(r, way_name(way)), *stand_in = passes_of(r, NULL);
@@ -237,15 +238,15 @@ static relume_status draw_way(struct renderer *r, const struct frame_request *q,
     bool shown = false;
     relume_status status = RELUME_OK;
     if (between && !by_passes)
-        status = show(&shown, r, place, slot);
+        status = show(&shown, r, area, slot);
     double ms = 0.0;
     if (!status && !shown && between && stand_in)
-        status = draw_passes(&shown, r, q, place, lights, count, &ms, own ? own : stand_in);
+        status = draw_passes(&shown, r, q, area, lights, count, &ms, own ? own : stand_in);
     r->passes_ms[slot] = by_passes ? ms : 0.0;
     if (status || shown)
         return status;
     if (!r->exchange.scene)
-        return renderer_draw_objects(r, q, place, lights, count);
+        return gl_renderer_draw_objects(r, q, area, lights, count);
     target_begin(&r->frame, r->gl);
     return RELUME_OK;
 }
@@ -258,42 +259,42 @@ static void swap(struct target *a, struct target *b)
 }
 
 // r->frame is the other way. The first one comes into its left half, with a line between.
-static void draw_sides(const struct renderer *r, const struct place *place)
+static void draw_sides(const struct gl_renderer *r, const struct frame_area *area)
 {
     const struct gl *gl = r->gl;
-    const int middle = place->width / 2;
-    const struct place whole = {
-        place->width, place->height, {0, 0, place->width, place->height}, 1};
+    const int middle = area->width / 2;
+    const struct frame_area whole = {
+        area->width, area->height, {0, 0, area->width, area->height}, 1};
     gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, gl);
     draw_picture_within(&r->picture, gl, &whole, &r->beside_way,
-                        (struct app_rectangle){0, 0, middle, place->height});
+                        (struct app_rectangle){0, 0, middle, area->height});
     gl->Enable(GL_SCISSOR_TEST);
-    gl->Scissor(middle - 1, 0, 2, place->height);
+    gl->Scissor(middle - 1, 0, 2, area->height);
     gl->ClearColor(0.5f, 0.5f, 0.5f, 1.0f);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     gl->Disable(GL_SCISSOR_TEST);
 }
 
 // A frame cannot be drawn from itself: what becomes of both is r->lit, which takes its place.
-static relume_status draw_difference(struct renderer *r, const struct place *place)
+static relume_status draw_difference(struct gl_renderer *r, const struct frame_area *area)
 {
-    const relume_status status = renderer_prepare(&r->lit, r, place->width, place->height);
+    const relume_status status = gl_renderer_prepare(&r->lit, r, area->width, area->height);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->lit, r->gl);
-    draw_apart(&r->apart, r->gl, place, &r->frame, &r->beside_way);
+    draw_apart(&r->apart, r->gl, area, &r->frame, &r->beside_way);
     swap(&r->frame, &r->lit);
     return RELUME_OK;
 }
 
-relume_status renderer_draw_ways(struct renderer *r, const struct frame_request *q,
-                                 const struct place *place, const struct relume_light *lights,
-                                 int count)
+relume_status gl_renderer_draw_ways(struct gl_renderer *r, const struct frame_request *q,
+                                    const struct frame_area *area,
+                                    const struct relume_light *lights, int count)
 {
     const bool both = q->ways != APP_SPLIT_NONE && (!r->stage || r->exchange.scene);
-    relume_status status = check_passes(r, q, place);
+    relume_status status = check_passes(r, q, area);
     if (!status)
         status = ask(r, q, 0, q->way, lights, count);
     if (!status)
@@ -303,18 +304,18 @@ relume_status renderer_draw_ways(struct renderer *r, const struct frame_request 
     if (r->exchanger)
         exchanger_speak(r->exchanger);
     if (!status)
-        status = draw_way(r, q, place, lights, count, 0, q->way);
+        status = draw_way(r, q, area, lights, count, 0, q->way);
     if (status || !both)
         return status;
-    status = renderer_prepare(&r->beside_way, r, place->width, place->height);
+    status = gl_renderer_prepare(&r->beside_way, r, area->width, area->height);
     if (status)
         return status;
     swap(&r->frame, &r->beside_way);
-    status = draw_way(r, q, place, lights, count, 1, q->other_way);
+    status = draw_way(r, q, area, lights, count, 1, q->other_way);
     if (status)
         return status;
     if (q->ways == APP_SPLIT_DIFFERENCE)
-        return draw_difference(r, place);
-    draw_sides(r, place);
+        return draw_difference(r, area);
+    draw_sides(r, area);
     return RELUME_OK;
 }

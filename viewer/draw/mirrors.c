@@ -244,7 +244,8 @@ static void use_surface(const struct mirrors *m, const GLint *at,
 static void draw(const struct mirrors *m, const struct program *program,
                  const struct mirror_surface *surface)
 {
-    const struct place whole = {.width = surface->place->width, .height = surface->place->height};
+    const struct frame_area whole = {.width = surface->place->width,
+                                     .height = surface->place->height};
     m->gl->Enable(GL_BLEND);
     m->gl->BlendFunc(GL_ONE, GL_ONE);
     draw_rectangle(m->gl, program, &whole, (struct app_rectangle){0, 0, whole.width, whole.height});

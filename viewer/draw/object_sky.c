@@ -42,7 +42,7 @@ static void add_share(struct objects_drawer *t, int number)
 {
     const struct gl *gl = t->gl;
     const struct relume_light *light_sample = &t->light_sample[number].light;
-    const struct place whole = {.width = t->sent.width, .height = t->sent.height};
+    const struct frame_area whole = {.width = t->sent.width, .height = t->sent.height};
     objects_drawer_draw_shadow(t, number);
     gl->BindFramebuffer(GL_FRAMEBUFFER, t->share_buffer);
     gl->Viewport(0, 0, whole.width, whole.height);
@@ -76,7 +76,7 @@ static void find_share(struct objects_drawer *t, int number)
 relume_status objects_drawer_add_sky(struct objects_drawer *t, int number, int only)
 {
     const struct gl *gl = t->gl;
-    const struct place whole = {.width = t->shown.width, .height = t->shown.height};
+    const struct frame_area whole = {.width = t->shown.width, .height = t->shown.height};
     const relume_status status = objects_drawer_show_sky(t, &t->light[number], only);
     if (status)
         return status;

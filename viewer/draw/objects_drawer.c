@@ -470,13 +470,13 @@ static int lights_at_once(const struct btf_level *l)
 }
 
 static void draw_level(const struct objects_drawer *t, const struct program *program,
-                       const struct place *place, const struct btf_level *l, bool sums)
+                       const struct frame_area *area, const struct btf_level *l, bool sums)
 {
     const int lights = l->counts[1], step = sums ? lights_at_once(l) : lights;
     for (int from = 0; from < lights; from += step) {
         const int end = from + step < lights ? from + step : lights;
         t->gl->Uniform2i(program->at[SOME_LIGHTS], from, end);
-        objects_drawer_draw_whole(t->gl, program, place);
+        objects_drawer_draw_whole(t->gl, program, area);
     }
 }
 
@@ -486,7 +486,7 @@ static void draw_levels(const struct objects_drawer *t, const struct program *pr
 {
     const struct gl *gl = t->gl;
     const GLint *at = program->at;
-    const struct place place = {.width = target->width, .height = target->height};
+    const struct frame_area area = {.width = target->width, .height = target->height};
     for (int i = 0; i < m->levels; i++) {
         const struct btf_level *l = &m->level[i];
         gl->Uniform1i(at[LEVEL], i);
@@ -497,7 +497,7 @@ static void draw_levels(const struct objects_drawer *t, const struct program *pr
         gl->Uniform3f(at[RELIEF], l->relief[0], l->relief[1], l->relief[2]);
         gl->Uniform2i(at[SIDE], l->side[0], l->side[1]);
         btf_use(m, gl, i);
-        draw_level(t, program, &place, l, sums);
+        draw_level(t, program, &area, l, sums);
     }
 }
 
@@ -659,9 +659,9 @@ relume_status objects_drawer_shade(struct objects_drawer *t,
 }
 
 void objects_drawer_draw_whole(const struct gl *gl, const struct program *program,
-                               const struct place *place)
+                               const struct frame_area *area)
 {
-    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
+    draw_rectangle(gl, program, area, (struct app_rectangle){0, 0, area->width, area->height});
 }
 
 void objects_drawer_swap(struct objects_drawer *t)
@@ -671,8 +671,8 @@ void objects_drawer_swap(struct objects_drawer *t)
     t->other = shaded;
 }
 
-void objects_drawer_over(const struct objects_drawer *t, const struct place *place, GLuint scene,
-                         bool difference)
+void objects_drawer_over(const struct objects_drawer *t, const struct frame_area *area,
+                         GLuint scene, bool difference)
 {
     const struct gl *gl = t->gl;
     const GLint *at = t->over.at;
@@ -699,10 +699,10 @@ void objects_drawer_over(const struct objects_drawer *t, const struct place *pla
     gl->Uniform1i(at[GRID], t->grid);
     gl->Uniform4f(at[OVER_EYE], t->projection.eye[0], t->projection.eye[1], t->projection.eye[2],
                   t->projection.eye[3]);
-    gl->Uniform1f(at[EXPOSURE], place->exposure);
+    gl->Uniform1f(at[EXPOSURE], area->exposure);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    objects_drawer_draw_whole(gl, &t->over, place);
+    objects_drawer_draw_whole(gl, &t->over, area);
     gl->Disable(GL_BLEND);
 }
 
@@ -732,7 +732,7 @@ static void use_samples(const struct objects_drawer *t, int light_sample)
         t->gl->Uniform4fv(t->cast.at[CAST_SAMPLES], n, at[0]);
 }
 
-void objects_drawer_cast(struct objects_drawer *t, const struct place *place, int light_sample,
+void objects_drawer_cast(struct objects_drawer *t, const struct frame_area *area, int light_sample,
                          GLuint scene, const struct target *lone)
 {
     const struct gl *gl = t->gl;
@@ -751,6 +751,6 @@ void objects_drawer_cast(struct objects_drawer *t, const struct place *place, in
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, t->cast.at + CAST_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    objects_drawer_draw_whole(gl, &t->cast, place);
+    objects_drawer_draw_whole(gl, &t->cast, area);
     gl->Disable(GL_BLEND);
 }

@@ -65,7 +65,7 @@ void objects_drawer_use_skin(const struct objects_drawer *t, const struct progra
 // The shadow map of a light sample; it takes over the target.
 void objects_drawer_draw_shadow(struct objects_drawer *t, int light_sample);
 void objects_drawer_draw_whole(const struct gl *gl, const struct program *program,
-                               const struct place *place);
+                               const struct frame_area *area);
 // A light sample as a light: a patch is an area light's piece, its normal the axis.
 struct relume_light objects_drawer_light_of(const struct relume_object_light *light_sample);
 // What a part shows of an environment, into the target in use.

@@ -13,7 +13,7 @@
 // ---------------------------------------------------------------- views
 
 // The library looks at codes for as long as it relights the view.
-static void stop_lending(struct relighter *r, struct relit_view *v)
+static void stop_lending(struct gl_relighter *r, struct relit_view *v)
 {
     const int view = (int)(v - r->view);
     if (v->lent && r->source.drop && !v->part.memory)
@@ -25,7 +25,7 @@ static void stop_lending(struct relighter *r, struct relit_view *v)
     relume_codes_part_destroy(&v->part);
 }
 
-static void release(struct relighter *r, struct relit_view *v)
+static void release(struct gl_relighter *r, struct relit_view *v)
 {
     if (v->array)
         r->gl->DeleteTextures(v->arrays, v->array);
@@ -42,7 +42,7 @@ static void release(struct relighter *r, struct relit_view *v)
 }
 
 // Views that this frame does not use leave, the longest unused first, until `bytes` more fit.
-static void make_room(struct relighter *r, size_t bytes)
+static void make_room(struct gl_relighter *r, size_t bytes)
 {
     while (r->bytes + bytes > r->budget) {
         struct relit_view *oldest = NULL;
@@ -55,10 +55,10 @@ static void make_room(struct relighter *r, size_t bytes)
     }
 }
 
-static relume_status keep(struct relighter *r, int view, const struct relume_codes *codes)
+static relume_status keep(struct gl_relighter *r, int view, const struct relume_codes *codes)
 {
     struct relit_view *v = &r->view[view];
-    const size_t bytes = relighter_view_bytes(codes);
+    const size_t bytes = gl_relighter_view_bytes(codes);
     make_room(r, bytes);
     v->present = true;
     v->bytes = bytes;
@@ -73,13 +73,13 @@ static relume_status keep(struct relighter *r, int view, const struct relume_cod
     return status;
 }
 
-static void drop(struct relighter *r, int view)
+static void drop(struct gl_relighter *r, int view)
 {
     if (r->source.drop && !r->view[view].lent)
         r->source.drop(r->source.user, view);
 }
 
-static relume_status load(struct relighter *r, int view)
+static relume_status load(struct gl_relighter *r, int view)
 {
     const struct relume_codes *codes;
     relume_status status = r->source.codes(&codes, r->source.user, view);
@@ -91,7 +91,7 @@ static relume_status load(struct relighter *r, int view)
 }
 
 // What the loader has read, up to `view`; -1: as much as is there.
-static relume_status take_loaded(struct relighter *r, int view)
+static relume_status take_loaded(struct gl_relighter *r, int view)
 {
     struct loaded loaded;
     relume_status status = RELUME_OK;
@@ -120,7 +120,8 @@ static bool has_near(const struct relume_light *lights, int n)
     return false;
 }
 
-static relume_status find_surface(struct relume_image *surface, const struct relighter *r, int view)
+static relume_status find_surface(struct relume_image *surface, const struct gl_relighter *r,
+                                  int view)
 {
     const relume_status status =
         r->source.surface ? r->source.surface(surface, r->source.user, view) : RELUME_EINVAL;
@@ -130,7 +131,7 @@ static relume_status find_surface(struct relume_image *surface, const struct rel
                      "a near light needs to know how far the surface is; use a file with depth");
 }
 
-static size_t bytes_of_library(const struct relighter *r, const struct relit_view *v)
+static size_t bytes_of_library(const struct gl_relighter *r, const struct relit_view *v)
 {
     const size_t pixels = (size_t)v->surface.width * (size_t)v->surface.height;
     return relume_relighter_bytes(r->library, (int)(v - r->view)) + 3 * pixels * sizeof(float) +
@@ -153,7 +154,7 @@ static struct relume_rect with_margin(const struct relume_rect *at, const int si
                                 (low < size[1] ? low : size[1]) - top};
 }
 
-static relume_status load_part(struct relighter *r, int view, const struct relume_rect *at)
+static relume_status load_part(struct gl_relighter *r, int view, const struct relume_rect *at)
 {
     struct relit_view *v = &r->view[view];
     struct relume_codes_part part;
@@ -172,14 +173,14 @@ static relume_status load_part(struct relighter *r, int view, const struct relum
     return RELUME_OK;
 }
 
-static relume_status need_shadows(struct relighter *r, struct relit_view *v)
+static relume_status need_shadows(struct gl_relighter *r, struct relit_view *v)
 {
     return v->shadows || !r->source.shadows
                ? RELUME_OK
                : r->source.shadows(&v->shadows, r->source.user, (int)(v - r->view));
 }
 
-static relume_status relight_by_library(struct relighter *r, struct relit_view *v,
+static relume_status relight_by_library(struct gl_relighter *r, struct relit_view *v,
                                         const struct relume_light *lights, int n,
                                         const struct target *into)
 {
@@ -217,7 +218,7 @@ static relume_status relight_by_library(struct relighter *r, struct relit_view *
 }
 
 // Those of passes are gone.
-static relume_status need_lent(struct relighter *r, struct relit_view *v)
+static relume_status need_lent(struct gl_relighter *r, struct relit_view *v)
 {
     const int view = (int)(v - r->view);
     if (v->lent)
@@ -230,7 +231,7 @@ static relume_status need_lent(struct relighter *r, struct relit_view *v)
 }
 
 // Lights of some kinds, beside passes.
-static relume_status add_by_library(struct relighter *r, struct relit_view *v,
+static relume_status add_by_library(struct gl_relighter *r, struct relit_view *v,
                                     bool (*is)(enum relume_light_kind))
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
@@ -261,7 +262,7 @@ static struct nearby_codes nearby_codes_of(const struct relit_view *v)
                                  code_format_of(&v->codes)->unit};
 }
 
-static relume_status need_surface(struct relighter *r, struct relit_view *v)
+static relume_status need_surface(struct gl_relighter *r, struct relit_view *v)
 {
     struct relume_image surface = {0};
     const struct nearby_codes codes = nearby_codes_of(v);
@@ -278,7 +279,7 @@ static bool moves_shadows(const struct relit_view *v)
 }
 
 // One that is relit alone, in r->coded, with what moves by it.
-static relume_status add_near_moving(struct relighter *r, struct relit_view *v,
+static relume_status add_near_moving(struct gl_relighter *r, struct relit_view *v,
                                      const struct nearby_codes *codes,
                                      const struct relume_light *light)
 {
@@ -298,7 +299,7 @@ static relume_status add_near_moving(struct relighter *r, struct relit_view *v,
 }
 
 // Array textures that are several the shaders do not read.
-static relume_status add_near(struct relighter *r, struct relit_view *v)
+static relume_status add_near(struct gl_relighter *r, struct relit_view *v)
 {
     const bool moves = moves_shadows(v);
     bool can = v->arrays == 1;
@@ -320,7 +321,7 @@ static relume_status add_near(struct relighter *r, struct relit_view *v)
     return status;
 }
 
-bool relighter_has_kind(const struct relighter *r, bool (*is)(enum relume_light_kind))
+bool gl_relighter_has_kind(const struct gl_relighter *r, bool (*is)(enum relume_light_kind))
 {
     for (int i = 0; i < r->lights; i++)
         if (is(r->light[i].kind))
@@ -328,7 +329,7 @@ bool relighter_has_kind(const struct relighter *r, bool (*is)(enum relume_light_
     return false;
 }
 
-static relume_status need_moving(struct relighter *r, struct relit_view *v)
+static relume_status need_moving(struct gl_relighter *r, struct relit_view *v)
 {
     relume_status status = need_shadows(r, v);
     if (!status && v->shadows && !v->moving.shadows)
@@ -336,23 +337,23 @@ static relume_status need_moving(struct relighter *r, struct relit_view *v)
     return status;
 }
 
-static void count_moving(struct relighter *r, struct relit_view *v, size_t before)
+static void count_moving(struct gl_relighter *r, struct relit_view *v, size_t before)
 {
     const size_t more = v->moving.bytes - before;
     r->bytes += more;
     v->bytes += more;
 }
 
-static relume_status add_environments(struct relighter *r, struct relit_view *v)
+static relume_status add_environments(struct gl_relighter *r, struct relit_view *v)
 {
-    if (!relighter_has_kind(r, relighter_is_environment))
+    if (!gl_relighter_has_kind(r, gl_relighter_is_environment))
         return RELUME_OK;
     if (v->moving.shadows)
         return suns_relight(r, v);
     return v->codes.domain == RELUME_DOMAIN_DISPLAY ? linear_copy_relight(r, v) : RELUME_OK;
 }
 
-static relume_status relight_by_passes(struct relighter *r, struct relit_view *v)
+static relume_status relight_by_passes(struct gl_relighter *r, struct relit_view *v)
 {
     const size_t before = v->moving.bytes;
     relume_status status = need_moving(r, v);
@@ -364,13 +365,13 @@ static relume_status relight_by_passes(struct relighter *r, struct relit_view *v
     if (!status)
         status = add_environments(r, v);
     count_moving(r, v, before);
-    if (!status && relighter_has_kind(r, relume_light_is_near))
+    if (!status && gl_relighter_has_kind(r, relume_light_is_near))
         status = add_near(r, v);
     r->gl->Disable(GL_BLEND);
     return status;
 }
 
-static relume_status relight(struct relighter *r, struct relit_view *v)
+static relume_status relight(struct gl_relighter *r, struct relit_view *v)
 {
     relume_status status = r->by_library ? relight_by_library(r, v, r->light, r->lights, &v->relit)
                                          : relight_by_passes(r, v);
@@ -382,11 +383,11 @@ static relume_status relight(struct relighter *r, struct relit_view *v)
 
 // ---------------------------------------------------------------- interface
 
-relume_status relighter_create(struct relighter *r, const struct gl *gl,
-                               const struct code_source *source, int views,
-                               const struct relume_log *log)
+relume_status gl_relighter_create(struct gl_relighter *r, const struct gl *gl,
+                                  const struct code_source *source, int views,
+                                  const struct relume_log *log)
 {
-    *r = (struct relighter){
+    *r = (struct gl_relighter){
         .gl = gl, .log = log, .source = *source, .views = views, .budget = (size_t)1 << 30};
     moving_create(&r->moving, gl, log);
     r->view = calloc((size_t)views, sizeof *r->view);
@@ -394,11 +395,11 @@ relume_status relighter_create(struct relighter *r, const struct gl *gl,
     if (!status)
         status = nearby_create(&r->near, gl, log);
     if (status)
-        relighter_destroy(r);
+        gl_relighter_destroy(r);
     return status;
 }
 
-void relighter_destroy(struct relighter *r)
+void gl_relighter_destroy(struct gl_relighter *r)
 {
     if (!r->gl)
         return;
@@ -413,10 +414,10 @@ void relighter_destroy(struct relighter *r)
     moving_destroy(&r->moving);
     free(r->view);
     free(r->light);
-    *r = (struct relighter){0};
+    *r = (struct gl_relighter){0};
 }
 
-static bool same_lights(const struct relighter *r, const struct relume_light *lights, int n)
+static bool same_lights(const struct gl_relighter *r, const struct relume_light *lights, int n)
 {
     if (!r->light || r->lights != n)
         return false;
@@ -426,7 +427,7 @@ static bool same_lights(const struct relighter *r, const struct relume_light *li
     return true;
 }
 
-static relume_status begin_frame(struct relighter *r)
+static relume_status begin_frame(struct gl_relighter *r)
 {
     r->frame++;
     r->pending = false;
@@ -436,7 +437,7 @@ static relume_status begin_frame(struct relighter *r)
     return take_loaded(r, -1);
 }
 
-relume_status relighter_begin(struct relighter *r, const struct relume_light *lights, int n)
+relume_status gl_relighter_begin(struct gl_relighter *r, const struct relume_light *lights, int n)
 {
     const relume_status status = begin_frame(r);
     if (status || same_lights(r, lights, n))
@@ -454,7 +455,7 @@ relume_status relighter_begin(struct relighter *r, const struct relume_light *li
     return RELUME_OK;
 }
 
-void relighter_forget(struct relighter *r)
+void gl_relighter_forget(struct gl_relighter *r)
 {
     nearby_forget(&r->near);
     moving_forget(&r->moving);
@@ -463,10 +464,10 @@ void relighter_forget(struct relighter *r)
     if (r->library)
         relume_relighter_forget(r->library);
     if (r->linear)
-        relighter_forget(r->linear);
+        gl_relighter_forget(r->linear);
 }
 
-static relume_status show(const struct target **out, struct relighter *r, struct relit_view *v)
+static relume_status show(const struct target **out, struct gl_relighter *r, struct relit_view *v)
 {
     v->used = r->frame;
     const relume_status status = v->fresh ? RELUME_OK : relight(r, v);
@@ -475,7 +476,7 @@ static relume_status show(const struct target **out, struct relighter *r, struct
     return status;
 }
 
-relume_status relighter_view(const struct target **out, struct relighter *r, int view)
+relume_status gl_relighter_view(const struct target **out, struct gl_relighter *r, int view)
 {
     struct relit_view *v = &r->view[view];
     relume_status status = RELUME_OK;
@@ -492,11 +493,11 @@ relume_status relighter_view(const struct target **out, struct relighter *r, int
     return status ? status : show(out, r, v);
 }
 
-relume_status relighter_wait(const struct target **out, struct relighter *r, int view)
+relume_status gl_relighter_wait(const struct target **out, struct gl_relighter *r, int view)
 {
     *out = NULL;
-    if (!r->loader || relighter_has(r, view))
-        return relighter_view(out, r, view);
+    if (!r->loader || gl_relighter_has(r, view))
+        return gl_relighter_view(out, r, view);
     if (r->view[view].present)
         release(r, &r->view[view]);
     loader_ask(r->loader, view);
@@ -504,8 +505,8 @@ relume_status relighter_wait(const struct target **out, struct relighter *r, int
     return status ? status : show(out, r, &r->view[view]);
 }
 
-relume_status relighter_part(const struct target **out, struct relume_rect *at, struct relighter *r,
-                             int view, const int size[2])
+relume_status gl_relighter_part(const struct target **out, struct relume_rect *at,
+                                struct gl_relighter *r, int view, const int size[2])
 {
     struct relit_view *v = &r->view[view];
     const struct relume_rect wider = with_margin(at, size), all = {0, 0, size[0], size[1]};
@@ -518,17 +519,17 @@ relume_status relighter_part(const struct target **out, struct relume_rect *at, 
     return status;
 }
 
-bool relighter_has(const struct relighter *r, int view)
+bool gl_relighter_has(const struct gl_relighter *r, int view)
 {
     return r->view[view].present && r->view[view].at.width == 0;
 }
 
-size_t relighter_view_bytes(const struct relume_codes *codes)
+size_t gl_relighter_view_bytes(const struct relume_codes *codes)
 {
     return (size_t)codes->width * (size_t)codes->height * 4 * sizeof(float) + codes_bytes(codes);
 }
 
-relume_status relighter_stream(struct relighter *r)
+relume_status gl_relighter_stream(struct gl_relighter *r)
 {
     return loader_create(&r->loader, &r->source, r->views);
 }

@@ -40,7 +40,7 @@ struct linear_source {
     const struct relume_log *log;
 };
 
-struct relighter {
+struct gl_relighter {
     const struct gl *gl;
     const struct relume_log *log;
     struct code_source source;
@@ -52,10 +52,10 @@ struct relighter {
     struct moving moving;
     bool by_library;  // not by passes: where OpenGL is software. May be set before the first
                       // view is asked for
-    relume_relighter *library;  // NULL: not needed yet
-    int threads;                // of it; 0: all cores
-    relume_weight_grid *grid;   // of the coder, for environments; NULL: not made yet
-    struct relighter *linear;   // the linear copy, under the environments; NULL: not made yet
+    relume_relighter *library;    // NULL: not needed yet
+    int threads;                  // of it; 0: all cores
+    relume_weight_grid *grid;     // of the coder, for environments; NULL: not made yet
+    struct gl_relighter *linear;  // the linear copy, under the environments; NULL: not made yet
     struct linear_source linear_source;
     GLuint vertices;
     GLuint weights;         // texture [layers][3]

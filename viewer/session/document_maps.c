@@ -114,7 +114,7 @@ relume_status session_edit_maps(struct session *s, const char *words, const stru
         relume_maps_destroy(&s->found);
         s->found = maps;
         describe(s, edits);
-        renderer_use_painter(&s->renderer, &(struct view_painter){s, paint});
+        gl_renderer_use_painter(&s->renderer, &(struct view_painter){s, paint});
     } else {
         relume_maps_destroy(&maps);
     }
@@ -168,8 +168,8 @@ relume_status session_make_maps(struct session *s)
 {
     const struct code_source nothing = {.user = NULL};
     const relume_status status =
-        renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+        gl_renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
     if (!status)
-        renderer_use_painter(&s->renderer, &(struct view_painter){s, paint});
+        gl_renderer_use_painter(&s->renderer, &(struct view_painter){s, paint});
     return status;
 }

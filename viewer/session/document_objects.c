@@ -183,16 +183,16 @@ relume_status session_make_stage(struct session *s)
     static const double uv[1][2] = {{0.0, 0.0}};
     const struct code_source nothing = {.user = NULL};
     relume_status status =
-        renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+        gl_renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
     if (status)
         return status;
-    renderer_use_slabs(&s->renderer, s->stage, uv, NULL);
-    return renderer_use_objects(&s->renderer, s->objects, NULL);
+    gl_renderer_use_slabs(&s->renderer, s->stage, uv, NULL);
+    return gl_renderer_use_objects(&s->renderer, s->objects, NULL);
 }
 
 relume_status session_add_objects(struct session *s)
 {
     const struct depth_source places = pack_source_places(s->source);
     session_add_ways(s);
-    return renderer_use_objects(&s->renderer, s->objects, &places);
+    return gl_renderer_use_objects(&s->renderer, s->objects, &places);
 }

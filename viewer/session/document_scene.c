@@ -172,10 +172,10 @@ relume_status session_make_scene(struct session *s)
     const struct exchange_source source = {
         .file = s->file, .scene = true, .log = s->log, .threads = s->threads};
     const relume_status status =
-        renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+        gl_renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
     if (status)
         return status;
-    renderer_use_slabs(&s->renderer, s->stage, uv, NULL);
-    renderer_use_exchange(&s->renderer, &source);
+    gl_renderer_use_slabs(&s->renderer, s->stage, uv, NULL);
+    gl_renderer_use_exchange(&s->renderer, &source);
     return RELUME_OK;
 }

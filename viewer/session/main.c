@@ -139,14 +139,14 @@ static relume_status host_wait(void *user, double seconds)
     // a frame says what it moves towards: its exposure
     relume_status status = until_idle ? session_draw(s) : RELUME_OK;
     for (; !status && left > 1e-9 && (moves || !until_idle); left -= step) {
-        moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
+        moves = session_pass(s, fmin(left, step)) || gl_renderer_is_pending(&s->renderer);
         if (s->film)
             status = session_film(s);
         else if (moves || until_idle || observer_lives(&s->app.now.observer))
             status = (s->streams ? show_frame : session_draw)(s);
     }
-    if (!status && until_idle && renderer_expects(&s->renderer)) {
-        status = renderer_wait(&s->renderer);
+    if (!status && until_idle && gl_renderer_expects(&s->renderer)) {
+        status = gl_renderer_wait(&s->renderer);
         if (!status)
             status = show_frame(s);
     }
@@ -256,7 +256,7 @@ static bool is_over(const struct session *s)
 static double still_s(const struct session *s)
 {
     const double LOOK_S = 0.05, steady = app_steady_s(&s->app);
-    return renderer_expects(&s->renderer) ? fmin(steady, LOOK_S) : steady;
+    return gl_renderer_expects(&s->renderer) ? fmin(steady, LOOK_S) : steady;
 }
 
 static relume_status take_events(struct session *s, bool *changed, double *time_ms)
@@ -289,8 +289,8 @@ static relume_status live(struct session *s, struct script *script)
         if (!status && changed && !is_over(s))
             status = show_frame(s);
         changed =
-            !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
-                        renderer_has_news(&s->renderer) || observer_lives(&s->app.now.observer));
+            !status && (gl_renderer_is_pending(&s->renderer) || session_is_busy(s) ||
+                        gl_renderer_has_news(&s->renderer) || observer_lives(&s->app.now.observer));
     }
     return status || !stopping_asked() ? status : RELUME_ECANCEL;
 }

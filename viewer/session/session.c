@@ -155,7 +155,7 @@ relume_status session_compare(struct session *s, const char *capture)
 // The renderer first: its thread may be reading.
 void session_close_file(struct session *s)
 {
-    renderer_destroy(&s->renderer);
+    gl_renderer_destroy(&s->renderer);
     pack_source_destroy(&s->source);
     relume_pack_destroy(&s->pack);
     relume_slab_set_destroy(&s->around);
@@ -235,8 +235,8 @@ static relume_status make_renderer(struct session *s)
 {
     if (s->app.file.empty) {
         const struct code_source nothing = {.user = NULL};
-        const relume_status status =
-            renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+        const relume_status status = gl_renderer_create(&s->renderer, &s->gl, &nothing,
+                                                        &s->app.file.geometry, NULL, 1, s->log);
         s->renderer.empty = true;
         return status;
     }
@@ -253,13 +253,13 @@ static relume_status make_renderer(struct session *s)
     const struct code_source source = pack_source_codes(s->source);
     const struct part_source parts = pack_source_parts(s->source);
     const struct depth_source depth = pack_source_depth(s->source);
-    status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry,
-                             s->around ? NULL : info->uv, info->views, s->log);
+    status = gl_renderer_create(&s->renderer, &s->gl, &source, &info->geometry,
+                                s->around ? NULL : info->uv, info->views, s->log);
     if (status)
         return status;
     if (s->around)
-        renderer_use_slabs(&s->renderer, s->around, info->uv, info->slab_of);
-    renderer_use_parts(&s->renderer, &parts, info);
+        gl_renderer_use_slabs(&s->renderer, s->around, info->uv, info->slab_of);
+    gl_renderer_use_parts(&s->renderer, &parts, info);
     s->renderer.relighter.budget = s->vram_bytes;
     s->renderer.relighter.threads = s->threads;
     s->renderer.relighter.by_library =
@@ -269,14 +269,14 @@ static relume_status make_renderer(struct session *s)
     s->renderer.glare.size = s->glare_size;
     s->renderer.glare.by_library =
         s->glare == SESSION_LIBRARY || (s->glare == SESSION_AUTO && s->gl.software);
-    renderer_use_capture(&s->renderer, s->capture);
+    gl_renderer_use_capture(&s->renderer, s->capture);
     const struct code_source tiles = pack_source_tiles(s->source);
-    status = renderer_use_tiles(&s->renderer, &tiles, pack_source_map(s->source));
+    status = gl_renderer_use_tiles(&s->renderer, &tiles, pack_source_map(s->source));
     if (!status && info->has_depth)
-        status = renderer_use_depth(&s->renderer, &depth);
+        status = gl_renderer_use_depth(&s->renderer, &depth);
     if (!status && s->objects)
         status = session_add_objects(s);
-    return status || !s->streams || s->objects ? status : renderer_stream(&s->renderer);
+    return status || !s->streams || s->objects ? status : gl_renderer_stream(&s->renderer);
 }
 
 // Beside the program, else where its package puts it.
@@ -462,7 +462,7 @@ relume_status session_render(struct session *s)
     relume_status status = frame_request_make(&s->request, &s->app);
     s->renderer.waits = !s->streams || s->finishes || session_records(s);
     if (!status)
-        status = renderer_draw(&s->renderer, &s->request);
+        status = gl_renderer_draw(&s->renderer, &s->request);
     if (!status)
         warn_beside(s);
     return status;
@@ -473,7 +473,7 @@ static relume_status meter(struct session *s)
 {
     const double before = app_exposure_ev(&s->app);
     double ev;
-    const relume_status status = renderer_meter(&ev, &s->renderer);
+    const relume_status status = gl_renderer_meter(&ev, &s->renderer);
     if (status)
         return status;
     app_meter(&s->app, ev);
@@ -506,7 +506,7 @@ bool session_send(struct session *s, const struct app_event *event)
     session_lend_scene(s);
     const struct app_state before = s->app.now;
     if (may_edit_reflections(&s->app, event))
-        renderer_let_go(&s->renderer);
+        gl_renderer_let_go(&s->renderer);
     const bool changed = app_handle(&s->app, event);
     session_hear_handles(s);
     session_hear_ways(s, &before);
@@ -545,7 +545,7 @@ bool session_pass(struct session *s, double seconds)
 void session_present(struct session *s, GLuint framebuffer)
 {
     const struct window_place window = {s->app.beside[0], app_window_width(&s->app), s->app.height};
-    renderer_present(&s->renderer, &window, s->app.now.tone, s->app.now.white, framebuffer);
+    gl_renderer_present(&s->renderer, &window, s->app.now.tone, s->app.now.white, framebuffer);
     if (panel_shown(&s->app))
         draw_panel(&s->drawing, &s->gl, s->panel, app_window_width(&s->app), s->app.height);
 }

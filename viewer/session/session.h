@@ -62,7 +62,7 @@ struct session {
     relume_capture *capture;        // of the file, to compare with, or NULL
     relume_rig *rig;                // owns what lights point at; the app's list says what shines
     struct app app;
-    struct renderer renderer;
+    struct gl_renderer renderer;
     struct frame_request request;  // of the frame drawn last
     struct panel *panel;
     struct panel_drawing drawing;

@@ -121,7 +121,7 @@ static relume_status show_again(struct session *s, const struct relume_log *log)
                                relume_objects_params(.log = log, .threads = s->threads));
     if (status)
         return status;
-    status = renderer_replace_objects(&s->renderer, objects);
+    status = gl_renderer_replace_objects(&s->renderer, objects);
     relume_objects_destroy(&s->objects);
     s->objects = s->app.file.objects = objects;
     return status;

@@ -17,7 +17,7 @@ static void count_histogram(struct session *s)
                                             .white = s->app.now.white};
     struct relume_image frame;
     memset(s->histogram, 0, sizeof s->histogram);
-    if (renderer_read(&frame, &s->renderer))
+    if (gl_renderer_read(&frame, &s->renderer))
         return;
     if (relume_tone_apply(&frame, &tone)) {
         relume_image_destroy(&frame);

@@ -27,7 +27,7 @@ relume_status session_read(struct relume_image *image, struct session *s, bool l
     *image = (struct relume_image){0};
     if (!sees_something(s))
         return say(s->log, RELUME_EUNFIT, "%s: the eye sees nothing of the slab", s->name);
-    relume_status status = renderer_read(image, &s->renderer);
+    relume_status status = gl_renderer_read(image, &s->renderer);
     if (!status && !linear)
         status = relume_tone_apply(image, &tone);
     return status;

@@ -84,7 +84,7 @@ relume_status session_record_step(struct session *s)
     relume_status status = record_pose(&s->app, r->kind, (double)r->frame / r->frames, s->log);
     if (!status)
         status = session_render(s);
-    if (!status && renderer_is_pending(&s->renderer))
+    if (!status && gl_renderer_is_pending(&s->renderer))
         return RELUME_OK;  // the same picture again, when all of it is there
     if (!status)
         status = session_read(&image, s, false);

@@ -71,7 +71,7 @@ static relume_status save(struct session *s, const char *name, const struct relu
 relume_status session_reflect(struct session *s, const char *words, const struct relume_log *log)
 {
     session_lend_scene(s);
-    renderer_let_go(&s->renderer);
+    gl_renderer_let_go(&s->renderer);
     if (strncmp(words, "save", 4) || (words[4] && words[4] != ' '))
         return handles_say(&s->app, words, log);
     if (!handles_turn_on(&s->app, true))

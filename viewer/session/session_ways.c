@@ -9,7 +9,7 @@
 static void let_go(void *user)
 {
     struct session *s = user;
-    renderer_let_go(&s->renderer);
+    gl_renderer_let_go(&s->renderer);
 }
 
 void session_add_ways(struct session *s)
@@ -19,7 +19,7 @@ void session_add_ways(struct session *s)
                                            .objects = s->objects,
                                            .log = s->log,
                                            .threads = s->threads};
-    renderer_use_exchange(&s->renderer, &source);
+    gl_renderer_use_exchange(&s->renderer, &source);
     s->renderer.with_depth = relume_pack_info(s->pack)->has_depth;
     s->renderer.ways_by_library =
         s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
@@ -51,7 +51,7 @@ static void describe_exchange(char text[SESSION_TEXT], struct exchanger *e, int 
                  100.0 * state.done);
 }
 
-static void describe(char text[SESSION_TEXT], const struct renderer *r, int slot, int way)
+static void describe(char text[SESSION_TEXT], const struct gl_renderer *r, int slot, int way)
 {
     char more[SESSION_TEXT] = "";
     if (r->passes_ms[slot] > 0.0)

@@ -243,7 +243,7 @@ static int bench_opening(const struct context_backend *backend, const char *path
                                        "light moved, next frame"};
     struct times bench[4] = {{.n = 0}};
     for (int run = 0; run < RUNS; run++) {
-        struct session s = {.log = &log, .vram_bytes = (size_t)1 << 30};
+        struct session s = {.log = &log, .settings = {.vram_bytes = (size_t)1 << 30}};
         struct app_state start = {.lights = 0};
         relume_rig *rig = NULL;
         double then = now_s();
@@ -256,7 +256,7 @@ static int bench_opening(const struct context_backend *backend, const char *path
             else
                 bench_check(session_draw(&s));
             if (step)
-                s.gl.Finish();
+                s.window.gl.Finish();
             times_add(&bench[step], now_s() - then);
             app_turn_light(&s.app, 10, 0);
             then = now_s();

@@ -1,5 +1,6 @@
 // document_maps.c - folders of maps (relume/material/maps.h): shown under the lights as they are
 // edited, by the library
+#include "session/edits_text.h"
 #include "session/session.h"
 
 #include "app/light_list.h"
@@ -7,23 +8,36 @@
 
 #include <relume/material/edit.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-bool session_is_maps(const char *path)
+// What a document of this kind owns.
+struct edited_maps {
+    struct relume_maps maps;
+    int threads;
+};
+
+static struct edited_maps *maps_of(const struct document *d)
+{
+    return d->own;
+}
+
+static bool is_maps(const char *path, const struct object_set *objects)
 {
     char name[APP_SPEC + 16];
-    snprintf(name, sizeof name, "%s/maps.json", path);
-    return !access(name, R_OK);
+    (void)objects;
+    snprintf(name, sizeof name, "%s/maps.json", path ? path : "");
+    return path && !access(name, R_OK);
 }
 
 // ---------------------------------------------------------------- lights
 
-static relume_status add_light(struct relume_image *sum, const struct session *s,
+static relume_status add_light(struct relume_image *sum, const struct edited_maps *m,
                                struct relume_vec3 direction, const float rgb[3])
 {
     struct relume_image lit;
-    const relume_status status = relume_maps_relight(&lit, &s->found, direction, s->threads);
+    const relume_status status = relume_maps_relight(&lit, &m->maps, direction, m->threads);
     if (status)
         return status;
     const size_t n = 3 * (size_t)lit.width * (size_t)lit.height;
@@ -37,16 +51,16 @@ static relume_status paint(struct relume_image *out, void *user, const struct re
                            int n)
 {
     enum { OF_SKY = 48 };  // directional lights that stand for an environment
-    const struct session *s = user;
+    const struct edited_maps *m = user;
     struct relume_light sky[OF_SKY];
-    relume_status status = relume_image_create(out, s->found.width, s->found.height, 3);
+    relume_status status = relume_image_create(out, m->maps.width, m->maps.height, 3);
     for (int i = 0; i < n && !status; i++) {
         const bool environment = lights[i].kind == RELUME_LIGHT_ENVIRONMENT;
         const struct relume_light *from = environment ? sky : &lights[i];
         if (environment)
             status = relume_environment_sample(sky, OF_SKY, &lights[i], 0);
         for (int k = 0; k < (environment ? OF_SKY : 1) && !status; k++)
-            status = add_light(out, s, from[k].direction, from[k].rgb);
+            status = add_light(out, m, from[k].direction, from[k].rgb);
     }
     if (status)
         relume_image_destroy(out);
@@ -65,30 +79,18 @@ static relume_status check_lights(const struct app_state *start, const struct re
 
 // ---------------------------------------------------------------- edits
 
-static void describe(struct session *s, const relume_edits *edits)
-{
-    snprintf(s->line[0], SESSION_TEXT, "maps, %d x %d", s->found.width, s->found.height);
-    snprintf(s->line[1], SESSION_TEXT, "%d light%s were fitted, %d material%s", s->found.lights,
-             relume_plural(s->found.lights), s->found.materials, relume_plural(s->found.materials));
-    s->lines[0] = s->line[0];
-    s->lines[1] = s->line[1];
-    s->lines[2] = NULL;
-    session_describe_edits(s, edits);
-}
-
 // The maps of a folder with the edits that are kept with it, changed as `words` say (NULL: not).
-static relume_status open_edited(struct relume_maps *out, relume_edits **edits,
-                                 const struct session *s, const char *path, char *words,
-                                 const struct relume_log *log)
+static relume_status open_edited(struct relume_maps *out, relume_edits **edits, const char *path,
+                                 char *words, int threads, const struct relume_log *log)
 {
     *edits = NULL;
     relume_status status = relume_maps_open(out, path, log);
     if (!status)
         status = relume_edits_open(edits, path, relume_maps_fingerprint(out), log);
     if (!status && words)
-        status = session_change_edits(*edits, words, log);
+        status = edits_change(*edits, words, log);
     if (!status)
-        status = relume_maps_edit(out, *edits, s->threads, log);
+        status = relume_maps_edit(out, *edits, threads, log);
     if (status) {
         relume_maps_destroy(out);
         relume_edits_destroy(edits);
@@ -96,80 +98,131 @@ static relume_status open_edited(struct relume_maps *out, relume_edits **edits,
     return status;
 }
 
-relume_status session_edit_maps(struct session *s, const char *words, const struct relume_log *log)
+static bool can_edit_maps(const struct session *s)
+{
+    (void)s;
+    return true;
+}
+
+static void describe_maps(struct session *s)
+{
+    const struct relume_maps *maps = &maps_of(&s->document)->maps;
+    s->document.lines = 0;
+    document_add_line(&s->document, "maps, %d x %d", maps->width, maps->height);
+    document_add_line(&s->document, "%d light%s were fitted, %d material%s", maps->lights,
+                      relume_plural(maps->lights), maps->materials, relume_plural(maps->materials));
+}
+
+static relume_status write_maps(const struct edited_maps *m, char *folder,
+                                const struct relume_log *log)
+{
+    return relume_maps_write(
+        &m->maps, edits_unquote(folder),
+        relume_maps_write_params(.log = log, .threads = m->threads, .directx = m->maps.directx));
+}
+
+static void use_painter(struct session *s)
+{
+    gl_renderer_use_painter(&s->renderer, &(struct view_painter){s->document.own, paint});
+}
+
+static void show_edited(struct session *s, const struct relume_maps *maps,
+                        const relume_edits *edits)
+{
+    struct edited_maps *m = maps_of(&s->document);
+    relume_maps_destroy(&m->maps);
+    m->maps = *maps;
+    describe_maps(s);
+    document_describe_edits(&s->document, edits);
+    use_painter(s);
+}
+
+static relume_status edit_maps(struct session *s, const char *words, const struct relume_log *log)
 {
     char copy[APP_SPEC];
     struct relume_maps maps;
     relume_edits *edits;
+    const char *path = s->document.path;
     snprintf(copy, sizeof copy, "%s", words);
     if (!strncmp(copy, "write ", 6))
-        return relume_maps_write(&s->found, session_unquote(copy + 6),
-                                 relume_maps_write_params(.log = log, .threads = s->threads,
-                                                          .directx = s->found.directx));
-    relume_status status = open_edited(&maps, &edits, s, s->found_path, copy, log);
+        return write_maps(maps_of(&s->document), copy + 6, log);
+    relume_status status = open_edited(&maps, &edits, path, copy, s->settings.threads, log);
     if (status)
         return status;
-    status = relume_edits_save(edits, s->found_path, log);
-    if (!status) {
-        relume_maps_destroy(&s->found);
-        s->found = maps;
-        describe(s, edits);
-        gl_renderer_use_painter(&s->renderer, &(struct view_painter){s, paint});
-    } else {
+    status = relume_edits_save(edits, path, log);
+    if (!status)
+        show_edited(s, &maps, edits);
+    else
         relume_maps_destroy(&maps);
-    }
     relume_edits_destroy(&edits);
     return status;
 }
 
 // ---------------------------------------------------------------- opening
 
-relume_status session_open_maps(struct session *s, const char *path, const struct app_state *start)
+// A plane 2 wide, seen from above.
+static struct app_file file_of(const struct relume_maps *maps)
 {
-    struct relume_maps maps;
-    relume_edits *edits;
-    struct app app;
-    relume_status status = check_lights(start, s->log);
-    if (!status)
-        status = open_edited(&maps, &edits, s, path, NULL, s->log);
-    if (status)
-        return status;
-    const double high = (double)maps.height / maps.width;
-    const struct app_file file = {
+    const double high = (double)maps->height / maps->width;
+    return (struct app_file){
         .geometry = {.projection = RELUME_PLANAR,
                      .camera_z = 4,
                      .window_min = {-1, -high},
                      .window_max = {1, high}},
-        .width = maps.width,
-        .height = maps.height,
+        .width = maps->width,
+        .height = maps->height,
         .views = 1,
         .only_colour = true,
     };
-    status = app_start(&app, &file, start, true, s->log);
+}
+
+static relume_status open_maps(struct opening *out, struct session *s, const char *path,
+                               const struct app_state *start, bool look_ahead)
+{
+    relume_edits *edits;
+    (void)look_ahead;
+    relume_status status = check_lights(start, s->log);
+    struct edited_maps *m = out->document.own = calloc(1, sizeof *m);
+    if (!status && !m)
+        status = RELUME_ENOMEM;
+    if (!status)
+        status = open_edited(&m->maps, &edits, path, NULL, s->settings.threads, s->log);
+    if (status)
+        return status;
+    m->threads = s->settings.threads;
+    const struct app_file file = file_of(&m->maps);
+    status = app_start(&out->app, &file, start, true, s->log);
     if (!status && start->pass != RELUME_PASS_COLOUR)
         status = say(s->log, RELUME_EUNFIT, "--pass: of maps the colour alone is shown");
-    if (status) {
-        app_release(&app);
-        relume_maps_destroy(&maps);
-    } else {
-        session_close_file(s);
-        app_release(&s->app);
-        s->app = app;
-        s->found = maps;
-        snprintf(s->found_path, sizeof s->found_path, "%s", path);
-        session_set_name(s, path);
-        describe(s, edits);
-    }
+    document_set_path(&out->document, path);
+    document_describe_edits(&out->document, edits);
     relume_edits_destroy(&edits);
     return status;
 }
 
-relume_status session_make_maps(struct session *s)
+static relume_status make_maps(struct session *s)
 {
-    const struct code_source nothing = {.user = NULL};
-    const relume_status status =
-        gl_renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+    const relume_status status = session_make_bare(s);
     if (!status)
-        gl_renderer_use_painter(&s->renderer, &(struct view_painter){s, paint});
+        use_painter(s);
     return status;
 }
+
+static void close_maps(struct document *d)
+{
+    struct edited_maps *m = d->own;
+    if (m)
+        relume_maps_destroy(&m->maps);
+    free(m);
+}
+
+const struct document_kind document_maps = {
+    .is = is_maps,
+    .open = open_maps,
+    .make = make_maps,
+    .describe = describe_maps,
+    .can_edit = can_edit_maps,
+    .edit = edit_maps,
+    .close = close_maps,
+    .has_maps = true,
+};

@@ -1,102 +1,21 @@
-// document_objects.c - objects: in the scene of a file, or alone on a stage that the eye goes
-// around
+// document_objects.c - objects alone, on a stage that the eye goes around
+#include "session/edits_text.h"
 #include "session/session.h"
 
+#include "cli/program/say.h"
 #include "common/vec.h"
 
-#include <relume/exchange.h>
 #include <stdio.h>
 #include <string.h>
 
-static void say_matte(const relume_objects *objects, const struct relume_log *log)
+// Those of the command line are shown where no file is named.
+static bool is_objects(const char *path, const struct object_set *objects)
 {
-    const struct relume_objects_info *info = relume_objects_info(objects);
-    for (int i = 0; i < info->materials; i++)
-        if (info->material[i].translucent) {
-            if (log && log->message)
-                log->message(log->user, RELUME_NOTE,
-                             "translucent materials are shown matte by passes; relume relight and "
-                             "relume btf render show light going through them");
-            return;
-        }
+    return path ? object_file_is_description(path) || object_file_is_material(path)
+                : objects->objects != NULL;
 }
 
-relume_status session_take_objects(struct session *s, const struct session_objects *wanted)
-{
-    const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
-    s->wanted = *wanted;
-    s->material[0] = '\0';
-    snprintf(s->described, sizeof s->described, "%s",
-             wanted->description ? wanted->description : "");
-    snprintf(s->reflections, sizeof s->reflections, "%s",
-             wanted->reflections ? wanted->reflections : "");
-    if (!wanted->description && wanted->materials == 1)
-        snprintf(s->material, sizeof s->material, "%s", wanted->material[0]);
-    if (wanted->description) {
-        const relume_status status = relume_objects_open(&s->objects, wanted->description, &params);
-        if (!status)
-            say_matte(s->objects, s->log);
-        return status || !wanted->reflections
-                   ? status
-                   : relume_objects_load_reflections(
-                         s->objects, wanted->reflections,
-                         relume_reflection_params(.log = s->log, .threads = s->threads));
-    }
-    if (wanted->materials)
-        return relume_objects_of_mesh(&s->objects, wanted->mesh, wanted->material,
-                                      wanted->materials, wanted->repeat, &params);
-    return RELUME_OK;
-}
-
-bool session_is_material(const char *path)
-{
-    return relume_kind_of(path) == RELUME_KIND_MATERIAL;
-}
-
-bool session_is_description(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    const enum relume_kind kind = relume_kind_of(path);
-    return kind == RELUME_KIND_MODEL || kind == RELUME_KIND_BAKED ||
-           (dot && !strcmp(dot, ".json") && kind != RELUME_KIND_CAPTURE &&
-            kind != RELUME_KIND_FOREIGN);
-}
-
-bool session_is_objects(const char *path)
-{
-    return session_is_description(path) || session_is_material(path);
-}
-
-relume_status session_open_objects(struct session *s, const char *path,
-                                   const struct app_state *start)
-{
-    const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
-    relume_objects *objects;
-    relume_status status;
-    if (session_is_material(path))
-        status =
-            relume_objects_of_mesh(&objects, s->wanted.mesh, &path, 1, s->wanted.repeat, &params);
-    else
-        status = relume_objects_open(&objects, path, &params);
-    if (status)
-        return status;
-    say_matte(objects, s->log);
-    relume_objects *was = s->objects;
-    char material[APP_SPEC];
-    memcpy(material, s->material, sizeof material);
-    s->objects = objects;
-    snprintf(s->material, sizeof s->material, "%s", session_is_material(path) ? path : "");
-    status = session_open_stage(s, start);
-    if (status) {
-        s->objects = was, was = objects;
-        memcpy(s->material, material, sizeof material);
-    } else {
-        snprintf(s->described, sizeof s->described, "%s", session_is_material(path) ? "" : path);
-        s->reflections[0] = '\0';
-    }
-    relume_objects_destroy(&was);
-    return status;
-}
+// ---------------------------------------------------------------- the stage
 
 enum { SIDE = 640 };  // of the picture, where no size is asked for
 
@@ -120,79 +39,133 @@ static relume_status make_stage(relume_slab_set **out, struct relume_geometry *g
     return relume_slab_set_create(out, g, 1, uv, NULL, 1);
 }
 
-// What the panel says of them.
-static void describe(struct session *s, const struct relume_objects_info *info)
-{
-    snprintf(s->name, sizeof s->name, "objects");
-    snprintf(s->line[0], SESSION_TEXT, "%zu triangle%s, %d part%s, %d material%s",
-             info->triangle_count, relume_plural((int64_t)info->triangle_count), info->parts,
-             relume_plural(info->parts), info->materials, relume_plural(info->materials));
-    s->lines[0] = s->line[0];
-    s->lines[1] = NULL;
-}
-
 // All of the objects from an eye that was asked for, as relume_objects_window sees them.
-static void fit_view(struct relume_camera *camera, const struct session *s)
+static void fit_view(struct relume_camera *camera, relume_objects *objects)
 {
     const int width = camera->width ? camera->width : SIDE;
     const int height = camera->width ? camera->height : SIDE;
     struct relume_window w;
     if (camera->look_at.field_of_view_deg != 0.0 ||
-        !relume_objects_window(&w, s->objects, camera->eye, &camera->look_at, width, height))
+        !relume_objects_window(&w, objects, camera->eye, &camera->look_at, width, height))
         return;
     const double half = 0.5 * vec3_length(w.right) / relume_window_distance(&w);
     camera->look_at.field_of_view_deg = 2.0 * atan(half) * (180.0 / 3.14159265358979323846);
 }
 
-relume_status session_open_stage(struct session *s, const struct app_state *start)
+static relume_status open_stage(struct opening *out, struct session *s,
+                                const struct app_state *start)
 {
-    const struct relume_objects_info *info = relume_objects_info(s->objects);
-    struct app_file file = {.width = SIDE, .height = SIDE, .views = 1, .objects = s->objects};
+    relume_objects *objects = out->objects.objects;
+    struct app_file file = {.width = SIDE, .height = SIDE, .views = 1, .objects = objects};
     struct app_state from = *start;
     struct relume_vec3 eye;
-    relume_slab_set *stage;
-    struct app app;
-    relume_status status = make_stage(&stage, &file.geometry, &eye, info);
+    relume_status status =
+        make_stage(&out->document.slabs, &file.geometry, &eye, relume_objects_info(objects));
     if (status)
         return status;
-    file.around = stage;
+    file.around = out->document.slabs;
     if (from.camera.framing == RELUME_FRAME_DEFAULT) {
         from.camera.framing = RELUME_FRAME_EYE;
         from.camera.eye = eye;
     } else if (from.camera.framing == RELUME_FRAME_EYE) {
-        fit_view(&from.camera, s);
+        fit_view(&from.camera, objects);
     }
-    status = app_start(&app, &file, &from, true, s->log);
-    if (status) {
-        app_release(&app);
-        relume_slab_set_destroy(&stage);
-        return status;
-    }
-    session_close_file(s);
-    app_release(&s->app);
-    s->stage = stage;
-    s->app = app;
-    s->app.near_lights = true;
-    describe(s, info);
-    session_list_edits(s);
-    return RELUME_OK;
+    status = app_start(&out->app, &file, &from, true, s->log);
+    out->app.near_lights = true;
+    return status;
 }
 
-relume_status session_make_stage(struct session *s)
+static relume_status open_objects(struct opening *out, struct session *s, const char *path,
+                                  const struct app_state *start, bool look_ahead)
 {
-    static const double uv[1][2] = {{0.0, 0.0}};
-    const struct code_source nothing = {.user = NULL};
+    (void)look_ahead;
+    snprintf(out->document.name, sizeof out->document.name, "objects");
+    const relume_status status =
+        path ? object_set_replace(&out->objects, path, s->settings.threads, s->log) : RELUME_OK;
+    return status ? status : open_stage(out, s, start);
+}
+
+static relume_status make_objects(struct session *s)
+{
+    const relume_status status = session_make_stage(s);
+    return status ? status : gl_renderer_use_objects(&s->renderer, s->objects.objects, NULL);
+}
+
+// ---------------------------------------------------------------- edits of a g-BRDF
+
+static bool can_edit_objects(const struct session *s)
+{
+    return s->objects.material[0] &&
+           !strcmp(relume_objects_info(s->objects.objects)->material[0].model, "gbrdf");
+}
+
+// Changes the list as the words say, NULL: not at all. It is kept once the g-BRDF takes it.
+static relume_status change_list(struct session *s, const char *words, const struct relume_log *log)
+{
+    char copy[APP_SPEC];
+    relume_btf_fitted *model, *edited = NULL;
+    relume_edits *edits = NULL;
+    snprintf(copy, sizeof copy, "%s", words ? words : "");
+    relume_status status = relume_btf_fitted_open(&model, s->objects.material,
+                                                  relume_btf_params(.log = log, .unedited = true));
+    if (!status)
+        status = relume_edits_open(&edits, s->objects.material,
+                                   relume_btf_fitted_fingerprint(model), log);
+    if (!status && words)
+        status = edits_change(edits, copy, log);
+    if (!status)
+        status = relume_btf_fitted_edit(&edited, model, edits, log);
+    if (!status && words)
+        status = relume_edits_save(edits, s->objects.material, log);
+    if (!status) {
+        document_describe_edits(&s->document, edits);
+        s->document.edited_materials = relume_btf_fitted_info(edited)->clusters;
+    }
+    relume_btf_fitted_destroy(&edited);
+    relume_edits_destroy(&edits);
+    relume_btf_fitted_destroy(&model);
+    return status;
+}
+
+// The same stage and eye, with the material as it is now.
+static relume_status show_again(struct session *s, const struct relume_log *log)
+{
+    const char *path = s->objects.material;
+    relume_objects *objects;
     relume_status status =
-        gl_renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+        relume_objects_of_mesh(&objects, s->objects.wanted.mesh, &path, 1, s->objects.wanted.repeat,
+                               relume_objects_params(.log = log, .threads = s->settings.threads));
     if (status)
         return status;
-    gl_renderer_use_slabs(&s->renderer, s->stage, uv, NULL);
-    return gl_renderer_use_objects(&s->renderer, s->objects, NULL);
+    status = gl_renderer_replace_objects(&s->renderer, objects);
+    relume_objects_destroy(&s->objects.objects);
+    s->objects.objects = s->app.file.objects = objects;
+    return status;
 }
 
-relume_status session_add_objects(struct session *s)
+static relume_status edit_objects(struct session *s, const char *words,
+                                  const struct relume_log *log)
 {
-    const struct depth_source places = pack_source_places(s->source);
-    session_add_ways(s);
-    return gl_renderer_use_objects(&s->renderer, s->objects, &places);
+    const relume_status status = change_list(s, words, log);
+    return status ? status : show_again(s, log);
 }
+
+static void describe_objects(struct session *s)
+{
+    const struct relume_objects_info *info = relume_objects_info(s->objects.objects);
+    document_add_line(&s->document, "%zu triangle%s, %d part%s, %d material%s",
+                      info->triangle_count, relume_plural((int64_t)info->triangle_count),
+                      info->parts, relume_plural(info->parts), info->materials,
+                      relume_plural(info->materials));
+    if (can_edit_objects(s))
+        (void)!change_list(s, NULL, NULL);
+}
+
+const struct document_kind document_objects = {
+    .is = is_objects,
+    .open = open_objects,
+    .make = make_objects,
+    .describe = describe_objects,
+    .can_edit = can_edit_objects,
+    .edit = edit_objects,
+};

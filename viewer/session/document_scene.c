@@ -9,9 +9,10 @@
 #include <relume/world/tableau.h>
 #include <stdio.h>
 
-bool session_is_scene(const char *path)
+static bool is_scene(const char *path, const struct object_set *objects)
 {
-    return relume_tableau_is(path);
+    (void)objects;
+    return path && relume_tableau_is(path);
 }
 
 // What is asked for and a scene has not.
@@ -73,26 +74,21 @@ static void look(struct relume_camera *camera, const struct relume_camera *own)
         camera->look_at.field_of_view_deg = asked.look_at.field_of_view_deg;
 }
 
-// What the panel says of it.
-static void describe(struct session *s, const struct relume_tableau_info *info)
+static void describe(struct document *d, const struct relume_tableau_info *info)
 {
-    int n = 0;
-    snprintf(s->line[n++], SESSION_TEXT, "scene: %d capture%s, %d object%s", info->captures,
-             relume_plural(info->captures), info->entities - info->captures,
-             relume_plural(info->entities - info->captures));
-    for (int i = 0; i < info->entities && n < SESSION_LINES; i++) {
+    const int objects = info->entities - info->captures;
+    document_add_line(d, "scene: %d capture%s, %d object%s", info->captures,
+                      relume_plural(info->captures), objects, relume_plural(objects));
+    for (int i = 0; i < info->entities; i++) {
         const struct relume_tableau_entity *e = &info->entity[i];
-        const enum relume_projection is =
-            e->pack ? relume_pack_info(e->pack)->geometry.projection : RELUME_PLANAR;
         if (e->pack)
-            snprintf(s->line[n++], SESSION_TEXT, "%.200s: %s", e->name, relume_projection_name(is));
+            document_add_line(
+                d, "%.200s: %s", e->name,
+                relume_projection_name(relume_pack_info(e->pack)->geometry.projection));
         else
-            snprintf(s->line[n++], SESSION_TEXT, "%.200s: %zu triangle%s", e->name, e->triangles,
-                     relume_plural((int64_t)e->triangles));
+            document_add_line(d, "%.200s: %zu triangle%s", e->name, e->triangles,
+                              relume_plural((int64_t)e->triangles));
     }
-    for (int i = 0; i < n; i++)
-        s->lines[i] = s->line[i];
-    s->lines[n] = NULL;
 }
 
 // The lights of the file, where nobody named any.
@@ -116,8 +112,8 @@ static relume_status start_app(struct app *app, struct session *s, const struct 
     return status;
 }
 
-static relume_status open_app(struct app *app, relume_slab_set **stage, struct session *s,
-                              const struct app_state *start, relume_tableau *tableau)
+static relume_status open_app(struct opening *out, struct session *s, const struct app_state *start,
+                              relume_tableau *tableau)
 {
     const struct relume_tableau_info *info = relume_tableau_info(tableau);
     struct app_file file = {.width = info->camera.width,
@@ -128,54 +124,44 @@ static relume_status open_app(struct app *app, relume_slab_set **stage, struct s
                             .between = info->captures && info->entities > info->captures};
     struct app_state from = *start;
     look(&from.camera, &info->camera);
-    relume_status status = make_stage(stage, &file.geometry, &from.camera);
+    relume_status status = make_stage(&out->document.slabs, &file.geometry, &from.camera);
     if (status)
         return say(s->log, RELUME_EINVAL, "the eye stands where it looks");
-    file.around = *stage;
-    return start_app(app, s, &file, &from, relume_tableau_rig(tableau));
+    file.around = out->document.slabs;
+    return start_app(&out->app, s, &file, &from, relume_tableau_rig(tableau));
 }
 
-relume_status session_open_scene(struct session *s, const char *path, const struct app_state *start)
+static relume_status open_scene(struct opening *out, struct session *s, const char *path,
+                                const struct app_state *start, bool look_ahead)
 {
     relume_tableau *tableau;
-    relume_slab_set *stage = NULL;
-    struct app app = {.width = 0};
+    (void)look_ahead;
     relume_status status = check_asked(s, path, start);
     if (!status)
-        status = relume_tableau_open(&tableau, path,
-                                     relume_tableau_params(.log = s->log, .threads = s->threads));
+        status = relume_tableau_open(
+            &tableau, path, relume_tableau_params(.log = s->log, .threads = s->settings.threads));
     if (status)
         return status;
-    status = open_app(&app, &stage, s, start, tableau);
-    if (status) {
-        app_release(&app);
-        relume_slab_set_destroy(&stage);
-    } else {
-        session_close_file(s);
-        app_release(&s->app);
-        s->stage = stage;
-        s->app = app;
-        s->app.near_lights = true;
-        s->scene = true;
-        snprintf(s->file, sizeof s->file, "%s", path);
-        session_set_name(s, path);
-        describe(s, relume_tableau_info(tableau));
-    }
+    status = open_app(out, s, start, tableau);
+    out->app.near_lights = true;
+    document_set_path(&out->document, path);
+    describe(&out->document, relume_tableau_info(tableau));
     relume_tableau_destroy(&tableau);
     return status;
 }
 
-relume_status session_make_scene(struct session *s)
+static relume_status make_scene(struct session *s)
 {
-    static const double uv[1][2] = {{0.0, 0.0}};
-    const struct code_source nothing = {.user = NULL};
     const struct exchange_source source = {
-        .file = s->file, .scene = true, .log = s->log, .threads = s->threads};
-    const relume_status status =
-        gl_renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
-    if (status)
-        return status;
-    gl_renderer_use_slabs(&s->renderer, s->stage, uv, NULL);
-    gl_renderer_use_exchange(&s->renderer, &source);
-    return RELUME_OK;
+        .file = s->document.path, .scene = true, .log = s->log, .threads = s->settings.threads};
+    const relume_status status = session_make_stage(s);
+    if (!status)
+        gl_renderer_use_exchange(&s->renderer, &source);
+    return status;
 }
+
+const struct document_kind document_scene = {
+    .is = is_scene,
+    .open = open_scene,
+    .make = make_scene,
+};

@@ -16,12 +16,13 @@ static int is_map(const struct dirent *entry)
     return 0;
 }
 
-relume_status maps_list(struct maps *maps, const char *folder)
+relume_status environment_list_read(struct environment_list *maps, const char *folder)
 {
     struct dirent **entry;
     const int found = scandir(folder, &entry, is_map, alphasort);
-    const int n = found < 0 ? 0 : found < MAPS_MOST ? found : MAPS_MOST;
-    *maps = (struct maps){.folder = strdup(folder), .name = calloc((size_t)n + 1, sizeof(char *))};
+    const int n = found < 0 ? 0 : found < ENVIRONMENT_LIST_MAX ? found : ENVIRONMENT_LIST_MAX;
+    *maps = (struct environment_list){.folder = strdup(folder),
+                                      .name = calloc((size_t)n + 1, sizeof(char *))};
     bool good = maps->folder && maps->name;
     for (int i = 0; good && i < n; i++) {
         good = (maps->name[i] = strdup(entry[i]->d_name)) != NULL;
@@ -32,15 +33,15 @@ relume_status maps_list(struct maps *maps, const char *folder)
     if (found >= 0)
         free(entry);
     if (!good)
-        maps_destroy(maps);
+        environment_list_destroy(maps);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
-void maps_destroy(struct maps *maps)
+void environment_list_destroy(struct environment_list *maps)
 {
     for (int i = 0; i < maps->count; i++)
         free(maps->name[i]);
     free(maps->name);
     free(maps->folder);
-    *maps = (struct maps){0};
+    *maps = (struct environment_list){0};
 }

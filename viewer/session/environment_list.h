@@ -4,10 +4,10 @@
 
 #include <relume/base.h>
 
-enum { MAPS_MOST = 512 };
+enum { ENVIRONMENT_LIST_MAX = 512 };
 
 // All zero: none.
-struct maps {
+struct environment_list {
     char *folder;
     char **name;  // [count], then NULL; by the alphabet
     int count;
@@ -15,7 +15,7 @@ struct maps {
 
 // The pictures of high range (.hdr, .exr, .pfm) in `folder`; none where it cannot be read.
 // RELUME_ENOMEM.
-relume_status maps_list(struct maps *maps, const char *folder);
-void maps_destroy(struct maps *maps);
+relume_status environment_list_read(struct environment_list *maps, const char *folder);
+void environment_list_destroy(struct environment_list *maps);
 
 #endif

@@ -15,20 +15,12 @@
 #include <stdio.h>
 #include <string.h>
 
-// A listener may pass messages on.
 static void on_message(void *user, enum relume_level level, const char *text)
 {
     struct session *s = user;
-    const struct relume_log *listener = s->listener;
-    if (s->listens)
-        snprintf(s->notice, sizeof s->notice, "%s", text);
-    if (listener) {
-        s->listener = NULL;
-        listener->message(listener->user, level, text);
-        s->listener = listener;
-        return;
-    }
     char line[2048];
+    if (messages_pass_on(&s->messages, level, text))
+        return;
     snprintf(line, sizeof line, "%s", text);
     fprintf(stderr, "relume-view: %s%s\n", level == RELUME_WARNING ? "warning: " : "",
             relume_printable(line));
@@ -61,10 +53,10 @@ static relume_status show_frame(struct session *s)
     if (status)
         return status;
     session_present(s, 0);
-    s->gl.Finish();
-    snprintf(title, sizeof title, "%s - %.1f ms%s%s - relume-view", s->name, 1e3 * now_s() - start,
-             s->message[0] ? " - " : "", s->message);
-    s->backend->show(s->context, title);
+    s->window.gl.Finish();
+    snprintf(title, sizeof title, "%s - %.1f ms%s%s - relume-view", s->document.name,
+             1e3 * now_s() - start, s->messages.last[0] ? " - " : "", s->messages.last);
+    s->window.backend->show(s->window.context, title);
     return RELUME_OK;
 }
 
@@ -78,7 +70,7 @@ static void host_send(void *user, const struct app_event *event)
 // The listener hears of what it asked for, no more.
 static relume_status heard(struct session *s, relume_status status)
 {
-    s->listener = NULL;
+    s->messages.listener = NULL;
     return status;
 }
 
@@ -86,35 +78,35 @@ static relume_status host_light(void *user, const char *spec, bool replace,
                                 const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
+    s->messages.listener = log;
     return heard(s, session_light(s, spec, replace));
 }
 
 static relume_status host_rig(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
+    s->messages.listener = log;
     return heard(s, session_load_rig(s, path));
 }
 
 static relume_status host_open(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
+    s->messages.listener = log;
     return heard(s, session_show(s, path));
 }
 
 static relume_status host_edit(void *user, const char *words, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
+    s->messages.listener = log;
     return heard(s, session_edit(s, words, s->log));
 }
 
 static relume_status host_reflect(void *user, const char *words, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
+    s->messages.listener = log;
     const relume_status status = heard(s, session_reflect(s, words, s->log));
     session_hear_handles(s);
     return status;
@@ -177,7 +169,7 @@ static relume_status open_file(struct session *s, struct options *o, bool look_a
     if (!status && o->capture)
         status = session_compare(s, o->capture);
     if (!status)
-        status = session_take_objects(s, &o->objects);
+        status = object_set_open(&s->objects, &o->objects, s->settings.threads, s->log);
     return status ? status : session_open(s, o->file, &o->start, look_ahead);
 }
 
@@ -265,7 +257,7 @@ static relume_status take_events(struct session *s, bool *changed, double *time_
     struct context_event event;
     *changed |= session_pass(s, time_passed(time_ms));
     while (!status && !is_over(s) &&
-           s->backend->next(s->context, &event, *changed ? 0 : still_s(s))) {
+           s->window.backend->next(s->window.context, &event, *changed ? 0 : still_s(s))) {
         *changed |= session_pass(s, time_passed(time_ms));
         status = take_event(s, &event, changed);
     }
@@ -317,7 +309,7 @@ static void recall_rig(struct options *o, const struct settings *settings)
 static void remember(struct session *s, struct settings *settings)
 {
     const struct relume_log *log = s->log;
-    if (!s->full_screen) {
+    if (!s->window.full_screen) {
         settings->width = app_window_width(&s->app);
         settings->height = s->app.height;
     }
@@ -352,7 +344,7 @@ static relume_status open_window(struct session *s, struct options *o,
     if (status)
         return status;
     struct app_event opened = {.kind = APP_SIZE};
-    s->backend->size(s->context, &opened.width, &opened.height);
+    s->window.backend->size(s->window.context, &opened.width, &opened.height);
     (void)app_handle(&s->app, &opened);
     return RELUME_OK;
 }
@@ -393,13 +385,15 @@ int main(int argc, char **argv)
     if (status)
         return exit_code(status);
     status = options_parse(&options, argc, argv, &log);
-    session.threads = options.threads;
-    session.relight = options.relight;
-    session.glare = options.glare;
-    session.ui_scale = options.ui_scale;
-    session.glare_size = options.glare_size;
-    session.subject = &options.subject;
-    session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
+    session.settings = (struct session_settings){
+        .threads = options.threads,
+        .vram_bytes = (size_t)(options.vram_mb * 1048576.0),
+        .relight = options.relight,
+        .glare = options.glare,
+        .glare_size = options.glare_size,
+        .subject = &options.subject,
+        .ui_scale = options.ui_scale,
+    };
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
     if (!status && options.help)

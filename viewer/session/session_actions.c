@@ -13,10 +13,10 @@
 // "NAME-0001.png" with the first number that is free.
 static void free_name(char *path, size_t size, const struct session *s, const char *extension)
 {
-    const char *dot = strrchr(s->name, '.');
-    const int stem = dot ? (int)(dot - s->name) : (int)strlen(s->name);
+    const char *dot = strrchr(s->document.name, '.');
+    const int stem = dot ? (int)(dot - s->document.name) : (int)strlen(s->document.name);
     for (int i = 1; i < 10000; i++) {
-        snprintf(path, size, "%.*s-%04d%s", stem, s->name, i, extension);
+        snprintf(path, size, "%.*s-%04d%s", stem, s->document.name, i, extension);
         if (access(path, F_OK))
             return;
     }
@@ -87,8 +87,8 @@ static relume_status wish_copy(struct session *s)
     const relume_status status = session_state_line(line, sizeof line, s);
     if (status == RELUME_ENOMEM)
         return status;
-    if (!status && s->backend->copy)
-        s->backend->copy(s->context, line);
+    if (!status && s->window.backend->copy)
+        s->window.backend->copy(s->window.context, line);
     else if (!status)
         puts(line);
     session_say(s, status ? "this view is too long for a line; save its lights as a rig (W)"
@@ -112,10 +112,10 @@ static relume_status wish_map(struct session *s)
 
 static relume_status wish_full_screen(struct session *s)
 {
-    if (!s->backend->full_screen)
+    if (!s->window.backend->full_screen)
         return RELUME_OK;
-    s->full_screen = !s->full_screen;
-    s->backend->full_screen(s->context, s->full_screen);
+    s->window.full_screen = !s->window.full_screen;
+    s->window.backend->full_screen(s->window.context, s->window.full_screen);
     return RELUME_OK;
 }
 
@@ -139,12 +139,11 @@ static relume_status wish_words(struct session *s,
 {
     char words[SESSION_TEXT];
     snprintf(words, sizeof words, "%.200s", s->app.spec);
-    s->notice[0] = '\0';
-    s->listens = true;
+    messages_listen(&s->messages);
     const bool done = !act(s, s->app.spec, s->log);
-    s->listens = false;
+    messages_stop(&s->messages);
     if (!done)
-        session_say(s, "%s: %.200s", did_not, s->notice);
+        session_say(s, "%s: %.200s", did_not, s->messages.notice);
     else if (did)
         session_say(s, "%s: %s", did, words);
     return RELUME_OK;
@@ -200,7 +199,7 @@ static relume_status wish_focus(struct session *s)
 }
 
 // What was wished for is done once; what fails is said in the panel and in the log.
-relume_status session_grant_wish(struct session *s)
+relume_status session_perform_action(struct session *s)
 {
     static relume_status (*const grants[])(struct session *) = {
         [APP_WISH_PNG] = wish_png,

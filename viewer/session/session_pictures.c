@@ -26,7 +26,7 @@ relume_status session_read(struct relume_image *image, struct session *s, bool l
                                             .white = s->app.now.white};
     *image = (struct relume_image){0};
     if (!sees_something(s))
-        return say(s->log, RELUME_EUNFIT, "%s: the eye sees nothing of the slab", s->name);
+        return say(s->log, RELUME_EUNFIT, "%s: the eye sees nothing of the slab", s->document.name);
     relume_status status = gl_renderer_read(image, &s->renderer);
     if (!status && !linear)
         status = relume_tone_apply(image, &tone);
@@ -48,16 +48,6 @@ relume_status session_frame(struct session *s, const char *path)
     if (!status)
         status = session_read(&image, s, relume_image_saves_linear(path));
     return status ? status : save(s, &image, path);
-}
-
-static relume_status prepare_screen(struct session *s)
-{
-    const int width = app_window_width(&s->app);
-    if (s->screen.width == width && s->screen.height == s->app.height)
-        return RELUME_OK;
-    if (s->screen.texture)
-        target_destroy(&s->screen, &s->gl);
-    return target_create(&s->screen, &s->gl, width, s->app.height, s->log);
 }
 
 // The screen's first row is the lowest, and its values are coded.
@@ -83,11 +73,12 @@ static relume_status read_screen(struct relume_image *image, struct session *s)
 {
     relume_status status = draw_finished(s);
     if (!status)
-        status = prepare_screen(s);
+        status = session_window_need_screen(&s->window, app_window_width(&s->app), s->app.height,
+                                            s->log);
     if (status)
         return status;
-    session_present(s, s->screen.framebuffer);
-    status = target_read(image, &s->screen, &s->gl);
+    session_present(s, s->window.screen.framebuffer);
+    status = target_read(image, &s->window.screen, &s->window.gl);
     if (!status)
         turn_over_and_decode(image);
     return status;

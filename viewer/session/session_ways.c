@@ -14,15 +14,14 @@ static void let_go(void *user)
 
 void session_add_ways(struct session *s)
 {
-    const struct exchange_source source = {.file = s->file,
-                                           .sphere = s->sphere,
-                                           .objects = s->objects,
+    const struct exchange_source source = {.file = s->document.path,
+                                           .sphere = s->document.as_panorama,
+                                           .objects = s->objects.objects,
                                            .log = s->log,
-                                           .threads = s->threads};
+                                           .threads = s->settings.threads};
     gl_renderer_use_exchange(&s->renderer, &source);
-    s->renderer.with_depth = relume_pack_info(s->pack)->has_depth;
-    s->renderer.ways_by_library =
-        s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
+    s->renderer.with_depth = relume_pack_info(s->document.pack)->has_depth;
+    s->renderer.ways_by_library = session_by_library(s->settings.relight, &s->window.gl);
     s->app.lookers = (struct app_lookers){s, let_go};
 }
 
@@ -69,8 +68,8 @@ void session_describe_ways(struct session *s)
     const int way[EXCHANGER_SLOTS] = {now->way, now->other_way};
     for (int i = 0; i < EXCHANGER_SLOTS; i++) {
         const bool shown = i == 0 || now->ways != APP_SPLIT_NONE;
-        s->way[i][0] = '\0';
+        s->panel.way[i][0] = '\0';
         if (shown && way_gathers(way[i]))
-            describe(s->way[i], &s->renderer, i, way[i]);
+            describe(s->panel.way[i], &s->renderer, i, way[i]);
     }
 }

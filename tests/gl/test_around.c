@@ -256,7 +256,7 @@ static void only_needed_views_are_relit(void **state)
     t->file.asked = 0;
     assert_int_equal(draw_app(&t->renderer, &t->app), RELUME_OK);
     for (int i = 0; i < VIEWS; i++)
-        assert_true(!t->renderer.relit[i] || t->slab_of[i] == 0);
+        assert_true(!t->renderer.views.relit[i] || t->slab_of[i] == 0);
     assert_true(t->file.asked > 0 && t->file.asked <= GRID);
     close_around(t);
     free(t);

@@ -267,7 +267,7 @@ static void check_slab_frames_by_depth(int way)
     for (int i = 0; i < CAMERAS; i++) {
         struct relume_image depth;
         assert_int_equal(make_depth(&depth, &t, i), RELUME_OK);
-        assert_int_equal(relume_slab_disparity(&disparity[i], t.renderer.grid, t.uv[i], &depth),
+        assert_int_equal(relume_slab_disparity(&disparity[i], t.renderer.views.grid, t.uv[i], &depth),
                          RELUME_OK);
         relume_image_destroy(&depth);
     }
@@ -276,7 +276,7 @@ static void check_slab_frames_by_depth(int way)
         char text[64];
         snprintf(text, sizeof text, "by depth, eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
         assert_int_equal(relume_image_create(&want, 68, 51, 3), RELUME_OK);
-        assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[i], t.views,
+        assert_int_equal(relume_slab_frame(&want, t.renderer.views.grid, eyes[i], t.views,
                                            relume_view_params(.disparity = disparity)),
                          RELUME_OK);
         const struct relume_camera camera = {
@@ -326,7 +326,7 @@ static void other_ways_to_see_a_slab_are_the_library_s(void **state)
                      ways[i].interpolation, ways[i].aperture, ways[i].focus, eyes[e].x, eyes[e].y,
                      eyes[e].z);
             assert_int_equal(relume_image_create(&want, 68, 51, 3), RELUME_OK);
-            assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[i]),
+            assert_int_equal(relume_slab_frame(&want, t.renderer.views.grid, eyes[e], t.views, &ways[i]),
                              RELUME_OK);
             const struct relume_camera camera = {
                 .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 68, .height = 51};
@@ -361,10 +361,10 @@ static void reduced_slab_frames_are_the_library_s(void **state)
                                  RELUME_OK);
                 assert_int_equal(relume_image_create(&one, sizes[k][0], sizes[k][1], 3), RELUME_OK);
                 assert_int_equal(
-                    relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[w]),
+                    relume_slab_frame(&want, t.renderer.views.grid, eyes[e], t.views, &ways[w]),
                     RELUME_OK);
                 assert_int_equal(
-                    relume_slab_frame(&one, t.renderer.grid, eyes[e], t.views, &single), RELUME_OK);
+                    relume_slab_frame(&one, t.renderer.views.grid, eyes[e], t.views, &single), RELUME_OK);
                 const struct relume_camera camera = {.framing = RELUME_FRAME_EYE,
                                                      .eye = eyes[e],
                                                      .width = sizes[k][0],

@@ -19,36 +19,31 @@ static int samples_of(const struct frame_request *q, enum between_way way)
                           : relume_transport_samples(relume_transport_find(ways[way].name));
 }
 
-static void swap(struct target *a, struct target *b)
-{
-    const struct target was = *a;
-    *a = *b;
-    *b = was;
-}
-
 static relume_status prepare(struct gl_renderer *r, const struct frame_area *area)
 {
-    relume_status status = gl_renderer_prepare(&r->scene, r, area->width, area->height);
-    return status ? status : gl_renderer_prepare(&r->lit, r, area->width, area->height);
+    relume_status status = gl_renderer_need(&r->objects.scene, r, area);
+    return status ? status : gl_renderer_need(&r->objects.lit, r, area);
 }
 
 relume_status gl_renderer_need_points(struct gl_renderer *r, const struct frame_request *q,
                                       enum between_way way)
 {
-    return between_need(&r->between, &r->drawer, &r->geometry, &r->place[0], way,
-                        samples_of(q, way));
+    return between_need(&r->exchange.between, &r->objects.drawer, &r->views.geometry,
+                        &r->objects.position[0], way, samples_of(q, way));
 }
 
 relume_status gl_renderer_need_between(struct gl_renderer *r, const struct frame_request *q,
                                        const struct frame_area *area)
 {
-    if (r->between.gl)
+    if (r->exchange.between.gl)
         return RELUME_OK;
     r->gl->BindVertexArray(r->vertices);
     relume_status status = prepare(r, area);
     if (!status)
-        status = gl_renderer_find_scene(r, q, *area);  // r->place is known then
-    return status ? status : between_create(&r->between, r->gl, &r->geometry, &r->place[0], r->log);
+        status = gl_renderer_find_scene(r, q, *area);  // r->objects.position is known then
+    return status ? status
+                  : between_create(&r->exchange.between, r->gl, &r->views.geometry,
+                                   &r->objects.position[0], r->log);
 }
 
 static relume_status add_light(struct gl_renderer *r, const struct frame_request *q,
@@ -60,29 +55,30 @@ static relume_status add_light(struct gl_renderer *r, const struct frame_request
     relume_status status = gl_renderer_relight_views(r, q, light, 1);
     if (!status)
         status = gl_renderer_frame(r, q, &plain);
-    r->drawer.panorama = (struct mirror_panorama){&r->geometry, r->relit[0], &r->place[0]};
+    r->objects.drawer.panorama =
+        (struct mirror_panorama){&r->views.geometry, r->views.relit[0], &r->objects.position[0]};
     return status ? status
-                  : between_light(&r->between, &r->drawer, view, light, r->relit[0], &r->frame,
-                                  &r->lit, area->exposure);
+                  : between_light(&r->exchange.between, &r->objects.drawer, view, light,
+                                  r->views.relit[0], &r->frame, &r->objects.lit, area->exposure);
 }
 
 static relume_status draw(struct gl_renderer *r, const struct frame_request *q,
                           const struct frame_area *area, const struct between_view *view,
                           const struct relume_light *lights, int count)
 {
-    relume_status status = between_begin(&r->between, &r->drawer, view);
-    target_begin(&r->lit, r->gl);
+    relume_status status = between_begin(&r->exchange.between, &r->objects.drawer, view);
+    target_begin(&r->objects.lit, r->gl);
     for (int i = 0; i < count && !status; i++)
         status = add_light(r, q, area, view, &lights[i]);
     if (status)
         return status;
-    swap(&r->frame, &r->lit);
-    between_end(&r->between, &r->drawer);
+    target_swap(&r->frame, &r->objects.lit);
+    between_end(&r->exchange.between, &r->objects.drawer);
     r->gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, r->gl);
-    r->drawer.returned = r->between.thrown.texture;
-    objects_drawer_over(&r->drawer, area, r->scene.texture, false);
-    r->drawer.returned = 0;
+    r->objects.drawer.returned = r->exchange.between.thrown.texture;
+    objects_drawer_over(&r->objects.drawer, area, r->objects.scene.texture, false);
+    r->objects.drawer.returned = 0;
     return RELUME_OK;
 }
 
@@ -92,8 +88,8 @@ relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
                                        enum between_way way)
 {
     struct frame_projection projection;
-    *drawn = r->with_depth && r->geometry.projection >= RELUME_CYLINDRICAL && r->views == 1 &&
-             gl_renderer_projection(&projection, r, q, area);
+    *drawn = r->exchange.with_depth && r->views.geometry.projection >= RELUME_CYLINDRICAL &&
+             r->views.count == 1 && gl_renderer_projection(&projection, r, q, area);
     if (!*drawn)
         return RELUME_OK;
     relume_status status = gl_renderer_need_between(r, q, area);
@@ -101,16 +97,16 @@ relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
     if (!status)
         status = prepare(r, area);
     if (!status)
-        status = objects_drawer_see(&r->drawer, &projection);
+        status = objects_drawer_see(&r->objects.drawer, &projection);
     if (!status)
         status = gl_renderer_find_scene(r, q, *area);
     if (status)
         return status;
     const int bounces = q->bounces ? q->bounces : BOUNCES;
     const struct between_view view = {
-        .geometry = &r->geometry,
-        .panorama_places = &r->place[0],
-        .scene = &r->scene,
+        .geometry = &r->views.geometry,
+        .panorama_places = &r->objects.position[0],
+        .scene = &r->objects.scene,
         .projection = &projection,
         .width = area->width,
         .height = area->height,

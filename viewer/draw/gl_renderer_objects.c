@@ -15,25 +15,26 @@ relume_status gl_renderer_use_objects(struct gl_renderer *r, relume_objects *obj
 {
     r->stage = !places;
     if (places)
-        r->place_source = *places;
-    r->place = calloc((size_t)r->views, sizeof *r->place);
-    return r->place ? objects_drawer_create(&r->drawer, r->gl, objects, r->log) : RELUME_ENOMEM;
+        r->objects.position_source = *places;
+    r->objects.position = calloc((size_t)r->views.count, sizeof *r->objects.position);
+    return r->objects.position ? objects_drawer_create(&r->objects.drawer, r->gl, objects, r->log)
+                               : RELUME_ENOMEM;
 }
 
 void gl_renderer_objects_destroy(struct gl_renderer *r)
 {
-    for (int i = 0; r->place && i < r->views; i++)
-        target_destroy(&r->place[i], r->gl);
-    free(r->place);
-    target_destroy(&r->scene, r->gl);
-    target_destroy(&r->lit, r->gl);
-    objects_drawer_destroy(&r->drawer);
+    for (int i = 0; r->objects.position && i < r->views.count; i++)
+        target_destroy(&r->objects.position[i], r->gl);
+    free(r->objects.position);
+    target_destroy(&r->objects.scene, r->gl);
+    target_destroy(&r->objects.lit, r->gl);
+    objects_drawer_destroy(&r->objects.drawer);
 }
 
 relume_status gl_renderer_replace_objects(struct gl_renderer *r, relume_objects *objects)
 {
     gl_renderer_objects_destroy(r);
-    r->place = NULL;
+    r->objects.position = NULL;
     return gl_renderer_use_objects(r, objects, NULL);
 }
 
@@ -69,17 +70,17 @@ static struct relume_window look_window(const struct frame_request *q)
     };
 }
 
-static struct relume_window slab_view_window(const struct gl_renderer *r, int view)
+static struct relume_window slab_view_window(const struct file_views *v, int view)
 {
     const struct relume_geometry *g =
-        r->around ? relume_slab_set_geometry(r->around, r->slab_of ? r->slab_of[view] : 0)
-                  : &r->geometry;
-    const struct relume_vec3 camera = {r->uv[view][0], r->uv[view][1], g->uv_z};
+        v->around ? relume_slab_set_geometry(v->around, v->slab_of ? v->slab_of[view] : 0)
+                  : &v->geometry;
+    const struct relume_vec3 camera = {v->uv[view][0], v->uv[view][1], g->uv_z};
     return relume_slab_window(g, relume_pose_world(&g->pose, camera));
 }
 
 // The window of the frame; false for frames that are not flat: unfolded panoramas, little planets.
-static bool find_window(struct relume_window *w, const struct gl_renderer *r,
+static bool find_window(struct relume_window *w, const struct file_views *v,
                         const struct frame_request *q)
 {
     const struct relume_camera *camera = &q->camera;
@@ -87,61 +88,55 @@ static bool find_window(struct relume_window *w, const struct gl_renderer *r,
         *w = look_window(q);
         return !camera->look.stereographic;
     }
-    if (camera->framing == RELUME_FRAME_EYE && r->around) {
+    if (camera->framing == RELUME_FRAME_EYE && v->around) {
         *w = q->window;
         return q->has_window;
     }
     if (camera->framing == RELUME_FRAME_EYE)
-        *w = relume_slab_window(&r->geometry, camera->eye);
-    else if (r->geometry.projection == RELUME_SLAB)
-        *w = slab_view_window(r, camera->view);
+        *w = relume_slab_window(&v->geometry, camera->eye);
+    else if (v->geometry.projection == RELUME_SLAB)
+        *w = slab_view_window(v, camera->view);
     else
-        *w = planar_window(&r->geometry);
-    return r->geometry.projection <= RELUME_SLAB;
+        *w = planar_window(&v->geometry);
+    return v->geometry.projection <= RELUME_SLAB;
 }
 
 bool gl_renderer_projection(struct frame_projection *out, const struct gl_renderer *r,
                             const struct frame_request *q, const struct frame_area *area)
 {
-    const struct relume_objects_info *info = relume_objects_info(r->drawer.objects);
-    const struct relume_geometry *g = &r->geometry;
+    const struct relume_objects_info *info = relume_objects_info(r->objects.drawer.objects);
+    const struct relume_geometry *g = &r->views.geometry;
     struct relume_window window;
     if (g->projection == RELUME_PLANAR && !g->perspective) {
         frame_projection_of_plane(out, g->window_min, g->window_max, area->picture, area->width,
                                   area->height, info->min, info->max);
         return true;
     }
-    return find_window(&window, r, q) &&
+    return find_window(&window, &r->views, q) &&
            frame_projection_of_window(out, &window, area->picture, area->width, area->height,
                                       info->min, info->max);
 }
 
 // ---------------------------------------------------------------- the scene
 
-static void swap(struct target *a, struct target *b)
-{
-    const struct target was = *a;
-    *a = *b;
-    *b = was;
-}
-
 // Where the views that the frame needs see the scene, as if that were their light.
 static relume_status use_places(struct gl_renderer *r)
 {
     relume_status status = RELUME_OK;
-    for (int i = 0; i < r->views && !status; i++) {
+    for (int i = 0; i < r->views.count && !status; i++) {
         struct relume_image places;
-        r->relit[i] = NULL;
-        if (!r->needed[i])
+        r->views.relit[i] = NULL;
+        if (!r->views.needed[i])
             continue;
-        r->relit[i] = &r->place[i];
-        if (r->place[i].texture)
+        r->views.relit[i] = &r->objects.position[i];
+        if (r->objects.position[i].texture)
             continue;
-        status = r->place_source.depth(&places, r->place_source.user, i);
+        status = r->objects.position_source.depth(&places, r->objects.position_source.user, i);
         if (!status)
-            status = target_create(&r->place[i], r->gl, places.width, places.height, r->log);
+            status =
+                target_create(&r->objects.position[i], r->gl, places.width, places.height, r->log);
         if (!status)
-            target_write(&r->place[i], r->gl, &places);
+            target_write(&r->objects.position[i], r->gl, &places);
         relume_image_destroy(&places);
     }
     return status;
@@ -154,7 +149,7 @@ relume_status gl_renderer_find_scene(struct gl_renderer *r, const struct frame_r
     area.exposure = 1.0f;
     if (!status)
         status = gl_renderer_frame(r, q, &area);
-    swap(&r->frame, &r->scene);
+    target_swap(&r->frame, &r->objects.scene);
     return status;
 }
 
@@ -164,18 +159,18 @@ static relume_status light_scene(struct gl_renderer *r, const struct frame_reque
                                  int count)
 {
     relume_status status = RELUME_OK;
-    target_begin(&r->lit, r->gl);
+    target_begin(&r->objects.lit, r->gl);
     for (int i = 0; i < count && !status; i++) {
         status = gl_renderer_relight_views(r, q, &lights[i], 1);
         if (!status)
             status = gl_renderer_frame(r, q, area);
         if (!status)
-            status = objects_drawer_light(&r->drawer, &lights[i], 1);
-        target_resume(&r->lit, r->gl);
-        for (int k = 0; k < r->drawer.light_samples && !status; k++)
-            objects_drawer_cast(&r->drawer, area, k, r->scene.texture, &r->frame);
+            status = objects_drawer_light(&r->objects.drawer, &lights[i], 1);
+        target_resume(&r->objects.lit, r->gl);
+        for (int k = 0; k < r->objects.drawer.light_samples && !status; k++)
+            objects_drawer_cast(&r->objects.drawer, area, k, r->objects.scene.texture, &r->frame);
     }
-    swap(&r->frame, &r->lit);
+    target_swap(&r->frame, &r->objects.lit);
     return status;
 }
 
@@ -183,12 +178,14 @@ static relume_status light_scene(struct gl_renderer *r, const struct frame_reque
 static relume_status find_surround(struct gl_renderer *r, const struct frame_request *q,
                                    const struct relume_light *lights, int count)
 {
-    r->drawer.panorama = (struct mirror_panorama){.geometry = NULL};
-    if (r->geometry.projection < RELUME_CYLINDRICAL || !handles_mirror(r->drawer.objects))
+    r->objects.drawer.panorama = (struct mirror_panorama){.geometry = NULL};
+    if (r->views.geometry.projection < RELUME_CYLINDRICAL ||
+        !handles_mirror(r->objects.drawer.objects))
         return RELUME_OK;
     const relume_status status = gl_renderer_relight_views(r, q, lights, count);
-    if (!status && r->relit[0] && r->place[0].texture)
-        r->drawer.panorama = (struct mirror_panorama){&r->geometry, r->relit[0], &r->place[0]};
+    if (!status && r->views.relit[0] && r->objects.position[0].texture)
+        r->objects.drawer.panorama = (struct mirror_panorama){&r->views.geometry, r->views.relit[0],
+                                                              &r->objects.position[0]};
     return status;
 }
 
@@ -200,9 +197,9 @@ static relume_status draw_scene(struct gl_renderer *r, const struct frame_reques
         target_begin(&r->frame, r->gl);
         return RELUME_OK;
     }
-    relume_status status = gl_renderer_prepare(&r->scene, r, area->width, area->height);
+    relume_status status = gl_renderer_need(&r->objects.scene, r, area);
     if (!status)
-        status = gl_renderer_prepare(&r->lit, r, area->width, area->height);
+        status = gl_renderer_need(&r->objects.lit, r, area);
     if (!seen || q->pass != RELUME_PASS_COLOUR) {
         if (!status)
             status = gl_renderer_relight_views(r, q, lights, count);
@@ -225,7 +222,7 @@ static relume_status shade(struct gl_renderer *r, const struct frame_request *q,
         r->gl->Finish();
     const double start = 1e3 * now_s();
     const relume_status status =
-        objects_drawer_shade(&r->drawer, projection, q->width, q->height, only);
+        objects_drawer_shade(&r->objects.drawer, projection, q->width, q->height, only);
     if (q->timed)
         r->gl->Finish();
     *ms = 1e3 * now_s() - start;
@@ -239,7 +236,7 @@ static void draw_split(const struct gl_renderer *r, const struct frame_area *are
     const int middle = area->width / 2;
     gl->Enable(GL_SCISSOR_TEST);
     gl->Scissor(middle, 0, area->width - middle, area->height);
-    objects_drawer_over(&r->drawer, area, scene, false);
+    objects_drawer_over(&r->objects.drawer, area, scene, false);
     gl->Scissor(middle - 1, 0, 2, area->height);
     gl->ClearColor(0.5f, 0.5f, 0.5f, 1.0f);
     gl->Clear(GL_COLOR_BUFFER_BIT);
@@ -250,21 +247,21 @@ static relume_status draw_objects(struct gl_renderer *r, const struct frame_requ
                                   const struct frame_area *area,
                                   const struct frame_projection *projection)
 {
-    const GLuint scene = r->stage ? 0 : r->scene.texture;
+    const GLuint scene = r->stage ? 0 : r->objects.scene.texture;
     const bool both = q->split != APP_SPLIT_NONE;
     relume_status status = RELUME_OK;
     if (both)
-        status = shade(r, q, projection, q->other, &r->objects_drawer_ms[1]);
-    objects_drawer_swap(&r->drawer);
+        status = shade(r, q, projection, q->other, &r->objects.ms[1]);
+    objects_drawer_swap(&r->objects.drawer);
     if (!status)
-        status = shade(r, q, projection, -1, &r->objects_drawer_ms[0]);
+        status = shade(r, q, projection, -1, &r->objects.ms[0]);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, r->gl);
-    objects_drawer_over(&r->drawer, area, scene, q->split == APP_SPLIT_DIFFERENCE);
+    objects_drawer_over(&r->objects.drawer, area, scene, q->split == APP_SPLIT_DIFFERENCE);
     if (q->split == APP_SPLIT_SIDES) {
-        objects_drawer_swap(&r->drawer);
+        objects_drawer_swap(&r->objects.drawer);
         draw_split(r, area, scene);
     }
     return RELUME_OK;
@@ -277,11 +274,11 @@ relume_status gl_renderer_draw_objects(struct gl_renderer *r, const struct frame
     struct frame_projection projection;
     const bool seen = gl_renderer_projection(&projection, r, q, area);
     r->gl->BindVertexArray(r->vertices);
-    relume_status status = seen ? objects_drawer_see(&r->drawer, &projection) : RELUME_OK;
+    relume_status status = seen ? objects_drawer_see(&r->objects.drawer, &projection) : RELUME_OK;
     if (!status)
         status = draw_scene(r, q, area, lights, count, seen);
     if (status || !seen || q->pass != RELUME_PASS_COLOUR)
         return status;
-    status = objects_drawer_light(&r->drawer, lights, count);
+    status = objects_drawer_light(&r->objects.drawer, lights, count);
     return status ? status : draw_objects(r, q, area, &projection);
 }

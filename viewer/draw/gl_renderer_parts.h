@@ -4,23 +4,15 @@
 
 #include "draw/gl_renderer_state.h"
 
-// A target of that size, made anew where it had another.
-relume_status gl_renderer_prepare(struct target *target, const struct gl_renderer *r, int width,
-                                  int height);
+// Makes a target as large as the frame where it was not: it is empty then. RELUME_ESYSTEM.
+relume_status gl_renderer_need(struct target *target, const struct gl_renderer *r,
+                               const struct frame_area *area);
 // The views that are needed, relit.
 relume_status gl_renderer_relight_views(struct gl_renderer *r, const struct frame_request *request,
                                         const struct relume_light *lights, int count);
-// r->relit as the framing shows them, into r->frame.
+// The relit views as the framing shows them, into r->frame.
 relume_status gl_renderer_frame(struct gl_renderer *r, const struct frame_request *request,
                                 const struct frame_area *area);
-
-// The tiles of a large view that a frame shows finer than the view as a whole, relit; and both
-// drawn.
-relume_status gl_renderer_relight_tiles(struct gl_renderer *r, const struct frame_request *request,
-                                        const struct relume_light *lights, int count);
-void gl_renderer_draw_tiles(struct gl_renderer *r, const struct frame_area *area,
-                            const struct target *view);
-void gl_renderer_tiles_destroy(struct gl_renderer *r);
 
 // The frame with objects, into r->frame.
 relume_status gl_renderer_draw_objects(struct gl_renderer *r, const struct frame_request *request,
@@ -48,7 +40,7 @@ relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
 // How objects appear in the frame; false where it is not flat.
 bool gl_renderer_projection(struct frame_projection *out, const struct gl_renderer *r,
                             const struct frame_request *request, const struct frame_area *area);
-// Where the frame sees the scene, into r->scene.
+// Where the frame sees the scene, into r->objects.scene.
 relume_status gl_renderer_find_scene(struct gl_renderer *r, const struct frame_request *request,
                                      struct frame_area area);
 

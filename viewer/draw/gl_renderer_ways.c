@@ -12,38 +12,38 @@
 
 void gl_renderer_use_exchange(struct gl_renderer *r, const struct exchange_source *exchange)
 {
-    r->exchange = *exchange;
+    r->exchange.source = *exchange;
     r->stage |= exchange->scene;
 }
 
 void gl_renderer_ways_destroy(struct gl_renderer *r)
 {
-    exchanger_destroy(&r->exchanger);
+    exchanger_destroy(&r->exchange.exchanger);
     for (int i = 0; i < EXCHANGER_SLOTS; i++)
-        target_destroy(&r->way[i], r->gl);
-    target_destroy(&r->beside_way, r->gl);
-    between_destroy(&r->between);
+        target_destroy(&r->exchange.way[i], r->gl);
+    target_destroy(&r->exchange.beside, r->gl);
+    between_destroy(&r->exchange.between);
 }
 
 void gl_renderer_let_go(struct gl_renderer *r)
 {
-    if (r->exchanger)
-        exchanger_rest(r->exchanger);
+    if (r->exchange.exchanger)
+        exchanger_rest(r->exchange.exchanger);
 }
 
 bool gl_renderer_expects(const struct gl_renderer *r)
 {
-    return r->exchanger && exchanger_is_busy(r->exchanger);
+    return r->exchange.exchanger && exchanger_is_busy(r->exchange.exchanger);
 }
 
 bool gl_renderer_has_news(const struct gl_renderer *r)
 {
-    return r->exchanger && exchanger_has_news(r->exchanger);
+    return r->exchange.exchanger && exchanger_has_news(r->exchange.exchanger);
 }
 
 relume_status gl_renderer_wait(struct gl_renderer *r)
 {
-    return exchanger_wait(r->exchanger);
+    return exchanger_wait(r->exchange.exchanger);
 }
 
 // ---------------------------------------------------------------- asking
@@ -64,10 +64,10 @@ static bool need_compute(const struct passes *p)
 }
 
 // NULL: there are none of that way; for any of them (NULL), what stands in for it.
-static const struct passes *passes_of(const struct gl_renderer *r, const char *way)
+static const struct passes *passes_of(const struct light_exchange *x, const char *way)
 {
-    for (size_t i = 0; i < sizeof passes / sizeof *passes && !r->ways_by_library; i++)
-        if ((!way || !strcmp(passes[i].way, way)) && !(need_compute(&passes[i]) && r->no_points))
+    for (size_t i = 0; i < sizeof passes / sizeof *passes && !x->by_library; i++)
+        if ((!way || !strcmp(passes[i].way, way)) && !(need_compute(&passes[i]) && x->no_points))
             return &passes[i];
     return NULL;
 }
@@ -75,9 +75,9 @@ static const struct passes *passes_of(const struct gl_renderer *r, const char *w
 // Two ways, or two materials; the latter are compared in hard shadows. Of a scene file hard shadows
 // are the library's, too.
 enum { NO_WAY = -1 };
-static bool goes_between(const struct gl_renderer *r, const struct frame_request *q, int way)
+static bool goes_between(const struct light_exchange *x, const struct frame_request *q, int way)
 {
-    return r->exchange.file && way != NO_WAY && (r->exchange.scene || way_gathers(way)) &&
+    return x->source.file && way != NO_WAY && (x->source.scene || way_gathers(way)) &&
            q->pass == RELUME_PASS_COLOUR && q->split == APP_SPLIT_NONE;
 }
 
@@ -96,20 +96,21 @@ static void find_size(struct relume_camera *camera, const struct frame_request *
 // Looks into a panorama with depth.
 static bool takes_passes(const struct gl_renderer *r, const struct frame_request *q)
 {
-    return !r->ways_by_library && r->with_depth && q->camera.framing == RELUME_FRAME_LOOK &&
-           !q->camera.look.stereographic && r->views == 1;
+    return !r->exchange.by_library && r->exchange.with_depth &&
+           q->camera.framing == RELUME_FRAME_LOOK && !q->camera.look.stereographic &&
+           r->views.count == 1;
 }
 
 static bool is_drawn_by_passes(const struct gl_renderer *r, const struct frame_request *q, int way)
 {
-    return takes_passes(r, q) && passes_of(r, way_name(way));
+    return takes_passes(r, q) && passes_of(&r->exchange, way_name(way));
 }
 
 // Own passes, or some that stand in until the library is done.
 static bool wants_passes(const struct gl_renderer *r, const struct frame_request *q, int way)
 {
-    return goes_between(r, q, way) && takes_passes(r, q) &&
-           (!r->waits || is_drawn_by_passes(r, q, way));
+    return goes_between(&r->exchange, q, way) && takes_passes(r, q) &&
+           (!r->exchange.waits || is_drawn_by_passes(r, q, way));
 }
 
 // Where OpenGL cannot do it, as it has said then, the library does.
@@ -127,16 +128,16 @@ static void do_without_compute(struct gl_renderer *r)
 {
     r->log->message(r->log->user, RELUME_NOTE,
                     "micro and ism are gathered by the library: passes of theirs need OpenGL 4.3");
-    r->no_points = true;
+    r->exchange.no_points = true;
 }
 
 static relume_status check_points(struct gl_renderer *r, const struct frame_request *q, int way)
 {
-    const struct passes *by = way == NO_WAY ? NULL : passes_of(r, way_name(way));
+    const struct passes *by = way == NO_WAY ? NULL : passes_of(&r->exchange, way_name(way));
     if (!by || !need_compute(by) || !wants_passes(r, q, way))
         return RELUME_OK;
     if (r->gl->compute)
-        return leave_to_library(r, &r->no_points, gl_renderer_need_points(r, q, by->as));
+        return leave_to_library(r, &r->exchange.no_points, gl_renderer_need_points(r, q, by->as));
     do_without_compute(r);
     return RELUME_OK;
 }
@@ -147,7 +148,7 @@ static relume_status check_passes(struct gl_renderer *r, const struct frame_requ
     if (!wants_passes(r, q, q->way) && !wants_passes(r, q, q->other_way))
         return RELUME_OK;
     relume_status status =
-        leave_to_library(r, &r->ways_by_library, gl_renderer_need_between(r, q, area));
+        leave_to_library(r, &r->exchange.by_library, gl_renderer_need_between(r, q, area));
     if (!status)
         status = check_points(r, q, q->way);
     return status || q->ways == APP_SPLIT_NONE ? status : check_points(r, q, q->other_way);
@@ -156,8 +157,8 @@ static relume_status check_passes(struct gl_renderer *r, const struct frame_requ
 static relume_status ask(struct gl_renderer *r, const struct frame_request *q, int slot, int way,
                          const struct relume_light *lights, int count)
 {
-    if (!goes_between(r, q, way) || is_drawn_by_passes(r, q, way))
-        return r->exchanger ? exchanger_ask(r->exchanger, slot, NULL) : RELUME_OK;
+    if (!goes_between(&r->exchange, q, way) || is_drawn_by_passes(r, q, way))
+        return r->exchange.exchanger ? exchanger_ask(r->exchange.exchanger, slot, NULL) : RELUME_OK;
     struct exchange_request request = {
         .transport = relume_transports[way],
         .samples = q->way_samples,
@@ -166,26 +167,27 @@ static relume_status ask(struct gl_renderer *r, const struct frame_request *q, i
         .lights = lights,
         .count = count,
         .moves = q->moves,
-        .waits = r->waits,
+        .waits = r->exchange.waits,
     };
-    if (!r->exchange.scene) {  // whose captures are sharp
+    if (!r->exchange.source.scene) {  // whose captures are sharp
         request.interpolation = q->view.interpolation;
         request.aperture = q->view.aperture;
         request.focus = q->view.focus;
     }
     find_size(&request.camera, q);
     const relume_status status =
-        r->exchanger ? RELUME_OK : exchanger_create(&r->exchanger, &r->exchange);
-    return status ? status : exchanger_ask(r->exchanger, slot, &request);
+        r->exchange.exchanger ? RELUME_OK
+                              : exchanger_create(&r->exchange.exchanger, &r->exchange.source);
+    return status ? status : exchanger_ask(r->exchange.exchanger, slot, &request);
 }
 
 // Where somebody waits, a way that cannot be drawn is an error.
 static relume_status wait_for_all(struct gl_renderer *r)
 {
     struct exchange_state state[EXCHANGER_SLOTS];
-    relume_status status = exchanger_wait(r->exchanger);
+    relume_status status = exchanger_wait(r->exchange.exchanger);
     for (int i = 0; i < EXCHANGER_SLOTS && !status; i++) {
-        exchanger_state(&state[i], r->exchanger, i);
+        exchanger_state(&state[i], r->exchange.exchanger, i);
         status = state[i].status;
     }
     return status;
@@ -197,20 +199,20 @@ static relume_status show(bool *shown, struct gl_renderer *r, const struct frame
                           int slot)
 {
     const struct relume_image *image;
-    struct target *target = &r->way[slot];
+    struct target *target = &r->exchange.way[slot];
     bool fresh;
-    *shown = exchanger_show(&image, &fresh, r->exchanger, slot) != EXCHANGE_NONE;
+    *shown = exchanger_show(&image, &fresh, r->exchange.exchanger, slot) != EXCHANGE_NONE;
     if (!*shown)
         return RELUME_OK;
     const bool other = target->width != image->width || target->height != image->height;
-    const relume_status status = gl_renderer_prepare(target, r, image->width, image->height);
+    const relume_status status = target_need(target, r->gl, image->width, image->height, r->log);
     if (status)
         return status;
     if (fresh || other)
         target_write(target, r->gl, image);
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->frame, r->gl);
-    draw_picture(&r->picture, r->gl, area, target);
+    draw_picture(&r->programs.picture, r->gl, area, target);
     return RELUME_OK;
 }
 
@@ -232,8 +234,9 @@ static relume_status draw_way(struct gl_renderer *r, const struct frame_request 
                               const struct frame_area *area, const struct relume_light *lights,
                               int count, int slot, int way)
 {
-    const struct passes *own = passes_of(r, way_name(way)), *stand_in = passes_of(r, NULL);
-    const bool between = goes_between(r, q, way);
+    const struct passes *own = passes_of(&r->exchange, way_name(way)),
+                        *stand_in = passes_of(&r->exchange, NULL);
+    const bool between = goes_between(&r->exchange, q, way);
     const bool by_passes = between && is_drawn_by_passes(r, q, way);
     bool shown = false;
     relume_status status = RELUME_OK;
@@ -242,20 +245,13 @@ static relume_status draw_way(struct gl_renderer *r, const struct frame_request 
     double ms = 0.0;
     if (!status && !shown && between && stand_in)
         status = draw_passes(&shown, r, q, area, lights, count, &ms, own ? own : stand_in);
-    r->passes_ms[slot] = by_passes ? ms : 0.0;
+    r->exchange.passes_ms[slot] = by_passes ? ms : 0.0;
     if (status || shown)
         return status;
-    if (!r->exchange.scene)
+    if (!r->exchange.source.scene)
         return gl_renderer_draw_objects(r, q, area, lights, count);
     target_begin(&r->frame, r->gl);
     return RELUME_OK;
-}
-
-static void swap(struct target *a, struct target *b)
-{
-    const struct target was = *a;
-    *a = *b;
-    *b = was;
 }
 
 // r->frame is the other way. The first one comes into its left half, with a line between.
@@ -267,7 +263,7 @@ static void draw_sides(const struct gl_renderer *r, const struct frame_area *are
         area->width, area->height, {0, 0, area->width, area->height}, 1};
     gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, gl);
-    draw_picture_within(&r->picture, gl, &whole, &r->beside_way,
+    draw_picture_within(&r->programs.picture, gl, &whole, &r->exchange.beside,
                         (struct app_rectangle){0, 0, middle, area->height});
     gl->Enable(GL_SCISSOR_TEST);
     gl->Scissor(middle - 1, 0, 2, area->height);
@@ -276,16 +272,17 @@ static void draw_sides(const struct gl_renderer *r, const struct frame_area *are
     gl->Disable(GL_SCISSOR_TEST);
 }
 
-// A frame cannot be drawn from itself: what becomes of both is r->lit, which takes its place.
+// A frame cannot be drawn from itself: what becomes of both is r->objects.lit, which takes its
+// place.
 static relume_status draw_difference(struct gl_renderer *r, const struct frame_area *area)
 {
-    const relume_status status = gl_renderer_prepare(&r->lit, r, area->width, area->height);
+    const relume_status status = gl_renderer_need(&r->objects.lit, r, area);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
-    target_begin(&r->lit, r->gl);
-    draw_apart(&r->apart, r->gl, area, &r->frame, &r->beside_way);
-    swap(&r->frame, &r->lit);
+    target_begin(&r->objects.lit, r->gl);
+    draw_apart(&r->programs.apart, r->gl, area, &r->frame, &r->exchange.beside);
+    target_swap(&r->frame, &r->objects.lit);
     return RELUME_OK;
 }
 
@@ -293,24 +290,24 @@ relume_status gl_renderer_draw_ways(struct gl_renderer *r, const struct frame_re
                                     const struct frame_area *area,
                                     const struct relume_light *lights, int count)
 {
-    const bool both = q->ways != APP_SPLIT_NONE && (!r->stage || r->exchange.scene);
+    const bool both = q->ways != APP_SPLIT_NONE && (!r->stage || r->exchange.source.scene);
     relume_status status = check_passes(r, q, area);
     if (!status)
         status = ask(r, q, 0, q->way, lights, count);
     if (!status)
         status = ask(r, q, 1, both ? q->other_way : NO_WAY, lights, count);
-    if (!status && r->exchanger && r->waits)
+    if (!status && r->exchange.exchanger && r->exchange.waits)
         status = wait_for_all(r);
-    if (r->exchanger)
-        exchanger_speak(r->exchanger);
+    if (r->exchange.exchanger)
+        exchanger_speak(r->exchange.exchanger);
     if (!status)
         status = draw_way(r, q, area, lights, count, 0, q->way);
     if (status || !both)
         return status;
-    status = gl_renderer_prepare(&r->beside_way, r, area->width, area->height);
+    status = gl_renderer_need(&r->exchange.beside, r, area);
     if (status)
         return status;
-    swap(&r->frame, &r->beside_way);
+    target_swap(&r->frame, &r->exchange.beside);
     status = draw_way(r, q, area, lights, count, 1, q->other_way);
     if (status)
         return status;

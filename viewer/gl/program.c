@@ -110,6 +110,15 @@ relume_status program_create_compute(struct program *program, const struct gl *g
     return finish(program, gl, stages, compute, uniforms, n, status, log);
 }
 
+relume_status program_create_fragments(const struct fragment_program *list, size_t n,
+                                       const struct gl *gl, const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; i < n && !status; i++)
+        status = program_create_fragment(list[i].program, gl, list[i].fragment, log);
+    return status;
+}
+
 relume_status program_create_passes(const struct compute_pass *list, size_t n, const struct gl *gl,
                                     const struct relume_log *log)
 {

@@ -49,6 +49,15 @@ void target_destroy(struct target *target, const struct gl *gl)
     *target = (struct target){0};
 }
 
+relume_status target_need(struct target *target, const struct gl *gl, int width, int height,
+                          const struct relume_log *log)
+{
+    if (target->width == width && target->height == height)
+        return RELUME_OK;
+    target_destroy(target, gl);
+    return target_create(target, gl, width, height, log);
+}
+
 void target_resume(const struct target *target, const struct gl *gl)
 {
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);

@@ -16,6 +16,15 @@ struct target {
 relume_status target_create(struct target *target, const struct gl *gl, int width, int height,
                             const struct relume_log *log);
 void target_destroy(struct target *target, const struct gl *gl);
+// Makes it that large where it was not: it is empty then. RELUME_ESYSTEM.
+relume_status target_need(struct target *target, const struct gl *gl, int width, int height,
+                          const struct relume_log *log);
+static inline void target_swap(struct target *a, struct target *b)
+{
+    const struct target was = *a;
+    *a = *b;
+    *b = was;
+}
 
 // Later draws go into all of it, black to begin with.
 void target_begin(const struct target *target, const struct gl *gl);

@@ -342,11 +342,7 @@ static relume_status measure(struct enhancer *e, int view, const struct target *
     const int step = relume_pass_step(relit->width, relit->height);
     const int width = (relit->width + step - 1) / step, height = (relit->height + step - 1) / step;
     struct relume_image grid;
-    relume_status status = RELUME_OK;
-    if (e->grid.width != width || e->grid.height != height) {
-        target_destroy(&e->grid, e->gl);
-        status = target_create(&e->grid, e->gl, width, height, e->log);
-    }
+    relume_status status = target_need(&e->grid, e->gl, width, height, e->log);
     if (status)
         return status;
     set_textures(e, view, relit);  // making a target takes the first

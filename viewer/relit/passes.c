@@ -187,10 +187,7 @@ static void add_guarded(struct gl_relighter *r, struct relit_view *v)
 relume_status passes_fit(const struct gl_relighter *r, struct target *target,
                          const struct relit_view *v)
 {
-    if (target->width == v->relit.width && target->height == v->relit.height)
-        return RELUME_OK;
-    target_destroy(target, r->gl);
-    return target_create(target, r->gl, v->relit.width, v->relit.height, r->log);
+    return target_need(target, r->gl, v->relit.width, v->relit.height, r->log);
 }
 
 relume_status passes_scratch(struct gl_relighter *r, const struct relit_view *v)

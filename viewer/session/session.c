@@ -266,7 +266,7 @@ static void warn_beside(struct session *s)
     char text[160];
     if (s->document.beside_warned || !s->document.pack)
         return;
-    const double share = share_beside(&s->request, s->renderer.grid, s->document.slabs);
+    const double share = share_beside(&s->request, s->renderer.views.grid, s->document.slabs);
     if (share < 0.01)
         return;
     snprintf(text, sizeof text,
@@ -280,7 +280,7 @@ static void warn_beside(struct session *s)
 relume_status session_render(struct session *s)
 {
     relume_status status = frame_request_make(&s->request, &s->app);
-    s->renderer.waits = !s->streams || s->finishes || session_records(s);
+    s->renderer.exchange.waits = !s->streams || s->finishes || session_records(s);
     if (!status)
         status = gl_renderer_draw(&s->renderer, &s->request);
     if (!status)

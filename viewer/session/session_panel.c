@@ -98,7 +98,7 @@ static relume_status inspect(struct session *s, bool *shown)
     const struct code_source source = pack_source_codes(s->document.source);
     if (!s->panel.inspector.weights)
         status = inspect_create(&s->panel.inspector, relume_pack_info(s->document.pack), &source,
-                                s->renderer.grid, s->capture);
+                                s->renderer.views.grid, s->capture);
     if (!status)
         status = inspect_update(&s->panel.inspector, &s->app, shown);
     if (!status && *shown)
@@ -159,7 +159,7 @@ static void warn_font(struct session_panel *p, const struct relume_log *log)
 
 static void measure_materials(struct session *s)
 {
-    const struct objects_drawer *drawer = &s->renderer.drawer;
+    const struct objects_drawer *drawer = &s->renderer.objects.drawer;
     for (int i = 0; drawer->gl && i < relume_objects_info(s->objects.objects)->materials &&
                     i < OBJECT_MATERIALS;
          i++)
@@ -194,7 +194,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .map_in_use = file_name(session_map_in_use(s)),
         .material_bytes = s->objects.objects ? p->material_bytes : NULL,
         .materials = OBJECT_MATERIALS,
-        .objects_ms = s->renderer.objects_drawer_ms,
+        .objects_ms = s->renderer.objects.ms,
         .range = {s->renderer.enhancer.range.low, s->renderer.enhancer.range.high},
         .browser = p->browser.folder[0] ? &p->browser : NULL,
         .recording = session_records(s) ? s->recording.path : NULL,

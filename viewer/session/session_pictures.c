@@ -7,8 +7,8 @@
 
 static bool sees_something(const struct session *s)
 {
-    for (int i = 0; i < s->renderer.views; i++)
-        if (s->renderer.needed[i])
+    for (int i = 0; i < s->renderer.views.count; i++)
+        if (s->renderer.views.needed[i])
             return true;
     return s->renderer.stage;
 }

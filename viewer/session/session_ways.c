@@ -20,8 +20,8 @@ void session_add_ways(struct session *s)
                                            .log = s->log,
                                            .threads = s->settings.threads};
     gl_renderer_use_exchange(&s->renderer, &source);
-    s->renderer.with_depth = relume_pack_info(s->document.pack)->has_depth;
-    s->renderer.ways_by_library = session_by_library(s->settings.relight, &s->window.gl);
+    s->renderer.exchange.with_depth = relume_pack_info(s->document.pack)->has_depth;
+    s->renderer.exchange.by_library = session_by_library(s->settings.relight, &s->window.gl);
     s->app.lookers = (struct app_lookers){s, let_go};
 }
 
@@ -53,10 +53,10 @@ static void describe_exchange(char text[SESSION_TEXT], struct exchanger *e, int 
 static void describe(char text[SESSION_TEXT], const struct gl_renderer *r, int slot, int way)
 {
     char more[SESSION_TEXT] = "";
-    if (r->passes_ms[slot] > 0.0)
-        snprintf(more, sizeof more, "by passes, %.1f ms a frame", r->passes_ms[slot]);
-    else if (r->exchanger)
-        describe_exchange(more, r->exchanger, slot);
+    if (r->exchange.passes_ms[slot] > 0.0)
+        snprintf(more, sizeof more, "by passes, %.1f ms a frame", r->exchange.passes_ms[slot]);
+    else if (r->exchange.exchanger)
+        describe_exchange(more, r->exchange.exchanger, slot);
     text[0] = '\0';
     if (more[0])
         snprintf(text, SESSION_TEXT, "%s: %.200s", way_name(way), more);

@@ -20,10 +20,7 @@ void session_window_close(struct session_window *w)
 relume_status session_window_need_screen(struct session_window *w, int width, int height,
                                          const struct relume_log *log)
 {
-    if (w->screen.width == width && w->screen.height == height)
-        return RELUME_OK;
-    session_window_forget_screen(w);
-    return target_create(&w->screen, &w->gl, width, height, log);
+    return target_need(&w->screen, &w->gl, width, height, log);
 }
 
 void session_window_forget_screen(struct session_window *w)

@@ -222,7 +222,7 @@ static struct picture both(struct objects_drawer *t, const struct relume_light *
 {
     struct picture p = {0};
     const struct relume_window w = window_of(t->objects);
-    t->no_shadows = no_shadows;
+    t->shadows.off = no_shadows;
     assert_int_equal(relume_image_create(&p.cpu, SIDE, SIDE, 3), RELUME_OK);
     assert_int_equal(relume_objects_render(&p.cpu, t->objects, &w, lights, n,
                                            relume_render_params(.no_shadows = no_shadows)),
@@ -606,8 +606,8 @@ static void details_agree(void **state)
         const int apart = count_apart(&p.cpu, &p.gl, 5e-3, &brightest);
         if (apart > 48 || !(brightest > 0.02))
             fail_msg("details: %d pixels differ", apart);
-        assert_non_null(t.seen);
-        assert_in_range(relume_objects_info(t.seen)->triangle_count, 12, all / 2);
+        assert_non_null(t.mesh.seen);
+        assert_in_range(relume_objects_info(t.mesh.seen)->triangle_count, 12, all / 2);
         destroy(&p);
     }
     relume_rig_destroy(&rig);

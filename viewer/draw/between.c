@@ -241,9 +241,11 @@ static relume_status need_targets(struct between *b, const struct objects_drawer
     if (!status)
         status = target_create(&b->thrown, b->gl, width, height, b->log);
     if (!status)
-        status = target_create(&b->white, b->gl, t->place.width, t->place.height, b->log);
+        status = target_create(&b->white, b->gl, t->surface.position.width,
+                               t->surface.position.height, b->log);
     if (!status)
-        status = target_create(&b->sum, b->gl, t->place.width, t->place.height, b->log);
+        status = target_create(&b->sum, b->gl, t->surface.position.width,
+                               t->surface.position.height, b->log);
     return status ? status : target_create(&b->show, b->gl, width, height, b->log);
 }
 
@@ -312,12 +314,12 @@ static void use_eye(const struct between *b, GLint at, const struct between_view
     b->gl->Uniform4f(at, eye[0], eye[1], eye[2], eye[3]);
 }
 
-static void draw_whole(const struct between *b, const struct program *program,
-                       const struct target *onto)
+static void draw_onto(const struct between *b, const struct program *program,
+                      const struct target *onto)
 {
     const struct frame_area area = {.width = onto->width, .height = onto->height};
     b->gl->BindVertexArray(b->array);
-    objects_drawer_draw_whole(b->gl, program, &area);
+    draw_whole(b->gl, program, &area);
 }
 
 static void draw_added(const struct between *b, const struct program *program,
@@ -325,7 +327,7 @@ static void draw_added(const struct between *b, const struct program *program,
 {
     b->gl->Enable(GL_BLEND);
     b->gl->BlendFunc(GL_ONE, GL_ONE);
-    draw_whole(b, program, onto);
+    draw_onto(b, program, onto);
     b->gl->Disable(GL_BLEND);
 }
 
@@ -338,12 +340,13 @@ static void find_backs(const struct between *b, const struct objects_drawer *t,
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->UseProgram(b->back.id);
     gl->UniformMatrix4fv(b->back.at[BACK_CLIP], 1, GL_FALSE, v->projection->clip);
-    use(b, b->back.at[BACK_FRONT], 0, &t->place);
-    gl->Uniform1i(b->back.at[BACK_GRID], t->grid);
+    use(b, b->back.at[BACK_FRONT], 0, &t->surface.position);
+    gl->Uniform1i(b->back.at[BACK_GRID], t->surface.grid);
     use_eye(b, b->back.at[BACK_EYE], v);
-    gl->BindVertexArray(t->array);
+    gl->BindVertexArray(t->mesh.array);
     gl->Enable(GL_DEPTH_TEST);
-    gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * objects_drawer_drawn(t)->triangle_count),
+    gl->DrawElements(GL_TRIANGLES,
+                     (GLsizei)(3 * object_mesh_drawn(&t->mesh, t->objects)->triangle_count),
                      GL_UNSIGNED_INT, NULL);
     gl->Disable(GL_DEPTH_TEST);
 }
@@ -355,12 +358,12 @@ static void find_nearest(const struct between *b, const struct objects_drawer *t
     joined_begin(&b->nearest, b->gl);
     b->gl->UseProgram(b->front.id);
     use(b, at[F_SCENE], 0, v->scene);
-    use(b, at[F_OBJECTS], 1, &t->place);
-    use(b, at[F_NORMALS], 2, &t->normal);
+    use(b, at[F_OBJECTS], 1, &t->surface.position);
+    use(b, at[F_NORMALS], 2, &t->surface.normal);
     use(b, at[F_BACK], 3, &b->behind);
-    b->gl->Uniform1i(at[F_GRID], t->grid);
+    b->gl->Uniform1i(at[F_GRID], t->surface.grid);
     use_eye(b, at[F_EYE], v);
-    draw_whole(b, &b->front, &b->show);
+    draw_onto(b, &b->front, &b->show);
 }
 
 // Which materials are shown.
@@ -382,11 +385,11 @@ static relume_status need_white(struct between *b, struct objects_drawer *t,
     const uint64_t of = fingerprint(t);
     if (b->white_of == of && !memcmp(b->white_clip, v->projection->clip, sizeof b->white_clip))
         return RELUME_OK;
-    const relume_status status = objects_drawer_show_sky(t, &white, -1);
+    const relume_status status = objects_drawer_show_sky(t, &white);
     if (status)
         return status;
-    const struct target shown = t->shown;
-    t->shown = b->white;
+    const struct target shown = t->sky.shown;
+    t->sky.shown = b->white;
     b->white = shown;
     b->white_of = of;
     memcpy(b->white_clip, v->projection->clip, sizeof b->white_clip);
@@ -466,7 +469,7 @@ static relume_status add_lamp_at(struct between *b, const struct objects_drawer 
 {
     const struct gl *gl = b->gl;
     const GLint *at = b->lamps.at;
-    const struct relume_light light = objects_drawer_light_of(&t->light_sample[number]);
+    const struct relume_light light = object_lights_of(&t->lights.sample[number]);
     gl->BindFramebuffer(GL_FRAMEBUFFER, onto->framebuffer);
     gl->Viewport(0, 0, onto->target[0].width, onto->target[0].height);
     gl->UseProgram(b->lamps.id);
@@ -475,9 +478,9 @@ static relume_status add_lamp_at(struct between *b, const struct objects_drawer 
     gl_set_vec3(gl, at[LAMPS_CENTRE], v->geometry->center);
     gl->Uniform1i(at[LAMPS_PICTURE], 2);
     const relume_status status = light_uniforms_set(&b->uniforms, at + LAMPS_LIGHT, 2, &light);
-    if (t->light_sample[number].is_patch)
-        gl_set_vec3(gl, at[LAMPS_LIGHT + LIGHT_AXIS], t->light_sample[number].patch.normal);
-    shadow_map_use(&t->shadow, gl, at + LAMPS_SHADOW, 3);
+    if (t->lights.sample[number].is_patch)
+        gl_set_vec3(gl, at[LAMPS_LIGHT + LIGHT_AXIS], t->lights.sample[number].patch.normal);
+    shadow_map_use(&t->shadows.map, gl, at + LAMPS_SHADOW, 3);
     shadow_map_use(&b->captured, gl, at + LAMPS_CAPTURED, 4);
     draw_added(b, &b->lamps, &onto->target[0]);
     return status;
@@ -487,8 +490,8 @@ static relume_status add_lamp(struct between *b, struct objects_drawer *t,
                               const struct between_view *v, int number)
 {
     objects_drawer_draw_shadow(t, number);
-    shadow_map_fill(&b->captured, &t->light_sample[number], t->middle, CAPTURED_RADII * t->radius,
-                    draw_captured, &b->mesh);
+    shadow_map_fill(&b->captured, &t->lights.sample[number], t->shadows.middle,
+                    CAPTURED_RADII * t->shadows.radius, draw_captured, &b->mesh);
     const relume_status status =
         add_lamp_at(b, t, v, number, v->scene, &b->nearest.target[0], &b->by_lamps);
     if (status || !has_points(v->way))
@@ -511,7 +514,7 @@ static void find_mean(const struct between *b, const struct between_view *v,
     target_begin(&b->even, b->gl);
     b->gl->UseProgram(b->mean.id);
     use_panorama(b, b->mean.at, v, panorama);
-    draw_whole(b, &b->mean, &b->even);
+    draw_onto(b, &b->mean, &b->even);
 }
 
 static void show(const struct between *b, const struct objects_drawer *t,
@@ -521,16 +524,16 @@ static void show(const struct between *b, const struct objects_drawer *t,
     target_begin(&b->show, b->gl);
     b->gl->UseProgram(b->shown.id);
     use(b, at[SHOWN_FRONT], 0, &b->nearest.target[1]);
-    use(b, at[SHOWN_OBJECTS], 1, &t->place);
+    use(b, at[SHOWN_OBJECTS], 1, &t->surface.position);
     use(b, at[SHADED], 2, &t->shaded);
     use(b, at[LONE], 3, lone);
     use(b, at[LET_WITHOUT], 4, &b->by_lamps.target[0]);
     use(b, at[LET_WITH], 5, &b->by_lamps.target[1]);
     use(b, at[MEAN], 6, &b->even);
-    b->gl->Uniform1i(at[SHOWN_GRID], t->grid);
-    use(b, at[SHOWN_EMITTED], 7, &t->emitted);
-    b->gl->Uniform1f(at[SHOWN_SENDS], t->sends ? v->sends : 0.0f);
-    draw_whole(b, &b->shown, &b->show);
+    b->gl->Uniform1i(at[SHOWN_GRID], t->surface.grid);
+    use(b, at[SHOWN_EMITTED], 7, &t->surface.emitted);
+    b->gl->Uniform1f(at[SHOWN_SENDS], t->skins.sends ? v->sends : 0.0f);
+    draw_onto(b, &b->shown, &b->show);
 }
 
 static void gather(const struct between *b, const struct objects_drawer *t,
@@ -553,16 +556,16 @@ static void gather(const struct between *b, const struct objects_drawer *t,
     use(b, at[G_MEAN], 8, &b->even);
     use(b, at[G_ALL_WITHOUT], 9, &b->by_lamps.target[2]);
     use(b, at[G_ALL_WITH], 10, &b->by_lamps.target[3]);
-    gl_set_vec3(gl, at[G_MIDDLE], t->middle);
+    gl_set_vec3(gl, at[G_MIDDLE], t->shadows.middle);
     gl->Uniform1i(at[G_AT_OBJECTS], at_objects);
     gl->Uniform1i(at[G_DIRECTIONAL], v->way == BETWEEN_DIRECTIONAL);
     gl->Uniform1i(at[G_BOUNCES], v->bounces > 0);
     gl->Uniform1i(at[G_SAMPLES], v->samples);
     gl->Uniform1i(at[G_PATTERN], v->pattern);
-    gl->Uniform1f(at[G_RADIUS], (float)t->radius);
+    gl->Uniform1f(at[G_RADIUS], (float)t->shadows.radius);
     gl->UniformMatrix4fv(at[G_CLIP], 1, GL_FALSE, v->projection->clip);
     use_eye(b, at[G_EYE], v);
-    draw_whole(b, &b->gather, &b->show);
+    draw_onto(b, &b->gather, &b->show);
 }
 
 static struct points_view points_view(const struct between *b, const struct objects_drawer *t,
@@ -572,8 +575,8 @@ static struct points_view points_view(const struct between *b, const struct obje
     return (struct points_view){.points = &b->points,
                                 .centre = v->geometry->center,
                                 .eye = {(double)eye[0], (double)eye[1], (double)eye[2]},
-                                .middle = t->middle,
-                                .radius = t->radius,
+                                .middle = t->shadows.middle,
+                                .radius = t->shadows.radius,
                                 .samples = v->samples,
                                 .spacing = v->spacing,
                                 .bounces = v->bounces,
@@ -610,7 +613,7 @@ static void smooth(const struct between *b, const struct between_view *v, bool a
     use(b, at[SMOOTH_FACING], 3, &b->nearest.target[at_objects ? 2 : 0]);
     b->gl->Uniform3f(at[SMOOTH_EYE], eye[0], eye[1], eye[2]);
     b->gl->Uniform1i(at[SIZE_OF], v->pattern);
-    draw_whole(b, &b->smooth, &b->show);
+    draw_onto(b, &b->smooth, &b->show);
 }
 
 static void throw_back(const struct between *b, const struct objects_drawer *t,
@@ -621,9 +624,9 @@ static void throw_back(const struct between *b, const struct objects_drawer *t,
     b->gl->UseProgram(b->returned.id);
     use(b, at[RETURNED_FRONT], 0, &b->nearest.target[1]);
     use(b, at[GATHERED], 1, &b->smoothed.target[1]);
-    use(b, at[RETURNED_OBJECTS], 2, &t->place);
+    use(b, at[RETURNED_OBJECTS], 2, &t->surface.position);
     use(b, at[WHITE], 3, &b->white);
-    b->gl->Uniform1i(at[RETURNED_GRID], t->grid);
+    b->gl->Uniform1i(at[RETURNED_GRID], t->surface.grid);
     draw_added(b, &b->returned, onto);
 }
 
@@ -695,12 +698,12 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
     joined_begin(&b->by_lamps, b->gl);
     if (has_points(v->way))
         joined_begin(&b->leaf_lamps, b->gl);
-    for (int i = 0; i < t->light_samples && !status; i++)
+    for (int i = 0; i < t->lights.samples && !status; i++)
         status = add_lamp(b, t, v, i);
-    t->captured = &b->mesh;
+    t->shadows.captured = &b->mesh;
     if (!status)
         status = objects_drawer_shade(t, v->projection, v->width, v->height, -1);
-    t->captured = NULL;
+    t->shadows.captured = NULL;
     if (status)
         return status;
     find_mean(b, v, panorama);

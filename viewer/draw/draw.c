@@ -9,3 +9,8 @@ void draw_rectangle(const struct gl *gl, const struct program *program,
     gl->Uniform2f(program->at[DRAW_SIZE], (float)area->width, (float)area->height);
     gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
+
+void draw_whole(const struct gl *gl, const struct program *program, const struct frame_area *area)
+{
+    draw_rectangle(gl, program, area, (struct app_rectangle){0, 0, area->width, area->height});
+}

@@ -26,6 +26,9 @@ enum { DRAW_RECTANGLE, DRAW_SIZE, DRAW_OWN };
 void draw_rectangle(const struct gl *gl, const struct program *program,
                     const struct frame_area *area, struct app_rectangle rectangle);
 
+// The same, within the whole frame.
+void draw_whole(const struct gl *gl, const struct program *program, const struct frame_area *area);
+
 // A view as it was captured.
 extern const struct fragment draw_picture_fragment;
 void draw_picture(const struct program *program, const struct gl *gl, const struct frame_area *area,

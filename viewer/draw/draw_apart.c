@@ -14,5 +14,5 @@ void draw_apart(const struct program *program, const struct gl *gl, const struct
     gl->UseProgram(program->id);
     gl->Uniform1i(program->at[FRAME], 0);
     gl->Uniform1i(program->at[OTHER], 1);
-    draw_rectangle(gl, program, area, (struct app_rectangle){0, 0, area->width, area->height});
+    draw_whole(gl, program, area);
 }

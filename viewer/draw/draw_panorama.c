@@ -39,5 +39,5 @@ void draw_panorama(const struct program *program, const struct gl *gl,
     gl->Uniform2f(at[LOOK_SIZE], (float)area->width, (float)area->height);
     gl->Uniform1f(at[EXPOSURE], area->exposure);
     gl->Uniform1i(at[DISC], geometry->disc);
-    draw_rectangle(gl, program, area, (struct app_rectangle){0, 0, area->width, area->height});
+    draw_whole(gl, program, area);
 }

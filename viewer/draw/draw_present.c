@@ -23,5 +23,5 @@ void draw_present(const struct program *program, const struct gl *gl, const stru
     gl->Uniform1i(program->at[TONE], tone);
     gl->Uniform1f(program->at[WHITE], (float)white);
     gl->Uniform1f(program->at[LEFT], (float)window->left);
-    draw_rectangle(gl, program, &area, (struct app_rectangle){0, 0, frame->width, frame->height});
+    draw_whole(gl, program, &area);
 }

@@ -58,5 +58,5 @@ void draw_mean(const struct program *program, const struct gl *gl, const struct 
     gl->UseProgram(program->id);
     gl->Uniform1i(program->at[SUM], 0);
     gl->Uniform1f(program->at[EXPOSURE], area->exposure);
-    draw_rectangle(gl, program, area, (struct app_rectangle){0, 0, area->width, area->height});
+    draw_whole(gl, program, area);
 }

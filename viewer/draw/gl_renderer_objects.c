@@ -167,7 +167,7 @@ static relume_status light_scene(struct gl_renderer *r, const struct frame_reque
         if (!status)
             status = objects_drawer_light(&r->objects.drawer, &lights[i], 1);
         target_resume(&r->objects.lit, r->gl);
-        for (int k = 0; k < r->objects.drawer.light_samples && !status; k++)
+        for (int k = 0; k < r->objects.drawer.lights.samples && !status; k++)
             objects_drawer_cast(&r->objects.drawer, area, k, r->objects.scene.texture, &r->frame);
     }
     target_swap(&r->frame, &r->objects.lit);

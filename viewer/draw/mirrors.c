@@ -248,7 +248,7 @@ static void draw(const struct mirrors *m, const struct program *program,
                                      .height = surface->place->height};
     m->gl->Enable(GL_BLEND);
     m->gl->BlendFunc(GL_ONE, GL_ONE);
-    draw_rectangle(m->gl, program, &whole, (struct app_rectangle){0, 0, whole.width, whole.height});
+    draw_whole(m->gl, program, &whole);
     m->gl->Disable(GL_BLEND);
 }
 

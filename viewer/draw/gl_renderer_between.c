@@ -76,7 +76,7 @@ static relume_status draw(struct gl_renderer *r, const struct frame_request *q,
     between_end(&r->exchange.between, &r->objects.drawer);
     r->gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, r->gl);
-    r->objects.drawer.returned = r->exchange.between.thrown.texture;
+    r->objects.drawer.returned = r->exchange.between.frame.thrown.texture;
     objects_drawer_over(&r->objects.drawer, area, r->objects.scene.texture, false);
     r->objects.drawer.returned = 0;
     return RELUME_OK;

@@ -53,7 +53,8 @@ relume_status object_sky_need(struct object_sky *s, const struct gl *gl, int wid
     for (int i = 0; i < 2 && !status; i++)
         status = target_create(shares[i], gl, width, height, log);
     if (!status)
-        status = object_surface_join(&s->share_buffer, gl, shares, 2, 0, log);
+        status = object_surface_join(&s->share_buffer, gl, (const struct target *const *)shares, 2,
+                                     0, log);
     if (status)
         destroy_targets(s, gl);
     return status;

@@ -39,22 +39,13 @@ void object_surface_destroy(struct object_surface *s, const struct gl *gl)
     destroy_targets(s, gl);
 }
 
-relume_status object_surface_join(GLuint *out, const struct gl *gl, struct target *const *target,
-                                  int n, GLuint depth, const struct relume_log *log)
+relume_status object_surface_join(GLuint *out, const struct gl *gl,
+                                  const struct target *const *target, int n, GLuint depth,
+                                  const struct relume_log *log)
 {
-    GLenum buffers[TARGETS];
-    gl->GenFramebuffers(1, out);
-    gl->BindFramebuffer(GL_FRAMEBUFFER, *out);
-    for (int i = 0; i < n; i++) {
-        buffers[i] = GL_COLOR_ATTACHMENT0 + (GLenum)i;
-        gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target[i]->texture, 0);
-    }
-    gl->DrawBuffers(n, buffers);
-    if (depth)
-        gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
-    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
-        return gl_check(gl, "objects", log);
-    return say(log, RELUME_ESYSTEM, "OpenGL: cannot draw the surface of objects");
+    return target_join(out, gl, target, n, depth)
+               ? gl_check(gl, "objects", log)
+               : say(log, RELUME_ESYSTEM, "OpenGL: cannot draw the surface of objects");
 }
 
 static void create_depth(struct object_surface *s, const struct gl *gl, int width, int height)
@@ -81,7 +72,8 @@ relume_status object_surface_need(struct object_surface *s, const struct gl *gl,
         status = target_create(target[i], gl, width, height, log);
     if (!status) {
         create_depth(s, gl, width, height);
-        status = object_surface_join(&s->framebuffer, gl, target, n, s->depth, log);
+        status = object_surface_join(&s->framebuffer, gl, (const struct target *const *)target, n,
+                                     s->depth, log);
     }
     if (status)
         destroy_targets(s, gl);

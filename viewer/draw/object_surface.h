@@ -25,9 +25,10 @@ relume_status object_surface_need(struct object_surface *s, const struct gl *gl,
 void object_surface_draw(const struct object_surface *s, const struct object_parts *parts,
                          const struct frame_projection *projection);
 
-// A framebuffer that draws into `n` targets at once, with a texture of depths (0: none).
+// target_join for what is drawn of objects.
 // RELUME_ESYSTEM.
-relume_status object_surface_join(GLuint *out, const struct gl *gl, struct target *const *target,
-                                  int n, GLuint depth, const struct relume_log *log);
+relume_status object_surface_join(GLuint *out, const struct gl *gl,
+                                  const struct target *const *target, int n, GLuint depth,
+                                  const struct relume_log *log);
 
 #endif

@@ -71,6 +71,22 @@ void target_begin(const struct target *target, const struct gl *gl)
     gl->Clear(GL_COLOR_BUFFER_BIT);
 }
 
+bool target_join(GLuint *framebuffer, const struct gl *gl, const struct target *const *target,
+                 int n, GLuint depth)
+{
+    GLenum buffers[TARGET_JOINED];
+    gl->GenFramebuffers(1, framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, *framebuffer);
+    for (int i = 0; i < n; i++) {
+        buffers[i] = GL_COLOR_ATTACHMENT0 + (GLenum)i;
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target[i]->texture, 0);
+    }
+    gl->DrawBuffers(n, buffers);
+    if (depth)
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+    return gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
 relume_status target_read(struct relume_image *out, const struct target *target,
                           const struct gl *gl)
 {

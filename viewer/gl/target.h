@@ -30,6 +30,11 @@ static inline void target_swap(struct target *a, struct target *b)
 void target_begin(const struct target *target, const struct gl *gl);
 // The same on top of what it holds.
 void target_resume(const struct target *target, const struct gl *gl);
+// Makes a framebuffer that draws into `n` of them at once, TARGET_JOINED at most, with a texture of
+// depths (0: none), and uses it. False where OpenGL cannot.
+enum { TARGET_JOINED = 6 };
+bool target_join(GLuint *framebuffer, const struct gl *gl, const struct target *const *target,
+                 int n, GLuint depth);
 // Its first three channels as a new image. RELUME_ENOMEM.
 relume_status target_read(struct relume_image *out, const struct target *target,
                           const struct gl *gl);

@@ -52,7 +52,7 @@ relume_status between_create(struct between *b, const struct gl *gl,
 // ---------------------------------------------------------------- passes
 
 // Texture `unit` of the program in use.
-static void use(const struct between *b, GLint at, int unit, const struct target *target)
+static void use_target(const struct between *b, GLint at, int unit, const struct target *target)
 {
     texture_use(b->gl, unit, GL_TEXTURE_2D, target->texture);
     b->gl->Uniform1i(at, unit);
@@ -90,7 +90,7 @@ static void find_backs(const struct between *b, const struct objects_drawer *t,
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->UseProgram(b->programs.back.id);
     gl->UniformMatrix4fv(b->programs.back.at[BACK_CLIP], 1, GL_FALSE, v->projection->clip);
-    use(b, b->programs.back.at[BACK_FRONT], 0, &t->surface.position);
+    use_target(b, b->programs.back.at[BACK_FRONT], 0, &t->surface.position);
     gl->Uniform1i(b->programs.back.at[BACK_GRID], t->surface.grid);
     use_eye(b, b->programs.back.at[BACK_EYE], v);
     gl->BindVertexArray(t->mesh.array);
@@ -105,10 +105,10 @@ static void find_nearest(const struct between *b, const struct objects_drawer *t
     const GLint *at = b->programs.front.at;
     joined_begin(&b->frame.nearest, b->gl);
     b->gl->UseProgram(b->programs.front.id);
-    use(b, at[F_SCENE], 0, v->scene);
-    use(b, at[F_OBJECTS], 1, &t->surface.position);
-    use(b, at[F_NORMALS], 2, &t->surface.normal);
-    use(b, at[F_BACK], 3, &b->frame.behind);
+    use_target(b, at[F_SCENE], 0, v->scene);
+    use_target(b, at[F_OBJECTS], 1, &t->surface.position);
+    use_target(b, at[F_NORMALS], 2, &t->surface.normal);
+    use_target(b, at[F_BACK], 3, &b->frame.behind);
     b->gl->Uniform1i(at[F_GRID], t->surface.grid);
     use_eye(b, at[F_EYE], v);
     draw_onto(b, &b->programs.front, &b->frame.show);
@@ -174,8 +174,8 @@ static relume_status add_lamp_at(struct between *b, const struct objects_drawer 
     const struct relume_light light = object_lights_of(&t->lights.sample[number]);
     joined_resume(onto, gl);
     gl->UseProgram(b->programs.lamps.id);
-    use(b, at[DRAW_OWN], 0, place);
-    use(b, at[LAMPS_FACING], 1, facing);
+    use_target(b, at[DRAW_OWN], 0, place);
+    use_target(b, at[LAMPS_FACING], 1, facing);
     gl_set_vec3(gl, at[LAMPS_CENTRE], v->geometry->center);
     gl->Uniform1i(at[LAMPS_PICTURE], 2);
     const relume_status status = light_uniforms_set(&b->uniforms, at + LAMPS_LIGHT, 2, &light);
@@ -204,7 +204,7 @@ static relume_status add_lamp(struct between *b, struct objects_drawer *t,
 static void use_panorama(const struct between *b, const GLint *at, const struct between_view *v,
                          const struct target *panorama)
 {
-    use(b, at[VIEW], 0, panorama);
+    use_target(b, at[VIEW], 0, panorama);
     b->gl->Uniform2f(at[ELEVATION], (float)v->geometry->v_min, (float)v->geometry->v_max);
     b->gl->Uniform1i(at[DISC], v->geometry->disc);
 }
@@ -218,45 +218,45 @@ static void find_mean(const struct between *b, const struct between_view *v,
     draw_onto(b, &b->programs.mean, &b->frame.even);
 }
 
-static void show(const struct between *b, const struct objects_drawer *t,
-                 const struct between_view *v, const struct target *lone)
+static void draw_shown(const struct between *b, const struct objects_drawer *t,
+                       const struct between_view *v, const struct target *lone)
 {
     const GLint *at = b->programs.shown.at;
     target_begin(&b->frame.show, b->gl);
     b->gl->UseProgram(b->programs.shown.id);
-    use(b, at[SHOWN_FRONT], 0, &b->frame.nearest.target[1]);
-    use(b, at[SHOWN_OBJECTS], 1, &t->surface.position);
-    use(b, at[SHADED], 2, &t->shaded);
-    use(b, at[LONE], 3, lone);
-    use(b, at[LET_WITHOUT], 4, &b->frame.by_lamps.target[0]);
-    use(b, at[LET_WITH], 5, &b->frame.by_lamps.target[1]);
-    use(b, at[MEAN], 6, &b->frame.even);
+    use_target(b, at[SHOWN_FRONT], 0, &b->frame.nearest.target[1]);
+    use_target(b, at[SHOWN_OBJECTS], 1, &t->surface.position);
+    use_target(b, at[SHADED], 2, &t->shaded);
+    use_target(b, at[LONE], 3, lone);
+    use_target(b, at[LET_WITHOUT], 4, &b->frame.by_lamps.target[0]);
+    use_target(b, at[LET_WITH], 5, &b->frame.by_lamps.target[1]);
+    use_target(b, at[MEAN], 6, &b->frame.even);
     b->gl->Uniform1i(at[SHOWN_GRID], t->surface.grid);
-    use(b, at[SHOWN_EMITTED], 7, &t->surface.emitted);
+    use_target(b, at[SHOWN_EMITTED], 7, &t->surface.emitted);
     b->gl->Uniform1f(at[SHOWN_SENDS], t->skins.sends ? v->sends : 0.0f);
     draw_onto(b, &b->programs.shown, &b->frame.show);
 }
 
-static void gather(const struct between *b, const struct objects_drawer *t,
-                   const struct between_view *v, const struct target *panorama,
-                   const struct target *lone, bool at_objects)
+static void gather_from_frame(const struct between *b, const struct objects_drawer *t,
+                              const struct between_view *v, const struct target *panorama,
+                              const struct target *lone, bool at_objects)
 {
     const struct gl *gl = b->gl;
     const GLint *at = b->programs.gather.at;
     joined_begin(&b->frame.gathered, gl);
     gl->UseProgram(b->programs.gather.id);
     use_panorama(b, at, v, panorama);
-    use(b, at[G_PLACES], 1, v->panorama_places);
+    use_target(b, at[G_PLACES], 1, v->panorama_places);
     gl_set_vec3(gl, at[G_CENTRE], v->geometry->center);
-    use(b, at[G_SCENE], 2, v->scene);
-    use(b, at[G_SCENE_FACING], 3, &b->frame.nearest.target[0]);
-    use(b, at[G_FRONT], 4, &b->frame.nearest.target[1]);
-    use(b, at[G_FACING], 5, &b->frame.nearest.target[2]);
-    use(b, at[G_SHOWN], 6, &b->frame.show);
-    use(b, at[G_LONE], 7, lone);
-    use(b, at[G_MEAN], 8, &b->frame.even);
-    use(b, at[G_ALL_WITHOUT], 9, &b->frame.by_lamps.target[2]);
-    use(b, at[G_ALL_WITH], 10, &b->frame.by_lamps.target[3]);
+    use_target(b, at[G_SCENE], 2, v->scene);
+    use_target(b, at[G_SCENE_FACING], 3, &b->frame.nearest.target[0]);
+    use_target(b, at[G_FRONT], 4, &b->frame.nearest.target[1]);
+    use_target(b, at[G_FACING], 5, &b->frame.nearest.target[2]);
+    use_target(b, at[G_SHOWN], 6, &b->frame.show);
+    use_target(b, at[G_LONE], 7, lone);
+    use_target(b, at[G_MEAN], 8, &b->frame.even);
+    use_target(b, at[G_ALL_WITHOUT], 9, &b->frame.by_lamps.target[2]);
+    use_target(b, at[G_ALL_WITH], 10, &b->frame.by_lamps.target[3]);
     gl_set_vec3(gl, at[G_MIDDLE], t->shadows.middle);
     gl->Uniform1i(at[G_AT_OBJECTS], at_objects);
     gl->Uniform1i(at[G_DIRECTIONAL], v->way == BETWEEN_DIRECTIONAL);
@@ -299,16 +299,16 @@ static void gather_from_points(struct between *b, const struct objects_drawer *t
     between_points_gather(&b->points, &view, v->way, &sites);
 }
 
-static void smooth(const struct between *b, const struct between_view *v, bool at_objects)
+static void smooth_gathered(const struct between *b, const struct between_view *v, bool at_objects)
 {
     const GLint *at = b->programs.smooth.at;
     const float *eye = v->projection->eye;
     joined_begin(&b->frame.smoothed, b->gl);
     b->gl->UseProgram(b->programs.smooth.id);
-    use(b, at[FIRST], 0, &b->frame.gathered.target[0]);
-    use(b, at[SECOND], 1, &b->frame.gathered.target[1]);
-    use(b, at[SMOOTH_PLACE], 2, at_objects ? &b->frame.nearest.target[1] : v->scene);
-    use(b, at[SMOOTH_FACING], 3, &b->frame.nearest.target[at_objects ? 2 : 0]);
+    use_target(b, at[FIRST], 0, &b->frame.gathered.target[0]);
+    use_target(b, at[SECOND], 1, &b->frame.gathered.target[1]);
+    use_target(b, at[SMOOTH_PLACE], 2, at_objects ? &b->frame.nearest.target[1] : v->scene);
+    use_target(b, at[SMOOTH_FACING], 3, &b->frame.nearest.target[at_objects ? 2 : 0]);
     b->gl->Uniform3f(at[SMOOTH_EYE], eye[0], eye[1], eye[2]);
     b->gl->Uniform1i(at[SIZE_OF], v->pattern);
     draw_onto(b, &b->programs.smooth, &b->frame.show);
@@ -320,10 +320,10 @@ static void throw_back(const struct between *b, const struct objects_drawer *t,
     const GLint *at = b->programs.returned.at;
     target_resume(onto, b->gl);
     b->gl->UseProgram(b->programs.returned.id);
-    use(b, at[RETURNED_FRONT], 0, &b->frame.nearest.target[1]);
-    use(b, at[GATHERED], 1, &b->frame.smoothed.target[1]);
-    use(b, at[RETURNED_OBJECTS], 2, &t->surface.position);
-    use(b, at[WHITE], 3, &b->white.objects);
+    use_target(b, at[RETURNED_FRONT], 0, &b->frame.nearest.target[1]);
+    use_target(b, at[GATHERED], 1, &b->frame.smoothed.target[1]);
+    use_target(b, at[RETURNED_OBJECTS], 2, &t->surface.position);
+    use_target(b, at[WHITE], 3, &b->white.objects);
     b->gl->Uniform1i(at[RETURNED_GRID], t->surface.grid);
     draw_added(b, &b->programs.returned, onto);
 }
@@ -334,12 +334,12 @@ static void add_scene(const struct between *b, const struct between_view *v,
     const GLint *at = b->programs.scene.at;
     target_resume(lit, b->gl);
     b->gl->UseProgram(b->programs.scene.id);
-    use(b, at[S_SCENE], 0, v->scene);
-    use(b, at[S_LONE], 1, lone);
+    use_target(b, at[S_SCENE], 0, v->scene);
+    use_target(b, at[S_LONE], 1, lone);
     for (int i = 0; i < JOINED_MAX; i++)
-        use(b, at[S_LET_WITHOUT + i], 2 + i, &b->frame.by_lamps.target[i]);
-    use(b, at[S_WITHOUT], 6, &b->frame.smoothed.target[0]);
-    use(b, at[S_WITH], 7, &b->frame.smoothed.target[1]);
+        use_target(b, at[S_LET_WITHOUT + i], 2 + i, &b->frame.by_lamps.target[i]);
+    use_target(b, at[S_WITHOUT], 6, &b->frame.smoothed.target[0]);
+    use_target(b, at[S_WITH], 7, &b->frame.smoothed.target[1]);
     b->gl->Uniform1f(at[S_EXPOSURE], exposure);
     draw_added(b, &b->programs.scene, lit);
 }
@@ -369,8 +369,8 @@ static void gather_at(struct between *b, const struct objects_drawer *t,
     if (between_has_points(v->way))
         gather_from_points(b, t, v, at_objects);
     else
-        gather(b, t, v, panorama, lone, at_objects);
-    smooth(b, v, at_objects);
+        gather_from_frame(b, t, v, panorama, lone, at_objects);
+    smooth_gathered(b, v, at_objects);
 }
 
 relume_status between_light(struct between *b, struct objects_drawer *t,
@@ -395,7 +395,7 @@ relume_status between_light(struct between *b, struct objects_drawer *t,
     if (between_has_points(v->way))
         status = between_points_light(&b->points, &view, v->way, panorama, &b->frame.even);
     else
-        show(b, t, v, lone);
+        draw_shown(b, t, v, lone);
     if (status)
         return status;
     gather_at(b, t, v, panorama, lone, true);

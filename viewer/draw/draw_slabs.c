@@ -190,8 +190,8 @@ static void draw_slab_cells(const struct turned *t)
             draw_cell(t, column, row);
 }
 
-static void begin(const struct program *program, const struct gl *gl, const struct frame_area *area,
-                  const struct slabs_inputs *in)
+static void begin_slabs(const struct program *program, const struct gl *gl,
+                        const struct frame_area *area, const struct slabs_inputs *in)
 {
     const struct app_rectangle *p = &area->picture;
     gl->UseProgram(program->id);
@@ -210,7 +210,7 @@ static void begin(const struct program *program, const struct gl *gl, const stru
 void draw_slabs(const struct program *program, const struct gl *gl, const struct frame_area *area,
                 const struct slabs_inputs *in, bool nearest)
 {
-    begin(program, gl, area, in);
+    begin_slabs(program, gl, area, in);
     gl->Uniform1i(program->at[NEAREST], nearest);
     for (int i = 0; i < relume_slab_set_count(in->slabs); i++) {
         const struct turned t = turn(program, gl, area, in, i);
@@ -238,7 +238,7 @@ static void set_range(const struct turned *t)
 void draw_slabs_depth(const struct program *program, const struct gl *gl,
                       const struct frame_area *area, const struct slabs_inputs *in)
 {
-    begin(program, gl, area, in);
+    begin_slabs(program, gl, area, in);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
     for (int i = 0; i < relume_slab_set_count(in->slabs); i++) {

@@ -188,7 +188,7 @@ relume_status gl_renderer_relight_views(struct gl_renderer *r, const struct fram
 }
 
 // The views that the frame needs.
-static relume_status prepare(struct gl_renderer *r, const struct frame_request *q)
+static relume_status prepare_frame(struct gl_renderer *r, const struct frame_request *q)
 {
     struct file_views *v = &r->views;
     memset(v->needed, 0, (size_t)v->count * sizeof *v->needed);
@@ -198,7 +198,7 @@ static relume_status prepare(struct gl_renderer *r, const struct frame_request *
 }
 
 // Normals and the like are for looking up, not at.
-static relume_status see(struct gl_renderer *r, const struct frame_request *q)
+static relume_status apply_glare(struct gl_renderer *r, const struct frame_request *q)
 {
     r->shown = &r->frame;
     if (!q->observer.on || q->pass != RELUME_PASS_COLOUR)
@@ -230,7 +230,7 @@ relume_status gl_renderer_draw(struct gl_renderer *r, const struct frame_request
         .picture = q->picture,
         .exposure = q->exposure,
     };
-    relume_status status = prepare(r, q);
+    relume_status status = prepare_frame(r, q);
     if (!status && r->empty)
         target_begin(&r->frame, r->gl);
     else if (!status && (r->objects.drawer.gl || r->exchange.source.scene))
@@ -242,7 +242,7 @@ relume_status gl_renderer_draw(struct gl_renderer *r, const struct frame_request
     if (!status)
         status = draw_lights_in_view(r, q, &area);
     if (!status)
-        status = see(r, q);
+        status = apply_glare(r, q);
     if (status)
         return status;
     target_resume(r->shown, r->gl);

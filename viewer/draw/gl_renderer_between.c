@@ -19,7 +19,7 @@ static int samples_of(const struct frame_request *q, enum between_way way)
                           : relume_transport_samples(relume_transport_find(ways[way].name));
 }
 
-static relume_status prepare(struct gl_renderer *r, const struct frame_area *area)
+static relume_status need_targets(struct gl_renderer *r, const struct frame_area *area)
 {
     relume_status status = gl_renderer_need(&r->objects.scene, r, area);
     return status ? status : gl_renderer_need(&r->objects.lit, r, area);
@@ -38,7 +38,7 @@ relume_status gl_renderer_need_between(struct gl_renderer *r, const struct frame
     if (r->exchange.between.gl)
         return RELUME_OK;
     r->gl->BindVertexArray(r->vertices);
-    relume_status status = prepare(r, area);
+    relume_status status = need_targets(r, area);
     if (!status)
         status = gl_renderer_find_scene(r, q, *area);  // r->objects.position is known then
     return status ? status
@@ -62,9 +62,9 @@ static relume_status add_light(struct gl_renderer *r, const struct frame_request
                                   r->views.relit[0], &r->frame, &r->objects.lit, area->exposure);
 }
 
-static relume_status draw(struct gl_renderer *r, const struct frame_request *q,
-                          const struct frame_area *area, const struct between_view *view,
-                          const struct relume_light *lights, int count)
+static relume_status draw_lights(struct gl_renderer *r, const struct frame_request *q,
+                                 const struct frame_area *area, const struct between_view *view,
+                                 const struct relume_light *lights, int count)
 {
     relume_status status = between_begin(&r->exchange.between, &r->objects.drawer, view);
     target_begin(&r->objects.lit, r->gl);
@@ -95,7 +95,7 @@ relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
     relume_status status = gl_renderer_need_between(r, q, area);
     r->gl->BindVertexArray(r->vertices);
     if (!status)
-        status = prepare(r, area);
+        status = need_targets(r, area);
     if (!status)
         status = objects_drawer_see(&r->objects.drawer, &projection);
     if (!status)
@@ -116,5 +116,5 @@ relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
         .pattern = ways[way].pattern,
         .spacing = relume_transport_spacing(relume_transport_find(ways[way].name)),
         .sends = count ? 1.0f / (float)count : 0.0f};
-    return draw(r, q, area, &view, lights, count);
+    return draw_lights(r, q, area, &view, lights, count);
 }

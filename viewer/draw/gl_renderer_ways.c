@@ -195,8 +195,8 @@ static relume_status wait_for_all(struct gl_renderer *r)
 
 // ---------------------------------------------------------------- drawing
 
-static relume_status show(bool *shown, struct gl_renderer *r, const struct frame_area *area,
-                          int slot)
+static relume_status show_picture(bool *shown, struct gl_renderer *r, const struct frame_area *area,
+                                  int slot)
 {
     const struct relume_image *image;
     struct target *target = &r->exchange.way[slot];
@@ -241,7 +241,7 @@ static relume_status draw_way(struct gl_renderer *r, const struct frame_request 
     bool shown = false;
     relume_status status = RELUME_OK;
     if (between && !by_passes)
-        status = show(&shown, r, area, slot);
+        status = show_picture(&shown, r, area, slot);
     double ms = 0.0;
     if (!status && !shown && between && stand_in)
         status = draw_passes(&shown, r, q, area, lights, count, &ms, own ? own : stand_in);

@@ -467,7 +467,8 @@ void gl_relighter_forget(struct gl_relighter *r)
         gl_relighter_forget(r->linear);
 }
 
-static relume_status show(const struct target **out, struct gl_relighter *r, struct relit_view *v)
+static relume_status show_view(const struct target **out, struct gl_relighter *r,
+                               struct relit_view *v)
 {
     v->used = r->frame;
     const relume_status status = v->fresh ? RELUME_OK : relight(r, v);
@@ -490,7 +491,7 @@ relume_status gl_relighter_view(const struct target **out, struct gl_relighter *
     }
     if (!v->present)
         status = load(r, view);
-    return status ? status : show(out, r, v);
+    return status ? status : show_view(out, r, v);
 }
 
 relume_status gl_relighter_wait(const struct target **out, struct gl_relighter *r, int view)
@@ -502,7 +503,7 @@ relume_status gl_relighter_wait(const struct target **out, struct gl_relighter *
         release(r, &r->view[view]);
     loader_ask(r->loader, view);
     const relume_status status = take_loaded(r, view);
-    return status ? status : show(out, r, &r->view[view]);
+    return status ? status : show_view(out, r, &r->view[view]);
 }
 
 relume_status gl_relighter_part(const struct target **out, struct relume_rect *at,
@@ -514,7 +515,7 @@ relume_status gl_relighter_part(const struct target **out, struct relume_rect *a
     const bool here = v->present && (v->at.width == 0 || holds(v->at, at));
     relume_status status = here ? RELUME_OK : load_part(r, view, &wider);
     if (!status)
-        status = show(out, r, v);
+        status = show_view(out, r, v);
     *at = v->at.width ? v->at : all;
     return status;
 }

@@ -47,8 +47,8 @@ static relume_status add_light(struct relume_image *sum, const struct edited_map
     return RELUME_OK;
 }
 
-static relume_status paint(struct relume_image *out, void *user, const struct relume_light *lights,
-                           int n)
+static relume_status paint_maps(struct relume_image *out, void *user,
+                                const struct relume_light *lights, int n)
 {
     enum { OF_SKY = 48 };  // directional lights that stand for an environment
     const struct edited_maps *m = user;
@@ -123,7 +123,7 @@ static relume_status write_maps(const struct edited_maps *m, char *folder,
 
 static void use_painter(struct session *s)
 {
-    gl_renderer_use_painter(&s->renderer, &(struct view_painter){s->document.own, paint});
+    gl_renderer_use_painter(&s->renderer, &(struct view_painter){s->document.own, paint_maps});
 }
 
 static void show_edited(struct session *s, const struct relume_maps *maps,

@@ -58,7 +58,7 @@ static relume_status make_stage(relume_slab_set **out, struct relume_geometry *g
     return relume_slab_set_create(out, g, 1, uv, NULL, 1);
 }
 
-static void look(struct relume_camera *camera, const struct relume_camera *own)
+static void choose_camera(struct relume_camera *camera, const struct relume_camera *own)
 {
     const struct relume_camera asked = *camera;
     *camera = *own;
@@ -74,7 +74,7 @@ static void look(struct relume_camera *camera, const struct relume_camera *own)
         camera->look_at.field_of_view_deg = asked.look_at.field_of_view_deg;
 }
 
-static void describe(struct document *d, const struct relume_tableau_info *info)
+static void describe_scene(struct document *d, const struct relume_tableau_info *info)
 {
     const int objects = info->entities - info->captures;
     document_add_line(d, "scene: %d capture%s, %d object%s", info->captures,
@@ -123,7 +123,7 @@ static relume_status open_app(struct opening *out, struct session *s, const stru
                             .scene = true,
                             .between = info->captures && info->entities > info->captures};
     struct app_state from = *start;
-    look(&from.camera, &info->camera);
+    choose_camera(&from.camera, &info->camera);
     relume_status status = make_stage(&out->document.slabs, &file.geometry, &from.camera);
     if (status)
         return say(s->log, RELUME_EINVAL, "the eye stands where it looks");
@@ -145,7 +145,7 @@ static relume_status open_scene(struct opening *out, struct session *s, const ch
     status = open_app(out, s, start, tableau);
     out->app.near_lights = true;
     document_set_path(&out->document, path);
-    describe(&out->document, relume_tableau_info(tableau));
+    describe_scene(&out->document, relume_tableau_info(tableau));
     relume_tableau_destroy(&tableau);
     return status;
 }

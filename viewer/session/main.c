@@ -68,7 +68,7 @@ static void host_send(void *user, const struct app_event *event)
 }
 
 // The listener hears of what it asked for, no more.
-static relume_status heard(struct session *s, relume_status status)
+static relume_status end_listening(struct session *s, relume_status status)
 {
     s->messages.listener = NULL;
     return status;
@@ -79,35 +79,35 @@ static relume_status host_light(void *user, const char *spec, bool replace,
 {
     struct session *s = user;
     s->messages.listener = log;
-    return heard(s, session_light(s, spec, replace));
+    return end_listening(s, session_light(s, spec, replace));
 }
 
 static relume_status host_rig(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
     s->messages.listener = log;
-    return heard(s, session_load_rig(s, path));
+    return end_listening(s, session_load_rig(s, path));
 }
 
 static relume_status host_open(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
     s->messages.listener = log;
-    return heard(s, session_show(s, path));
+    return end_listening(s, session_show(s, path));
 }
 
 static relume_status host_edit(void *user, const char *words, const struct relume_log *log)
 {
     struct session *s = user;
     s->messages.listener = log;
-    return heard(s, session_edit(s, words, s->log));
+    return end_listening(s, session_edit(s, words, s->log));
 }
 
 static relume_status host_reflect(void *user, const char *words, const struct relume_log *log)
 {
     struct session *s = user;
     s->messages.listener = log;
-    const relume_status status = heard(s, session_reflect(s, words, s->log));
+    const relume_status status = end_listening(s, session_reflect(s, words, s->log));
     session_hear_handles(s);
     return status;
 }
@@ -264,7 +264,7 @@ static relume_status take_events(struct session *s, bool *changed, double *time_
     return status;
 }
 
-static relume_status live(struct session *s, struct script *script)
+static relume_status play_window(struct session *s, struct script *script)
 {
     relume_status status = RELUME_OK;
     bool more = script != NULL;
@@ -306,7 +306,7 @@ static void recall_rig(struct options *o, const struct settings *settings)
         relume_rig_destroy(&o->rig);
 }
 
-static void remember(struct session *s, struct settings *settings)
+static void keep_settings(struct session *s, struct settings *settings)
 {
     const struct relume_log *log = s->log;
     if (!s->window.full_screen) {
@@ -364,10 +364,10 @@ static relume_status run_window(struct session *s, struct options *o)
     if (!status && o->script)
         status = script_open(&script, o->script, &host);
     if (!status)
-        status = live(s, script);
+        status = play_window(s, script);
     script_close(&script);
     if (opened && !o->no_config)
-        remember(s, &settings);  // also when the graphics card went away
+        keep_settings(s, &settings);  // also when the graphics card went away
     return status;
 }
 

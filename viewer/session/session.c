@@ -289,7 +289,7 @@ relume_status session_render(struct session *s)
 }
 
 // The first frame is drawn once more, with the exposure that it asks for.
-static relume_status meter(struct session *s)
+static relume_status meter_frame(struct session *s)
 {
     const double before = app_exposure_ev(&s->app);
     double ev;
@@ -332,28 +332,28 @@ bool session_send(struct session *s, const struct app_event *event)
     session_hear_ways(s, &before);
     if (!shown && panel_shown(&s->app) && session_build_panel(s, false))
         return true;  // what went wrong goes wrong again when it is drawn, and is reported there
-    return changed || shown || s->app.wish;
+    return changed || shown || s->app.action;
 }
 
 relume_status session_draw(struct session *s)
 {
     relume_status status = panel_shown(&s->app) ? session_build_panel(s, false) : RELUME_OK;
-    const bool wished = s->app.wish;
+    const bool acted = s->app.action;
     if (!status)
         status = session_perform_action(s);
-    if (!status && wished && panel_shown(&s->app))
+    if (!status && acted && panel_shown(&s->app))
         status = session_build_panel(s, false);  // with what is said of it
     const bool recorded = !status && session_records(s) && !session_record_step(s);
     if (!status && !recorded)
         status = session_render(s);
     if (!status && !recorded && s->app.now.auto_exposure)
-        status = meter(s);
+        status = meter_frame(s);
     return status ? status : session_add_histogram(s);
 }
 
 bool session_is_busy(const struct session *s)
 {
-    return s->app.wish || session_records(s);
+    return s->app.action || session_records(s);
 }
 
 bool session_pass(struct session *s, double seconds)

@@ -30,7 +30,7 @@ static void say_saved(struct session *s, const char *path, relume_status status)
         session_say(s, "saved %.200s", path);
 }
 
-static relume_status wish_picture(struct session *s, const char *extension)
+static relume_status save_picture(struct session *s, const char *extension)
 {
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, extension);
@@ -42,17 +42,17 @@ static relume_status wish_picture(struct session *s, const char *extension)
     return RELUME_OK;
 }
 
-static relume_status wish_png(struct session *s)
+static relume_status save_png(struct session *s)
 {
-    return wish_picture(s, ".png");
+    return save_picture(s, ".png");
 }
 
-static relume_status wish_exr(struct session *s)
+static relume_status save_exr(struct session *s)
 {
-    return wish_picture(s, ".exr");
+    return save_picture(s, ".exr");
 }
 
-static relume_status wish_recording(struct session *s, enum record_kind kind, const char *ending)
+static relume_status begin_recording(struct session *s, enum record_kind kind, const char *ending)
 {
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, ending);
@@ -61,17 +61,17 @@ static relume_status wish_recording(struct session *s, enum record_kind kind, co
     return RELUME_OK;
 }
 
-static relume_status wish_sweep(struct session *s)
+static relume_status record_sweep(struct session *s)
 {
-    return wish_recording(s, RECORD_SWEEP, "-sweep");
+    return begin_recording(s, RECORD_SWEEP, "-sweep");
 }
 
-static relume_status wish_turntable(struct session *s)
+static relume_status record_turntable(struct session *s)
 {
-    return wish_recording(s, RECORD_TURNTABLE, "-turntable");
+    return begin_recording(s, RECORD_TURNTABLE, "-turntable");
 }
 
-static relume_status wish_save_rig(struct session *s)
+static relume_status save_rig(struct session *s)
 {
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, ".json");
@@ -81,7 +81,7 @@ static relume_status wish_save_rig(struct session *s)
 }
 
 // To whom it is shown may be the clipboard, or the terminal where there is none.
-static relume_status wish_copy(struct session *s)
+static relume_status copy_state(struct session *s)
 {
     char line[STATE_LINE_MOST];
     const relume_status status = session_state_line(line, sizeof line, s);
@@ -96,21 +96,21 @@ static relume_status wish_copy(struct session *s)
     return RELUME_OK;
 }
 
-static relume_status wish_add_light(struct session *s)
+static relume_status add_light(struct session *s)
 {
     const bool added = !session_light(s, s->app.spec, false);
     session_say(s, added ? "light added: %.200s" : "not a light: %.200s", s->app.spec);
     return RELUME_OK;
 }
 
-static relume_status wish_map(struct session *s)
+static relume_status use_map(struct session *s)
 {
     const bool shown = !session_map(s, s->app.spec);
     session_say(s, shown ? "environment: %.200s" : "not an environment map: %.200s", s->app.spec);
     return RELUME_OK;
 }
 
-static relume_status wish_full_screen(struct session *s)
+static relume_status toggle_full_screen(struct session *s)
 {
     if (!s->window.backend->full_screen)
         return RELUME_OK;
@@ -119,12 +119,12 @@ static relume_status wish_full_screen(struct session *s)
     return RELUME_OK;
 }
 
-static relume_status wish_folder(struct session *s)
+static relume_status browse_folder(struct session *s)
 {
     return session_browse(s, s->app.spec);
 }
 
-static relume_status wish_open(struct session *s)
+static relume_status open_file(struct session *s)
 {
     char path[APP_SPEC];
     snprintf(path, sizeof path, "%s", s->app.spec);
@@ -132,10 +132,10 @@ static relume_status wish_open(struct session *s)
 }
 
 // What goes wrong is said in the panel.
-static relume_status wish_words(struct session *s,
-                                relume_status (*act)(struct session *, const char *,
-                                                     const struct relume_log *),
-                                const char *did, const char *did_not)
+static relume_status edit_in_words(struct session *s,
+                                   relume_status (*act)(struct session *, const char *,
+                                                        const struct relume_log *),
+                                   const char *did, const char *did_not)
 {
     char words[SESSION_TEXT];
     snprintf(words, sizeof words, "%.200s", s->app.spec);
@@ -149,16 +149,16 @@ static relume_status wish_words(struct session *s,
     return RELUME_OK;
 }
 
-static relume_status wish_edit(struct session *s)
+static relume_status edit_document(struct session *s)
 {
     const bool writes = !strncmp(s->app.spec, "write ", 6);
-    return wish_words(s, session_edit, writes ? "done" : "edited",
-                      writes ? "not written" : "not edited");
+    return edit_in_words(s, session_edit, writes ? "done" : "edited",
+                         writes ? "not written" : "not edited");
 }
 
-static relume_status wish_reflection(struct session *s)
+static relume_status edit_reflection(struct session *s)
 {
-    const relume_status status = wish_words(s, session_reflect, NULL, "not done");
+    const relume_status status = edit_in_words(s, session_reflect, NULL, "not done");
     session_hear_handles(s);
     return status;
 }
@@ -175,7 +175,7 @@ static double focus_at(const struct session *s, struct relume_vec3 p)
 }
 
 // With a pinhole everything is sharp: it is opened.
-static relume_status wish_focus(struct session *s)
+static relume_status focus_at_cursor(struct session *s)
 {
     struct app *app = &s->app;
     struct relume_vec3 p;
@@ -198,32 +198,32 @@ static relume_status wish_focus(struct session *s)
     return RELUME_OK;
 }
 
-// What was wished for is done once; what fails is said in the panel and in the log.
+// An action is performed once; what fails is said in the panel and in the log.
 relume_status session_perform_action(struct session *s)
 {
-    static relume_status (*const grants[])(struct session *) = {
-        [APP_WISH_PNG] = wish_png,
-        [APP_WISH_EXR] = wish_exr,
-        [APP_WISH_SAVE_RIG] = wish_save_rig,
-        [APP_WISH_SWEEP] = wish_sweep,
-        [APP_WISH_TURNTABLE] = wish_turntable,
-        [APP_WISH_COPY] = wish_copy,
-        [APP_WISH_NOTES] = session_notes_show,
-        [APP_WISH_NOTE] = session_notes_add,
-        [APP_WISH_NOTE_SAVE] = session_notes_save,
-        [APP_WISH_NOTE_BACK] = session_notes_back,
-        [APP_WISH_ADD_LIGHT] = wish_add_light,
-        [APP_WISH_MAP] = wish_map,
-        [APP_WISH_FULL_SCREEN] = wish_full_screen,
-        [APP_WISH_FOLDER] = wish_folder,
-        [APP_WISH_OPEN] = wish_open,
-        [APP_WISH_EDIT] = wish_edit,
-        [APP_WISH_REFLECTION] = wish_reflection,
-        [APP_WISH_FOCUS] = wish_focus,
+    static relume_status (*const actions[])(struct session *) = {
+        [APP_ACTION_PNG] = save_png,
+        [APP_ACTION_EXR] = save_exr,
+        [APP_ACTION_SAVE_RIG] = save_rig,
+        [APP_ACTION_SWEEP] = record_sweep,
+        [APP_ACTION_TURNTABLE] = record_turntable,
+        [APP_ACTION_COPY] = copy_state,
+        [APP_ACTION_NOTES] = session_notes_show,
+        [APP_ACTION_NOTE] = session_notes_add,
+        [APP_ACTION_NOTE_SAVE] = session_notes_save,
+        [APP_ACTION_NOTE_BACK] = session_notes_back,
+        [APP_ACTION_ADD_LIGHT] = add_light,
+        [APP_ACTION_MAP] = use_map,
+        [APP_ACTION_FULL_SCREEN] = toggle_full_screen,
+        [APP_ACTION_FOLDER] = browse_folder,
+        [APP_ACTION_OPEN] = open_file,
+        [APP_ACTION_EDIT] = edit_document,
+        [APP_ACTION_REFLECTION] = edit_reflection,
+        [APP_ACTION_FOCUS] = focus_at_cursor,
     };
-    const enum app_wish wish = s->app.wish;
-    s->app.wish = APP_WISH_NONE;
-    if ((size_t)wish >= sizeof grants / sizeof *grants || !grants[wish])
+    const enum app_action action = s->app.action;
+    s->app.action = APP_ACTION_NONE;
+    if ((size_t)action >= sizeof actions / sizeof *actions || !actions[action])
         return RELUME_OK;
-    return grants[wish](s);
+    return actions[action](s);
 }

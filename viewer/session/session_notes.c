@@ -17,7 +17,7 @@
 // ---------------------------------------------------------------- the list
 
 // What goes wrong is said, and the list stays as it is on disk.
-static relume_status said(struct session *s, relume_status status)
+static relume_status report_status(struct session *s, relume_status status)
 {
     messages_stop(&s->messages);
     if (status)
@@ -48,10 +48,10 @@ relume_status session_notes_show(struct session *s)
         status = open_list(s);
     s->app.noting = !status;
     s->app.panel |= s->app.noting;
-    return said(s, status);
+    return report_status(s, status);
 }
 
-static relume_status save(struct session *s)
+static relume_status save_list(struct session *s)
 {
     struct relume_log bare = s->log ? *s->log : (struct relume_log){0};
     bare.leave_unnoted = true;  // the list was read from where it goes
@@ -76,15 +76,15 @@ relume_status session_notes_add(struct session *s)
     n->places = 0;
     if (!status) {
         n->chosen = relume_notes_count(n->list) - 1;
-        status = save(s);
+        status = save_list(s);
     }
-    return said(s, status);
+    return report_status(s, status);
 }
 
 relume_status session_notes_save(struct session *s)
 {
     messages_listen(&s->messages);
-    return said(s, save(s));
+    return report_status(s, save_list(s));
 }
 
 // ---------------------------------------------------------------- back to a note
@@ -136,5 +136,5 @@ relume_status session_notes_back(struct session *s)
     s->app.now.exposure_ev = 0;
     for (int i = 0; i < n; i++)
         show_entry(s, &entry[i], &lit);
-    return said(s, RELUME_OK);
+    return report_status(s, RELUME_OK);
 }

@@ -13,7 +13,7 @@ static bool sees_something(const struct session *s)
     return s->renderer.stage;
 }
 
-static relume_status save(struct session *s, struct relume_image *image, const char *path)
+static relume_status save_image(struct session *s, struct relume_image *image, const char *path)
 {
     const relume_status status = relume_image_save(image, path, relume_image_params(.log = s->log));
     relume_image_destroy(image);
@@ -47,7 +47,7 @@ relume_status session_frame(struct session *s, const char *path)
     relume_status status = draw_finished(s);
     if (!status)
         status = session_read(&image, s, relume_image_saves_linear(path));
-    return status ? status : save(s, &image, path);
+    return status ? status : save_image(s, &image, path);
 }
 
 // The screen's first row is the lowest, and its values are coded.
@@ -88,7 +88,7 @@ relume_status session_shot(struct session *s, const char *path)
 {
     struct relume_image image;
     const relume_status status = read_screen(&image, s);
-    return status ? status : save(s, &image, path);
+    return status ? status : save_image(s, &image, path);
 }
 
 relume_status session_film(struct session *s)

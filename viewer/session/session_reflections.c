@@ -50,7 +50,7 @@ void session_name_reflections(char path[APP_SPEC], const struct session *s)
 }
 
 // The list that was read may be replaced, which the log's context would not have.
-static relume_status save(struct session *s, const char *name, const struct relume_log *log)
+static relume_status save_edits(struct session *s, const char *name, const struct relume_log *log)
 {
     const struct relume_log bare = {.message = log ? log->message : NULL,
                                     .user = log ? log->user : NULL};
@@ -79,7 +79,7 @@ relume_status session_reflect(struct session *s, const char *words, const struct
         return handles_say(&s->app, "on", log);
     char name[APP_SPEC];
     snprintf(name, sizeof name, "%s", words + 4 + strspn(words + 4, " "));
-    return save(s, edits_unquote(name), log);
+    return save_edits(s, edits_unquote(name), log);
 }
 
 void session_hear_handles(struct session *s)

@@ -50,7 +50,7 @@ static void describe_exchange(char text[SESSION_TEXT], struct exchanger *e, int 
                  100.0 * state.done);
 }
 
-static void describe(char text[SESSION_TEXT], const struct gl_renderer *r, int slot, int way)
+static void describe_way(char text[SESSION_TEXT], const struct gl_renderer *r, int slot, int way)
 {
     char more[SESSION_TEXT] = "";
     if (r->exchange.passes_ms[slot] > 0.0)
@@ -70,6 +70,6 @@ void session_describe_ways(struct session *s)
         const bool shown = i == 0 || now->ways != APP_SPLIT_NONE;
         s->panel.way[i][0] = '\0';
         if (shown && way_gathers(way[i]))
-            describe(s->panel.way[i], &s->renderer, i, way[i]);
+            describe_way(s->panel.way[i], &s->renderer, i, way[i]);
     }
 }

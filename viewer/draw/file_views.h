@@ -14,8 +14,8 @@ struct file_views {
     double (*uv)[2];                // [count]: cameras of a slab
     bool *needed;                   // [count], by the present frame
     const struct target **relit;    // [count]; NULL where not needed
-    relume_slab *grid;              // of one slab, else NULL
-    const relume_slab_set *around;  // of several slabs, else NULL
+    relume_slab *grid;              // of one slab; NULL: none, or several
+    const relume_slab_set *around;  // several slabs; NULL: none, or one
     const int *slab_of;             // of several: [count]
     struct depths depths;           // of slabs; empty: there is no depth
 };

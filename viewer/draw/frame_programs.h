@@ -8,8 +8,7 @@ struct frame_programs {
     struct program picture, panorama, ball, source, present, apart;  // each for draw_NAME
 };
 
-// `geometry` is that of the views: other views than panoramas leave `panorama` empty.
-// RELUME_ESYSTEM.
+// `panorama` stays empty where the views with that geometry are no panoramas. RELUME_ESYSTEM.
 relume_status frame_programs_create(struct frame_programs *p, const struct gl *gl,
                                     const struct relume_geometry *geometry,
                                     const struct relume_log *log);

@@ -14,8 +14,7 @@
 #include "relit/enhancer.h"
 #include "relit/exchanger.h"
 
-// Objects, and the scene that they stand in (gl_renderer_objects.c). Targets are made when first
-// needed.
+// Objects and the scene around them (gl_renderer_objects.c). Targets are made when first needed.
 struct scene_objects {
     struct objects_drawer drawer;         // empty: there are no objects
     struct depth_source position_source;  // world positions of the pixels of views ...

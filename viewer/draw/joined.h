@@ -13,7 +13,7 @@ struct joined {
     GLuint framebuffer;
 };
 
-// Makes `count` targets in place of those that there were. RELUME_ESYSTEM.
+// Makes `count` targets and frees the old ones. RELUME_ESYSTEM.
 relume_status joined_create(struct joined *j, const struct gl *gl, int count, int width, int height,
                             const struct relume_log *log);
 void joined_destroy(struct joined *j, const struct gl *gl);

@@ -1,4 +1,4 @@
-// object_lights.c - the lights of objects, and the light samples that stand for them
+// object_lights.c - the lights of objects, and the light samples that approximate them
 #include "draw/object_lights.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// object_lights.h - the lights of objects, and the light samples that stand for them
+// object_lights.h - the lights of objects, and the light samples that approximate them
 #ifndef VIEWER_OBJECT_LIGHTS_H
 #define VIEWER_OBJECT_LIGHTS_H
 
@@ -12,7 +12,7 @@ struct object_lights {
     int samples;
 };
 
-// Copies lights; what they point to must live as long. RELUME_ENOMEM, RELUME_EINVAL.
+// Copies lights; their pictures must live as long. RELUME_ENOMEM, RELUME_EINVAL.
 relume_status object_lights_set(struct object_lights *l, const relume_objects *objects,
                                 const struct relume_light *lights, int n);
 void object_lights_destroy(struct object_lights *l);

@@ -16,7 +16,7 @@ struct object_materials {
     const struct relume_log *log;
     const relume_objects *objects;
     struct btf_material *material;  // [materials]; without a shader until it is shown
-    struct model_program *program;  // [programs]: of the models in use
+    struct model_program *program;  // [programs], one for each model in use
     int programs;
 };
 

@@ -22,7 +22,8 @@ void object_mesh_destroy(struct object_mesh *m);
 relume_status object_mesh_see(struct object_mesh *m, const relume_objects *objects,
                               const struct frame_projection *projection,
                               const struct relume_log *log);
-// The vertices and triangles that are uploaded; all else is that of the objects.
+// Returns the vertices and triangles that are uploaded, with the parts and materials of the
+// objects.
 const struct relume_objects_info *object_mesh_drawn(const struct object_mesh *m,
                                                     const relume_objects *objects);
 // Draws `count` triangles from `first` on, from the array, which is in use.

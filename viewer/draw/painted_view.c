@@ -1,4 +1,4 @@
-// painted_view.c - a planar view that somebody paints under lights, without codes
+// painted_view.c - a planar view that a painter shows under lights, without codes
 #include "draw/painted_view.h"
 
 #include <stdlib.h>

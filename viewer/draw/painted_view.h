@@ -1,4 +1,4 @@
-// painted_view.h - a planar view that somebody paints under lights, without codes
+// painted_view.h - a planar view that a painter shows under lights, without codes
 #ifndef VIEWER_PAINTED_VIEW_H
 #define VIEWER_PAINTED_VIEW_H
 
@@ -6,7 +6,7 @@
 
 #include <relume/relight/relight.h>
 
-// Who paints; the image is the caller's.
+// Paints the view; the caller destroys the image.
 struct view_painter {
     void *user;
     relume_status (*paint)(struct relume_image *out, void *user, const struct relume_light *lights,
@@ -23,7 +23,7 @@ struct painted_view {
 };
 
 void painted_view_use(struct painted_view *v, const struct view_painter *painter);
-// Paints the view into v->target, unless the lights are the same as before. Errors of the painter,
+// Paints the view into v->target, unless it shows these lights. Errors of the painter,
 // RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status painted_view_light(struct painted_view *v, const struct gl *gl,
                                  const struct relume_light *lights, int n,

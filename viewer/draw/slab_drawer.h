@@ -9,9 +9,8 @@ struct slab_drawer {
     const struct gl *gl;
     const struct relume_log *log;
     struct program slab, slab_depth, slab_lens, slabs, slabs_depth, mean;
-    // Sums of weighted values, made when first needed: of an aperture's cameras or of several
-    // slabs, of rays that pass the cameras of no slab, and of the pinholes of a lens before several
-    // slabs.
+    // Sums of weighted values, made when first needed: `sum` has an aperture's cameras or several
+    // slabs, `beside` rays that pass the cameras of no slab, `pinholes` a lens in front of several.
     struct target sum, beside, pinholes;
 };
 

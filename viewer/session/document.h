@@ -22,7 +22,7 @@ struct document {
     char path[APP_SPEC];         // as it was opened ...
     bool as_panorama;            // ... with the options of a panorama
     char folder[APP_SPEC];       // of the last file that had a folder
-    relume_pack *pack;           // of a relume file, else NULL
+    relume_pack *pack;           // of a relume file, or NULL
     struct pack_source *source;  // of the pack, for the renderer and its threads
     relume_slab_set *slabs;      // around which the eye goes, NULL for one view or one slab
     void *own;
@@ -70,7 +70,7 @@ void document_close(struct document *d);
 
 // Sets name, path and folder.
 void document_set_path(struct document *d, const char *path);
-// Adds a line to the description; of too many lines the last ones are left out.
+// Adds a line to the description, which holds DOCUMENT_LINES.
 void document_add_line(struct document *d, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 // Shows a list of edits in the panel.

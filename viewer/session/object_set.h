@@ -32,8 +32,8 @@ relume_status object_set_open(struct object_set *set, const struct object_option
 // its name a .json that is nothing else.
 bool object_file_is_material(const char *path);
 bool object_file_is_description(const char *path);
-// Puts the objects of a file in place of those of the set, which stay with the caller. Errors of
-// relume_objects_open; the set is unchanged then.
+// Opens the objects of a file instead of those of the set, which the caller destroys. Errors of
+// relume_objects_open, which leave the set unchanged.
 relume_status object_set_replace(struct object_set *set, const char *path, int threads,
                                  const struct relume_log *log);
 

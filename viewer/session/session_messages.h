@@ -10,7 +10,7 @@ struct session_messages {
     char last[SESSION_TEXT];            // shown in the panel
     char notice[SESSION_TEXT];          // last message of the log since messages_listen
     bool listens;                       // messages become the notice, too
-    const struct relume_log *listener;  // hears messages in place of the terminal; NULL: nobody
+    const struct relume_log *listener;  // hears messages instead of the terminal; NULL: none
 };
 
 // From now on until messages_stop the last message of the log is kept.

@@ -1,4 +1,4 @@
-// session_window.c - the window of a session, or the picture of one that nobody sees
+// session_window.c - the window of a session, on the screen or in memory
 #include "session/session_window.h"
 
 relume_status session_window_open(struct session_window *w, const struct context_backend *backend,

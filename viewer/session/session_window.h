@@ -1,4 +1,4 @@
-// session_window.h - the window of a session, or the picture of one that nobody sees
+// session_window.h - the window of a session, on the screen or in memory
 #ifndef VIEWER_SESSION_WINDOW_H
 #define VIEWER_SESSION_WINDOW_H
 

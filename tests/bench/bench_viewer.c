@@ -5,7 +5,7 @@
 #include "bench.h"
 
 #include "draw/draw.h"
-#include "relit/relighter.h"
+#include "relit/gl_relighter.h"
 #include "session/session.h"
 #include "window/context_offscreen.h"
 
@@ -124,7 +124,7 @@ static void move_lights(struct relume_light *lights, int n, enum relume_light_ki
 }
 
 struct scene {
-    struct relighter relighter;
+    struct gl_relighter relighter;
     struct program panorama;
     struct target frame;
 };
@@ -133,14 +133,14 @@ struct scene {
 static double draw_frame(struct scene *s, const struct relume_light *lights, int n)
 {
     const struct relume_geometry g = relume_geometry_default(RELUME_SPHERICAL, width, height);
-    const struct place place = {.width = width, .height = height, .exposure = 1.0f};
+    const struct frame_area area = {.width = width, .height = height, .exposure = 1.0f};
     const struct target *view;
     const double start = now_s();
-    bench_check(relighter_begin(&s->relighter, lights, n));
-    bench_check(relighter_view(&view, &s->relighter, 0));
+    bench_check(gl_relighter_begin(&s->relighter, lights, n));
+    bench_check(gl_relighter_view(&view, &s->relighter, 0));
     gl.BindVertexArray(s->relighter.vertices);
     target_begin(&s->frame, &gl);
-    draw_panorama(&s->panorama, &gl, &place, &g, (struct relume_pan_tilt){.zoom = 1.0}, view);
+    draw_panorama(&s->panorama, &gl, &area, &g, (struct relume_pan_tilt){.zoom = 1.0}, view);
     gl.Finish();
     return now_s() - start;
 }
@@ -167,7 +167,7 @@ static void open_scene(struct scene *s, struct file *f)
 {
     const struct code_source source = {.codes = fetch, NULL, f, find_surface};
     *s = (struct scene){.frame = {0}};
-    bench_check(relighter_create(&s->relighter, &gl, &source, 1, NULL));
+    bench_check(gl_relighter_create(&s->relighter, &gl, &source, 1, NULL));
     s->relighter.by_library = by_library;
     const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
     bench_check(draw_panorama_create(&s->panorama, &gl, &sphere, NULL));
@@ -178,7 +178,7 @@ static void close_scene(struct scene *s)
 {
     target_destroy(&s->frame, &gl);
     program_destroy(&s->panorama, &gl);
-    relighter_destroy(&s->relighter);
+    gl_relighter_destroy(&s->relighter);
 }
 
 static void bench_codebook(void)
@@ -243,7 +243,7 @@ static int bench_opening(const struct context_backend *backend, const char *path
                                        "light moved, next frame"};
     struct times bench[4] = {{.n = 0}};
     for (int run = 0; run < RUNS; run++) {
-        struct session s = {.log = &log, .vram_bytes = (size_t)1 << 30};
+        struct session s = {.log = &log, .settings = {.vram_bytes = (size_t)1 << 30}};
         struct app_state start = {.lights = 0};
         relume_rig *rig = NULL;
         double then = now_s();
@@ -256,7 +256,7 @@ static int bench_opening(const struct context_backend *backend, const char *path
             else
                 bench_check(session_draw(&s));
             if (step)
-                s.gl.Finish();
+                s.window.gl.Finish();
             times_add(&bench[step], now_s() - then);
             app_turn_light(&s.app, 10, 0);
             then = now_s();

@@ -2,7 +2,7 @@
 #ifndef TESTS_GL_FIXTURE_H
 #define TESTS_GL_FIXTURE_H
 
-#include "draw/renderer.h"
+#include "draw/gl_renderer.h"
 #include "owned.h"
 #include "window/context.h"
 

@@ -414,9 +414,9 @@ static void keys(void **state)
     key(&app, APP_KEY_ENTER);
     assert_false(app.quit);
     key(&app, APP_CONTROL | 's');
-    assert_int_equal(app.wish, APP_WISH_PNG);
+    assert_int_equal(app.action, APP_ACTION_PNG);
     key(&app, APP_KEY_F11);
-    assert_int_equal(app.wish, APP_WISH_FULL_SCREEN);
+    assert_int_equal(app.action, APP_ACTION_FULL_SCREEN);
     key(&app, APP_CONTROL | 'q');
     assert_true(app.quit);
 }
@@ -878,7 +878,7 @@ static void the_next_click_is_in_focus(void **state)
     assert_true(key(&app, 'f') && app.picks_focus);
     app_handle(&app, &(struct app_event){.kind = APP_PRESS, .x = 120, .y = 70});
     app_handle(&app, &(struct app_event){.kind = APP_MOVE, .x = 150, .y = 70});
-    assert_int_equal(app.wish, APP_WISH_FOCUS);
+    assert_int_equal(app.action, APP_ACTION_FOCUS);
     assert_true(!app.picks_focus && app.now.camera.eye.x == x);
     key(&app, 'f');
     key(&app, APP_KEY_ESCAPE);

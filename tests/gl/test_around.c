@@ -20,7 +20,7 @@ struct around {
     struct fixture_file file;
     struct relume_geometry slab[SLABS];
     relume_slab_set *slabs;
-    struct renderer renderer;
+    struct gl_renderer renderer;
     struct app app;
     struct relume_image views[VIEWS], disparity[VIEWS];
     double uv[VIEWS][2];
@@ -101,10 +101,10 @@ static void open_around(struct around *t)
     open_app(t);
     t->file = fixture_make(VIEWS, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct code_source source = {fixture_fetch, NULL, &t->file, NULL, NULL};
-    assert_int_equal(
-        renderer_create(&t->renderer, &fixture_gl, &source, &t->slab[0], NULL, VIEWS, &fixture_log),
-        RELUME_OK);
-    renderer_use_slabs(&t->renderer, t->slabs, (const double(*)[2])t->uv, t->slab_of);
+    assert_int_equal(gl_renderer_create(&t->renderer, &fixture_gl, &source, &t->slab[0], NULL,
+                                        VIEWS, &fixture_log),
+                     RELUME_OK);
+    gl_renderer_use_slabs(&t->renderer, t->slabs, (const double(*)[2])t->uv, t->slab_of);
     for (int i = 0; i < VIEWS; i++) {
         struct relume_image depth;
         t->views[i] = fixture_relight(&t->file, i, &lamp, 1);
@@ -119,7 +119,7 @@ static void open_around(struct around *t)
 
 static void close_around(struct around *t)
 {
-    renderer_destroy(&t->renderer);
+    gl_renderer_destroy(&t->renderer);
     fixture_free(&t->file);
     for (int i = 0; i < VIEWS; i++) {
         relume_image_destroy(&t->views[i]);
@@ -141,7 +141,7 @@ static double share_beyond(double most, struct around *t, const struct relume_vi
     assert_int_equal(relume_image_create(&want, t->app.width, t->app.height, 3), RELUME_OK);
     assert_int_equal(relume_slab_set_frame(&want, t->slabs, &window, t->views, params), RELUME_OK);
     assert_int_equal(draw_app(&t->renderer, &t->app), RELUME_OK);
-    assert_int_equal(renderer_read(&got, &t->renderer), RELUME_OK);
+    assert_int_equal(gl_renderer_read(&got, &t->renderer), RELUME_OK);
     for (int i = 0; i < 3 * want.width * want.height; i++)
         off += !(fabs((double)got.data[i] - (double)want.data[i]) < most);
     const double share = (double)off / (3.0 * want.width * want.height);
@@ -194,7 +194,7 @@ static void frames_by_depth_are_the_library_s(void **state)
     struct around *t = calloc(1, sizeof *t);
     open_around(t);
     const struct depth_source source = {make_depth, t};
-    assert_int_equal(renderer_use_depth(&t->renderer, &source), RELUME_OK);
+    assert_int_equal(gl_renderer_use_depth(&t->renderer, &source), RELUME_OK);
     for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
         t->app.now.camera.eye = eyes[i];
         char text[64];
@@ -219,7 +219,7 @@ static void lenses_are_the_library_s(void **state)
     struct around *t = calloc(1, sizeof *t);
     open_around(t);
     const struct depth_source source = {make_depth, t};
-    assert_int_equal(renderer_use_depth(&t->renderer, &source), RELUME_OK);
+    assert_int_equal(gl_renderer_use_depth(&t->renderer, &source), RELUME_OK);
     for (size_t i = 0; i < sizeof lenses / sizeof *lenses; i++)
         for (size_t e = 0; e < 3; e++) {
             struct relume_view_params params = lenses[i];
@@ -256,7 +256,7 @@ static void only_needed_views_are_relit(void **state)
     t->file.asked = 0;
     assert_int_equal(draw_app(&t->renderer, &t->app), RELUME_OK);
     for (int i = 0; i < VIEWS; i++)
-        assert_true(!t->renderer.relit[i] || t->slab_of[i] == 0);
+        assert_true(!t->renderer.views.relit[i] || t->slab_of[i] == 0);
     assert_true(t->file.asked > 0 && t->file.asked <= GRID);
     close_around(t);
     free(t);

@@ -78,26 +78,26 @@ static void run(int books, enum relume_domain domain, double bound)
 {
     struct books_file f;
     struct relume_image want[LIGHTS + 1] = {{0}};
-    struct relighter r;
+    struct gl_relighter r;
     make(&f, books, domain);
     for (int n = 0; n <= LIGHTS; n++)
         assert_int_equal(relume_relight(&want[n], &f.codes, lights, n, NULL), RELUME_OK);
     const struct code_source source = {fetch, forget, &f, NULL, NULL};
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     for (int n = 0; n <= LIGHTS; n++) {
         const struct target *target;
         struct relume_image got;
         char what[64];
         snprintf(what, sizeof what, "%d books, domain %d, %d lights", books, (int)domain, n);
-        assert_int_equal(relighter_begin(&r, lights, n), RELUME_OK);
-        assert_int_equal(relighter_view(&target, &r, 0), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(&r, lights, n), RELUME_OK);
+        assert_int_equal(gl_relighter_view(&target, &r, 0), RELUME_OK);
         assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
         assert_below(what, fixture_difference(&got, &want[n]), bound);
         relume_image_destroy(&got);
         relume_image_destroy(&want[n]);
     }
     assert_int_equal(f.dropped, 1);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     drop(&f);
 }
 

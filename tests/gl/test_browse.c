@@ -146,25 +146,25 @@ static void clicks_go_into_folders_and_open_files(void **state)
     struct panel *panel = make_panel(&app, &facts);
     click(panel, 400, row(1));
     panel_build(panel, &app, &facts);
-    assert_int_equal(app.wish, APP_WISH_FOLDER);
+    assert_int_equal(app.action, APP_ACTION_FOLDER);
     snprintf(want, sizeof want, "%s/attic", root);
     assert_string_equal(app.spec, want);
-    app.wish = APP_WISH_NONE;
+    app.action = APP_ACTION_NONE;
     click(panel, 400, row(5));  // one click chooses, two open
     panel_build(panel, &app, &facts);
-    assert_int_equal(app.wish, APP_WISH_NONE);
+    assert_int_equal(app.action, APP_ACTION_NONE);
     click(panel, 400, row(5));
     panel_build(panel, &app, &facts);
-    assert_int_equal(app.wish, APP_WISH_OPEN);
+    assert_int_equal(app.action, APP_ACTION_OPEN);
     snprintf(want, sizeof want, "%s/b.exr", root);
     assert_string_equal(app.spec, want);
-    app.wish = APP_WISH_NONE;
+    app.action = APP_ACTION_NONE;
     click(panel, 400, row(2));  // a capture is opened as a file is
     panel_build(panel, &app, &facts);
-    assert_int_equal(app.wish, APP_WISH_NONE);
+    assert_int_equal(app.action, APP_ACTION_NONE);
     click(panel, 400, row(2));
     panel_build(panel, &app, &facts);
-    assert_int_equal(app.wish, APP_WISH_OPEN);
+    assert_int_equal(app.action, APP_ACTION_OPEN);
     panel_destroy(&panel);
     browse_destroy(&b);
 }
@@ -183,7 +183,7 @@ static void a_path_is_typed_at_once(void **state)
     const struct app_event enter = {.kind = APP_KEY_DOWN, .key = APP_KEY_ENTER};
     assert_true(panel_takes(panel, &enter));
     panel_build(panel, &app, &facts);
-    assert_int_equal(app.wish, APP_WISH_OPEN);
+    assert_int_equal(app.action, APP_ACTION_OPEN);
     snprintf(want, sizeof want, "%s/c.json", root);
     assert_string_equal(app.spec, want);
     // Esc is the app's, which closes the list, also while the line has the keys
@@ -207,7 +207,7 @@ static void the_first_page_opens_the_list(void **state)
     click(panel, 250, 242);  // its button
     panel_build(panel, &app, &none);
     assert_true(app.browse);
-    assert_int_equal(app.wish, APP_WISH_FOLDER);
+    assert_int_equal(app.action, APP_ACTION_FOLDER);
     panel_destroy(&panel);
 }
 
@@ -222,9 +222,9 @@ static void keys_wait_for_a_file(void **state)
     for (int key = ' '; key < 127; key++)
         if (key != '?' && key != '/')
             assert_false(app_handle(&app, &(struct app_event){.kind = APP_KEY_DOWN, .key = key}));
-    assert_true(app.wish == APP_WISH_NONE && app.now.lights == 1 && app.now.exposure_ev == 0);
+    assert_true(app.action == APP_ACTION_NONE && app.now.lights == 1 && app.now.exposure_ev == 0);
     app_handle(&app, &(struct app_event){.kind = APP_KEY_DOWN, .key = APP_CONTROL | 'o'});
-    assert_true(app.browse && app.wish == APP_WISH_FOLDER);
+    assert_true(app.browse && app.action == APP_ACTION_FOLDER);
     panel_destroy(&panel);
 }
 

@@ -26,12 +26,12 @@ static struct app make_app(const struct app_file *file, const struct relume_came
     return app;
 }
 
-static double compare_frame(struct renderer *r, const struct app *app,
+static double compare_frame(struct gl_renderer *r, const struct app *app,
                             const struct relume_image *want)
 {
     struct relume_image got;
     assert_int_equal(draw_app(r, app), RELUME_OK);
-    assert_int_equal(renderer_read(&got, r), RELUME_OK);
+    assert_int_equal(gl_renderer_read(&got, r), RELUME_OK);
     const double difference = fixture_difference(&got, want);
     relume_image_destroy(&got);
     return difference;
@@ -46,9 +46,9 @@ static void a_view_is_drawn_texel_by_texel(void **state)
     struct fixture_file f = fixture_make(2, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 2, {0}, {0}};
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct renderer r;
+    struct gl_renderer r;
     assert_int_equal(
-        renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 2, &fixture_log),
+        gl_renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 2, &fixture_log),
         RELUME_OK);
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .view = 1};
     OWNED_APP app = make_app(&file, &camera);
@@ -59,7 +59,7 @@ static void a_view_is_drawn_texel_by_texel(void **state)
         want.data[i] *= 0.25f;
     assert_below("view, exposure -2", compare_frame(&r, &app, &want), same_grid_bound);
     relume_image_destroy(&want);
-    renderer_destroy(&r);
+    gl_renderer_destroy(&r);
     fixture_free(&f);
 }
 
@@ -71,9 +71,9 @@ static void a_reduced_view_is_averaged(void **state)
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct renderer r;
+    struct gl_renderer r;
     assert_int_equal(
-        renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
+        gl_renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
         RELUME_OK);
     const struct relume_camera camera = {
         .framing = RELUME_FRAME_VIEW, .width = W / 2, .height = H / 2};
@@ -88,7 +88,7 @@ static void a_reduced_view_is_averaged(void **state)
     assert_below("half size", compare_frame(&r, &app, &want), same_grid_bound);
     relume_image_destroy(&full);
     relume_image_destroy(&want);
-    renderer_destroy(&r);
+    gl_renderer_destroy(&r);
     fixture_free(&f);
 }
 
@@ -111,7 +111,7 @@ static struct relume_geometry slab_geometry(void)
 struct slab_test {
     struct fixture_file file;
     struct app_file about;
-    struct renderer renderer;
+    struct gl_renderer renderer;
     struct relume_image views[CAMERAS];
     double uv[CAMERAS][2];
     int texels;  // read of parts
@@ -141,8 +141,8 @@ static void open_slab(struct slab_test *t, int width, int height)
                                  .uv_min = {-1, -0.5},
                                  .uv_max = {1, 0.5}};
     const struct code_source source = {fixture_fetch, NULL, &t->file, NULL, NULL};
-    assert_int_equal(renderer_create(&t->renderer, &fixture_gl, &source, &t->about.geometry,
-                                     (const double(*)[2])t->uv, CAMERAS, &fixture_log),
+    assert_int_equal(gl_renderer_create(&t->renderer, &fixture_gl, &source, &t->about.geometry,
+                                        (const double(*)[2])t->uv, CAMERAS, &fixture_log),
                      RELUME_OK);
     for (int i = 0; i < CAMERAS; i++)
         t->views[i] = fixture_relight(&t->file, i, lights, LIGHTS);
@@ -161,14 +161,14 @@ static void open_slab_by(struct slab_test *t, int way)
     t->texels = 0;
     if (way == WHOLE)
         return;
-    renderer_use_parts(&t->renderer, &parts, &info);
+    gl_renderer_use_parts(&t->renderer, &parts, &info);
     t->renderer.relighter.budget = 1;
     t->renderer.relighter.by_library = way == PARTS_BY_LIBRARY;
 }
 
 static void close_slab(struct slab_test *t)
 {
-    renderer_destroy(&t->renderer);
+    gl_renderer_destroy(&t->renderer);
     fixture_free(&t->file);
     for (int i = 0; i < CAMERAS; i++)
         relume_image_destroy(&t->views[i]);
@@ -262,12 +262,12 @@ static void check_slab_frames_by_depth(int way)
     struct slab_test t;
     open_slab_by(&t, way);
     const struct depth_source source = {make_depth, &t};
-    assert_int_equal(renderer_use_depth(&t.renderer, &source), RELUME_OK);
+    assert_int_equal(gl_renderer_use_depth(&t.renderer, &source), RELUME_OK);
     struct relume_image disparity[CAMERAS];
     for (int i = 0; i < CAMERAS; i++) {
         struct relume_image depth;
         assert_int_equal(make_depth(&depth, &t, i), RELUME_OK);
-        assert_int_equal(relume_slab_disparity(&disparity[i], t.renderer.grid, t.uv[i], &depth),
+        assert_int_equal(relume_slab_disparity(&disparity[i], t.renderer.views.grid, t.uv[i], &depth),
                          RELUME_OK);
         relume_image_destroy(&depth);
     }
@@ -276,14 +276,14 @@ static void check_slab_frames_by_depth(int way)
         char text[64];
         snprintf(text, sizeof text, "by depth, eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
         assert_int_equal(relume_image_create(&want, 68, 51, 3), RELUME_OK);
-        assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[i], t.views,
+        assert_int_equal(relume_slab_frame(&want, t.renderer.views.grid, eyes[i], t.views,
                                            relume_view_params(.disparity = disparity)),
                          RELUME_OK);
         const struct relume_camera camera = {
             .framing = RELUME_FRAME_EYE, .eye = eyes[i], .width = 68, .height = 51};
         OWNED_APP app = make_app(&t.about, &camera);
         assert_int_equal(draw_app(&t.renderer, &app), RELUME_OK);
-        assert_int_equal(renderer_read(&got, &t.renderer), RELUME_OK);
+        assert_int_equal(gl_renderer_read(&got, &t.renderer), RELUME_OK);
         compare_most(text, &got, &want);
         relume_image_destroy(&got);
         // and not by accident: without depth it is another frame
@@ -326,7 +326,7 @@ static void other_ways_to_see_a_slab_are_the_library_s(void **state)
                      ways[i].interpolation, ways[i].aperture, ways[i].focus, eyes[e].x, eyes[e].y,
                      eyes[e].z);
             assert_int_equal(relume_image_create(&want, 68, 51, 3), RELUME_OK);
-            assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[i]),
+            assert_int_equal(relume_slab_frame(&want, t.renderer.views.grid, eyes[e], t.views, &ways[i]),
                              RELUME_OK);
             const struct relume_camera camera = {
                 .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 68, .height = 51};
@@ -361,10 +361,10 @@ static void reduced_slab_frames_are_the_library_s(void **state)
                                  RELUME_OK);
                 assert_int_equal(relume_image_create(&one, sizes[k][0], sizes[k][1], 3), RELUME_OK);
                 assert_int_equal(
-                    relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[w]),
+                    relume_slab_frame(&want, t.renderer.views.grid, eyes[e], t.views, &ways[w]),
                     RELUME_OK);
                 assert_int_equal(
-                    relume_slab_frame(&one, t.renderer.grid, eyes[e], t.views, &single), RELUME_OK);
+                    relume_slab_frame(&one, t.renderer.views.grid, eyes[e], t.views, &single), RELUME_OK);
                 const struct relume_camera camera = {.framing = RELUME_FRAME_EYE,
                                                      .eye = eyes[e],
                                                      .width = sizes[k][0],
@@ -417,15 +417,15 @@ static void one_row_and_one_camera_are_drawn(void **state)
                                       .uv_min = {-0.5, 0.2},
                                       .uv_max = {0.5, 0.2}};
         const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-        struct renderer r;
-        assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, n, &fixture_log),
+        struct gl_renderer r;
+        assert_int_equal(gl_renderer_create(&r, &fixture_gl, &source, &g, uv, n, &fixture_log),
                          RELUME_OK);
         const struct relume_camera camera = {.framing = RELUME_FRAME_EYE, .eye = {0.5, 0.2, 3}};
         OWNED_APP app = make_app(&file, &camera);
         struct relume_image want = fixture_relight(&f, 0, lights, LIGHTS);
         assert_below("camera itself", compare_frame(&r, &app, &want), same_grid_bound);
         relume_image_destroy(&want);
-        renderer_destroy(&r);
+        gl_renderer_destroy(&r);
         fixture_free(&f);
     }
 }
@@ -436,8 +436,8 @@ static void cameras_without_a_grid_are_refused(void **state)
     static const double uv[][2] = {{0, 0}, {1, 1}};
     const struct relume_geometry g = slab_geometry();
     const struct code_source source = {fixture_fetch, NULL, NULL, NULL, NULL};
-    struct renderer r;
-    assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, 2, NULL), RELUME_EUNFIT);
+    struct gl_renderer r;
+    assert_int_equal(gl_renderer_create(&r, &fixture_gl, &source, &g, uv, 2, NULL), RELUME_EUNFIT);
 }
 
 // ---------------------------------------------------------------- panorama
@@ -452,8 +452,8 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
         fixture_make(1, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, true);
     const struct app_file file = {.geometry = *g, .width = width, .height = height, .views = 1};
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct renderer r;
-    assert_int_equal(renderer_create(&r, &fixture_gl, &source, g, NULL, 1, &fixture_log),
+    struct gl_renderer r;
+    assert_int_equal(gl_renderer_create(&r, &fixture_gl, &source, g, NULL, 1, &fixture_log),
                      RELUME_OK);
     struct relume_image image = fixture_relight(&f, 0, lights, LIGHTS), want;
     assert_int_equal(relume_image_create(&want, 90, 60, 3), RELUME_OK);
@@ -471,13 +471,13 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
         }
         struct relume_image got;
         assert_int_equal(draw_app(&r, &app), RELUME_OK);
-        assert_int_equal(renderer_read(&got, &r), RELUME_OK);
+        assert_int_equal(gl_renderer_read(&got, &r), RELUME_OK);
         compare_most(text, &got, &want);
         relume_image_destroy(&got);
     }
     relume_image_destroy(&want);
     relume_image_destroy(&image);
-    renderer_destroy(&r);
+    gl_renderer_destroy(&r);
     fixture_free(&f);
 }
 
@@ -511,9 +511,9 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
     struct fixture_file f = fixture_make(1, 4, 4, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
-    struct renderer r;
+    struct gl_renderer r;
     assert_int_equal(
-        renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
+        gl_renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
         RELUME_OK);
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
     OWNED_APP app = make_app(&file, &camera);
@@ -522,7 +522,7 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
     app.now.light[0] = (struct relume_light){.direction = {-1, 1, 0.5}, .rgb = {1, 1, 1}};
     struct relume_image got;
     assert_int_equal(draw_app(&r, &app), RELUME_OK);
-    assert_int_equal(renderer_read(&got, &r), RELUME_OK);
+    assert_int_equal(gl_renderer_read(&got, &r), RELUME_OK);
     // radius 0.09 x 200 = 18, middle 1.4 radii from the corner; look half a radius from the middle
     const int middle = (int)(200 - 1.4 * 18);
     const float *upper_left = &got.data[3 * ((middle - 9) * W + middle - 9)];
@@ -530,7 +530,7 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
     assert_true(upper_left[0] > 0.5f);
     assert_true(lower_right[0] < 0.1f);
     relume_image_destroy(&got);
-    renderer_destroy(&r);
+    gl_renderer_destroy(&r);
     fixture_free(&f);
 }
 
@@ -610,9 +610,9 @@ static void the_meter_sees_a_small_frame(void **state)
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
     const struct code_source source = {.codes = fixture_fetch, .user = &f};
-    struct renderer r;
+    struct gl_renderer r;
     assert_int_equal(
-        renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
+        gl_renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
         RELUME_OK);
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
     OWNED_APP app = make_app(&file, &camera);
@@ -620,15 +620,15 @@ static void the_meter_sees_a_small_frame(void **state)
     for (int i = 0; i < 2; i++) {
         app.now.exposure_ev = 3 * i;
         assert_int_equal(draw_app(&r, &app), RELUME_OK);
-        assert_int_equal(renderer_meter(&ev[i], &r), RELUME_OK);
+        assert_int_equal(gl_renderer_meter(&ev[i], &r), RELUME_OK);
     }
     assert_true(fabs(ev[0] - ev[1] - 3) < 0.1);
     struct relume_image frame;
-    assert_int_equal(renderer_read(&frame, &r), RELUME_OK);
+    assert_int_equal(gl_renderer_read(&frame, &r), RELUME_OK);
     // noise is averaged in the small copy, which moves its logarithm by some tenths
     assert_below("metered", fabs(relume_tone_meter(&frame) - ev[1]), 0.5);
     relume_image_destroy(&frame);
-    renderer_destroy(&r);
+    gl_renderer_destroy(&r);
     fixture_free(&f);
 }
 

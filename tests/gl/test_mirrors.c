@@ -105,20 +105,20 @@ static struct relume_image draw(struct objects_drawer *t, const struct relume_wi
 {
     const struct gl *gl = &fixture_gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
-    const struct place place = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
+    const struct frame_area area = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
     struct frame_projection projection;
     struct target frame;
     struct relume_image image;
     GLuint array;
     gl->GenVertexArrays(1, &array);
     gl->BindVertexArray(array);
-    assert_true(frame_projection_of_window(&projection, w, place.picture, SIDE, SIDE, info->min,
-                                           info->max));
+    assert_true(
+        frame_projection_of_window(&projection, w, area.picture, SIDE, SIDE, info->min, info->max));
     assert_int_equal(objects_drawer_light(t, light, 1), RELUME_OK);
     assert_int_equal(objects_drawer_shade(t, &projection, SIDE, SIDE, -1), RELUME_OK);
     assert_int_equal(target_create(&frame, gl, SIDE, SIDE, &fixture_log), RELUME_OK);
     target_begin(&frame, gl);
-    objects_drawer_over(t, &place, 0, false);
+    objects_drawer_over(t, &area, 0, false);
     assert_int_equal(target_read(&image, &frame, gl), RELUME_OK);
     target_destroy(&frame, gl);
     gl->DeleteVertexArrays(1, &array);

@@ -186,7 +186,7 @@ static int count_off(const struct relume_image *a, const struct relume_image *b,
     return count;
 }
 
-static void check_lights(struct relighter *r, struct world *w, const char *name,
+static void check_lights(struct gl_relighter *r, struct world *w, const char *name,
                          const struct relume_light *lights, int n)
 {
     relume_shadows *shadows;
@@ -195,8 +195,8 @@ static void check_lights(struct relighter *r, struct world *w, const char *name,
     assert_int_equal(find_shadows(&shadows, w, 0), RELUME_OK);
     by_library(&want, w, lights, n, shadows);
     by_library(&faded, w, lights, n, NULL);
-    assert_int_equal(relighter_begin(r, lights, n), RELUME_OK);
-    assert_int_equal(relighter_view(&target, r, 0), RELUME_OK);
+    assert_int_equal(gl_relighter_begin(r, lights, n), RELUME_OK);
+    assert_int_equal(gl_relighter_view(&target, r, 0), RELUME_OK);
     assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
     const int off = count_off(&got, &want, BOUND), moved = count_off(&faded, &want, 1e-2);
     print_message("  %s, %s: %d pixels off, %d moved\n", name,
@@ -233,12 +233,12 @@ static void check_world(struct world *w, const char *name, struct relume_vec3 ey
         {.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.2, 0.3, 0.8}, .rgb = {1, 1, 0.5f}},
     };
     enum { LIGHTS = sizeof lights / sizeof *lights };
-    struct relighter r;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    struct gl_relighter r;
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     for (int i = 0; i < LIGHTS; i++)
         check_lights(&r, w, name, &lights[i], 1);
     check_lights(&r, w, name, lights, LIGHTS);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
 }
 
 static void check(const char *name, const struct relume_geometry *g, double far,
@@ -297,15 +297,15 @@ static void triangles_that_no_texture_holds(void **state)
     const struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, W, H);
     struct gl small = fixture_gl;
     struct world w;
-    struct relighter r;
+    struct gl_relighter r;
     const struct code_source source = {fetch, NULL, &w, find_surface, find_shadows};
     const struct relume_light light = {
         .kind = RELUME_LIGHT_POINT, .position = {0.3, 0.2, 1.4}, .rgb = {1, 1, 1}};
     small.max_texture = 100;
     world_open(&w, &g, g.camera_z, RELUME_DOMAIN_LINEAR, false);
-    assert_int_equal(relighter_create(&r, &small, &source, 1, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_create(&r, &small, &source, 1, &fixture_log), RELUME_OK);
     check_lights(&r, &w, "few texels", &light, 1);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     world_close(&w);
 }
 

@@ -95,7 +95,7 @@ static relume_status fetch(const struct relume_codes **out, void *user, int view
 // directions: 3e-3 at the very worst) and both sides must agree to 1/255 of white.
 static const double BOUND = 1.0 / 255;
 
-static void check_kind(struct relighter *r, const struct relume_codes *codes, const char *name,
+static void check_kind(struct gl_relighter *r, const struct relume_codes *codes, const char *name,
                        enum relume_light_kind kind, const struct relume_relight_params *shared)
 {
     const struct relume_light lights[] = {light_of(kind), light_of(RELUME_LIGHT_DIRECTIONAL)};
@@ -108,8 +108,8 @@ static void check_kind(struct relighter *r, const struct relume_codes *codes, co
     for (int n = 1; n <= 2; n++) {
         snprintf(what, sizeof what, "%s, %s, %d lights", name, relume_light_kind_name(kind), n);
         assert_int_equal(relume_relight(&want, codes, lights, n, &params), RELUME_OK);
-        assert_int_equal(relighter_begin(r, lights, n), RELUME_OK);
-        assert_int_equal(relighter_view(&target, r, 0), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(r, lights, n), RELUME_OK);
+        assert_int_equal(gl_relighter_view(&target, r, 0), RELUME_OK);
         assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
         assert_below(what, fixture_difference(&got, &want), BOUND);
         double sum = 0;
@@ -126,7 +126,7 @@ static void check_codes(const struct relume_codes *codes, const char *name)
 {
     struct source_file file = {*codes};
     const struct code_source source = {fetch, NULL, &file, find_surface, NULL};
-    struct relighter r;
+    struct gl_relighter r;
     relume_weight_grid *grid;
     relume_refit *refit = NULL;
     if (TEST_SANITIZED && codes->domain == RELUME_DOMAIN_DISPLAY)
@@ -134,11 +134,11 @@ static void check_codes(const struct relume_codes *codes, const char *name)
     assert_int_equal(relume_weight_grid_create(&grid, codes->coder, NULL), RELUME_OK);
     if (codes->domain == RELUME_DOMAIN_DISPLAY)
         assert_int_equal(relume_refit_create(&refit, codes, NULL), RELUME_OK);
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     for (int kind = RELUME_LIGHT_ENVIRONMENT; kind <= RELUME_LIGHT_GONIO; kind++)
         check_kind(&r, codes, name, (enum relume_light_kind)kind,
                    relume_relight_params(.grid = grid, .refit = refit));
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     relume_refit_destroy(&refit);
     relume_weight_grid_destroy(&grid);
 }
@@ -297,13 +297,13 @@ static void without_a_surface(void **state)
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     const struct relume_light light = light_of(RELUME_LIGHT_POINT);
-    struct relighter r;
+    struct gl_relighter r;
     const struct target *target;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
-    assert_int_equal(relighter_begin(&r, &light, 1), RELUME_OK);
-    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EUNFIT);
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_begin(&r, &light, 1), RELUME_OK);
+    assert_int_equal(gl_relighter_view(&target, &r, 0), RELUME_EUNFIT);
     assert_null(target);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     fixture_free(&f);
 }
 
@@ -323,15 +323,15 @@ static void views_arrive_later(void **state)
     const struct relume_light lights[] = {light_of(RELUME_LIGHT_DIRECTIONAL),
                                           light_of(RELUME_LIGHT_POINT)};
     const struct target *target;
-    struct relighter r;
+    struct gl_relighter r;
     int frames = 0;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 4, &fixture_log), RELUME_OK);
-    assert_int_equal(relighter_stream(&r), RELUME_OK);
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 4, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_stream(&r), RELUME_OK);
     for (bool all = false; !all; frames++) {
         all = true;
-        assert_int_equal(relighter_begin(&r, lights, 2), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(&r, lights, 2), RELUME_OK);
         for (int i = 0; i < 4; i++) {
-            assert_int_equal(relighter_view(&target, &r, i), RELUME_OK);
+            assert_int_equal(gl_relighter_view(&target, &r, i), RELUME_OK);
             assert_true(frames > 0 || !target);
             all &= target != NULL;
         }
@@ -344,14 +344,14 @@ static void views_arrive_later(void **state)
         assert_int_equal(relume_relight(&want, &f.codes[i], lights, 2,
                                         relume_relight_params(.surface = &surface)),
                          RELUME_OK);
-        assert_int_equal(relighter_view(&target, &r, i), RELUME_OK);
+        assert_int_equal(gl_relighter_view(&target, &r, i), RELUME_OK);
         assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
         assert_below("read in the background", fixture_difference(&got, &want), BOUND);
         relume_image_destroy(&surface);
         relume_image_destroy(&want);
         relume_image_destroy(&got);
     }
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     fixture_free(&f);
 }
 
@@ -362,16 +362,16 @@ static void a_view_can_be_waited_for(void **state)
     const struct code_source source = {fetch_slowly, NULL, &f, NULL, NULL};
     const struct relume_light light = light_of(RELUME_LIGHT_DIRECTIONAL);
     const struct target *target;
-    struct relighter r;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
-    assert_int_equal(relighter_stream(&r), RELUME_OK);
-    assert_int_equal(relighter_begin(&r, &light, 1), RELUME_OK);
-    assert_int_equal(relighter_view(&target, &r, 0), RELUME_OK);
+    struct gl_relighter r;
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_stream(&r), RELUME_OK);
+    assert_int_equal(gl_relighter_begin(&r, &light, 1), RELUME_OK);
+    assert_int_equal(gl_relighter_view(&target, &r, 0), RELUME_OK);
     assert_null(target);
-    assert_int_equal(relighter_wait(&target, &r, 2), RELUME_OK);
+    assert_int_equal(gl_relighter_wait(&target, &r, 2), RELUME_OK);
     assert_non_null(target);
-    assert_true(relighter_has(&r, 2));
-    relighter_destroy(&r);  // view 0 or 1 may just be read
+    assert_true(gl_relighter_has(&r, 2));
+    gl_relighter_destroy(&r);  // view 0 or 1 may just be read
     fixture_free(&f);
 }
 
@@ -388,13 +388,13 @@ static void a_broken_view_is_heard_of(void **state)
     const struct code_source source = {refuse, NULL, NULL, NULL, NULL};
     const struct relume_light light = light_of(RELUME_LIGHT_DIRECTIONAL);
     const struct target *target;
-    struct relighter r;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
-    assert_int_equal(relighter_stream(&r), RELUME_OK);
-    assert_int_equal(relighter_begin(&r, &light, 1), RELUME_OK);
-    assert_int_equal(relighter_wait(&target, &r, 0), RELUME_EDAMAGED);
+    struct gl_relighter r;
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_stream(&r), RELUME_OK);
+    assert_int_equal(gl_relighter_begin(&r, &light, 1), RELUME_OK);
+    assert_int_equal(gl_relighter_wait(&target, &r, 0), RELUME_EDAMAGED);
     assert_null(target);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
 }
 
 int main(void)

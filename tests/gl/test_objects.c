@@ -180,14 +180,14 @@ static struct relume_image draw(struct objects_drawer *t, const struct relume_wi
     GLuint array;
     gl->GenVertexArrays(1, &array);
     gl->BindVertexArray(array);
-    const struct place place = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
-    assert_true(frame_projection_of_window(&projection, w, place.picture, SIDE, SIDE, info->min,
-                                           info->max));
+    const struct frame_area area = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
+    assert_true(
+        frame_projection_of_window(&projection, w, area.picture, SIDE, SIDE, info->min, info->max));
     assert_int_equal(objects_drawer_light(t, lights, n), RELUME_OK);
     assert_int_equal(objects_drawer_shade(t, &projection, SIDE, SIDE, -1), RELUME_OK);
     assert_int_equal(target_create(&frame, gl, SIDE, SIDE, &fixture_log), RELUME_OK);
     target_begin(&frame, gl);
-    objects_drawer_over(t, &place, 0, false);
+    objects_drawer_over(t, &area, 0, false);
     assert_int_equal(target_read(&image, &frame, gl), RELUME_OK);
     target_destroy(&frame, gl);
     gl->DeleteVertexArrays(1, &array);
@@ -222,7 +222,7 @@ static struct picture both(struct objects_drawer *t, const struct relume_light *
 {
     struct picture p = {0};
     const struct relume_window w = window_of(t->objects);
-    t->no_shadows = no_shadows;
+    t->shadows.off = no_shadows;
     assert_int_equal(relume_image_create(&p.cpu, SIDE, SIDE, 3), RELUME_OK);
     assert_int_equal(relume_objects_render(&p.cpu, t->objects, &w, lights, n,
                                            relume_render_params(.no_shadows = no_shadows)),
@@ -606,8 +606,8 @@ static void details_agree(void **state)
         const int apart = count_apart(&p.cpu, &p.gl, 5e-3, &brightest);
         if (apart > 48 || !(brightest > 0.02))
             fail_msg("details: %d pixels differ", apart);
-        assert_non_null(t.seen);
-        assert_in_range(relume_objects_info(t.seen)->triangle_count, 12, all / 2);
+        assert_non_null(t.mesh.seen);
+        assert_in_range(relume_objects_info(t.mesh.seen)->triangle_count, 12, all / 2);
         destroy(&p);
     }
     relume_rig_destroy(&rig);

@@ -111,7 +111,7 @@ static void text_goes_into_the_field(void **state)
     const struct app_event down = {.kind = APP_KEY_DOWN, .key = APP_KEY_ENTER};
     assert_true(panel_takes(panel, &down));
     panel_build(panel, &app, &none);
-    assert_int_equal(app.wish, APP_WISH_ADD_LIGHT);
+    assert_int_equal(app.action, APP_ACTION_ADD_LIGHT);
     assert_string_equal(app.spec, "dir 1 0 1");
     panel_destroy(&panel);
 }
@@ -253,19 +253,19 @@ static void every_control_says_what_it_is_for(void **state)
 }
 
 // The list of lights is closed: "Edits" is the second row; below it one chooses an operation, each
-// with rows of its own. Buttons wish for what the session does, in words.
-static void check_wish(struct panel *panel, struct app *app, const struct panel_facts *facts,
-                       double x, double y, const char *words)
+// with rows of its own. Buttons ask for what the session does, in words.
+static void check_action(struct panel *panel, struct app *app, const struct panel_facts *facts,
+                         double x, double y, const char *words)
 {
     (void)tell(panel, APP_MOVE, x, y);
     assert_true(tell(panel, APP_PRESS, x, y));
     assert_true(tell(panel, APP_RELEASE, x, y));
     panel_build(panel, app, facts);
     panel_build(panel, app, facts);
-    assert_int_equal(app->wish, words ? APP_WISH_EDIT : APP_WISH_NONE);
+    assert_int_equal(app->action, words ? APP_ACTION_EDIT : APP_ACTION_NONE);
     if (words)
         assert_string_equal(app->spec, words);
-    app->wish = APP_WISH_NONE;
+    app->action = APP_ACTION_NONE;
 }
 
 static void type_text(struct panel *panel, struct app *app, const struct panel_facts *facts,
@@ -278,7 +278,7 @@ static void type_text(struct panel *panel, struct app *app, const struct panel_f
     panel_build(panel, app, facts);
 }
 
-static void edits_are_wished_for(void **state)
+static void edits_are_asked_for(void **state)
 {
     (void)state;
     static const struct {
@@ -303,7 +303,7 @@ static void edits_are_wished_for(void **state)
         (void)click(panel, &app, 100, 26);
         panel_build(panel, &app, &facts);
         panel_build(panel, &app, &facts);
-        check_wish(panel, &app, &facts, 60, 95, NULL);
+        check_action(panel, &app, &facts, 60, 95, NULL);
         type_text(panel, &app, &facts, "a b.png");
         for (int i = 0, shown = 0; i < (int)(sizeof edits / sizeof *edits); i++) {
             if (maps && !edits[i].maps)
@@ -311,12 +311,12 @@ static void edits_are_wished_for(void **state)
             // maps have no labels to choose
             const bool labelled = !strstr(edits[i].words, "size") && i < 7 && i != 5;
             const double buttons = 95 + 23 * (edits[i].rows - (maps && labelled));
-            check_wish(panel, &app, &facts, 100, 72, NULL);
-            check_wish(panel, &app, &facts, 60, 96 + 17 * shown++, NULL);
+            check_action(panel, &app, &facts, 100, 72, NULL);
+            check_action(panel, &app, &facts, 60, 96 + 17 * shown++, NULL);
             assert_true(walk(panel, &app, &facts, 306, 240) > 100);
-            check_wish(panel, &app, &facts, 36, buttons, edits[i].words);
-            check_wish(panel, &app, &facts, 88, buttons, "undo");
-            check_wish(panel, &app, &facts, 134, buttons, "redo");
+            check_action(panel, &app, &facts, 36, buttons, edits[i].words);
+            check_action(panel, &app, &facts, 88, buttons, "undo");
+            check_action(panel, &app, &facts, 134, buttons, "redo");
         }
         panel_destroy(&panel);
     }
@@ -482,16 +482,16 @@ static void passes_are_those_of_the_library(void **state)
         struct fixture_file f =
             fixture_make(1, W, H, RELUME_STORE_16, RELUME_DOMAIN_LINEAR, turned);
         const struct code_source source = {.codes = fixture_fetch, .user = &f};
-        struct relighter relighter;
+        struct gl_relighter relighter;
         struct enhancer enhancer;
-        assert_int_equal(relighter_create(&relighter, &fixture_gl, &source, 1, &fixture_log),
+        assert_int_equal(gl_relighter_create(&relighter, &fixture_gl, &source, 1, &fixture_log),
                          RELUME_OK);
         assert_int_equal(
             enhancer_create(&enhancer, &fixture_gl, &source, geometry, NULL, 1, &fixture_log),
             RELUME_OK);
         const struct target *relit, *shown;
-        assert_int_equal(relighter_begin(&relighter, lights, 2), RELUME_OK);
-        assert_int_equal(relighter_view(&relit, &relighter, 0), RELUME_OK);
+        assert_int_equal(gl_relighter_begin(&relighter, lights, 2), RELUME_OK);
+        assert_int_equal(gl_relighter_view(&relit, &relighter, 0), RELUME_OK);
         struct relume_normals normals;
         const struct relume_codes *codes;
         fixture_fetch(&codes, &f, 0);
@@ -532,7 +532,7 @@ static void passes_are_those_of_the_library(void **state)
         relume_image_destroy(&towards);
         relume_normals_destroy(&normals);
         enhancer_destroy(&enhancer);
-        relighter_destroy(&relighter);
+        gl_relighter_destroy(&relighter);
         fixture_free(&f);
     }
 }
@@ -641,7 +641,7 @@ int main(void)
         cmocka_unit_test(the_question_is_answered_by_its_buttons),
         cmocka_unit_test(the_font_is_a_file),
         cmocka_unit_test(every_control_says_what_it_is_for),
-        cmocka_unit_test(edits_are_wished_for),
+        cmocka_unit_test(edits_are_asked_for),
         cmocka_unit_test(every_window_says_what_it_is_for),
         cmocka_unit_test(tiny_frames_do_no_harm),
         cmocka_unit_test(the_panel_is_drawn_where_it_is),

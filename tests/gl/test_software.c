@@ -83,10 +83,10 @@ static struct code_source source_of(struct lender *l)
     return (struct code_source){lend, take_back, l, find_surface, NULL};
 }
 
-static void begin(struct relighter *r, const struct gl *gl, struct lender *l, int views)
+static void begin(struct gl_relighter *r, const struct gl *gl, struct lender *l, int views)
 {
     const struct code_source source = source_of(l);
-    assert_int_equal(relighter_create(r, gl, &source, views, &fixture_log), RELUME_OK);
+    assert_int_equal(gl_relighter_create(r, gl, &source, views, &fixture_log), RELUME_OK);
 }
 
 static void make_lights(struct relume_light *lights, int n)
@@ -105,7 +105,7 @@ static void make_lights(struct relume_light *lights, int n)
         };
 }
 
-static void expect_view(struct relighter *r, struct lender *l, int view,
+static void expect_view(struct gl_relighter *r, struct lender *l, int view,
                         const struct relume_light *lights, int n, double bound, const char *what)
 {
     struct relume_image surface, want = {0}, got;
@@ -117,8 +117,8 @@ static void expect_view(struct relighter *r, struct lender *l, int view,
                                     relume_relight_params(.surface = &surface, .grid = l->grid,
                                                           .refit = l->refit)),
                      RELUME_OK);
-    assert_int_equal(relighter_begin(r, lights, n), RELUME_OK);
-    assert_int_equal(relighter_view(&target, r, view), RELUME_OK);
+    assert_int_equal(gl_relighter_begin(r, lights, n), RELUME_OK);
+    assert_int_equal(gl_relighter_view(&target, r, view), RELUME_OK);
     assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
     assert_below(what, fixture_difference(&got, &want), bound);
     relume_image_destroy(&surface);
@@ -138,7 +138,7 @@ static void same_as_relight(void **state)
     for (int d = 0; d < 2; d++) {
         const double bound = d ? BOUND_DISPLAY : BOUND;
         struct lender l = make_lender(2, domains[d]);
-        struct relighter r;
+        struct gl_relighter r;
         begin(&r, &fixture_gl, &l, 2);
         r.by_library = true;
         static const int counts[] = {1, 2, 4, MANY};
@@ -151,7 +151,7 @@ static void same_as_relight(void **state)
         expect_view(&r, &l, 0, lights, MANY, bound, "one of many moved");
         expect_view(&r, &l, 1, lights, 3, bound, "another view");
         expect_view(&r, &l, 0, lights, 0, BOUND, "darkness");
-        relighter_destroy(&r);
+        gl_relighter_destroy(&r);
         free_lender(&l);
     }
 }
@@ -162,7 +162,7 @@ static void codes_are_given_back(void **state)
     (void)state;
     struct lender l = make_lender(3, RELUME_DOMAIN_LINEAR);
     struct relume_light lights[2];
-    struct relighter r;
+    struct gl_relighter r;
     begin(&r, &fixture_gl, &l, 3);
     r.by_library = true;
     r.budget = 1;
@@ -173,7 +173,7 @@ static void codes_are_given_back(void **state)
         // two groups, their sum and the surface, three floats each; the target, four; the codes
         assert_int_equal(r.bytes, W * H * (4 * 12 + 16 + 4 * ((FIXTURE_PLANES + 3) / 4)));
     }
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     free_lender(&l);
 }
 
@@ -184,13 +184,13 @@ static void near_lights_on_many_planes(void **state)
     struct lender l = make_lender(1, RELUME_DOMAIN_DISPLAY);
     struct relume_light lights[3];
     struct gl narrow = fixture_gl;
-    struct relighter r;
+    struct gl_relighter r;
     narrow.max_layers = 2;
     begin(&r, &narrow, &l, 1);
     make_lights(lights, 3);
     expect_view(&r, &l, 0, lights, 3, 1.0 / 255, "several arrays");
     assert_true(r.view[0].arrays > 1);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     free_lender(&l);
 }
 
@@ -202,13 +202,13 @@ static void without_a_surface(void **state)
     const struct relume_light light = {
         .kind = RELUME_LIGHT_POINT, .position = {0, 0, 1}, .rgb = {1, 1, 1}};
     const struct target *target;
-    struct relighter r;
-    assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+    struct gl_relighter r;
+    assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     r.by_library = true;
-    assert_int_equal(relighter_begin(&r, &light, 1), RELUME_OK);
-    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EUNFIT);
+    assert_int_equal(gl_relighter_begin(&r, &light, 1), RELUME_OK);
+    assert_int_equal(gl_relighter_view(&target, &r, 0), RELUME_EUNFIT);
     assert_null(target);
-    relighter_destroy(&r);
+    gl_relighter_destroy(&r);
     free_lender(&l);
 }
 

@@ -63,19 +63,19 @@ static relume_status draw_with(const struct gl *gl)
     const struct code_source source = {.codes = fixture_fetch, .user = &f};
     const struct app_file file = {.geometry = geometry, .width = 8, .height = 8, .views = 1};
     const struct app_state start = {0};
-    struct renderer r;
+    struct gl_renderer r;
     OWNED_APP app;
     said[0] = '\0';
     lines = 0;
     assert_int_equal(app_start(&app, &file, &start, false, &keep), RELUME_OK);
-    relume_status status = renderer_create(&r, gl, &source, &geometry, NULL, 1, &keep);
+    relume_status status = gl_renderer_create(&r, gl, &source, &geometry, NULL, 1, &keep);
     if (!status)
         status = draw_app(&r, &app);
     if (!status && meanwhile) {
         meanwhile();
         status = draw_app(&r, &app);
     }
-    renderer_destroy(&r);
+    gl_renderer_destroy(&r);
     fixture_free(&f);
     (void)fixture_gl.GetError();
     return status;

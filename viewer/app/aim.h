@@ -2,7 +2,7 @@
 #ifndef VIEWER_AIM_H
 #define VIEWER_AIM_H
 
-#include "app/place.h"
+#include "app/view_geometry.h"
 
 struct app_axes app_frame_axes(const struct app *app);
 

@@ -131,7 +131,7 @@ static bool begin_drag(struct app *app, const struct app_event *e)
         app->cursor[0] = e->x;
         app->cursor[1] = e->y;
         app->picks_focus = false;
-        app->wish = APP_WISH_FOCUS;
+        app->action = APP_ACTION_FOCUS;
         return true;
     }
     const bool light = e->button == APP_RIGHT || app->light_key;

@@ -2,7 +2,7 @@
 #include "app/fov.h"
 
 #include "app/orbit.h"
-#include "app/place.h"
+#include "app/view_geometry.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #define VIEWER_FRAME_REQUEST_H
 
 #include "app/gizmo.h"
-#include "app/place.h"
+#include "app/view_geometry.h"
 
 #include <relume/relight/view.h>
 

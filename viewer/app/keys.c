@@ -370,60 +370,60 @@ static bool press_preset(struct app *app, int key)
     return true;
 }
 
-// ---------------------------------------------------------------- wishes
+// ---------------------------------------------------------------- actions
 
-static bool wish(struct app *app, enum app_wish wanted)
+static bool ask(struct app *app, enum app_action wanted)
 {
-    app->wish = wanted;
+    app->action = wanted;
     return false;
 }
 
 static bool press_png(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_PNG);
+    return ask(app, APP_ACTION_PNG);
 }
 
 static bool press_exr(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_EXR);
+    return ask(app, APP_ACTION_EXR);
 }
 
 static bool press_save_rig(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_SAVE_RIG);
+    return ask(app, APP_ACTION_SAVE_RIG);
 }
 
 static bool press_notes(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_NOTES);
+    return ask(app, APP_ACTION_NOTES);
 }
 
 static bool press_copy(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_COPY);
+    return ask(app, APP_ACTION_COPY);
 }
 
 static bool press_sweep(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_SWEEP);
+    return ask(app, APP_ACTION_SWEEP);
 }
 
 static bool press_turntable(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_TURNTABLE);
+    return ask(app, APP_ACTION_TURNTABLE);
 }
 
 static bool press_full_screen(struct app *app, int key)
 {
     (void)key;
-    return wish(app, APP_WISH_FULL_SCREEN);
+    return ask(app, APP_ACTION_FULL_SCREEN);
 }
 
 static bool press_open(struct app *app, int key)
@@ -431,7 +431,7 @@ static bool press_open(struct app *app, int key)
     (void)key;
     app->browse = !app->browse;
     app->spec[0] = '\0';
-    (void)wish(app, app->browse ? APP_WISH_FOLDER : APP_WISH_NONE);
+    (void)ask(app, app->browse ? APP_ACTION_FOLDER : APP_ACTION_NONE);
     return true;
 }
 

@@ -2,7 +2,7 @@
 #include "app/notes.h"
 
 #include "app/gizmo.h"
-#include "app/place.h"
+#include "app/view_geometry.h"
 #include "common/vec.h"
 
 #include <math.h>
@@ -95,7 +95,7 @@ bool notes_to_frame(double xy[2], const struct app *app, const double place[2], 
 
 // ---------------------------------------------------------------- drawing
 
-static bool add(struct notes *n, const double place[2], double z)
+static bool add_vertex(struct notes *n, const double place[2], double z)
 {
     const bool full = n->places == RELUME_NOTE_MOST_PLACES;
     const size_t room = (size_t)n->places + 1;
@@ -121,7 +121,7 @@ static bool is_on(const struct app *app, int place, double x, double y)
 }
 
 // The note that has a place there, -1 without one.
-static int find(const struct app *app, double x, double y)
+static int find_note(const struct app *app, double x, double y)
 {
     for (int i = relume_notes_count(app->notes->list) - 1; i >= 0; i--) {
         const struct relume_note *note = relume_notes_get(app->notes->list, i);
@@ -141,7 +141,7 @@ bool notes_press(struct app *app, double x, double y)
     double place[2], z;
     if (!notes_have_places(app))
         return false;
-    const int hit = n->places ? -1 : find(app, x, y);
+    const int hit = n->places ? -1 : find_note(app, x, y);
     if (hit >= 0 || n->tool == RELUME_NOTE_VIEW) {
         n->chosen = hit;
         return hit >= 0;
@@ -151,7 +151,7 @@ bool notes_press(struct app *app, double x, double y)
     const bool closes = n->tool == RELUME_NOTE_POLYGON && is_on(app, 0, x, y);
     if (closes || is_on(app, n->places - 1, x, y))
         (void)notes_finish(app);
-    else if (add(n, place, z) && n->tool == RELUME_NOTE_POINT)
+    else if (add_vertex(n, place, z) && n->tool == RELUME_NOTE_POINT)
         (void)notes_finish(app);
     return true;
 }
@@ -163,7 +163,7 @@ bool notes_finish(struct app *app)
     const struct notes *n = app->notes;
     if (n->tool == RELUME_NOTE_VIEW || n->places < least[n->tool])
         return false;
-    app->wish = APP_WISH_NOTE;
+    app->action = APP_ACTION_NOTE;
     return true;
 }
 

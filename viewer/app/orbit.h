@@ -2,7 +2,7 @@
 #ifndef VIEWER_ORBIT_H
 #define VIEWER_ORBIT_H
 
-#include "app/place.h"
+#include "app/view_geometry.h"
 
 // Whether the frame is one of several slabs.
 bool orbit_is(const struct app *app);

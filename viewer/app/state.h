@@ -134,26 +134,26 @@ enum app_drag {
 };
 
 // What the app cannot do itself; whoever runs it does, and sets this back to NONE.
-enum app_wish {
-    APP_WISH_NONE = 0,
-    APP_WISH_PNG,  // a picture of the frame
-    APP_WISH_EXR,
-    APP_WISH_SAVE_RIG,
-    APP_WISH_SWEEP,        // a recording
-    APP_WISH_TURNTABLE,    // a recording
-    APP_WISH_COPY,         // how the file is seen, as a line
-    APP_WISH_NOTES,        // on the picture: show them, or no longer
-    APP_WISH_NOTE,         // what is drawn becomes one, or this view
-    APP_WISH_NOTE_SAVE,    // they were changed
-    APP_WISH_NOTE_BACK,    // to the light of the chosen one
-    APP_WISH_ADD_LIGHT,    // of the SPEC app.spec
-    APP_WISH_MAP,          // the environment map of the file app.spec
-    APP_WISH_FULL_SCREEN,  // or back from it
-    APP_WISH_FOLDER,       // a list of the folder app.spec; "": of the one that was listed last
-    APP_WISH_FOCUS,        // on what the frame shows at app.cursor
-    APP_WISH_EDIT,         // of the g-BRDF that is shown, in the words app.spec
-    APP_WISH_REFLECTION,   // an edit of what mirrors reflect, in the words app.spec
-    APP_WISH_OPEN          // the file app.spec in place of this one
+enum app_action {
+    APP_ACTION_NONE = 0,
+    APP_ACTION_PNG,  // a picture of the frame
+    APP_ACTION_EXR,
+    APP_ACTION_SAVE_RIG,
+    APP_ACTION_SWEEP,        // a recording
+    APP_ACTION_TURNTABLE,    // a recording
+    APP_ACTION_COPY,         // how the file is seen, as a line
+    APP_ACTION_NOTES,        // on the picture: show them, or no longer
+    APP_ACTION_NOTE,         // what is drawn becomes one, or this view
+    APP_ACTION_NOTE_SAVE,    // they were changed
+    APP_ACTION_NOTE_BACK,    // to the light of the chosen one
+    APP_ACTION_ADD_LIGHT,    // of the SPEC app.spec
+    APP_ACTION_MAP,          // the environment map of the file app.spec
+    APP_ACTION_FULL_SCREEN,  // or back from it
+    APP_ACTION_FOLDER,       // a list of the folder app.spec; "": of the one that was listed last
+    APP_ACTION_FOCUS,        // on what the frame shows at app.cursor
+    APP_ACTION_EDIT,         // of the g-BRDF that is shown, in the words app.spec
+    APP_ACTION_REFLECTION,   // an edit of what mirrors reflect, in the words app.spec
+    APP_ACTION_OPEN          // the file app.spec in place of this one
 };
 enum { APP_SPEC = 4096 };
 
@@ -203,7 +203,7 @@ struct app {
     double inspect_zoom;  // of the inspector's disc; 0 and 1: all of it
     bool compared;        // there is a capture to compare with
     bool near_lights;     // it is known where the surface is, so that near lights can shine on it
-    enum app_wish wish;
+    enum app_action action;
     char spec[APP_SPEC];
     bool quit;
     double turned_deg[2];   // by the mouse since time last passed: pan and tilt, or the eye's way

@@ -53,7 +53,7 @@ void way_let_go(struct app *app)
 
 // ---------------------------------------------------------------- words
 
-static int find(const char *name)
+static int find_way(const char *name)
 {
     for (int i = 0; i < way_count(); i++)
         if (!strcmp(way_name(i), name))
@@ -79,7 +79,7 @@ bool way_say(struct app *app, const char *words, char expected[WAY_WORDS])
     const int n = sscanf(words, " %31s %31s %1s", first, second, more);
     const bool beside = !strcmp(first, "beside"), apart = !strcmp(first, "difference");
     const bool both = beside || apart, alone = !strcmp(first, "alone");
-    const int way = find(both ? second : first);
+    const int way = find_way(both ? second : first);
     list_words(expected);
     if (n != (both ? 2 : 1) || (way < 0 && !alone))
         return false;

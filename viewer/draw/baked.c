@@ -155,13 +155,13 @@ relume_status baked_draw(struct baked_drawer *d, const relume_objects *objects, 
         status = light(d, m, objects, material, a.vectors, lights, n);
     if (status)
         return status;
-    const struct place whole = {.width = surface->place->width, .height = surface->place->height};
+    const struct frame_area whole = {.width = surface->place->width,
+                                     .height = surface->place->height};
     gl->UseProgram(d->program.id);
     set_uniforms(d, m, part, info, &a, surface);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    draw_rectangle(gl, &d->program, &whole,
-                   (struct app_rectangle){0, 0, whole.width, whole.height});
+    draw_whole(gl, &d->program, &whole);
     gl->Disable(GL_BLEND);
     return RELUME_OK;
 }

@@ -9,50 +9,23 @@
 #ifndef VIEWER_BETWEEN_H
 #define VIEWER_BETWEEN_H
 
-#include "draw/objects_drawer.h"
-#include "transport/ism.h"
-#include "transport/micro.h"
-
-// How light is gathered.
-enum between_way { BETWEEN_AMBIENT, BETWEEN_DIRECTIONAL, BETWEEN_MICRO, BETWEEN_ISM };
-
-// Targets that are drawn at once.
-enum { BETWEEN_JOINED = 4 };
-struct joined {
-    struct target target[BETWEEN_JOINED];
-    int count;
-    GLuint framebuffer;
-};
+#include "draw/between_frame.h"
+#include "draw/between_points.h"
+#include "draw/between_programs.h"
+#include "draw/between_white.h"
 
 // Zeroed it holds nothing.
 struct between {
     const struct gl *gl;
     const struct relume_log *log;
-    struct captured_mesh mesh;
-    struct shadow_map captured;  // of a light sample
-    struct program back, front, lamps, mean, shown, gather, smooth, returned, scene, picture;
     GLuint array;
+    struct between_programs programs;
     struct light_uniforms uniforms;
-    struct relume_image white_map;
-    relume_environment *white_sky;
-    // Of the frame.
-    struct joined nearest;   // the scene's normals; places and normals of what is nearest
-    struct joined by_lamps;  // let through without the objects and with them, all likewise
-    struct joined gathered, smoothed;  // without the objects, with them
-    struct target behind, show, thrown;
-    GLuint behind_depth;
-    struct target even;  // the mean of the panorama, a texel
-    struct target white,
-        sum;            // `grid` times finer: the objects under a white sky; all lights so far
-    uint64_t white_of;  // materials, 0: not known; seen by
-    float white_clip[16];
-    int lights;  // that are summed
-    // Of ways that gather from points; made when first needed.
-    struct card_points points;
-    struct joined leaf_lamps;  // as by_lamps
-    struct point_light point_light;
-    struct micro micro;
-    struct ism ism;
+    struct captured_mesh mesh;
+    struct shadow_map captured;  // of a light sample, of the mesh
+    struct between_white white;
+    struct between_frame frame;
+    struct between_points points;
 };
 
 // What all passes of a frame know.

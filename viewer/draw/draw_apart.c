@@ -6,7 +6,7 @@ static const char *const uniforms[] = {"rectangle", "frame_size", "frame", "othe
 
 const struct fragment draw_apart_fragment = {"between_apart.frag", uniforms, COUNT};
 
-void draw_apart(const struct program *program, const struct gl *gl, const struct place *place,
+void draw_apart(const struct program *program, const struct gl *gl, const struct frame_area *area,
                 const struct target *frame, const struct target *other)
 {
     texture_use(gl, 0, GL_TEXTURE_2D, frame->texture);
@@ -14,5 +14,5 @@ void draw_apart(const struct program *program, const struct gl *gl, const struct
     gl->UseProgram(program->id);
     gl->Uniform1i(program->at[FRAME], 0);
     gl->Uniform1i(program->at[OTHER], 1);
-    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
+    draw_whole(gl, program, area);
 }

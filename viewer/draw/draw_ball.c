@@ -8,7 +8,7 @@ static const char *const uniforms[] = {"rectangle", "frame_size", "ball", "light
 
 const struct fragment draw_ball_fragment = {"ball.frag", uniforms, COUNT};
 
-void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
+void draw_ball(const struct program *program, const struct gl *gl, const struct frame_area *area,
                struct gizmo_circle ball, struct relume_vec3 light, const float rgb[3])
 {
     const float most = fmaxf(fmaxf(rgb[0], rgb[1]), fmaxf(rgb[2], 1e-6f));
@@ -18,7 +18,7 @@ void draw_ball(const struct program *program, const struct gl *gl, const struct 
     gl->Uniform3f(program->at[VALUE], rgb[0] / most, rgb[1] / most, rgb[2] / most);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    draw_rectangle(gl, program, place,
+    draw_rectangle(gl, program, area,
                    (struct app_rectangle){ball.x - ball.radius, ball.y - ball.radius,
                                           ball.x + ball.radius, ball.y + ball.radius});
     gl->Disable(GL_BLEND);

@@ -24,9 +24,9 @@ relume_status draw_panorama_create(struct program *program, const struct gl *gl,
     return program_create(program, gl, draw_panorama_shader(geometry), uniforms, COUNT, log);
 }
 
-void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
-                   const struct relume_geometry *geometry, struct relume_pan_tilt look,
-                   const struct target *view)
+void draw_panorama(const struct program *program, const struct gl *gl,
+                   const struct frame_area *area, const struct relume_geometry *geometry,
+                   struct relume_pan_tilt look, const struct target *view)
 {
     const GLint *at = program->at;
     texture_use(gl, 0, GL_TEXTURE_2D, view->texture);
@@ -36,8 +36,8 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
     gl->Uniform3f(at[LOOK], (float)(look.pan_deg * M_PI / 180), (float)(look.tilt_deg * M_PI / 180),
                   (float)(1.0 / look.zoom));
     gl->Uniform1i(at[STEREOGRAPHIC], look.stereographic);
-    gl->Uniform2f(at[LOOK_SIZE], (float)place->width, (float)place->height);
-    gl->Uniform1f(at[EXPOSURE], place->exposure);
+    gl->Uniform2f(at[LOOK_SIZE], (float)area->width, (float)area->height);
+    gl->Uniform1f(at[EXPOSURE], area->exposure);
     gl->Uniform1i(at[DISC], geometry->disc);
-    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
+    draw_whole(gl, program, area);
 }

@@ -7,21 +7,21 @@ static const char *const uniforms[] = {"rectangle", "frame_size", "view", "pictu
 const struct fragment draw_picture_fragment = {"picture.frag", uniforms, COUNT};
 
 void draw_picture_within(const struct program *program, const struct gl *gl,
-                         const struct place *place, const struct target *view,
+                         const struct frame_area *area, const struct target *view,
                          struct app_rectangle within)
 {
-    const struct app_rectangle *p = &place->picture;
+    const struct app_rectangle *p = &area->picture;
     texture_use(gl, 0, GL_TEXTURE_2D, view->texture);
     gl->UseProgram(program->id);
     gl->Uniform1i(program->at[VIEW], 0);
     gl->Uniform4f(program->at[PICTURE], (float)p->left, (float)p->top, (float)p->right,
                   (float)p->bottom);
-    gl->Uniform1f(program->at[EXPOSURE], place->exposure);
-    draw_rectangle(gl, program, place, within);
+    gl->Uniform1f(program->at[EXPOSURE], area->exposure);
+    draw_rectangle(gl, program, area, within);
 }
 
-void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
+void draw_picture(const struct program *program, const struct gl *gl, const struct frame_area *area,
                   const struct target *view)
 {
-    draw_picture_within(program, gl, place, view, place->picture);
+    draw_picture_within(program, gl, area, view, area->picture);
 }

@@ -9,7 +9,7 @@ const struct fragment draw_present_fragment = {"present.frag", uniforms, COUNT};
 void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
                   const struct window_place *window, int tone, double white, GLuint framebuffer)
 {
-    const struct place place = {.width = frame->width, .height = frame->height};
+    const struct frame_area area = {.width = frame->width, .height = frame->height};
     gl->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     if (window->width > frame->width) {
         gl->Viewport(0, 0, window->width, window->height);
@@ -23,5 +23,5 @@ void draw_present(const struct program *program, const struct gl *gl, const stru
     gl->Uniform1i(program->at[TONE], tone);
     gl->Uniform1f(program->at[WHITE], (float)white);
     gl->Uniform1f(program->at[LEFT], (float)window->left);
-    draw_rectangle(gl, program, &place, (struct app_rectangle){0, 0, frame->width, frame->height});
+    draw_whole(gl, program, &area);
 }

@@ -86,7 +86,7 @@ bool draw_use_cell(const struct gl *gl, const struct target *const *views, const
 struct cells {
     const struct program *program;
     const struct gl *gl;
-    const struct place *place;
+    const struct frame_area *area;
     const struct slab_inputs *in;
     struct relume_slab_grid grid;
     const GLuint *disparity;  // [views], or NULL
@@ -95,7 +95,7 @@ struct cells {
 static struct app_rectangle pixels_of(const struct cells *c, const struct strip *across,
                                       const struct strip *down)
 {
-    const struct app_rectangle *p = &c->place->picture;
+    const struct app_rectangle *p = &c->area->picture;
     const struct relume_geometry *g = c->in->geometry;
     const double per_s = (p->right - p->left) / (g->st_max[0] - g->st_min[0]);
     const double per_t = (p->bottom - p->top) / (g->st_max[1] - g->st_min[1]);
@@ -137,7 +137,7 @@ static void draw_cell(const struct cells *c, const struct strip *across, const s
     set_parts(c, view);
     c->gl->Uniform4f(c->program->at[CELL], (float)grid->u[across->low], (float)grid->v[down->low],
                      (float)grid->u[across->high], (float)grid->v[down->high]);
-    draw_rectangle(c->gl, c->program, c->place, pixels_of(c, across, down));
+    draw_rectangle(c->gl, c->program, c->area, pixels_of(c, across, down));
 }
 
 static double reach_of(const struct slab_inputs *in)
@@ -146,11 +146,11 @@ static double reach_of(const struct slab_inputs *in)
     return (g->uv_z - in->eye.z) / (g->st_z - in->eye.z);
 }
 
-void draw_use_window(const struct gl *gl, const struct place *place, const struct slab_inputs *in,
-                     const GLint at[3])
+void draw_use_window(const struct gl *gl, const struct frame_area *area,
+                     const struct slab_inputs *in, const GLint at[3])
 {
     const struct relume_geometry *g = in->geometry;
-    const struct app_rectangle *p = &place->picture;
+    const struct app_rectangle *p = &area->picture;
     gl->Uniform4f(at[0], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
     gl->Uniform4f(at[1], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
                   (float)g->st_max[1]);
@@ -164,8 +164,8 @@ static void set_uniforms(const struct cells *c)
     gl->UseProgram(c->program->id);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(at[VIEW_00 + i], i);
-    draw_use_window(gl, c->place, c->in, at + PICTURE);
-    gl->Uniform1f(at[EXPOSURE], c->place->exposure);
+    draw_use_window(gl, c->area, c->in, at + PICTURE);
+    gl->Uniform1f(at[EXPOSURE], c->area->exposure);
 }
 
 static void draw_cells(const struct cells *c)
@@ -185,19 +185,20 @@ static void draw_cells(const struct cells *c)
     }
 }
 
-void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
+void draw_slab(const struct program *program, const struct gl *gl, const struct frame_area *area,
                const struct slab_inputs *in, bool nearest)
 {
-    const struct cells cells = {program, gl, place, in, relume_slab_grid(in->slab), NULL};
+    const struct cells cells = {program, gl, area, in, relume_slab_grid(in->slab), NULL};
     set_uniforms(&cells);
     gl->Uniform1i(program->at[NEAREST], nearest);
     draw_cells(&cells);
 }
 
-void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
-                     const struct slab_inputs *in, const GLuint *disparity, const double range[2])
+void draw_slab_depth(const struct program *program, const struct gl *gl,
+                     const struct frame_area *area, const struct slab_inputs *in,
+                     const GLuint *disparity, const double range[2])
 {
-    const struct cells cells = {program, gl, place, in, relume_slab_grid(in->slab), disparity};
+    const struct cells cells = {program, gl, area, in, relume_slab_grid(in->slab), disparity};
     const double nearest = fmin(range[1], relume_slab_eye_disparity(in->slab, in->eye));
     set_uniforms(&cells);
     for (int i = 0; i < 4; i++)

@@ -12,8 +12,8 @@ const struct fragment draw_slab_lens_fragment = {"slab_lens.frag", uniforms, COU
 const struct fragment draw_mean_fragment = {"mean.frag", mean_uniforms, MEAN_COUNT};
 
 static void set_uniforms(const struct program *program, const struct gl *gl,
-                         const struct place *place, const struct slab_inputs *in, double aperture,
-                         double focus)
+                         const struct frame_area *area, const struct slab_inputs *in,
+                         double aperture, double focus)
 {
     const struct relume_geometry *g = in->geometry;
     const struct relume_slab_grid grid = relume_slab_grid(in->slab);
@@ -21,18 +21,19 @@ static void set_uniforms(const struct program *program, const struct gl *gl,
     const GLint *at = program->at;
     gl->UseProgram(program->id);
     gl->Uniform1i(at[VIEW], 0);
-    draw_use_window(gl, place, in, at + PICTURE);
+    draw_use_window(gl, area, in, at + PICTURE);
     gl->Uniform4f(at[GRID], (float)grid.u[0], (float)grid.v[0], (float)grid.u[grid.columns - 1],
                   (float)grid.v[grid.rows - 1]);
     gl->Uniform2f(at[LENS], (float)(0.5 * aperture), (float)disparity);
 }
 
-void draw_slab_lens(const struct program *program, const struct gl *gl, const struct place *place,
-                    const struct slab_inputs *in, double aperture, double focus)
+void draw_slab_lens(const struct program *program, const struct gl *gl,
+                    const struct frame_area *area, const struct slab_inputs *in, double aperture,
+                    double focus)
 {
     const struct relume_slab_grid grid = relume_slab_grid(in->slab);
     const GLint *at = program->at;
-    set_uniforms(program, gl, place, in, aperture, focus);
+    set_uniforms(program, gl, area, in, aperture, focus);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
     for (int row = 0; row < grid.rows; row++)
@@ -45,17 +46,17 @@ void draw_slab_lens(const struct program *program, const struct gl *gl, const st
             gl->Uniform2f(at[PLACE], (float)lens.place[0], (float)lens.place[1]);
             gl->Uniform4f(at[STEPS], (float)lens.step[0][0], (float)lens.step[0][1],
                           (float)lens.step[1][0], (float)lens.step[1][1]);
-            draw_rectangle(gl, program, place, place->picture);
+            draw_rectangle(gl, program, area, area->picture);
         }
     gl->Disable(GL_BLEND);
 }
 
-void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
+void draw_mean(const struct program *program, const struct gl *gl, const struct frame_area *area,
                const struct target *sum)
 {
     texture_use(gl, 0, GL_TEXTURE_2D, sum->texture);
     gl->UseProgram(program->id);
     gl->Uniform1i(program->at[SUM], 0);
-    gl->Uniform1f(program->at[EXPOSURE], place->exposure);
-    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
+    gl->Uniform1f(program->at[EXPOSURE], area->exposure);
+    draw_whole(gl, program, area);
 }

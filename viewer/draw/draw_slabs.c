@@ -46,7 +46,7 @@ const struct fragment draw_slabs_depth_fragment = {"slabs_depth.frag", depth_uni
 struct turned {
     const struct program *program;
     const struct gl *gl;
-    const struct place *place;
+    const struct frame_area *area;
     const struct slabs_inputs *in;
     const struct relume_geometry *geometry;
     const relume_slab *slab;
@@ -56,14 +56,14 @@ struct turned {
 };
 
 static struct turned turn(const struct program *program, const struct gl *gl,
-                          const struct place *place, const struct slabs_inputs *in, int slab)
+                          const struct frame_area *area, const struct slabs_inputs *in, int slab)
 {
     const struct relume_geometry *g = relume_slab_set_geometry(in->slabs, slab);
     const struct relume_window *w = in->window;
     struct turned t = {
         .program = program,
         .gl = gl,
-        .place = place,
+        .area = area,
         .in = in,
         .geometry = g,
         .slab = relume_slab_set_slab(in->slabs, slab),
@@ -121,7 +121,7 @@ static bool find_rectangle(struct app_rectangle *out, const struct turned *t, co
                            const double high[2])
 {
     const struct relume_geometry *g = t->geometry;
-    const struct app_rectangle *p = &t->place->picture;
+    const struct app_rectangle *p = &t->area->picture;
     const double width = p->right - p->left, height = p->bottom - p->top;
     struct part part = {{0, 0}, {1, 1}};
     if (!t->in->others)
@@ -161,7 +161,7 @@ static void draw_cell(const struct turned *t, int column, int row)
     }
     t->gl->Uniform4f(t->program->at[CELL], (float)grid->u[column], (float)grid->v[row],
                      (float)grid->u[right], (float)grid->v[below]);
-    draw_rectangle(t->gl, t->program, t->place, rectangle);
+    draw_rectangle(t->gl, t->program, t->area, rectangle);
 }
 
 static void set_vector(const struct turned *t, int uniform, struct relume_vec3 v)
@@ -190,10 +190,10 @@ static void draw_slab_cells(const struct turned *t)
             draw_cell(t, column, row);
 }
 
-static void begin(const struct program *program, const struct gl *gl, const struct place *place,
-                  const struct slabs_inputs *in)
+static void begin_slabs(const struct program *program, const struct gl *gl,
+                        const struct frame_area *area, const struct slabs_inputs *in)
 {
-    const struct app_rectangle *p = &place->picture;
+    const struct app_rectangle *p = &area->picture;
     gl->UseProgram(program->id);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[VIEW_00 + i], i);
@@ -207,13 +207,13 @@ static void begin(const struct program *program, const struct gl *gl, const stru
     gl->BlendFunc(GL_ONE, GL_ONE);
 }
 
-void draw_slabs(const struct program *program, const struct gl *gl, const struct place *place,
+void draw_slabs(const struct program *program, const struct gl *gl, const struct frame_area *area,
                 const struct slabs_inputs *in, bool nearest)
 {
-    begin(program, gl, place, in);
+    begin_slabs(program, gl, area, in);
     gl->Uniform1i(program->at[NEAREST], nearest);
     for (int i = 0; i < relume_slab_set_count(in->slabs); i++) {
-        const struct turned t = turn(program, gl, place, in, i);
+        const struct turned t = turn(program, gl, area, in, i);
         draw_slab_cells(&t);
     }
     gl->Disable(GL_BLEND);
@@ -235,14 +235,14 @@ static void set_range(const struct turned *t)
     t->gl->Uniform2f(t->program->at[RANGE], (float)farthest, (float)nearest);
 }
 
-void draw_slabs_depth(const struct program *program, const struct gl *gl, const struct place *place,
-                      const struct slabs_inputs *in)
+void draw_slabs_depth(const struct program *program, const struct gl *gl,
+                      const struct frame_area *area, const struct slabs_inputs *in)
 {
-    begin(program, gl, place, in);
+    begin_slabs(program, gl, area, in);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
     for (int i = 0; i < relume_slab_set_count(in->slabs); i++) {
-        const struct turned t = turn(program, gl, place, in, i);
+        const struct turned t = turn(program, gl, area, in, i);
         set_range(&t);
         draw_slab_cells(&t);
     }

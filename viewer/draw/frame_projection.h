@@ -2,7 +2,7 @@
 #ifndef VIEWER_FRAME_PROJECTION_H
 #define VIEWER_FRAME_PROJECTION_H
 
-#include "app/place.h"
+#include "app/view_geometry.h"
 
 struct frame_projection {
     float clip[16];  // columns first; rows of the frame run down

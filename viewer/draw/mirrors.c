@@ -241,13 +241,14 @@ static void use_surface(const struct mirrors *m, const GLint *at,
     gl->Uniform3f(at[REFLECTANCE], reflectance[0], reflectance[1], reflectance[2]);
 }
 
-static void draw(const struct mirrors *m, const struct program *program,
-                 const struct mirror_surface *surface)
+static void draw_mirror(const struct mirrors *m, const struct program *program,
+                        const struct mirror_surface *surface)
 {
-    const struct place whole = {.width = surface->place->width, .height = surface->place->height};
+    const struct frame_area whole = {.width = surface->place->width,
+                                     .height = surface->place->height};
     m->gl->Enable(GL_BLEND);
     m->gl->BlendFunc(GL_ONE, GL_ONE);
-    draw_rectangle(m->gl, program, &whole, (struct app_rectangle){0, 0, whole.width, whole.height});
+    draw_whole(m->gl, program, &whole);
     m->gl->Disable(GL_BLEND);
 }
 
@@ -265,7 +266,7 @@ static void draw_in_panorama(const struct mirrors *m, const struct mirror_surfac
     gl_set_vec3(gl, at[CENTRE], g->center);
     gl->Uniform1f(at[TURN], 0.0f);
     gl->Uniform3f(at[TINT], 1.0f, 1.0f, 1.0f);
-    draw(m, &m->panorama, surface);
+    draw_mirror(m, &m->panorama, surface);
 }
 
 static relume_status draw_skies(struct mirrors *m, const struct mirror_surface *surface,
@@ -285,7 +286,7 @@ static relume_status draw_skies(struct mirrors *m, const struct mirror_surface *
         gl->Uniform1i(at[HAS_PLACES], false);
         gl->Uniform1f(at[TURN], (float)(-lights[i].rotate_deg * (M_PI / 180.0)));
         gl->Uniform3f(at[TINT], lights[i].rgb[0], lights[i].rgb[1], lights[i].rgb[2]);
-        draw(m, &m->sphere, surface);
+        draw_mirror(m, &m->sphere, surface);
     }
     return status;
 }

@@ -32,14 +32,14 @@ relume_status objects_drawer_shade(struct objects_drawer *drawer,
 void objects_drawer_swap(struct objects_drawer *drawer);
 // What was shaded over the target in use, of the same frame, or its difference from the other;
 // `scene` are the positions that the frame shows, or 0: it shows nothing else.
-void objects_drawer_over(const struct objects_drawer *drawer, const struct place *place,
+void objects_drawer_over(const struct objects_drawer *drawer, const struct frame_area *area,
                          GLuint scene, bool difference);
 
 // The shadow of one light sample on the scene: adds to the target in use what `lone` shows, where
 // the light sample reaches `scene`, times the light sample's share of the light of all light
 // samples.
-void objects_drawer_cast(struct objects_drawer *drawer, const struct place *place, int light_sample,
-                         GLuint scene, const struct target *lone);
+void objects_drawer_cast(struct objects_drawer *drawer, const struct frame_area *area,
+                         int light_sample, GLuint scene, const struct target *lone);
 
 // The graphics memory of a material; 0 while it was not shown.
 size_t objects_drawer_bytes(const struct objects_drawer *drawer, int material);

@@ -3,54 +3,46 @@
 #define VIEWER_OBJECTS_DRAWER_STATE_H
 
 #include "draw/baked.h"
-#include "draw/btf_upload.h"
-#include "draw/captured_mesh.h"
-#include "draw/draw.h"
-#include "draw/shadow_map.h"
-#include "draw/frame_projection.h"
 #include "draw/mirrors.h"
+#include "draw/object_lights.h"
+#include "draw/object_materials.h"
+#include "draw/object_mesh.h"
+#include "draw/object_shadows.h"
+#include "draw/object_skins.h"
+#include "draw/object_surface.h"
 #include "draw/sky_maps.h"
+#include "relit/light_uniforms.h"
 
-struct objects_drawer_program {
-    struct program program;
-    const struct btf_shader *shader;
-    bool sky;  // for environments
+// Environments on objects (object_sky.c).
+struct object_sky {
+    struct program share, sky;
+    struct sky_maps maps;
+    struct target shown;          // what materials show of an environment in the open
+    struct target sent, arrived;  // light of its samples, and what of that is not in shadow
+    GLuint share_buffer;          // draws into both
 };
 
 struct objects_drawer {
     const struct gl *gl;
     const struct relume_log *log;
-    relume_objects *objects;                 // borrowed
-    relume_objects *seen;                    // as the eye of the frame sees them; NULL: in full
-    GLuint array, vertices, indices, tints;  // the last: 0 where no vertex has one
-    struct program surface, depth, over, cast, share, sky;
-    struct objects_drawer_program *program;  // [programs]: of the models in use
-    int programs;
-    struct btf_material *material;  // [materials]; without a shader until it is shown
+    relume_objects *objects;  // borrowed
+    struct object_mesh mesh;
+    struct object_skins skins;
+    struct object_materials materials;
+    struct object_lights lights;  // of the present frame
+    struct object_shadows shadows;
+    struct object_sky sky;
     struct light_uniforms uniforms;
-    struct sky_maps maps;
     struct mirrors mirrors;
-    struct baked_drawer baked;
     struct mirror_panorama panorama;  // that they show, of the present frame
-    struct shadow_map shadow;
-    // Of the frame, `grid` times finer; `other` is in another material, to compare with.
-    struct target place, normal, tangent, footprint, tint, emitted, shaded, other;
-    struct target shown, sent, arrived;  // of an environment
-    GLuint surface_buffer, depth_texture, share_buffer;
-    int grid;
-    GLuint *skin;       // [materials]: opacity and emission, 0 where there is none
-    bool sends, holes;  // some material does; has some
-    int only;           // material of all parts in the present frame; -1: their own
-    bool no_shadows;
-    const struct captured_mesh *captured;  // that throws shadows on objects as well; NULL: none
+    struct baked_drawer baked;
+    // Of the frame, all as large as the surface; `other` is in another material, to compare with.
+    struct object_surface surface;
+    struct target shaded, other;
+    struct program over;
     GLuint returned;  // light of the scene that objects show, a texture of the frame; 0: none
-    struct relume_object_light *light_sample;  // of the present frame, and its lights
-    int light_samples;
-    struct relume_light *light;
-    int lights;
     struct frame_projection projection;
-    struct relume_vec3 middle;
-    double radius;
+    int only;  // material of all parts in the present frame; -1: their own
 };
 
 #endif

@@ -65,7 +65,7 @@ static void set_near(float clip[16], const struct view *v, double tangent, doubl
     set_row(clip, 3, v->ahead, v->eye, 1.0, 0.0);
 }
 
-static struct view look(struct relume_vec3 eye, struct relume_vec3 ahead)
+static struct view view_along(struct relume_vec3 eye, struct relume_vec3 ahead)
 {
     struct view v = {.eye = eye, .ahead = ahead};
     relume_light_frame(&v.right, &v.up, ahead);
@@ -80,7 +80,7 @@ static void aim_cube(struct shadow_map *map, struct relume_vec3 eye, double reac
     map->layers = 6;
     map->texel = 2.0f / (float)map->side;
     for (int i = 0; i < 6; i++) {
-        const struct view v = look(eye, ahead[i]);
+        const struct view v = view_along(eye, ahead[i]);
         // a hair wider, so that neighbours of a texel on the edge are there
         set_near(map->clip[i], &v, 1.0 + 2.0 / map->side, 1e-3 * reach, reach);
     }
@@ -97,7 +97,7 @@ static void aim(struct shadow_map *map, const struct relume_object_light *light_
     memcpy(map->light, place, sizeof map->light);
     map->layers = 1;
     if (!near) {
-        const struct view v = look(middle, vec3_scale(at, -1.0));
+        const struct view v = view_along(middle, vec3_scale(at, -1.0));
         memset(map->clip[0], 0, 16 * sizeof *map->clip[0]);
         set_row(map->clip[0], 0, v.right, v.eye, 1.0 / radius, 0.0);
         set_row(map->clip[0], 1, v.up, v.eye, 1.0 / radius, 0.0);
@@ -112,7 +112,7 @@ static void aim(struct shadow_map *map, const struct relume_object_light *light_
         aim_cube(map, at, apart + radius);
         return;
     }
-    const struct view v = look(at, vec3_scale(way, 1.0 / apart));
+    const struct view v = view_along(at, vec3_scale(way, 1.0 / apart));
     const double tangent = radius / sqrt(apart * apart - radius * radius);
     set_near(map->clip[0], &v, tangent, apart - radius, apart + radius);
     map->texel = (float)(2.0 * tangent / map->side);

@@ -59,9 +59,10 @@ static relume_status link_program(struct program *program, const struct gl *gl,
 }
 
 // The stages belong to it.
-static relume_status finish(struct program *program, const struct gl *gl, const GLuint stages[2],
-                            const char *name, const char *const *uniforms, int n,
-                            relume_status status, const struct relume_log *log)
+static relume_status link_stages(struct program *program, const struct gl *gl,
+                                 const GLuint stages[2], const char *name,
+                                 const char *const *uniforms, int n, relume_status status,
+                                 const struct relume_log *log)
 {
     assert(n <= PROGRAM_UNIFORMS);
     *program = (struct program){0};
@@ -82,7 +83,7 @@ static relume_status create(struct program *program, const struct gl *gl, const 
     relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, vertex, NULL, log);
     if (!status)
         status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, defines, log);
-    return finish(program, gl, stages, fragment, uniforms, n, status, log);
+    return link_stages(program, gl, stages, fragment, uniforms, n, status, log);
 }
 
 relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
@@ -107,7 +108,16 @@ relume_status program_create_compute(struct program *program, const struct gl *g
 {
     GLuint stages[2] = {0, 0};
     const relume_status status = compile(&stages[0], gl, GL_COMPUTE_SHADER, compute, defines, log);
-    return finish(program, gl, stages, compute, uniforms, n, status, log);
+    return link_stages(program, gl, stages, compute, uniforms, n, status, log);
+}
+
+relume_status program_create_fragments(const struct fragment_program *list, size_t n,
+                                       const struct gl *gl, const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; i < n && !status; i++)
+        status = program_create_fragment(list[i].program, gl, list[i].fragment, log);
+    return status;
 }
 
 relume_status program_create_passes(const struct compute_pass *list, size_t n, const struct gl *gl,

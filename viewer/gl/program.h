@@ -23,6 +23,13 @@ struct fragment {
 relume_status program_create_fragment(struct program *program, const struct gl *gl,
                                       const struct fragment *fragment,
                                       const struct relume_log *log);
+// Several of them, up to the first that fails.
+struct fragment_program {
+    struct program *program;
+    const struct fragment *fragment;
+};
+relume_status program_create_fragments(const struct fragment_program *list, size_t n,
+                                       const struct gl *gl, const struct relume_log *log);
 // The same with `defines`, lines that follow the first.
 relume_status program_create_variant(struct program *program, const struct gl *gl,
                                      const char *fragment, const char *defines,

@@ -49,6 +49,15 @@ void target_destroy(struct target *target, const struct gl *gl)
     *target = (struct target){0};
 }
 
+relume_status target_need(struct target *target, const struct gl *gl, int width, int height,
+                          const struct relume_log *log)
+{
+    if (target->width == width && target->height == height)
+        return RELUME_OK;
+    target_destroy(target, gl);
+    return target_create(target, gl, width, height, log);
+}
+
 void target_resume(const struct target *target, const struct gl *gl)
 {
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
@@ -60,6 +69,22 @@ void target_begin(const struct target *target, const struct gl *gl)
     target_resume(target, gl);
     gl->ClearColor(0, 0, 0, 0);
     gl->Clear(GL_COLOR_BUFFER_BIT);
+}
+
+bool target_join(GLuint *framebuffer, const struct gl *gl, const struct target *const *target,
+                 int n, GLuint depth)
+{
+    GLenum buffers[TARGET_JOINED];
+    gl->GenFramebuffers(1, framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, *framebuffer);
+    for (int i = 0; i < n; i++) {
+        buffers[i] = GL_COLOR_ATTACHMENT0 + (GLenum)i;
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target[i]->texture, 0);
+    }
+    gl->DrawBuffers(n, buffers);
+    if (depth)
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+    return gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
 relume_status target_read(struct relume_image *out, const struct target *target,

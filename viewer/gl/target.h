@@ -16,11 +16,25 @@ struct target {
 relume_status target_create(struct target *target, const struct gl *gl, int width, int height,
                             const struct relume_log *log);
 void target_destroy(struct target *target, const struct gl *gl);
+// Makes it that large where it was not: it is empty then. RELUME_ESYSTEM.
+relume_status target_need(struct target *target, const struct gl *gl, int width, int height,
+                          const struct relume_log *log);
+static inline void target_swap(struct target *a, struct target *b)
+{
+    const struct target was = *a;
+    *a = *b;
+    *b = was;
+}
 
 // Later draws go into all of it, black to begin with.
 void target_begin(const struct target *target, const struct gl *gl);
 // The same on top of what it holds.
 void target_resume(const struct target *target, const struct gl *gl);
+// Makes a framebuffer that draws into `n` of them at once, TARGET_JOINED at most, with a texture of
+// depths (0: none), and uses it. False where OpenGL cannot.
+enum { TARGET_JOINED = 6 };
+bool target_join(GLuint *framebuffer, const struct gl *gl, const struct target *const *target,
+                 int n, GLuint depth);
 // Its first three channels as a new image. RELUME_ENOMEM.
 relume_status target_read(struct relume_image *out, const struct target *target,
                           const struct gl *gl);

@@ -82,8 +82,8 @@ static relume_status make(struct gl_fft_length *l, const struct gl *gl, int leng
     return status;
 }
 
-static relume_status find(struct gl_fft_length **out, struct gl_fft *fft, const struct gl *gl,
-                          int length, const struct relume_log *log)
+static relume_status find_length(struct gl_fft_length **out, struct gl_fft *fft,
+                                 const struct gl *gl, int length, const struct relume_log *log)
 {
     struct gl_fft_length *oldest = &fft->of[0];
     for (int i = 0; i < GL_FFT_LENGTHS; i++) {
@@ -101,7 +101,7 @@ relume_status gl_fft_run(struct gl_fft *fft, const struct gl *gl, const struct g
                          const struct relume_log *log)
 {
     struct gl_fft_length *l;
-    const relume_status status = find(&l, fft, gl, lines->length, log);
+    const relume_status status = find_length(&l, fft, gl, lines->length, log);
     if (status || lines->lines < 1)
         return status;
     l->used = ++fft->uses;

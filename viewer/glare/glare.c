@@ -81,7 +81,7 @@ static bool can_pass(struct glare *g, const struct observer *observer)
     return !g->by_library;
 }
 
-static relume_status prepare(struct glare *g, const struct observer *observer, bool passes)
+static relume_status prepare_eye(struct glare *g, const struct observer *observer, bool passes)
 {
     if (g->ready && g->passes == passes && g->parts_off == observer->parts_off)
         return RELUME_OK;
@@ -106,8 +106,8 @@ static double squint_of(const struct glare *g, const struct observer *observer)
 }
 
 // Live on; `*moved`: it is not as it was.
-static relume_status live(struct glare *g, const struct frame_request *q, double luminance,
-                          bool *moved)
+static relume_status advance_eye(struct glare *g, const struct frame_request *q, double luminance,
+                                 bool *moved)
 {
     const double squint = squint_of(g, &q->observer);
     relume_status status = RELUME_OK;
@@ -166,7 +166,7 @@ static relume_status live_and_update(struct glare *g, const struct frame_request
     if (q->observer.cycle_s > 0)
         return go_around(g, q, seen);
     forget_loop(g);
-    relume_status status = live(g, q, seen, &moved);
+    relume_status status = advance_eye(g, q, seen, &moved);
     if (status || (!moved && g->fresh))
         return status;
     g->fresh = false;
@@ -293,7 +293,7 @@ relume_status glare_see(struct glare *g, const struct target *frame, const struc
     bool fits = true;
     relume_status status = need_seen(g, frame->width, frame->height);
     if (!status)
-        status = prepare(g, &q->observer, passes);
+        status = prepare_eye(g, &q->observer, passes);
     if (!status)
         status = passes ? see_by_passes(g, frame, q, &fits) : see_by_library(g, frame, q);
     g->fresh = !status;

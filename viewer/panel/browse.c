@@ -69,7 +69,7 @@ static int by_kind_and_name(const void *a, const void *b)
 }
 
 // False when memory is short.
-static bool add(struct browser *b, const char *name)
+static bool add_entry(struct browser *b, const char *name)
 {
     char path[PATH_MAX];
     if (name[0] == '.' || b->count == BROWSE_MOST || !browse_path(path, b, name))
@@ -96,7 +96,7 @@ relume_status browse_list(struct browser *b, const char *folder)
     b->entry = calloc(BROWSE_MOST, sizeof *b->entry);
     bool good = b->entry != NULL;
     for (struct dirent *e = readdir(dir); good && e; e = readdir(dir))
-        good = add(b, e->d_name);
+        good = add_entry(b, e->d_name);
     closedir(dir);
     if (!good) {
         browse_destroy(b);

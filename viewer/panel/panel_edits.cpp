@@ -8,10 +8,10 @@ extern "C" {
 #include <cstdio>
 #include <cstring>
 
-static void wish_edit(app *app, const std::string &words)
+static void ask_edit(app *app, const std::string &words)
 {
     std::snprintf(app->spec, sizeof app->spec, "%s", words.c_str());
-    app->wish = APP_WISH_EDIT;
+    app->action = APP_ACTION_EDIT;
 }
 
 // ---------------------------------------------------------------- controls
@@ -221,13 +221,13 @@ void panel_edits(panel *panel, app *app, const panel_facts *facts)
         relume_edit_operation_summary(operations[(size_t)edit->operation]));
     const std::string words = words_of(edit, facts, operations[(size_t)edit->operation]);
     if (panel_button("apply##edit", "do it; the file stays as it is"))
-        wish_edit(app, words);
+        ask_edit(app, words);
     ImGui::SameLine();
     if (panel_button("undo##edit", "undo the last edit"))
-        wish_edit(app, "undo");
+        ask_edit(app, "undo");
     ImGui::SameLine();
     if (panel_button("redo##edit", "redo the last edit that was undone"))
-        wish_edit(app, "redo");
+        ask_edit(app, "redo");
     ImGui::TextWrapped("%s", facts->edits);
     if (!facts->edits_maps)
         return;
@@ -235,5 +235,5 @@ void panel_edits(panel *panel, app *app, const panel_facts *facts)
     panel_tip("the folder that the edited maps are written to, with glTF and MaterialX");
     ImGui::SameLine();
     if (panel_button("write", "write the edited maps; those that are shown stay as they are"))
-        wish_edit(app, "write \"" + std::string(edit->folder) + "\"");
+        ask_edit(app, "write \"" + std::string(edit->folder) + "\"");
 }

@@ -4,7 +4,7 @@
 
 extern "C" {
 #include "app/notes.h"
-#include "app/place.h"
+#include "app/view_geometry.h"
 }
 
 #include <cmath>
@@ -54,7 +54,7 @@ static void tools(app *app)
         if (&tool != all)
             ImGui::SameLine();
         if (ImGui::RadioButton(tool.name, app->notes->tool == tool.kind) &&
-            app->wish != APP_WISH_NOTE) {
+            app->action != APP_ACTION_NOTE) {
             app->notes->tool = tool.kind;
             app->notes->places = 0;
         }
@@ -82,7 +82,7 @@ static void list(app *app, float scale)
                                      std::string(note->text ? note->text : "") + "##" + note->id;
             if (ImGui::Selectable(text.c_str(), n->chosen == i)) {
                 n->chosen = i;
-                app->wish = APP_WISH_NOTE_BACK;
+                app->action = APP_ACTION_NOTE_BACK;
             }
             panel_tip("show it in the light that it was made in");
         }
@@ -102,12 +102,12 @@ static void chosen(panel *panel, app *app)
     panel_tip("the text of the chosen note");
     if (ImGui::IsItemDeactivatedAfterEdit() &&
         !relume_notes_rewrite(n->list, n->chosen, panel->note, nullptr))
-        app->wish = APP_WISH_NOTE_SAVE;
+        app->action = APP_ACTION_NOTE_SAVE;
     ImGui::SameLine();
     if (panel_button("remove##note", "remove the chosen note")) {
         relume_notes_remove(n->list, n->chosen);
         n->chosen = panel->noted = -1;
-        app->wish = APP_WISH_NOTE_SAVE;
+        app->action = APP_ACTION_NOTE_SAVE;
     }
 }
 
@@ -124,7 +124,7 @@ static void scale_row(panel *panel, app *app)
     ImGui::SameLine();
     if (panel_button("set the scale", "lengths and areas are in millimetres from now on") &&
         panel->ruler_mm > 0 && !relume_notes_set_scale(n->list, panel->ruler_mm / length))
-        app->wish = APP_WISH_NOTE_SAVE;
+        app->action = APP_ACTION_NOTE_SAVE;
 }
 
 bool panel_jottings(panel *panel, app *app)
@@ -141,7 +141,7 @@ bool panel_jottings(panel *panel, app *app)
     if (panel_button("keep this view", "a note without a place: eye, light and pass")) {
         n->tool = RELUME_NOTE_VIEW;
         n->places = 0;
-        app->wish = APP_WISH_NOTE;
+        app->action = APP_ACTION_NOTE;
     }
     return false;
 }

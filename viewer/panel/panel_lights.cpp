@@ -197,9 +197,9 @@ static bool edit_light(panel *panel, app *app)
     return changed | edit_geometry(light);
 }
 
-static void wish_light(app *app, const char *spec)
+static void ask_light(app *app, const char *spec)
 {
-    app->wish = APP_WISH_ADD_LIGHT;
+    app->action = APP_ACTION_ADD_LIGHT;
     std::snprintf(app->spec, sizeof app->spec, "%s", spec);
 }
 
@@ -213,7 +213,7 @@ static bool light_buttons(panel *panel, app *app)
         changed |= keys_press(app, APP_KEY_DELETE, false);
     ImGui::SameLine();
     if (panel_button("save rig", "save these lights as a rig file, which --rig reads"))
-        app->wish = APP_WISH_SAVE_RIG;
+        app->action = APP_ACTION_SAVE_RIG;
     for (const light_preset *p = light_presets; p->name; p++) {
         if (p != light_presets)
             ImGui::SameLine();
@@ -225,14 +225,14 @@ static bool light_buttons(panel *panel, app *app)
     ImGui::SetNextItemWidth(-1);
     if (ImGui::InputTextWithHint("##spec", "spot 0 0 2 0 0 -1 20 rgb 1 .8 .6", panel->spec,
                                  sizeof panel->spec, ImGuiInputTextFlags_EnterReturnsTrue))
-        wish_light(app, panel->spec);
+        ask_light(app, panel->spec);
     panel_tip("describe a light in words (docs/lights.md) and press Enter to add it");
     return changed;
 }
 
-static void wish_map(app *app, const char *folder, const char *name)
+static void ask_map(app *app, const char *folder, const char *name)
 {
-    app->wish = APP_WISH_MAP;
+    app->action = APP_ACTION_MAP;
     std::snprintf(app->spec, sizeof app->spec, "%s%s%s", folder, folder[0] ? "/" : "", name);
 }
 
@@ -246,7 +246,7 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
     if (panel->maps) {
         for (const char *const *name = facts->map; name && *name; name++)
             if (ImGui::Selectable(*name, !std::strcmp(*name, now)))
-                wish_map(app, facts->map_folder, *name);
+                ask_map(app, facts->map_folder, *name);
         ImGui::EndCombo();
     }
     ImGui::SetNextItemWidth(-1);
@@ -255,7 +255,7 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
                                  sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue);
     panel_tip("type the name of a map and press Enter");
     if (entered && panel->environment[0])
-        wish_map(app, "", panel->environment);
+        ask_map(app, "", panel->environment);
 }
 
 bool panel_lights(panel *panel, app *app, const panel_facts *facts)

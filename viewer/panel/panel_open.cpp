@@ -49,13 +49,13 @@ void panel_start(app *app, float scale)
 
 // ---------------------------------------------------------------- choosing a file
 
-static void wish_path(app *app, const browser *b, const char *name)
+static void ask_path(app *app, const browser *b, const char *name)
 {
     char path[PATH_MAX];
     if (!name[0] || !browse_path(path, b, name) || std::strlen(path) >= sizeof app->spec)
         return;
     const bool enters = !std::strcmp(name, "..") || !browse_opens_folder(path);
-    app->wish = browse_is_folder(path) && enters ? APP_WISH_FOLDER : APP_WISH_OPEN;
+    app->action = browse_is_folder(path) && enters ? APP_ACTION_FOLDER : APP_ACTION_OPEN;
     std::snprintf(app->spec, sizeof app->spec, "%s", path);
 }
 
@@ -63,7 +63,7 @@ static void entries(panel *panel, app *app, const browser *b)
 {
     char label[300];
     if (ImGui::Selectable(".. (one folder up)", false))
-        wish_path(app, b, "..");
+        ask_path(app, b, "..");
     panel_tip("go into the folder that holds this one");
     if (b->trouble)
         ImGui::TextWrapped("This folder cannot be read: %s", b->trouble);
@@ -84,7 +84,7 @@ static void entries(panel *panel, app *app, const browser *b)
             if (!clicked)
                 continue;
             if ((e.folder && !e.opens) || ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
-                wish_path(app, b, e.name);
+                ask_path(app, b, e.name);
             else
                 std::snprintf(panel->path, sizeof panel->path, "%s", e.name);
         }
@@ -131,6 +131,6 @@ void panel_browse(panel *panel, app *app, const browser *b)
     if (panel_button("cancel (Esc)", "back to the picture"))
         app->browse = false;
     if (opens)
-        wish_path(app, b, panel->path);
+        ask_path(app, b, panel->path);
     ImGui::End();
 }

@@ -49,17 +49,17 @@ bool panel_picture(app *app, const panel_facts *facts)
                          "the reflectance of the pixel under the pointer, in every direction");
     static const struct {
         const char *name;
-        app_wish wish;
+        app_action action;
         const char *what;
-    } wishes[] = {
-        {"PNG", APP_WISH_PNG, "save the picture as it is shown"},
-        {"EXR", APP_WISH_EXR, "save the picture in linear light"},
-        {"sweep", APP_WISH_SWEEP, "record the light going once around"},
-        {"turntable", APP_WISH_TURNTABLE, "record the eye going once around"},
+    } actions[] = {
+        {"PNG", APP_ACTION_PNG, "save the picture as it is shown"},
+        {"EXR", APP_ACTION_EXR, "save the picture in linear light"},
+        {"sweep", APP_ACTION_SWEEP, "record the light going once around"},
+        {"turntable", APP_ACTION_TURNTABLE, "record the eye going once around"},
     };
-    for (const auto &w : wishes) {
+    for (const auto &w : actions) {
         if (panel_button(w.name, w.what))
-            app->wish = w.wish;
+            app->action = w.action;
         ImGui::SameLine();
     }
     if (panel_button("reset", "set viewpoint, lights and picture back to the start")) {

@@ -12,13 +12,13 @@ extern "C" {
 
 // ---------------------------------------------------------------- section
 
-__attribute__((format(printf, 2, 3))) static void wish(app *app, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static void ask(app *app, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
     std::vsnprintf(app->spec, sizeof app->spec, format, args);
     va_end(args);
-    app->wish = APP_WISH_REFLECTION;
+    app->action = APP_ACTION_REFLECTION;
 }
 
 static void tools(app *app)
@@ -34,7 +34,7 @@ static void tools(app *app)
         if (i)
             ImGui::SameLine();
         if (ImGui::RadioButton(handles_tool_names[i], app->handles->tool == i))
-            wish(app, "tool %s", handles_tool_names[i]);
+            ask(app, "tool %s", handles_tool_names[i]);
         panel_tip(what[i]);
     }
 }
@@ -54,7 +54,7 @@ static void row(app *app, handles_kind kind, int object, int number)
         text += ", object " + std::to_string(object);
     text += "##" + std::to_string(object);
     if (ImGui::Selectable(text.c_str(), chosen))
-        wish(app, "choose %s %d %d", is, number, object);
+        ask(app, "choose %s %d %d", is, number, object);
     panel_tip("choose it: its handles are larger, and Delete removes it");
 }
 
@@ -85,10 +85,10 @@ static void sizes(app *app)
     double radius = r ? r->radius : h->radius, border = r ? r->border / r->radius : h->border;
     if (panel_slider("radius", &radius, 1e-3 * h->size, h->size, "%.3g",
                      "of the chosen region and the next one", ImGuiSliderFlags_Logarithmic))
-        wish(app, "radius %.6g", radius);
+        ask(app, "radius %.6g", radius);
     if (panel_slider("border", &border, 0, 4, "%.2f of the radius",
                      "how far outside the region edits fade away"))
-        wish(app, "border %.6g", border);
+        ask(app, "border %.6g", border);
 }
 
 static void switches(app *app)
@@ -98,29 +98,29 @@ static void switches(app *app)
     if (panel_box(
             "frozen", &frozen,
             "keep what mirrors show from here, wherever the eye goes, to edit from elsewhere"))
-        wish(app, frozen ? "freeze" : "unfreeze");
+        ask(app, frozen ? "freeze" : "unfreeze");
     ImGui::SameLine();
     if (panel_box("along the surface", &along,
                   "how far constraints reach: along the surface, or straight"))
-        wish(app, "distance %s", along ? "geodesic" : "straight");
+        ask(app, "distance %s", along ? "geodesic" : "straight");
 }
 
 static void buttons(app *app)
 {
     const handles *h = app->handles;
     if (panel_button("undo##reflections", "undo the last change (Ctrl+Z)"))
-        wish(app, "undo");
+        ask(app, "undo");
     ImGui::SameLine();
     if (panel_button("redo##reflections", "redo what was undone last (Ctrl+Y)"))
-        wish(app, "redo");
+        ask(app, "redo");
     ImGui::SameLine();
     if (panel_button("delete##reflections", "remove what is chosen (Delete)"))
-        wish(app, "delete");
+        ask(app, "delete");
     if (!handles_constraint(h))
         return;
     ImGui::SameLine();
     if (panel_button("to its view", "the eye goes back to where this constraint was made"))
-        wish(app, "view");
+        ask(app, "view");
 }
 
 static void file(panel *panel, app *app, const panel_facts *facts)
@@ -130,14 +130,14 @@ static void file(panel *panel, app *app, const panel_facts *facts)
     panel_tip("the file that edits are saved to, for --reflections");
     ImGui::SameLine();
     if (panel_button("save##reflections", "save all edits of reflections"))
-        wish(app, "save %.4000s", panel->reflections);
+        ask(app, "save %.4000s", panel->reflections);
 }
 
 void panel_reflections(panel *panel, app *app, const panel_facts *facts)
 {
     bool on = app->reflects;
     if (panel_box("handles in the picture", &on, "edit what mirrors reflect, by hand (Ctrl+R)"))
-        wish(app, on ? "on" : "off");
+        ask(app, on ? "on" : "off");
     if (!app->handles)
         return;
     tools(app);

@@ -1,6 +1,6 @@
 // codes_upload.c - codes of a view become array textures
 #include "relit/books.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter_parts.h"
 #include "relit/weights.h"
 
 #include <stdlib.h>
@@ -34,7 +34,7 @@ static void interleave(unsigned char *texels, const struct relume_codes *codes, 
     }
 }
 
-static void upload_array(const struct relighter *r, struct relit_view *v, int array,
+static void upload_array(const struct gl_relighter *r, struct relit_view *v, int array,
                          const struct relume_codes *codes, unsigned char *texels)
 {
     const struct gl *gl = r->gl;
@@ -69,7 +69,7 @@ static relume_status keep_scales(struct relit_view *v, const struct relume_codes
     return RELUME_OK;
 }
 
-static relume_status upload_planes(struct relighter *r, struct relit_view *v,
+static relume_status upload_planes(struct gl_relighter *r, struct relit_view *v,
                                    const struct relume_codes *codes)
 {
     const size_t pixels = (size_t)codes->width * (size_t)codes->height;
@@ -81,7 +81,7 @@ static relume_status upload_planes(struct relighter *r, struct relit_view *v,
     return status;
 }
 
-static relume_status upload_indices(struct relighter *r, struct relit_view *v,
+static relume_status upload_indices(struct gl_relighter *r, struct relit_view *v,
                                     const struct relume_codes *codes)
 {
     texture_use(r->gl, 0, GL_TEXTURE_2D_ARRAY, v->array[0]);
@@ -101,7 +101,7 @@ size_t codes_bytes(const struct relume_codes *codes)
     return codes->books ? books_bytes(codes) : pixels * texel * (size_t)layers_of(codes);
 }
 
-relume_status codes_upload(struct relighter *r, struct relit_view *v,
+relume_status codes_upload(struct gl_relighter *r, struct relit_view *v,
                            const struct relume_codes *codes)
 {
     const struct gl *gl = r->gl;

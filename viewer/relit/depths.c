@@ -117,8 +117,8 @@ static bool same(const struct relume_rect *a, const struct relume_rect *b)
 }
 
 // `part` NULL: whole views.
-static relume_status use(struct depths *d, const bool *needed, const struct relume_rect *part,
-                         double range[2])
+static relume_status use_views(struct depths *d, const bool *needed, const struct relume_rect *part,
+                               double range[2])
 {
     relume_status status = RELUME_OK;
     range[0] = (double)INFINITY;
@@ -142,13 +142,13 @@ static relume_status use(struct depths *d, const bool *needed, const struct relu
 
 relume_status depths_use(struct depths *d, const bool *needed, double range[2])
 {
-    return use(d, needed, NULL, range);
+    return use_views(d, needed, NULL, range);
 }
 
 relume_status depths_use_parts(struct depths *d, const bool *needed, const struct relume_rect *part,
                                double range[2])
 {
-    return use(d, needed, part, range);
+    return use_views(d, needed, part, range);
 }
 
 relume_status depths_find_ranges(struct depths *d, const bool *needed)

@@ -252,8 +252,8 @@ static relume_status find_photograph(struct enhancer *e, int view, const struct 
 
 // ---------------------------------------------------------------- drawing
 
-static relume_status prepare(struct enhancer *e, int view, const struct target *relit,
-                             enum relume_pass pass, const struct relume_light *lights, int n)
+static relume_status prepare_view(struct enhancer *e, int view, const struct target *relit,
+                                  enum relume_pass pass, const struct relume_light *lights, int n)
 {
     struct enhanced_view *v = &e->view[view];
     relume_status status = RELUME_OK;
@@ -317,8 +317,8 @@ static void set_textures(const struct enhancer *e, int view, const struct target
     gl->Uniform1i(e->program.at[TOWARDS_GIVEN], towards != 0);
 }
 
-static void draw(const struct enhancer *e, const struct target *onto, enum relume_pass pass,
-                 int step)
+static void draw_pass(const struct enhancer *e, const struct target *onto, enum relume_pass pass,
+                      int step)
 {
     const struct gl *gl = e->gl;
     const GLint *at = e->program.at;
@@ -342,16 +342,12 @@ static relume_status measure(struct enhancer *e, int view, const struct target *
     const int step = relume_pass_step(relit->width, relit->height);
     const int width = (relit->width + step - 1) / step, height = (relit->height + step - 1) / step;
     struct relume_image grid;
-    relume_status status = RELUME_OK;
-    if (e->grid.width != width || e->grid.height != height) {
-        target_destroy(&e->grid, e->gl);
-        status = target_create(&e->grid, e->gl, width, height, e->log);
-    }
+    relume_status status = target_need(&e->grid, e->gl, width, height, e->log);
     if (status)
         return status;
     set_textures(e, view, relit);  // making a target takes the first
     target_begin(&e->grid, e->gl);
-    draw(e, &e->grid, RELUME_PASS_COLOUR, step);
+    draw_pass(e, &e->grid, RELUME_PASS_COLOUR, step);
     status = target_read(&grid, &e->grid, e->gl);
     if (!status)
         status = relume_pass_measure(&e->range, &grid, pass,
@@ -371,7 +367,7 @@ relume_status enhancer_view(const struct target **out, struct enhancer *e, int v
 {
     const struct gl *gl = e->gl;
     const struct enhanced_view *v = &e->view[view];
-    relume_status status = prepare(e, view, relit, pass, lights, n);
+    relume_status status = prepare_view(e, view, relit, pass, lights, n);
     if (status)
         return status;
     gl->BindVertexArray(e->vertices);
@@ -383,7 +379,7 @@ relume_status enhancer_view(const struct target **out, struct enhancer *e, int v
         return status;
     set_textures(e, view, relit);
     target_begin(&v->shown, gl);
-    draw(e, &v->shown, pass, 1);
+    draw_pass(e, &v->shown, pass, 1);
     *out = &v->shown;
     return gl_check(gl, "enhancing", e->log);
 }

@@ -2,7 +2,7 @@
 #ifndef VIEWER_ENHANCER_H
 #define VIEWER_ENHANCER_H
 
-#include "relit/relighter.h"
+#include "relit/gl_relighter.h"
 
 #include <relume/capture.h>
 #include <relume/relight/enhance.h>

@@ -38,7 +38,7 @@ struct slot {
 struct exchanger {
     pthread_t thread;
     pthread_mutex_t lock;
-    pthread_cond_t work, news;
+    pthread_cond_t requested, news;
     struct slot slot[EXCHANGER_SLOTS];
     uint64_t serials;
     int working;              // slot, or -1
@@ -118,7 +118,7 @@ static bool go_on(void *user, const char *what, double done)
 }
 
 // The slot whose next step is the roughest, or -1.
-static int find_work(const struct exchanger *e)
+static int find_slot(const struct exchanger *e)
 {
     for (int step = EXCHANGE_STEP_ROUGH; step < EXCHANGE_STEPS && !e->rests; step++)
         for (int i = 0; i < EXCHANGER_SLOTS; i++) {
@@ -150,7 +150,7 @@ static void hand_over(struct exchanger *e, struct slot *s, struct picture *pictu
 }
 
 // With the lock, which it lets go of meanwhile.
-static void work_on(struct exchanger *e, int number)
+static void draw_slot(struct exchanger *e, int number)
 {
     struct slot *s = &e->slot[number];
     struct picture picture = {.step = (enum exchange_step)s->next, .serial = s->serial};
@@ -171,16 +171,16 @@ static void work_on(struct exchanger *e, int number)
     pthread_cond_broadcast(&e->news);
 }
 
-static void *run(void *context)
+static void *draw_pictures(void *context)
 {
     struct exchanger *e = context;
     pthread_mutex_lock(&e->lock);
     while (!e->stop) {
-        const int number = find_work(e);
+        const int number = find_slot(e);
         if (number < 0)
-            pthread_cond_wait(&e->work, &e->lock);
+            pthread_cond_wait(&e->requested, &e->lock);
         else
-            work_on(e, number);
+            draw_slot(e, number);
     }
     pthread_mutex_unlock(&e->lock);
     return NULL;
@@ -198,7 +198,7 @@ static void release(struct exchanger *e)
     }
     exchange_drawer_release(&e->drawer);
     pthread_mutex_destroy(&e->lock);
-    pthread_cond_destroy(&e->work);
+    pthread_cond_destroy(&e->requested);
     pthread_cond_destroy(&e->news);
     free(e);
 }
@@ -217,9 +217,9 @@ relume_status exchanger_create(struct exchanger **out, const struct exchange_sou
                                  .user = e,
                                  .context = source->log ? source->log->context : NULL};
     pthread_mutex_init(&e->lock, NULL);
-    pthread_cond_init(&e->work, NULL);
+    pthread_cond_init(&e->requested, NULL);
     pthread_cond_init(&e->news, NULL);
-    if (pthread_create(&e->thread, NULL, run, e)) {
+    if (pthread_create(&e->thread, NULL, draw_pictures, e)) {
         release(e);
         return RELUME_ESYSTEM;
     }
@@ -236,7 +236,7 @@ void exchanger_destroy(struct exchanger **exchanger)
     pthread_mutex_lock(&e->lock);
     e->stop = true;
     atomic_store(&e->cancel, true);
-    pthread_cond_broadcast(&e->work);
+    pthread_cond_broadcast(&e->requested);
     pthread_mutex_unlock(&e->lock);
     pthread_join(e->thread, NULL);
     release(e);
@@ -265,7 +265,7 @@ static void want(struct exchanger *e, int slot, struct exchange_request *copy)
     s->serial = ++e->serials;
     s->next = first_step(copy);
     s->failed = RELUME_OK;
-    pthread_cond_signal(&e->work);
+    pthread_cond_signal(&e->requested);
 }
 
 relume_status exchanger_ask(struct exchanger *e, int slot, const struct exchange_request *request)
@@ -281,7 +281,7 @@ relume_status exchanger_ask(struct exchanger *e, int slot, const struct exchange
         s->wanted.waits = request->waits;
         if (s->next < first_step(&s->wanted))
             s->next = first_step(&s->wanted);
-        pthread_cond_signal(&e->work);
+        pthread_cond_signal(&e->requested);
     } else if (!same || request) {
         if (request && !exchange_request_copy(&copy, request))
             status = RELUME_ENOMEM;

@@ -1,7 +1,7 @@
 // linear_copy.c - environments on codes of the display domain: a relighter of linear codes, made
 // once from them
-#include "relit/relighter.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter.h"
+#include "relit/gl_relighter_parts.h"
 
 #include <stdlib.h>
 
@@ -30,7 +30,7 @@ static void linear_drop(void *user, int view)
         s->source.drop(s->source.user, view);
 }
 
-static relume_status need_linear(struct relighter *r)
+static relume_status need_linear(struct gl_relighter *r)
 {
     if (r->linear)
         return RELUME_OK;
@@ -40,7 +40,7 @@ static relume_status need_linear(struct relighter *r)
     r->linear_source = (struct linear_source){.source = r->source, .log = r->log};
     const struct code_source source = {
         .codes = linear_codes, .drop = linear_drop, .user = &r->linear_source};
-    const relume_status status = relighter_create(r->linear, r->gl, &source, r->views, r->log);
+    const relume_status status = gl_relighter_create(r->linear, r->gl, &source, r->views, r->log);
     if (status) {
         free(r->linear);
         r->linear = NULL;
@@ -48,21 +48,21 @@ static relume_status need_linear(struct relighter *r)
     return status;
 }
 
-relume_status linear_copy_picture(const struct target **out, struct relighter *r,
+relume_status linear_copy_picture(const struct target **out, struct gl_relighter *r,
                                   const struct relit_view *v,
                                   const struct relume_light *environments, int n)
 {
     relume_status status = need_linear(r);
     if (!status)
-        status = relighter_begin(r->linear, environments, n);
+        status = gl_relighter_begin(r->linear, environments, n);
     if (!status)
-        status = relighter_view(out, r->linear, (int)(v - r->view));
+        status = gl_relighter_view(out, r->linear, (int)(v - r->view));
     passes_begin(r);
     return status;
 }
 
 // The linear copy under the environments alone.
-relume_status linear_copy_relight(struct relighter *r, struct relit_view *v)
+relume_status linear_copy_relight(struct gl_relighter *r, struct relit_view *v)
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1.0f, 1.0f, 1.0f};
@@ -70,7 +70,7 @@ relume_status linear_copy_relight(struct relighter *r, struct relit_view *v)
     struct relume_light *environments = malloc((size_t)r->lights * sizeof *environments);
     int n = 0;
     for (int i = 0; environments && i < r->lights; i++)
-        if (relighter_is_environment(r->light[i].kind))
+        if (gl_relighter_is_environment(r->light[i].kind))
             environments[n++] = r->light[i];
     const relume_status status =
         environments ? linear_copy_picture(&copy, r, v, environments, n) : RELUME_ENOMEM;
@@ -82,10 +82,10 @@ relume_status linear_copy_relight(struct relighter *r, struct relit_view *v)
     return RELUME_OK;
 }
 
-void linear_copy_destroy(struct relighter *r)
+void linear_copy_destroy(struct gl_relighter *r)
 {
     if (r->linear)
-        relighter_destroy(r->linear);
+        gl_relighter_destroy(r->linear);
     free(r->linear);
     relume_refit_destroy(&r->linear_source.first);
 }

@@ -11,7 +11,7 @@ struct loader {
     int views;
     pthread_t thread;
     pthread_mutex_t lock;  // of everything below
-    pthread_cond_t work, news;
+    pthread_cond_t requested, news;
     enum stage *stage;      // [views]
     uint64_t *order;        // [views]: when it was asked for
     struct loaded *result;  // [views]
@@ -36,14 +36,14 @@ static struct loaded read_view(struct loader *l, int view)
     return result;
 }
 
-static void *run(void *context)
+static void *read_views(void *context)
 {
     struct loader *l = context;
     pthread_mutex_lock(&l->lock);
     while (!l->stop) {
         const int view = first_of(l, ASKED);
         if (view < 0) {
-            pthread_cond_wait(&l->work, &l->lock);
+            pthread_cond_wait(&l->requested, &l->lock);
             continue;
         }
         l->stage[view] = READING;
@@ -61,7 +61,7 @@ static void *run(void *context)
 static void release(struct loader *l)
 {
     pthread_mutex_destroy(&l->lock);
-    pthread_cond_destroy(&l->work);
+    pthread_cond_destroy(&l->requested);
     pthread_cond_destroy(&l->news);
     free(l->stage);
     free(l->order);
@@ -78,13 +78,13 @@ relume_status loader_create(struct loader **out, const struct code_source *sourc
     l->source = *source;
     l->views = views;
     pthread_mutex_init(&l->lock, NULL);
-    pthread_cond_init(&l->work, NULL);
+    pthread_cond_init(&l->requested, NULL);
     pthread_cond_init(&l->news, NULL);
     l->stage = calloc((size_t)views, sizeof *l->stage);
     l->order = calloc((size_t)views, sizeof *l->order);
     l->result = calloc((size_t)views, sizeof *l->result);
     relume_status status = l->stage && l->order && l->result ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && pthread_create(&l->thread, NULL, run, l))
+    if (!status && pthread_create(&l->thread, NULL, read_views, l))
         status = RELUME_ESYSTEM;
     if (status)
         release(l);
@@ -101,7 +101,7 @@ void loader_destroy(struct loader **loader)
         return;
     pthread_mutex_lock(&l->lock);
     l->stop = true;
-    pthread_cond_signal(&l->work);
+    pthread_cond_signal(&l->requested);
     pthread_mutex_unlock(&l->lock);
     pthread_join(l->thread, NULL);
     for (int i = 0; i < l->views; i++)
@@ -116,7 +116,7 @@ void loader_ask(struct loader *loader, int view)
     if (loader->stage[view] == IDLE) {
         loader->stage[view] = ASKED;
         loader->order[view] = loader->asked++;
-        pthread_cond_signal(&loader->work);
+        pthread_cond_signal(&loader->requested);
     }
     pthread_mutex_unlock(&loader->lock);
 }

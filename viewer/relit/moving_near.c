@@ -120,7 +120,7 @@ static void set_turn_back(const struct gl *gl, GLint at, const struct relume_pos
     gl->UniformMatrix4fv(at, 1, GL_FALSE, matrix);
 }
 
-static void use(const struct gl *gl, GLint at, enum unit unit, GLuint texture)
+static void use_texture(const struct gl *gl, GLint at, enum unit unit, GLuint texture)
 {
     texture_use(gl, unit, GL_TEXTURE_2D, texture);
     gl->Uniform1i(at, unit);
@@ -138,9 +138,9 @@ relume_status moving_draw_near(struct moving *m, const struct moving_view *v,
     moving_set_shown(gl, &n->program, v, picture, into);
     moving_set_stage(gl, at + STAGE, UNIT_STAGE, v);
     zone_set(gl, at + ZONE, UNIT_BORDER, n->border, picture->coder);
-    use(gl, at[TRIANGLES], UNIT_TRIANGLES, n->triangles);
-    use(gl, at[POSITIONS], UNIT_POSITIONS, positions);
-    use(gl, at[LIGHTS], UNIT_LIGHTS, n->lights);
+    use_texture(gl, at[TRIANGLES], UNIT_TRIANGLES, n->triangles);
+    use_texture(gl, at[POSITIONS], UNIT_POSITIONS, positions);
+    use_texture(gl, at[LIGHTS], UNIT_LIGHTS, n->lights);
     gl->Uniform1i(at[TRIANGLE_COUNT], n->triangle_count);
     gl->Uniform1i(at[PICTURE], UNIT_PICTURE);
     gl->Uniform1i(at[PATCHES], area ? SIDE * SIDE : 0);

@@ -2,7 +2,7 @@
 #include "common/vec.h"
 #include "relit/books.h"
 #include "relit/moving.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter_parts.h"
 #include "relit/weights.h"
 
 #include <stdlib.h>
@@ -50,7 +50,7 @@ static const char *const develop_uniforms[] = {
 
 // ---------------------------------------------------------------- making
 
-relume_status passes_create(struct relighter *r)
+relume_status passes_create(struct gl_relighter *r)
 {
     relume_status status =
         program_create(&r->dot, r->gl, "relight.frag", dot_uniforms, DOT_COUNT, r->log);
@@ -66,7 +66,7 @@ relume_status passes_create(struct relighter *r)
     return status;
 }
 
-void passes_destroy(struct relighter *r)
+void passes_destroy(struct gl_relighter *r)
 {
     target_destroy(&r->coded, r->gl);
     program_destroy(&r->dot, r->gl);
@@ -80,7 +80,7 @@ void passes_destroy(struct relighter *r)
 
 // ---------------------------------------------------------------- passes
 
-void passes_begin(const struct relighter *r)
+void passes_begin(const struct gl_relighter *r)
 {
     r->gl->BindVertexArray(r->vertices);
     r->gl->Enable(GL_BLEND);
@@ -94,7 +94,7 @@ static void draw_all(const struct gl *gl, const struct program *p, const struct 
     gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-static relume_status need_grid(struct relighter *r, const relume_coder *coder)
+static relume_status need_grid(struct gl_relighter *r, const relume_coder *coder)
 {
     return r->grid ? RELUME_OK
                    : relume_weight_grid_create(&r->grid, coder,
@@ -102,8 +102,8 @@ static relume_status need_grid(struct relighter *r, const relume_coder *coder)
 }
 
 // The dot product of all planes, added to what `into` holds.
-static void pass_dot(const struct relighter *r, const struct relit_view *v, const struct weights *w,
-                     const struct target *into)
+static void pass_dot(const struct gl_relighter *r, const struct relit_view *v,
+                     const struct weights *w, const struct target *into)
 {
     const struct gl *gl = r->gl;
     texture_use(gl, 1, GL_TEXTURE_2D, r->weights);
@@ -129,7 +129,7 @@ static void pass_dot(const struct relighter *r, const struct relit_view *v, cons
 }
 
 // The look-up of all codebooks under `n` lights, added to what `into` holds.
-static relume_status pass_lookup(const struct relighter *r, const struct relit_view *v,
+static relume_status pass_lookup(const struct gl_relighter *r, const struct relit_view *v,
                                  const struct relume_light *lights, int n,
                                  const struct target *into)
 {
@@ -148,7 +148,7 @@ static relume_status pass_lookup(const struct relighter *r, const struct relit_v
 }
 
 // `coded` decoded by `display`, times the light, added to what the target in use holds.
-static void develop(const struct relighter *r, const struct relit_view *v,
+static void develop(const struct gl_relighter *r, const struct relit_view *v,
                     const struct target *coded, struct relume_transfer display, const float rgb[3],
                     bool guard)
 {
@@ -163,13 +163,13 @@ static void develop(const struct relighter *r, const struct relit_view *v,
     draw_all(gl, &r->develop, &v->relit);
 }
 
-void passes_develop(const struct relighter *r, const struct relit_view *v,
+void passes_develop(const struct gl_relighter *r, const struct relit_view *v,
                     const struct target *coded, struct relume_transfer display, const float rgb[3])
 {
     develop(r, v, coded, display, rgb, false);
 }
 
-void passes_guarded(const struct relighter *r, const struct relit_view *v,
+void passes_guarded(const struct gl_relighter *r, const struct relit_view *v,
                     const struct target *picture)
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
@@ -178,27 +178,24 @@ void passes_guarded(const struct relighter *r, const struct relit_view *v,
 }
 
 // What environments are part of is gathered in r->coded, then added without what is below 0.
-static void add_guarded(struct relighter *r, struct relit_view *v)
+static void add_guarded(struct gl_relighter *r, struct relit_view *v)
 {
     target_resume(&v->relit, r->gl);
     passes_guarded(r, v, &r->coded);
 }
 
-relume_status passes_fit(const struct relighter *r, struct target *target,
+relume_status passes_fit(const struct gl_relighter *r, struct target *target,
                          const struct relit_view *v)
 {
-    if (target->width == v->relit.width && target->height == v->relit.height)
-        return RELUME_OK;
-    target_destroy(target, r->gl);
-    return target_create(target, r->gl, v->relit.width, v->relit.height, r->log);
+    return target_need(target, r->gl, v->relit.width, v->relit.height, r->log);
 }
 
-relume_status passes_scratch(struct relighter *r, const struct relit_view *v)
+relume_status passes_scratch(struct gl_relighter *r, const struct relit_view *v)
 {
     return passes_fit(r, &r->coded, v);
 }
 
-static relume_status add_linear(struct relighter *r, struct relit_view *v, struct weights *w)
+static relume_status add_linear(struct gl_relighter *r, struct relit_view *v, struct weights *w)
 {
     const double unit = code_format_of(&v->codes)->unit;
     relume_status status = RELUME_OK;
@@ -209,10 +206,10 @@ static relume_status add_linear(struct relighter *r, struct relit_view *v, struc
         else if (l->kind == RELUME_LIGHT_ENVIRONMENT && !(status = need_grid(r, v->codes.coder)))
             weights_add_environment(w, &v->codes, unit, r->grid, l);
     }
-    const bool guard = relighter_has_kind(r, relighter_is_environment);
+    const bool guard = gl_relighter_has_kind(r, gl_relighter_is_environment);
     if (!status && guard)
         status = passes_scratch(r, v);
-    if (status || !relighter_has_kind(r, relighter_is_distant))
+    if (status || !gl_relighter_has_kind(r, gl_relighter_is_distant))
         return status;
     if (guard)
         target_begin(&r->coded, r->gl);
@@ -223,10 +220,10 @@ static relume_status add_linear(struct relighter *r, struct relit_view *v, struc
 }
 
 // What a directional light shows, alone, in r->coded; it becomes linear by *curve and *times.
-static relume_status relight_one(struct relume_transfer *curve, float times[3], struct relighter *r,
-                                 const struct relit_view *v, struct weights *w,
-                                 const struct relume_light *light, struct relume_vec3 from,
-                                 const float rgb[3])
+static relume_status relight_one(struct relume_transfer *curve, float times[3],
+                                 struct gl_relighter *r, const struct relit_view *v,
+                                 struct weights *w, const struct relume_light *light,
+                                 struct relume_vec3 from, const float rgb[3])
 {
     static const float one[3] = {1, 1, 1};
     const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
@@ -244,7 +241,7 @@ static relume_status relight_one(struct relume_transfer *curve, float times[3], 
     return RELUME_OK;
 }
 
-static relume_status add_alone(struct relighter *r, struct relit_view *v, struct weights *w,
+static relume_status add_alone(struct gl_relighter *r, struct relit_view *v, struct weights *w,
                                const struct relume_light *light)
 {
     struct moving_picture p = {.coded = &r->coded,
@@ -269,7 +266,7 @@ static relume_status add_alone(struct relighter *r, struct relit_view *v, struct
 }
 
 // Directional lights that are decoded one by one.
-static relume_status add_one_by_one(struct relighter *r, struct relit_view *v, struct weights *w)
+static relume_status add_one_by_one(struct gl_relighter *r, struct relit_view *v, struct weights *w)
 {
     relume_status status = passes_scratch(r, v);
     for (int i = 0; !status && i < r->lights; i++)
@@ -280,7 +277,7 @@ static relume_status add_one_by_one(struct relighter *r, struct relit_view *v, s
 
 // The distant lights at once: sums in linear light, or one codebook that is linear when relit;
 // that of the display domain leaves environments to its linear copy.
-static relume_status add_books(struct relighter *r, struct relit_view *v)
+static relume_status add_books(struct gl_relighter *r, struct relit_view *v)
 {
     const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
     struct relume_light *distant = malloc((size_t)r->lights * sizeof *distant + 1);
@@ -288,9 +285,9 @@ static relume_status add_books(struct relighter *r, struct relit_view *v)
     int n = 0;
     for (int i = 0; !status && i < r->lights; i++)
         if (r->light[i].kind == RELUME_LIGHT_DIRECTIONAL ||
-            (!display && relighter_is_environment(r->light[i].kind)))
+            (!display && gl_relighter_is_environment(r->light[i].kind)))
             distant[n++] = r->light[i];
-    const bool guard = !display && relighter_has_kind(r, relighter_is_environment);
+    const bool guard = !display && gl_relighter_has_kind(r, gl_relighter_is_environment);
     if (!status && guard)
         status = need_grid(r, v->codes.coder);
     if (!status && guard)
@@ -305,7 +302,7 @@ static relume_status add_books(struct relighter *r, struct relit_view *v)
     return status;
 }
 
-relume_status passes_distant(struct relighter *r, struct relit_view *v)
+relume_status passes_distant(struct gl_relighter *r, struct relit_view *v)
 {
     const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
     if (v->codes.books && !v->moving.shadows && (!display || v->codes.books == 1))
@@ -319,7 +316,7 @@ relume_status passes_distant(struct relighter *r, struct relit_view *v)
     return status;
 }
 
-relume_status passes_environment(struct relighter *r, struct relit_view *v,
+relume_status passes_environment(struct gl_relighter *r, struct relit_view *v,
                                  const struct relume_light *light)
 {
     struct weights w = {0};

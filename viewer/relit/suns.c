@@ -3,10 +3,10 @@
 // of src/relight/frame/relighter.c
 #include "common/vec.h"
 #include "relit/moving.h"
-#include "relit/relighter.h"
-#include "relit/relighter_parts.h"
+#include "relit/gl_relighter.h"
+#include "relit/gl_relighter_parts.h"
 
-static relume_status need_room(struct relighter *r, const struct relit_view *v)
+static relume_status need_room(struct gl_relighter *r, const struct relit_view *v)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < 2; i++)
@@ -14,26 +14,26 @@ static relume_status need_room(struct relighter *r, const struct relit_view *v)
     return status;
 }
 
-void suns_destroy(struct relighter *r)
+void suns_destroy(struct gl_relighter *r)
 {
     for (int i = 0; i < 2; i++)
         target_destroy(&r->suns[i], r->gl);
 }
 
 // What an environment shows, before what is below 0 is seen to.
-static relume_status relight_alone(const struct target **out, struct relighter *r,
+static relume_status relight_alone(const struct target **out, struct gl_relighter *r,
                                    struct relit_view *v, const struct relume_light *environment)
 {
     if (v->codes.domain == RELUME_DOMAIN_DISPLAY) {
         if (r->linear)
-            relighter_forget(r->linear);  // that of another sun may have had the same address
+            gl_relighter_forget(r->linear);  // that of another sun may have had the same address
         return linear_copy_picture(out, r, v, environment, 1);
     }
     *out = &r->coded;
     return passes_environment(r, v, environment);
 }
 
-static relume_status exchange(struct relighter *r, struct relit_view *v,
+static relume_status exchange(struct gl_relighter *r, struct relit_view *v,
                               const struct relume_light *sun, const struct target *whole,
                               const struct target *into)
 {
@@ -62,7 +62,7 @@ static relume_status exchange(struct relighter *r, struct relit_view *v,
     return status;
 }
 
-static relume_status add_one(struct relighter *r, struct relit_view *v,
+static relume_status add_one(struct gl_relighter *r, struct relit_view *v,
                              const struct relume_light *environment)
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
@@ -84,11 +84,11 @@ static relume_status add_one(struct relighter *r, struct relit_view *v,
     return status;
 }
 
-relume_status suns_relight(struct relighter *r, struct relit_view *v)
+relume_status suns_relight(struct gl_relighter *r, struct relit_view *v)
 {
     relume_status status = need_room(r, v);
     for (int i = 0; !status && i < r->lights; i++)
-        if (relighter_is_environment(r->light[i].kind))
+        if (gl_relighter_is_environment(r->light[i].kind))
             status = add_one(r, v, &r->light[i]);
     return status;
 }

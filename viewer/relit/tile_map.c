@@ -1,7 +1,7 @@
 // tile_map.c - a large view and its reduced levels as many small views, by one number
 #include "relit/tile_map.h"
 
-#include "relit/relighter.h"
+#include "relit/gl_relighter.h"
 
 static const int64_t LARGE = 64 << 20, MOST_PIXELS = 2 << 20;
 
@@ -20,7 +20,7 @@ static int find_base(const relume_pack *pack, size_t bytes)
     for (int level = 0; level < info->levels; level++) {
         struct relume_codes codes = {.planes = info->planes, .storage = info->storage};
         relume_pack_level_size(&codes.width, &codes.height, pack, level);
-        if (relighter_view_bytes(&codes) <= (planar && level ? bytes / 2 : bytes) &&
+        if (gl_relighter_view_bytes(&codes) <= (planar && level ? bytes / 2 : bytes) &&
             (!large || (int64_t)codes.width * codes.height <= MOST_PIXELS))
             return level;
     }

@@ -15,20 +15,12 @@
 #include <stdio.h>
 #include <string.h>
 
-// A listener may pass messages on.
 static void on_message(void *user, enum relume_level level, const char *text)
 {
     struct session *s = user;
-    const struct relume_log *listener = s->listener;
-    if (s->listens)
-        snprintf(s->notice, sizeof s->notice, "%s", text);
-    if (listener) {
-        s->listener = NULL;
-        listener->message(listener->user, level, text);
-        s->listener = listener;
-        return;
-    }
     char line[2048];
+    if (messages_pass_on(&s->messages, level, text))
+        return;
     snprintf(line, sizeof line, "%s", text);
     fprintf(stderr, "relume-view: %s%s\n", level == RELUME_WARNING ? "warning: " : "",
             relume_printable(line));
@@ -61,10 +53,10 @@ static relume_status show_frame(struct session *s)
     if (status)
         return status;
     session_present(s, 0);
-    s->gl.Finish();
-    snprintf(title, sizeof title, "%s - %.1f ms%s%s - relume-view", s->name, 1e3 * now_s() - start,
-             s->message[0] ? " - " : "", s->message);
-    s->backend->show(s->context, title);
+    s->window.gl.Finish();
+    snprintf(title, sizeof title, "%s - %.1f ms%s%s - relume-view", s->document.name,
+             1e3 * now_s() - start, s->messages.last[0] ? " - " : "", s->messages.last);
+    s->window.backend->show(s->window.context, title);
     return RELUME_OK;
 }
 
@@ -76,9 +68,9 @@ static void host_send(void *user, const struct app_event *event)
 }
 
 // The listener hears of what it asked for, no more.
-static relume_status heard(struct session *s, relume_status status)
+static relume_status end_listening(struct session *s, relume_status status)
 {
-    s->listener = NULL;
+    s->messages.listener = NULL;
     return status;
 }
 
@@ -86,36 +78,36 @@ static relume_status host_light(void *user, const char *spec, bool replace,
                                 const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
-    return heard(s, session_light(s, spec, replace));
+    s->messages.listener = log;
+    return end_listening(s, session_light(s, spec, replace));
 }
 
 static relume_status host_rig(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
-    return heard(s, session_load_rig(s, path));
+    s->messages.listener = log;
+    return end_listening(s, session_load_rig(s, path));
 }
 
 static relume_status host_open(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
-    return heard(s, session_show(s, path));
+    s->messages.listener = log;
+    return end_listening(s, session_show(s, path));
 }
 
 static relume_status host_edit(void *user, const char *words, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
-    return heard(s, session_edit(s, words, s->log));
+    s->messages.listener = log;
+    return end_listening(s, session_edit(s, words, s->log));
 }
 
 static relume_status host_reflect(void *user, const char *words, const struct relume_log *log)
 {
     struct session *s = user;
-    s->listener = log;
-    const relume_status status = heard(s, session_reflect(s, words, s->log));
+    s->messages.listener = log;
+    const relume_status status = end_listening(s, session_reflect(s, words, s->log));
     session_hear_handles(s);
     return status;
 }
@@ -139,14 +131,14 @@ static relume_status host_wait(void *user, double seconds)
     // a frame says what it moves towards: its exposure
     relume_status status = until_idle ? session_draw(s) : RELUME_OK;
     for (; !status && left > 1e-9 && (moves || !until_idle); left -= step) {
-        moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
+        moves = session_pass(s, fmin(left, step)) || gl_renderer_is_pending(&s->renderer);
         if (s->film)
             status = session_film(s);
         else if (moves || until_idle || observer_lives(&s->app.now.observer))
             status = (s->streams ? show_frame : session_draw)(s);
     }
-    if (!status && until_idle && renderer_expects(&s->renderer)) {
-        status = renderer_wait(&s->renderer);
+    if (!status && until_idle && gl_renderer_expects(&s->renderer)) {
+        status = gl_renderer_wait(&s->renderer);
         if (!status)
             status = show_frame(s);
     }
@@ -177,7 +169,7 @@ static relume_status open_file(struct session *s, struct options *o, bool look_a
     if (!status && o->capture)
         status = session_compare(s, o->capture);
     if (!status)
-        status = session_take_objects(s, &o->objects);
+        status = object_set_open(&s->objects, &o->objects, s->settings.threads, s->log);
     return status ? status : session_open(s, o->file, &o->start, look_ahead);
 }
 
@@ -256,7 +248,7 @@ static bool is_over(const struct session *s)
 static double still_s(const struct session *s)
 {
     const double LOOK_S = 0.05, steady = app_steady_s(&s->app);
-    return renderer_expects(&s->renderer) ? fmin(steady, LOOK_S) : steady;
+    return gl_renderer_expects(&s->renderer) ? fmin(steady, LOOK_S) : steady;
 }
 
 static relume_status take_events(struct session *s, bool *changed, double *time_ms)
@@ -265,14 +257,14 @@ static relume_status take_events(struct session *s, bool *changed, double *time_
     struct context_event event;
     *changed |= session_pass(s, time_passed(time_ms));
     while (!status && !is_over(s) &&
-           s->backend->next(s->context, &event, *changed ? 0 : still_s(s))) {
+           s->window.backend->next(s->window.context, &event, *changed ? 0 : still_s(s))) {
         *changed |= session_pass(s, time_passed(time_ms));
         status = take_event(s, &event, changed);
     }
     return status;
 }
 
-static relume_status live(struct session *s, struct script *script)
+static relume_status play_window(struct session *s, struct script *script)
 {
     relume_status status = RELUME_OK;
     bool more = script != NULL;
@@ -289,8 +281,8 @@ static relume_status live(struct session *s, struct script *script)
         if (!status && changed && !is_over(s))
             status = show_frame(s);
         changed =
-            !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
-                        renderer_has_news(&s->renderer) || observer_lives(&s->app.now.observer));
+            !status && (gl_renderer_is_pending(&s->renderer) || session_is_busy(s) ||
+                        gl_renderer_has_news(&s->renderer) || observer_lives(&s->app.now.observer));
     }
     return status || !stopping_asked() ? status : RELUME_ECANCEL;
 }
@@ -314,10 +306,10 @@ static void recall_rig(struct options *o, const struct settings *settings)
         relume_rig_destroy(&o->rig);
 }
 
-static void remember(struct session *s, struct settings *settings)
+static void keep_settings(struct session *s, struct settings *settings)
 {
     const struct relume_log *log = s->log;
-    if (!s->full_screen) {
+    if (!s->window.full_screen) {
         settings->width = app_window_width(&s->app);
         settings->height = s->app.height;
     }
@@ -352,7 +344,7 @@ static relume_status open_window(struct session *s, struct options *o,
     if (status)
         return status;
     struct app_event opened = {.kind = APP_SIZE};
-    s->backend->size(s->context, &opened.width, &opened.height);
+    s->window.backend->size(s->window.context, &opened.width, &opened.height);
     (void)app_handle(&s->app, &opened);
     return RELUME_OK;
 }
@@ -372,10 +364,10 @@ static relume_status run_window(struct session *s, struct options *o)
     if (!status && o->script)
         status = script_open(&script, o->script, &host);
     if (!status)
-        status = live(s, script);
+        status = play_window(s, script);
     script_close(&script);
     if (opened && !o->no_config)
-        remember(s, &settings);  // also when the graphics card went away
+        keep_settings(s, &settings);  // also when the graphics card went away
     return status;
 }
 
@@ -393,13 +385,15 @@ int main(int argc, char **argv)
     if (status)
         return exit_code(status);
     status = options_parse(&options, argc, argv, &log);
-    session.threads = options.threads;
-    session.relight = options.relight;
-    session.glare = options.glare;
-    session.ui_scale = options.ui_scale;
-    session.glare_size = options.glare_size;
-    session.subject = &options.subject;
-    session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
+    session.settings = (struct session_settings){
+        .threads = options.threads,
+        .vram_bytes = (size_t)(options.vram_mb * 1048576.0),
+        .relight = options.relight,
+        .glare = options.glare,
+        .glare_size = options.glare_size,
+        .subject = &options.subject,
+        .ui_scale = options.ui_scale,
+    };
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
     if (!status && options.help)

@@ -60,9 +60,9 @@ static relume_status take_observer(void *observer, const struct option *o, const
 static relume_status take_material(void *objects, const struct option *o, const char *text,
                                    const struct relume_log *log)
 {
-    struct session_objects *const w = objects;
-    if (w->materials == SESSION_MATERIALS)
-        return say(log, RELUME_EINVAL, "%s: expected at most %d", o->name, SESSION_MATERIALS);
+    struct object_options *const w = objects;
+    if (w->materials == OBJECT_MATERIALS)
+        return say(log, RELUME_EINVAL, "%s: expected at most %d", o->name, OBJECT_MATERIALS);
     w->material[w->materials++] = text;
     return RELUME_OK;
 }
@@ -282,17 +282,17 @@ void options_release(struct options *o)
 // itself, for a cushion.
 static relume_status choose_objects(struct options *o, const struct relume_log *log)
 {
-    struct session_objects *w = &o->objects;
-    const bool scene = o->file && session_is_scene(o->file);
+    struct object_options *w = &o->objects;
+    const bool scene = o->file && relume_tableau_is(o->file);
     if (scene && (w->description || w->mesh || w->materials || w->reflections))
         return say(log, RELUME_EINVAL,
                    "%s: a scene file has objects of its own; leave out --objects, --mesh, "
                    "--material and --reflections",
                    o->file);
-    if (o->file && !scene && session_is_description(o->file) && !w->description && !w->mesh) {
+    if (o->file && !scene && object_file_is_description(o->file) && !w->description && !w->mesh) {
         w->description = o->file;
         o->file = NULL;
-    } else if (o->file && !w->materials && (w->mesh || session_is_material(o->file))) {
+    } else if (o->file && !w->materials && (w->mesh || object_file_is_material(o->file))) {
         w->material[w->materials++] = o->file;
         o->file = NULL;
     }
@@ -317,7 +317,7 @@ static relume_status choose_way(struct options *o, const struct command_line *li
 {
     const bool bounces = option_given(line, &o->bounces);
     const bool in_scene =
-        o->file && (o->objects.description || o->objects.mesh || session_is_scene(o->file));
+        o->file && (o->objects.description || o->objects.mesh || relume_tableau_is(o->file));
     if ((o->transport || bounces || o->samples) && !in_scene)
         return say(log, RELUME_EINVAL,
                    "--transport, --bounces and --samples work only with objects in a scene; open a "

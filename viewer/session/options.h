@@ -13,7 +13,7 @@ struct options {
     bool help;         // was asked for, and nothing else is known
     const char *file;  // NULL: `stage`, or a window without a file
     bool stage;        // there are objects alone
-    struct session_objects objects;
+    struct object_options objects;
     const char *offscreen;  // picture to write without a window, or NULL
     const char *script;     // events to play, or NULL
     const char *capture;    // to compare with, or NULL

@@ -17,50 +17,45 @@
 // ---------------------------------------------------------------- the list
 
 // What goes wrong is said, and the list stays as it is on disk.
-static relume_status said(struct session *s, relume_status status)
+static relume_status report_status(struct session *s, relume_status status)
 {
-    s->listens = false;
+    messages_stop(&s->messages);
     if (status)
-        session_say(s, "%.200s", s->notice[0] ? s->notice : relume_status_text(status));
+        session_say(s, "%.200s",
+                    s->messages.notice[0] ? s->messages.notice : relume_status_text(status));
     return status == RELUME_ENOMEM ? status : RELUME_OK;
-}
-
-static void listen(struct session *s)
-{
-    s->notice[0] = '\0';
-    s->listens = true;
 }
 
 static relume_status open_list(struct session *s)
 {
-    const struct relume_notes_file file = notes_file_of(s->pack, s->name);
+    const struct relume_notes_file file = notes_file_of(s->document.pack, s->document.name);
     relume_notes *list = NULL;
-    const relume_status status = relume_notes_open(&list, s->file, &file, s->log);
+    const relume_status status = relume_notes_open(&list, s->document.path, &file, s->log);
     return status ? status : notes_create(&s->app.notes, list);
 }
 
 relume_status session_notes_show(struct session *s)
 {
     relume_status status = RELUME_OK;
-    if (s->app.noting || !s->pack) {
+    if (s->app.noting || !s->document.pack) {
         s->app.noting = false;
-        if (!s->pack)
+        if (!s->document.pack)
             session_say(s, "notes are on pictures of a file; there is none");
         return RELUME_OK;
     }
-    listen(s);
+    messages_listen(&s->messages);
     if (!s->app.notes)
         status = open_list(s);
     s->app.noting = !status;
     s->app.panel |= s->app.noting;
-    return said(s, status);
+    return report_status(s, status);
 }
 
-static relume_status save(struct session *s)
+static relume_status save_list(struct session *s)
 {
     struct relume_log bare = s->log ? *s->log : (struct relume_log){0};
     bare.leave_unnoted = true;  // the list was read from where it goes
-    return relume_notes_save(s->app.notes->list, s->file, &bare);
+    return relume_notes_save(s->app.notes->list, s->document.path, &bare);
 }
 
 relume_status session_notes_add(struct session *s)
@@ -76,20 +71,20 @@ relume_status session_notes_add(struct session *s)
     struct tm parts;
     if (gmtime_r(&now, &parts) && strftime(created, sizeof created, "%Y-%m-%dT%H:%M:%SZ", &parts))
         note.created = created;
-    listen(s);
+    messages_listen(&s->messages);
     status = relume_notes_add(n->list, &note, s->log);
     n->places = 0;
     if (!status) {
         n->chosen = relume_notes_count(n->list) - 1;
-        status = save(s);
+        status = save_list(s);
     }
-    return said(s, status);
+    return report_status(s, status);
 }
 
 relume_status session_notes_save(struct session *s)
 {
-    listen(s);
-    return said(s, save(s));
+    messages_listen(&s->messages);
+    return report_status(s, save_list(s));
 }
 
 // ---------------------------------------------------------------- back to a note
@@ -135,11 +130,11 @@ relume_status session_notes_back(struct session *s)
         session_say(s, "this note keeps no light");
         return RELUME_OK;
     }
-    listen(s);
+    messages_listen(&s->messages);
     app_stand_still(&s->app);
     s->app.now.pass = RELUME_PASS_COLOUR;
     s->app.now.exposure_ev = 0;
     for (int i = 0; i < n; i++)
         show_entry(s, &entry[i], &lit);
-    return said(s, RELUME_OK);
+    return report_status(s, RELUME_OK);
 }

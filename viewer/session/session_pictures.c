@@ -7,13 +7,13 @@
 
 static bool sees_something(const struct session *s)
 {
-    for (int i = 0; i < s->renderer.views; i++)
-        if (s->renderer.needed[i])
+    for (int i = 0; i < s->renderer.views.count; i++)
+        if (s->renderer.views.needed[i])
             return true;
     return s->renderer.stage;
 }
 
-static relume_status save(struct session *s, struct relume_image *image, const char *path)
+static relume_status save_image(struct session *s, struct relume_image *image, const char *path)
 {
     const relume_status status = relume_image_save(image, path, relume_image_params(.log = s->log));
     relume_image_destroy(image);
@@ -26,8 +26,8 @@ relume_status session_read(struct relume_image *image, struct session *s, bool l
                                             .white = s->app.now.white};
     *image = (struct relume_image){0};
     if (!sees_something(s))
-        return say(s->log, RELUME_EUNFIT, "%s: the eye sees nothing of the slab", s->name);
-    relume_status status = renderer_read(image, &s->renderer);
+        return say(s->log, RELUME_EUNFIT, "%s: the eye sees nothing of the slab", s->document.name);
+    relume_status status = gl_renderer_read(image, &s->renderer);
     if (!status && !linear)
         status = relume_tone_apply(image, &tone);
     return status;
@@ -47,17 +47,7 @@ relume_status session_frame(struct session *s, const char *path)
     relume_status status = draw_finished(s);
     if (!status)
         status = session_read(&image, s, relume_image_saves_linear(path));
-    return status ? status : save(s, &image, path);
-}
-
-static relume_status prepare_screen(struct session *s)
-{
-    const int width = app_window_width(&s->app);
-    if (s->screen.width == width && s->screen.height == s->app.height)
-        return RELUME_OK;
-    if (s->screen.texture)
-        target_destroy(&s->screen, &s->gl);
-    return target_create(&s->screen, &s->gl, width, s->app.height, s->log);
+    return status ? status : save_image(s, &image, path);
 }
 
 // The screen's first row is the lowest, and its values are coded.
@@ -83,11 +73,12 @@ static relume_status read_screen(struct relume_image *image, struct session *s)
 {
     relume_status status = draw_finished(s);
     if (!status)
-        status = prepare_screen(s);
+        status = session_window_need_screen(&s->window, app_window_width(&s->app), s->app.height,
+                                            s->log);
     if (status)
         return status;
-    session_present(s, s->screen.framebuffer);
-    status = target_read(image, &s->screen, &s->gl);
+    session_present(s, s->window.screen.framebuffer);
+    status = target_read(image, &s->window.screen, &s->window.gl);
     if (!status)
         turn_over_and_decode(image);
     return status;
@@ -97,7 +88,7 @@ relume_status session_shot(struct session *s, const char *path)
 {
     struct relume_image image;
     const relume_status status = read_screen(&image, s);
-    return status ? status : save(s, &image, path);
+    return status ? status : save_image(s, &image, path);
 }
 
 relume_status session_film(struct session *s)

@@ -38,7 +38,7 @@ relume_status session_record_begin(struct session *s, enum record_kind kind, con
     return RELUME_OK;
 }
 
-static void put_back(struct session *s)
+static void restore_app(struct session *s)
 {
     light_list_release(&s->app.now);
     s->app.now = s->recording.before;
@@ -47,7 +47,7 @@ static void put_back(struct session *s)
 }
 
 // What was recorded so far becomes the recording; none is left when that is nothing.
-static relume_status finish(struct session *s)
+static relume_status finish_recording(struct session *s)
 {
     struct recording *r = &s->recording;
     const relume_status status = film_close(&r->film, r->frame > 0);
@@ -55,22 +55,22 @@ static relume_status finish(struct session *s)
         session_say(s, "recorded %.200s, %d picture%s", r->path, r->frame, relume_plural(r->frame));
     else
         session_say(s, "%.200s was not recorded", r->path);
-    put_back(s);
+    restore_app(s);
     return status;
 }
 
 void session_record_stop(struct session *s)
 {
     if (session_records(s))
-        (void)finish(s);
+        (void)finish_recording(s);
 }
 
-static relume_status fail(struct session *s, relume_status status)
+static relume_status fail_recording(struct session *s, relume_status status)
 {
     struct recording *r = &s->recording;
     (void)!film_close(&r->film, false);
     session_say(s, "%.200s was not recorded", r->path);
-    put_back(s);
+    restore_app(s);
     return status;
 }
 
@@ -84,16 +84,16 @@ relume_status session_record_step(struct session *s)
     relume_status status = record_pose(&s->app, r->kind, (double)r->frame / r->frames, s->log);
     if (!status)
         status = session_render(s);
-    if (!status && renderer_is_pending(&s->renderer))
+    if (!status && gl_renderer_is_pending(&s->renderer))
         return RELUME_OK;  // the same picture again, when all of it is there
     if (!status)
         status = session_read(&image, s, false);
     if (!status)
         status = session_film_add(s, r->film, &image);
     if (status)
-        return fail(s, status);
+        return fail_recording(s, status);
     r->frame++;
-    return r->frame == r->frames ? finish(s) : RELUME_OK;
+    return r->frame == r->frames ? finish_recording(s) : RELUME_OK;
 }
 
 relume_status session_record(struct session *s, enum record_kind kind, const char *path, int frames)

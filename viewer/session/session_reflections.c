@@ -1,5 +1,6 @@
 // session_reflections.c - reflections edited by hand: what the handles must know of the scene, and
 // the file that edits are saved to
+#include "session/edits_text.h"
 #include "session/session.h"
 
 #include "app/handles_say.h"
@@ -31,7 +32,7 @@ static bool find_reflected(void *user, struct relume_vec3 *out, struct relume_ve
 
 void session_lend_scene(struct session *s)
 {
-    if (s->pack)
+    if (s->document.pack)
         s->app.scene = (struct app_scene){s, find_surface, find_reflected};
 }
 
@@ -40,16 +41,16 @@ void session_lend_scene(struct session *s)
 // Where edits were read or last saved, else beside the description.
 void session_name_reflections(char path[APP_SPEC], const struct session *s)
 {
-    const char *description = s->described, *dot = strrchr(description, '.');
+    const char *description = s->objects.described, *dot = strrchr(description, '.');
     const int stem = dot && !strchr(dot, '/') ? (int)(dot - description) : -1;
-    if (s->reflections[0])
-        snprintf(path, APP_SPEC, "%s", s->reflections);
+    if (s->objects.reflections[0])
+        snprintf(path, APP_SPEC, "%s", s->objects.reflections);
     else
         snprintf(path, APP_SPEC, "%.*s.reflections.json", stem, description);
 }
 
 // The list that was read may be replaced, which the log's context would not have.
-static relume_status save(struct session *s, const char *name, const struct relume_log *log)
+static relume_status save_edits(struct session *s, const char *name, const struct relume_log *log)
 {
     const struct relume_log bare = {.message = log ? log->message : NULL,
                                     .user = log ? log->user : NULL};
@@ -58,10 +59,10 @@ static relume_status save(struct session *s, const char *name, const struct relu
         snprintf(path, sizeof path, "%s", name);
     else
         session_name_reflections(path, s);
-    const relume_status status = relume_objects_save_reflections(s->objects, path, &bare);
+    const relume_status status = relume_objects_save_reflections(s->objects.objects, path, &bare);
     if (status)
         return status;
-    memcpy(s->reflections, path, sizeof path);
+    memcpy(s->objects.reflections, path, sizeof path);
     if (s->app.handles)
         s->app.handles->unsaved = false;
     session_say(s, "saved %.200s", path);
@@ -71,14 +72,14 @@ static relume_status save(struct session *s, const char *name, const struct relu
 relume_status session_reflect(struct session *s, const char *words, const struct relume_log *log)
 {
     session_lend_scene(s);
-    renderer_let_go(&s->renderer);
+    gl_renderer_let_go(&s->renderer);
     if (strncmp(words, "save", 4) || (words[4] && words[4] != ' '))
         return handles_say(&s->app, words, log);
     if (!handles_turn_on(&s->app, true))
         return handles_say(&s->app, "on", log);
     char name[APP_SPEC];
     snprintf(name, sizeof name, "%s", words + 4 + strspn(words + 4, " "));
-    return save(s, session_unquote(name), log);
+    return save_edits(s, edits_unquote(name), log);
 }
 
 void session_hear_handles(struct session *s)

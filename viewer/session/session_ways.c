@@ -9,20 +9,19 @@
 static void let_go(void *user)
 {
     struct session *s = user;
-    renderer_let_go(&s->renderer);
+    gl_renderer_let_go(&s->renderer);
 }
 
 void session_add_ways(struct session *s)
 {
-    const struct exchange_source source = {.file = s->file,
-                                           .sphere = s->sphere,
-                                           .objects = s->objects,
+    const struct exchange_source source = {.file = s->document.path,
+                                           .sphere = s->document.as_panorama,
+                                           .objects = s->objects.objects,
                                            .log = s->log,
-                                           .threads = s->threads};
-    renderer_use_exchange(&s->renderer, &source);
-    s->renderer.with_depth = relume_pack_info(s->pack)->has_depth;
-    s->renderer.ways_by_library =
-        s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
+                                           .threads = s->settings.threads};
+    gl_renderer_use_exchange(&s->renderer, &source);
+    s->renderer.exchange.with_depth = relume_pack_info(s->document.pack)->has_depth;
+    s->renderer.exchange.by_library = session_by_library(s->settings.relight, &s->window.gl);
     s->app.lookers = (struct app_lookers){s, let_go};
 }
 
@@ -51,13 +50,13 @@ static void describe_exchange(char text[SESSION_TEXT], struct exchanger *e, int 
                  100.0 * state.done);
 }
 
-static void describe(char text[SESSION_TEXT], const struct renderer *r, int slot, int way)
+static void describe_way(char text[SESSION_TEXT], const struct gl_renderer *r, int slot, int way)
 {
     char more[SESSION_TEXT] = "";
-    if (r->passes_ms[slot] > 0.0)
-        snprintf(more, sizeof more, "by passes, %.1f ms a frame", r->passes_ms[slot]);
-    else if (r->exchanger)
-        describe_exchange(more, r->exchanger, slot);
+    if (r->exchange.passes_ms[slot] > 0.0)
+        snprintf(more, sizeof more, "by passes, %.1f ms a frame", r->exchange.passes_ms[slot]);
+    else if (r->exchange.exchanger)
+        describe_exchange(more, r->exchange.exchanger, slot);
     text[0] = '\0';
     if (more[0])
         snprintf(text, SESSION_TEXT, "%s: %.200s", way_name(way), more);
@@ -69,8 +68,8 @@ void session_describe_ways(struct session *s)
     const int way[EXCHANGER_SLOTS] = {now->way, now->other_way};
     for (int i = 0; i < EXCHANGER_SLOTS; i++) {
         const bool shown = i == 0 || now->ways != APP_SPLIT_NONE;
-        s->way[i][0] = '\0';
+        s->panel.way[i][0] = '\0';
         if (shown && way_gathers(way[i]))
-            describe(s->way[i], &s->renderer, i, way[i]);
+            describe_way(s->panel.way[i], &s->renderer, i, way[i]);
     }
 }

@@ -222,8 +222,8 @@ static void draw_maps(const struct ism *s, const struct points_view *v, int firs
 // ---------------------------------------------------------------- gathering
 
 // Sites from row `top` on; `pattern` 0: they are leaves.
-static void gather(const struct ism *s, const struct points_view *v,
-                   const struct points_sites *sites, int top, int pattern)
+static void draw_gathered(const struct ism *s, const struct points_view *v,
+                          const struct points_sites *sites, int top, int pattern)
 {
     enum { AT_ONCE = 8 };
     const struct gl *gl = s->gl;
@@ -248,7 +248,7 @@ static void gather(const struct ism *s, const struct points_view *v,
 
 void ism_gather(const struct ism *s, const struct points_view *v, const struct points_sites *sites)
 {
-    gather(s, v, sites, 0, ISM_PATTERN);
+    draw_gathered(s, v, sites, 0, ISM_PATTERN);
 }
 
 relume_status ism_light(struct ism *s, struct point_light *light, const struct points_view *v,
@@ -267,7 +267,7 @@ relume_status ism_light(struct ism *s, struct point_light *light, const struct p
     for (int i = 0; i < v->bounces; i++) {
         int top;
         const struct points_sites sites = point_light_sites(&top, light, v);
-        gather(s, v, &sites, top, 0);
+        draw_gathered(s, v, &sites, top, 0);
         point_light_objects(light, v, lit);
         draw_lights(s, v, objects, s->on_scene, count, i > 0);
         if (i == 0)

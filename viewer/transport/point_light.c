@@ -50,7 +50,7 @@ void point_light_destroy(struct point_light *p)
 
 // ---------------------------------------------------------------- sites
 
-static void use(const struct gl *gl, GLint at, int unit, const struct target *target)
+static void use_texture(const struct gl *gl, GLint at, int unit, const struct target *target)
 {
     texture_use(gl, unit, GL_TEXTURE_2D, target->texture);
     gl->Uniform1i(at, unit);
@@ -63,8 +63,8 @@ void points_use_sites(const struct gl *gl, const GLint *at, const struct points_
     const GLuint image[] = {s->without->texture, s->with_objects->texture};
     for (GLuint i = 0; i < 2; i++)
         gl->BindImageTexture(i, image[i], 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
-    use(gl, at[SITE_PLACE], 0, s->place);
-    use(gl, at[SITE_FACING], 1, s->facing);
+    use_texture(gl, at[SITE_PLACE], 0, s->place);
+    use_texture(gl, at[SITE_FACING], 1, s->facing);
     gl->Uniform2f(at[SITE_KIND], s->kind - 0.5f, s->kind + 0.5f);
     gl->Uniform4f(at[SITE_CENTRE], (float)v->centre.x, (float)v->centre.y, (float)v->centre.z,
                   s->of_scene ? (float)DEPTH : 0.0f);
@@ -126,11 +126,11 @@ static void light_leaves(const struct point_light *p, const struct points_view *
     gl_bind(gl, 1, v->points->sent);
     gl_bind(gl, 2, v->points->leaf);
     gl_bind(gl, 3, v->points->block);
-    use(gl, at[PANORAMA], 0, lit->panorama);
-    use(gl, at[MEAN], 1, lit->mean);
-    use(gl, at[LET_WITHOUT], 2, lit->let_without);
-    use(gl, at[LET_WITH], 3, lit->let_with);
-    use(gl, at[GATHERED], 4, &p->gathered);
+    use_texture(gl, at[PANORAMA], 0, lit->panorama);
+    use_texture(gl, at[MEAN], 1, lit->mean);
+    use_texture(gl, at[LET_WITHOUT], 2, lit->let_without);
+    use_texture(gl, at[LET_WITH], 3, lit->let_with);
+    use_texture(gl, at[GATHERED], 4, &p->gathered);
     gl->Uniform1i(at[OF_SCENE], v->points->of_scene);
     gl->Uniform2i(at[LAYOUT], v->points->tree[CARD_SCENE].across, v->points->tree[CARD_SCENE].side);
     gl->Uniform1f(at[SENDS], part * v->sends);

@@ -1,0 +1,79 @@
+// between_uniforms.h - uniforms of the programs of between_programs.c, in their order
+#ifndef VIEWER_BETWEEN_UNIFORMS_H
+#define VIEWER_BETWEEN_UNIFORMS_H
+
+#include "draw/draw.h"
+#include "draw/shadow_map.h"
+#include "relit/light_uniforms.h"
+
+enum { BACK_CLIP, BACK_FRONT, BACK_GRID, BACK_EYE, BACK_COUNT };
+enum { F_SCENE = DRAW_OWN, F_OBJECTS, F_NORMALS, F_BACK, F_GRID, F_EYE, FRONT_COUNT };
+enum {
+    LAMPS_FACING = DRAW_OWN + 1,
+    LAMPS_CENTRE,
+    LAMPS_PICTURE,
+    LAMPS_LIGHT,
+    LAMPS_SHADOW = LAMPS_LIGHT + LIGHT_UNIFORMS,
+    LAMPS_CAPTURED = LAMPS_SHADOW + SHADOW_UNIFORMS,
+    LAMPS_COUNT = LAMPS_CAPTURED + SHADOW_UNIFORMS
+};
+enum { VIEW = DRAW_OWN, ELEVATION, DISC, MEAN_COUNT };
+enum {
+    SHOWN_FRONT = DRAW_OWN,
+    SHOWN_OBJECTS,
+    SHADED,
+    LONE,
+    LET_WITHOUT,
+    LET_WITH,
+    MEAN,
+    SHOWN_GRID,
+    SHOWN_EMITTED,
+    SHOWN_SENDS,
+    SHOWN_COUNT
+};
+enum {
+    G_PLACES = MEAN_COUNT,
+    G_CENTRE,
+    G_SCENE,
+    G_SCENE_FACING,
+    G_FRONT,
+    G_FACING,
+    G_SHOWN,
+    G_LONE,
+    G_MEAN,
+    G_ALL_WITHOUT,
+    G_ALL_WITH,
+    G_MIDDLE,
+    G_AT_OBJECTS,
+    G_DIRECTIONAL,
+    G_BOUNCES,
+    G_SAMPLES,
+    G_PATTERN,
+    G_RADIUS,
+    G_CLIP,
+    G_EYE,
+    GATHER_COUNT
+};
+enum { FIRST = DRAW_OWN, SECOND, SMOOTH_PLACE, SMOOTH_FACING, SMOOTH_EYE, SIZE_OF, SMOOTH_COUNT };
+enum {
+    RETURNED_FRONT = DRAW_OWN,
+    GATHERED,
+    RETURNED_OBJECTS,
+    WHITE,
+    RETURNED_GRID,
+    RETURNED_COUNT
+};
+enum {
+    S_SCENE = DRAW_OWN,
+    S_LONE,
+    S_LET_WITHOUT,
+    S_LET_WITH,
+    S_ALL_WITHOUT,
+    S_ALL_WITH,
+    S_WITHOUT,
+    S_WITH,
+    S_EXPOSURE,
+    SCENE_COUNT
+};
+
+#endif

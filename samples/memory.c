@@ -25,7 +25,6 @@ int main(void)
     struct relume_buffer file = {0}, png = {0}, rti = {0};
     struct relume_image picture = {0};
     relume_capture *capture = NULL;
-    relume_coder *coder = NULL;
     relume_pack *pack = NULL;
 
     relume_status status = relume_directions_make(lights, LIGHTS, relume_pattern_find("hammersley"),
@@ -43,10 +42,9 @@ int main(void)
     if (!status)
         status = relume_capture_create(&capture, &manifest, &array, NULL);
     if (!status)
-        status = relume_coder_learn(&coder, &relume_basis_sh, capture, NULL, NULL);
-    if (!status)
-        status = relume_pack_encode(capture, coder, NULL, NULL,
-                                    relume_pack_encode_params(.writer = &to_file));
+        status = relume_encode_capture(
+            NULL, capture, NULL,
+            relume_encode_capture_params(.basis = &relume_basis_sh, .writer = &to_file));
 
     // relight: the file lies in `file`, which must outlive the pack
     const struct relume_reader from_file = relume_memory_reader(file.data, file.size);
@@ -77,7 +75,6 @@ int main(void)
     }
     relume_image_destroy(&picture);
     relume_pack_destroy(&pack);
-    relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
     relume_buffer_destroy(&file);
     relume_buffer_destroy(&png);

@@ -16,7 +16,7 @@ capture:capture
 format:pack
 relight:light rig frame renderer evaluate
 material:
-encode:
+encode:encode
 exchange:exchange
 shape:
 world:

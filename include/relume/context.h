@@ -16,7 +16,7 @@
 //
 //     struct relume_buffer file = {0};                      // a relume file, in memory
 //     struct relume_writer writer = relume_buffer_writer(&file);
-//     relume_pack_encode(capture, coder, NULL, NULL, relume_pack_encode_params(.writer = &writer));
+//     relume_encode_capture(NULL, capture, NULL, relume_encode_capture_params(.writer = &writer));
 //     struct relume_reader reader = relume_memory_reader(file.data, file.size);
 //     relume_pack_open(&pack, NULL, relume_pack_params(.reader = &reader));
 #ifndef RELUME_CONTEXT_H

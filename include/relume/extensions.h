@@ -15,9 +15,11 @@
 #include <relume/capture/slab_depth.h>
 #include <relume/core/vec.h>
 #include <relume/encode/heldout.h>
+#include <relume/encode/pack_encode.h>
 #include <relume/exchange/notes.h>
 #include <relume/format/codebook.h>
 #include <relume/format/coder.h>
+#include <relume/format/pack_write.h>
 #include <relume/format/team.h>
 #include <relume/image/directions.h>
 #include <relume/image/jnd.h>

@@ -8,6 +8,7 @@
 #include <relume/camera.h>
 #include <relume/capture.h>
 #include <relume/context.h>
+#include <relume/encode.h>
 #include <relume/evaluate.h>
 #include <relume/exchange.h>
 #include <relume/frame.h>

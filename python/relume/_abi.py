@@ -22,6 +22,9 @@ CONSTANTS = {
     "RELUME_PLANAR": 0, "RELUME_SLAB": 1, "RELUME_CYLINDRICAL": 2, "RELUME_SPHERICAL": 3,
     "RELUME_CUBE": 4,
     "RELUME_DOMAIN_AUTO": 0, "RELUME_DOMAIN_LINEAR": 1, "RELUME_DOMAIN_DISPLAY": 2,
+    "RELUME_MOVING_DEFAULT": 0, "RELUME_MOVING_AUTO": 1, "RELUME_MOVING_YES": 2, "RELUME_MOVING_NO": 3,
+    "RELUME_PYRAMID_DEFAULT": 0, "RELUME_PYRAMID_YES": 1, "RELUME_PYRAMID_NO": 2,
+    "RELUME_MOVING_MOVES": 1, "RELUME_REACHED": 0,
     "RELUME_FRAME_DEFAULT": 0, "RELUME_FRAME_VIEW": 1, "RELUME_FRAME_EYE": 2,
     "RELUME_FRAME_LOOK": 3, "RELUME_TARGET_RGB": 0, "RELUME_TARGET_RGBA8": 2,
 }
@@ -62,19 +65,24 @@ struct relume_coder_params { size_t struct_size; void *log; int coefficients; bo
 struct relume_coder_info { void *basis; int coefficients; bool joint; bool luminance; int planes;
     int functions; bool hemispherical, pole_y; double ridge; int lights; void *directions;
     void *transform; void *mean; void *interpolant; double parameter[4]; double predicted_rms; };
-struct relume_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int threads;
-    void *scratch; void *team; struct relume_transfer display; };
-struct relume_decision { int domain; int storage; double psnr_db; double unseen_db; };
 struct relume_pack_params { size_t struct_size; void *log; void *limits; int compression; int threads; void *reader;
     void *writer; bool keep_going; };
-struct relume_pack_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int compression;
-    int threads; void *books; bool share; bool no_depth; int pyramid; double psnr_db, bytes_per_pixel; void *writer;
-    int part, parts; void *options; bool free_storage; void *team; bool learn_only;
-    struct relume_transfer display; bool shadows; void *gloss; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
     size_t repaired; int black_images; };
 struct relume_encode_report { double fit_rms; double store_rms; double steps_rms; double psnr_db; double typical;
     struct relume_encode_census census; };
+struct relume_encode_capture_params { size_t struct_size; void *log; int threads; char *name; void *basis;
+    int coefficients; double quality_db; void *interpolant; bool choose_interpolant; bool luminance, robust, force;
+    double ridge; bool no_ridge; int domain; struct relume_transfer display; int shadows; int highlights;
+    int storage; int step; int compression; int pyramid; bool no_depth; void *books; bool share;
+    double psnr_db, bytes_per_pixel, jnd; void *writer; int part, parts; char *options; char *learnt; bool learn_only;
+    void *team; };
+struct relume_moving_report { int outcome; int lights; double faded_db, moved_db; char *expected;
+    relume_status status; };
+struct relume_encode_result { int made; void *basis; int coefficients; bool joint; int lights, views; int domain;
+    struct relume_transfer display; int storage; bool lossy; struct relume_encode_report measured; double unseen_db; double quality_db; int reach;
+    double jnd; double file_bytes; double bytes_per_pixel; double photograph_bytes; bool is_coarse;
+    struct relume_moving_report shadows, highlights; };
 struct relume_pack_info { int version; void *coder; int domain; struct relume_transfer display;
     int storage; char *compression; struct relume_geometry geometry; int slabs; void *slab;
     int width, height; int levels; int tile; int views; void *uv; void *slab_of; bool has_depth, has_mask;
@@ -141,12 +149,10 @@ relume_status relume_domain_parse(enum relume_domain *out, struct relume_transfe
 const char *relume_domain_name(enum relume_domain domain, struct relume_transfer display);
 relume_status relume_compression_parse(enum relume_compression *out, const char *name);
 const char *relume_projection_name(enum relume_projection projection);
-relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis, const relume_capture *capture, const struct relume_coder_params *coder, const struct relume_encode_params *encode);
-relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision, const relume_capture *capture, double quality_db, const struct relume_coder_params *coder, const struct relume_encode_params *encode);
-void relume_coder_destroy(relume_coder **coder);
+const struct relume_interpolant *relume_interpolant_find(const char *name);
 const struct relume_coder_info *relume_coder_info(const relume_coder *coder);
 void relume_coder_weights(const relume_coder *coder, struct relume_vec3 light, float *weights, float constant[3]);
-relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder, const char *path, struct relume_encode_report *report, const struct relume_pack_encode_params *params);
+relume_status relume_encode_capture(const char *path, const relume_capture *capture, struct relume_encode_result *result, const struct relume_encode_capture_params *params);
 relume_status relume_pack_open(relume_pack **out, const char *path, const struct relume_pack_params *params);
 relume_status relume_exchange_parse(enum relume_exchange *out, const char *name);
 relume_status relume_export(relume_pack *pack, const char *path, enum relume_exchange format, struct relume_export_report *report, const struct relume_export_params *params);

@@ -47,6 +47,26 @@ def bases() -> list[str]:
     return names
 
 
+def _interpolant_named(name: str | None) -> int | None:
+    if name in (None, "auto"):
+        return None
+    found = lib.relume_interpolant_find(name.encode())
+    if not found:
+        raise UsageError(f"interpolant '{name}' is unknown; see 'relume help encode'")
+    return found
+
+
+_PYRAMIDS = {None: CONSTANTS["RELUME_PYRAMID_DEFAULT"], True: CONSTANTS["RELUME_PYRAMID_YES"],
+             False: CONSTANTS["RELUME_PYRAMID_NO"]}
+_MOVING = {None: "DEFAULT", "auto": "AUTO", True: "YES", "yes": "YES", False: "NO", "no": "NO"}
+
+
+def _moving(value: bool | str | None, what: str) -> int:
+    if value not in _MOVING:
+        raise UsageError(f"{what} '{value}' is unknown; expected auto, yes or no")
+    return CONSTANTS["RELUME_MOVING_" + _MOVING[value]]
+
+
 def name_of(address: int) -> str:
     """Of a basis or interpolant: structs that begin with their name."""
     return ctypes.c_char_p.from_address(address).value.decode()
@@ -75,6 +95,30 @@ class EncodeReport:
     """unquantised against stored coefficients"""
     psnr_db: float
     """the captured photographs, reproduced, display values"""
+    unseen_db: float | None
+    """predicted for light directions that were not captured; None: unknown"""
+    bits: str | None
+    """how coefficients are stored; None: coded with loss"""
+    domain: str
+    shadows: bool
+    """shadows move with the light"""
+    highlights: bool
+    """highlights move with the light"""
+    jnd: float | None
+    """just noticeable differences that 99 % of the pixels of every photograph keep; None: not judged"""
+    reached: bool
+    """the quality, size or JND that was asked for is kept"""
+
+
+def _report_of(result) -> EncodeReport:
+    measured, moves = result.measured, CONSTANTS["RELUME_MOVING_MOVES"]
+    return EncodeReport(
+        basis=name_of(result.basis), coefficients=result.coefficients, fit_rms=measured.fit_rms,
+        store_rms=measured.store_rms, psnr_db=measured.psnr_db, unseen_db=result.unseen_db or None,
+        bits=None if result.lossy else lib.relume_storage_name(result.storage).decode(),
+        domain=lib.relume_domain_name(result.domain, result.display).decode(),
+        shadows=result.shadows.outcome == moves, highlights=result.highlights.outcome == moves, jnd=result.jnd or None,
+        reached=result.reach == CONSTANTS["RELUME_REACHED"])
 
 
 class Capture(Handle):
@@ -94,6 +138,7 @@ class Capture(Handle):
         """
         super().__init__(lib.relume_capture_destroy)
         self._kept: list = []
+        self._name = b"memory"
         if pictures is None:
             return
         log = Log()
@@ -115,7 +160,8 @@ class Capture(Handle):
         params = structs["relume_capture_params"](
             log=log.address, transfer=transfer_of(transfer), skip_missing=skip_missing,
             repair=repair)
-        log.check(lib.relume_capture_open(self.out, os.fsencode(path), ctypes.byref(params)))
+        self._name = os.fsencode(path)
+        log.check(lib.relume_capture_open(self.out, self._name, ctypes.byref(params)))
         return self
 
     def _keep(self, array: np.ndarray) -> int:
@@ -215,49 +261,37 @@ class Capture(Handle):
         plane = self._plane(lib.relume_capture_depth, view)
         return plane if plane.size else None
 
-    def coder_params(self, log: Log, coefficients: int, luminance: bool = False,
-                     robust: bool = False):
-        return structs["relume_coder_params"](log=log.address, coefficients=coefficients,
-                                              luminance=luminance, robust=robust)
-
     def encode(self, path: str | os.PathLike | None = None, *, basis: str = "auto",
-               coefficients: int = 0, bits: str | int | None = None, domain: str | None = None,
-               quality_db: float = 0.0, compression: str | None = None, luminance: bool = False,
-               robust: bool = False, threads: int = 0,
+               coefficients: int = 0, quality_db: float = 0.0, interpolant: str | None = None,
+               luminance: bool = False, robust: bool = False, force: bool = False,
+               domain: str | None = None, bits: str | int | None = None,
+               compression: str | None = None, pyramid: bool | None = None, depth: bool = True,
+               psnr_db: float = 0.0, bytes_per_pixel: float = 0.0, jnd: float = 0.0,
+               shadows: bool | str | None = None, highlights: bool | str | None = None,
+               threads: int = 0,
                progress: Progress | None = None) -> tuple[bytes | None, EncodeReport]:
         """Make a relume file, under `path` or as bytes, and say how good it is.
 
-        Parameters mean what the options of `relume encode` do; 0 and None are its defaults.
+        Parameters mean what the options of `relume encode` do; 0 and None are its defaults, and
+        the same ones give the same bytes.
         """
-        log, coder = Log(progress), Handle(lib.relume_coder_destroy)
-        lives = domain_of(domain)
-        storage = parse(lib.relume_storage_parse, bits, "bits")
-        how = self.coder_params(log, coefficients, luminance, robust)
-        how.threads = threads
-        encode = structs["relume_encode_params"](log=log.address, storage=storage, threads=threads,
-                                                 **lives)
-        pack = structs["relume_pack_encode_params"](
-            log=log.address, storage=storage, threads=threads, **lives,
-            compression=parse(lib.relume_compression_parse, compression, "compression"))
-        if basis == "auto":
-            decision = structs["relume_decision"]()
-            log.check(lib.relume_coder_decide(
-                coder.out, ctypes.byref(decision), self.pointer, quality_db, ctypes.byref(how),
-                ctypes.byref(encode)))
-            pack.domain, pack.storage = decision.domain, decision.storage
-        else:
-            log.check(lib.relume_coder_learn(coder.out, basis_named(basis), self.pointer,
-                                             ctypes.byref(how), ctypes.byref(encode)))
-        buffer, report = Buffer(), structs["relume_encode_report"]()
-        if path is None:
-            pack.writer = ctypes.addressof(buffer.writer)
+        log, buffer = Log(progress), Buffer()
+        result = structs["relume_encode_result"]()
+        params = structs["relume_encode_capture_params"](
+            log=log.address, threads=threads, name=self._name,
+            basis=None if basis == "auto" else basis_named(basis), coefficients=coefficients,
+            quality_db=quality_db, luminance=luminance, robust=robust, force=force,
+            interpolant=_interpolant_named(interpolant), choose_interpolant=interpolant == "auto",
+            storage=parse(lib.relume_storage_parse, bits, "bits"), **domain_of(domain),
+            compression=parse(lib.relume_compression_parse, compression, "compression"),
+            pyramid=_PYRAMIDS[pyramid], no_depth=not depth, psnr_db=psnr_db,
+            bytes_per_pixel=bytes_per_pixel, jnd=jnd, shadows=_moving(shadows, "shadows"),
+            highlights=_moving(highlights, "highlights"),
+            writer=ctypes.addressof(buffer.writer) if path is None else None)
         name = None if path is None else os.fsencode(path)
-        log.check(lib.relume_pack_encode(self.pointer, coder.pointer, name, ctypes.byref(report),
-                                         ctypes.byref(pack)))
-        info = structs["relume_coder_info"].from_address(lib.relume_coder_info(coder.pointer))
-        said = EncodeReport(name_of(info.basis), info.coefficients, report.fit_rms,
-                            report.store_rms, report.psnr_db)
-        return (buffer.take() if path is None else None), said
+        log.check(lib.relume_encode_capture(name, self.pointer, ctypes.byref(result),
+                                            ctypes.byref(params)))
+        return (buffer.take() if path is None else None), _report_of(result)
 
 
 def encode(pictures, directions, path: str | os.PathLike | None = None, *,

@@ -38,7 +38,7 @@ class _Heldout(Handle):
         quality = structs["relume_heldout_quality"]
         store = structs["relume_heldout_store"](parse(lib.relume_storage_parse, bits, "bits"))
         before, after = quality(), quality()
-        how = self.capture.coder_params(self.log, coefficients)
+        how = structs["relume_coder_params"](log=self.log.address, coefficients=coefficients)
         self.log.check(lib.relume_heldout_measure(
             self.pointer, basis_named(basis), ctypes.byref(how), ctypes.byref(store), 1,
             ctypes.byref(before), ctypes.byref(after)))

@@ -327,6 +327,56 @@ class Tool(Fixture):
         self.assertAlmostEqual(found.ssim, said["ssim"], places=4)
         self.assertEqual(data, (self.path / "box.exr").read_bytes())
 
+    def test_the_same_decisions(self):
+        """The command and the module call one function: equal options, equal bytes."""
+        self.run_tool("synth", "box", "-o", "box", "--size", 64, "--lights", 24, "--samples", 1,
+                      "--hemisphere", "-q")
+        with relume.Capture.open(self.path / "box") as capture:
+            for arguments, options in (
+                    ("", {}),
+                    ("--psnr 34", {"psnr_db": 34}),
+                    ("--jnd 20", {"jnd": 20}),
+                    ("--bytes-per-pixel 1.5", {"bytes_per_pixel": 1.5}),
+                    ("--shadows no --highlights yes", {"shadows": False, "highlights": True}),
+                    ("--quality 30 --no-depth --pyramid no",
+                     {"quality_db": 30, "depth": False, "pyramid": False}),
+                    ("--basis pca --interpolant auto --bits half --compression zip",
+                     {"basis": "pca", "interpolant": "auto", "bits": "half", "compression": "zip"}),
+                    ("--basis table --psnr 30 --interpolant natural",
+                     {"basis": "table", "psnr_db": 30, "interpolant": "natural"})):
+                with self.subTest(arguments or "defaults"):
+                    self.run_tool("encode", "box", "-o", "tool.exr", "-q", *arguments.split())
+                    theirs = (self.path / "tool.exr").read_bytes()
+                    data, report = capture.encode(**options)
+                    self.assertEqual(data, theirs)
+                    self.assertEqual(capture.encode(self.path / "ours.exr", **options)[1], report)
+                    self.assertEqual((self.path / "ours.exr").read_bytes(), theirs)
+                    with relume.open(data) as file:
+                        self.assertEqual(file.info.coefficients, report.coefficients)
+                        self.assertEqual(file.info.domain, report.domain)
+
+    def test_what_was_decided(self):
+        self.run_tool("synth", "box", "-o", "box", "--size", 64, "--lights", 24, "--samples", 1,
+                      "--hemisphere", "-q")
+        with relume.Capture.open(self.path / "box") as capture:
+            _, usual = capture.encode()
+            self.assertTrue(usual.shadows and not usual.highlights)
+            self.assertTrue(15 < usual.unseen_db < usual.psnr_db)
+            _, moves = capture.encode(shadows=False, highlights="yes", psnr_db=30)
+            self.assertTrue(moves.highlights and not moves.shadows)
+            self.assertIsNone(moves.bits)
+            _, seen = capture.encode(jnd=20, basis="pca")
+            self.assertTrue(seen.reached and seen.jnd <= 20)
+            for options, sentence in (
+                    ({"psnr_db": 30, "jnd": 1}, "--jnd encodes several times"),
+                    ({"quality_db": 30, "basis": "sh"}, "--quality chooses"),
+                    ({"shadows": "maybe"}, "expected auto, yes or no"),
+                    ({"interpolant": "linear"}, "interpolant 'linear'")):
+                with self.assertRaisesRegex(relume.UsageError, sentence):
+                    capture.encode(**options)
+            with self.assertRaisesRegex(relume.UnfitError, "box: highlights cannot move; expected"):
+                capture.encode(highlights=True, shadows=True)
+
     def test_files_of_ours(self):
         relume.encode(self.pictures, self.lights, self.path / "ours.exr", basis="sh",
                       coefficients=4, bits="half")

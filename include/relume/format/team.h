@@ -1,9 +1,9 @@
 // team.h - several processes that encode parts of one capture, and share what all of them need
 //
-// A part of the work (relume_pack_encode_params.part) needs a little of all the others: pixels to
-// learn from, training of codebooks, ranges of planes. Each member of a team makes its own piece of
-// that, and gets everybody's. What follows from the pieces does not depend on how many there are: N
-// members write what one process writes, byte for byte.
+// A part of the work (relume_encode_capture_params.part) needs a little of all the others: pixels
+// to learn from, training of codebooks, ranges of planes. Each member of a team makes its own piece
+// of that, and gets everybody's. What follows from the pieces does not depend on how many there
+// are: N members write what one process writes, byte for byte.
 //
 // relume_team_folder is a team by files alone: members may run one after another, on any machines
 // that see the folder, and be stopped at any time. relume-mpi is one in memory.

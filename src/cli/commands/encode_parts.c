@@ -66,25 +66,20 @@ static void print_word(const char *word)
     putchar('\'');
 }
 
-// "statue.exr" becomes "statue" and what follows.
-static void name_beside(struct part_name *out, const char *output, const char *ending)
+// "statue.exr" as the word "statue" with another ending.
+static void print_beside(const char *output, const char *ending)
 {
+    char word[4096];
     const size_t stem = strlen(output) - strlen(name_ending(output));
-    snprintf(out->text, sizeof out->text, "%.*s%s", (int)stem, output, ending);
-}
-
-void name_part(struct part_name *out, const char *output, int part, int parts, const char *kind)
-{
-    char ending[64];
-    snprintf(ending, sizeof ending, ".%dof%d.%s", part, parts, kind);
-    name_beside(out, output, ending);
+    snprintf(word, sizeof word, "%.*s%s", (int)stem, output, ending);
+    print_word(word);
 }
 
 static void print_part_name(const char *output, int part, int parts)
 {
-    struct part_name name;
-    name_part(&name, output, part, parts, "part");
-    print_word(name.text);
+    char ending[64];
+    snprintf(ending, sizeof ending, ".%dof%d.part", part, parts);
+    print_beside(output, ending);
 }
 
 static void print_encode(const struct args *args)
@@ -108,10 +103,8 @@ void print_commands_of_parts(const struct args *args, const char *output, int pa
     for (int i = 1; i <= parts; i++) {
         print_encode(args);
         if (learns) {
-            struct part_name folder;
-            name_beside(&folder, output, ".learnt");
             fputs(" --learnt", stdout);
-            print_word(folder.text);
+            print_beside(output, ".learnt");
         }
         printf(" --part %d/%d -o", i, parts);
         print_part_name(output, i, parts);

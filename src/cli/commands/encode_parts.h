@@ -20,12 +20,6 @@ struct options_text {
 relume_status options_text(struct options_text *out, const struct args *args,
                            const struct option *table, const char *const *but);
 
-// The name of a part beside the output: "statue.exr" becomes "statue.3of8" and "." and its kind.
-struct part_name {
-    char text[4096];
-};
-void name_part(struct part_name *out, const char *output, int part, int parts, const char *kind);
-
 // One line for each of `parts`, and one that joins what they write into `output`. `learns`: with a
 // folder beside it for what they learn, unless one is given.
 void print_commands_of_parts(const struct args *args, const char *output, int parts, bool learns);

@@ -3,7 +3,7 @@
 //     mpirun -n 8 relume-mpi encode slab -o slab.exr
 //
 // Each process is a member of a team in memory (relume/format/team.h); the tool does the rest
-// (cli/commands/encode_together.c). Here is what MPI adds: pieces are exchanged by collective
+// (encode/encode/together.c). Here is what MPI adds: pieces are exchanged by collective
 // calls, a process that fails stops the others at their next one, and people read one voice: that
 // of the first process, and of others what it has not said.
 #include "cli/start.h"

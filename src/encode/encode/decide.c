@@ -1,5 +1,5 @@
 // decide.c - principal components, or the pictures themselves: what takes fewer bytes with loss
-#include <relume/pack.h>
+#include <relume/encode/pack_encode.h>
 
 #include "core/base/params.h"
 #include "encode/encode/look.h"

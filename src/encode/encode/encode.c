@@ -1,5 +1,5 @@
 // encode.c - from a capture to a file in one call
-#include <relume/pack.h>
+#include <relume/encode/pack_encode.h>
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -6,8 +6,8 @@
 #include "format/coder/coefficients.h"
 #include "format/lossy/lossy.h"
 
+#include <relume/encode/pack_encode.h>
 #include <relume/format/team.h>
-#include <relume/pack.h>
 
 struct material {
     const relume_capture *capture;

@@ -1,5 +1,5 @@
 // preview.c - what ordinary EXR viewers show of a relume file: its middle view, relit
-#include <relume/pack.h>
+#include <relume/encode/pack_encode.h>
 
 #include "core/base/memory.h"
 

@@ -2,7 +2,7 @@
 #ifndef ENCODE_PYRAMID_H
 #define ENCODE_PYRAMID_H
 
-#include <relume/pack.h>
+#include <relume/encode/pack_encode.h>
 
 // Whether a view of that size is to have them; some cannot.
 bool pyramid_is_wanted(enum relume_pyramid pyramid, int width, int height);

@@ -8,6 +8,7 @@
 #include "format/coder/coefficients.h"
 #include "format/pack/format.h"
 
+#include <relume/encode/pack_encode.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -13,6 +13,7 @@
 #include <errno.h>
 #include <float.h>
 #include <math.h>
+#include <relume/encode/pack_encode.h>
 #include <stdatomic.h>
 #include <string.h>
 

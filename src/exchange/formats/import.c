@@ -13,6 +13,7 @@
 #include "core/base/params.h"
 #include "core/math/vec.h"
 
+#include <relume/encode/pack_encode.h>
 #include <relume/image/directions.h>
 #include <stdio.h>
 #include <string.h>

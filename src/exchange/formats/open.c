@@ -14,6 +14,7 @@
 
 #include <errno.h>
 #include <relume/capture.h>
+#include <relume/encode.h>
 #include <relume/image/photograph.h>
 #include <stdio.h>
 #include <string.h>
@@ -120,24 +121,18 @@ const char *relume_kind_name(enum relume_kind kind)
 
 // ---------------------------------------------------------------- what it becomes
 
-// As `relume encode` does without options.
+// As `relume encode` does, but for shadows and highlights, which take longer to learn.
 static relume_status encode(const char *path, const char *out, const struct relume_open_params *p)
 {
     relume_capture *capture;
-    relume_coder *coder = NULL;
     relume_status status = relume_capture_open(
         &capture, path, relume_capture_params(.log = p->log, .allow_outside = p->allow_outside));
-    struct relume_decision decision = {0};
     if (!status)
-        status =
-            relume_coder_decide(&coder, &decision, capture, 0.0, relume_coder_params(.log = p->log),
-                                relume_encode_params(.log = p->log, .threads = p->threads));
-    if (!status)
-        status = relume_pack_encode(capture, coder, out, NULL,
-                                    relume_pack_encode_params(.log = p->log, .threads = p->threads,
-                                                              .domain = decision.domain,
-                                                              .storage = decision.storage));
-    relume_coder_destroy(&coder);
+        status = relume_encode_capture(
+            out, capture, NULL,
+            relume_encode_capture_params(.log = p->log, .threads = p->threads, .name = path,
+                                         .shadows = RELUME_MOVING_NO,
+                                         .highlights = RELUME_MOVING_NO));
     relume_capture_destroy(&capture);
     return status;
 }

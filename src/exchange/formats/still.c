@@ -6,6 +6,7 @@
 #include "core/base/half.h"
 
 #include <math.h>
+#include <relume/encode/pack_encode.h>
 #include <relume/image/photograph.h>
 
 #define MOST_HALF 65504.0f

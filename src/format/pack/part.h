@@ -5,7 +5,7 @@
 #include "format/lossy/lossy.h"
 #include "image/image/exr.h"
 
-#include <relume/pack.h>
+#include <relume/format/pack_write.h>
 
 struct part_file {
     exr_file *file;

@@ -5,7 +5,7 @@
 #include "core/base/arena.h"
 #include "image/image/exr.h"
 
-#include <relume/pack.h>
+#include <relume/format/pack_write.h>
 
 struct writer {
     struct arena arena;

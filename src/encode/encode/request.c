@@ -1,0 +1,201 @@
+// request.c - the params of relume_encode_capture: checked, and completed by defaults
+#include "encode/encode/request.h"
+
+#include "core/base/params.h"
+
+#include <math.h>
+#include <string.h>
+
+// About four times what shadows take of a pixel, or highlights.
+static const double MIN_SHADOW_BYTES = 1.0, MIN_HIGHLIGHT_BYTES = 0.5;
+
+bool request_is_lossy(const struct encode_request *r)
+{
+    return r->pack.psnr_db > 0.0 || r->pack.bytes_per_pixel > 0.0;
+}
+
+bool request_is_table(const struct encode_request *r)
+{
+    return request_is_lossy(r) && !r->decides && r->basis == &relume_basis_table &&
+           !r->coder.interpolant && !r->coder.choose;
+}
+
+bool request_learns_first(const struct encode_request *r)
+{
+    return r->basis->learned || r->coder.choose || request_is_table(r);
+}
+
+bool request_has_steps(const struct encode_request *r)
+{
+    return request_is_lossy(r) ||
+           (!r->pack.books && r->pack.parts > relume_capture_manifest(r->capture)->views);
+}
+
+bool request_is_display(const struct encode_request *r)
+{
+    return relume_encode_domain(r->capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
+}
+
+static bool has_bytes_for(const struct encode_request *r, double least)
+{
+    return !request_is_lossy(r) || r->pack.bytes_per_pixel >= least;
+}
+
+// Shadows and highlights do not move together: who asks for highlights has chosen. Without being
+// asked for they take no more than some of the bytes.
+static void decide_moving(struct encode_request *r)
+{
+    const struct relume_encode_capture_params *p = r->asked;
+    const bool tries = r->decides && p->highlights != RELUME_MOVING_YES;
+    r->shadows = p->shadows                                    ? p->shadows
+                 : tries && has_bytes_for(r, MIN_SHADOW_BYTES) ? RELUME_MOVING_AUTO
+                                                               : RELUME_MOVING_NO;
+    r->highlights =
+        p->highlights || has_bytes_for(r, MIN_HIGHLIGHT_BYTES) ? p->highlights : RELUME_MOVING_NO;
+}
+
+void request_make(struct encode_request *out, const char *path, const relume_capture *capture,
+                  const struct relume_encode_capture_params *p)
+{
+    *out = (struct encode_request){
+        .asked = p,
+        .path = path,
+        .capture = capture,
+        .log = p->log,
+        .basis = p->basis ? p->basis : &relume_basis_pca,
+        .coder = {.coefficients = p->coefficients,
+                  .ridge = p->ridge,
+                  .no_ridge = p->no_ridge,
+                  .choose = !p->interpolant && (p->choose_interpolant || !p->basis),
+                  .interpolant = p->interpolant,
+                  .luminance = p->luminance,
+                  .robust = p->robust,
+                  .force = p->force},
+        .pack = {.log = p->log,
+                 .domain = p->domain,
+                 .display = p->display,
+                 .storage = p->storage,
+                 .step = p->step,
+                 .compression = p->compression,
+                 .pyramid = p->pyramid,
+                 .no_depth = p->no_depth,
+                 .psnr_db = p->jnd > 0.0 ? RELUME_USUAL_DB : p->psnr_db,
+                 .bytes_per_pixel = p->bytes_per_pixel,
+                 .share = p->share,
+                 .writer = p->writer,
+                 .part = p->part,
+                 .parts = p->parts,
+                 .options = p->options ? p->options : "",
+                 .free_storage = !p->storage,
+                 .learn_only = p->learn_only,
+                 .threads = p->threads},
+        .decides = !p->basis && !p->books && !p->robust && !p->luminance,
+    };
+    out->coder.log = log_at(&out->about, p->log, "%s: ", p->name ? p->name : "the capture");
+    if (p->books) {
+        out->books = PARAMS(relume_books_params, p->books);
+        out->books.log = out->coder.log;
+        out->pack.books = &out->books;
+    }
+    if (request_is_lossy(out) && out->pack.domain == RELUME_DOMAIN_AUTO)
+        out->pack.domain = RELUME_DOMAIN_DISPLAY;
+    decide_moving(out);
+    out->result.quality_db = p->jnd > 0.0 ? 0.0 : p->psnr_db > 0.0 ? p->psnr_db : p->quality_db;
+}
+
+bool relume_encode_rereads(const struct relume_encode_capture_params *params)
+{
+    const struct relume_encode_capture_params p = PARAMS(relume_encode_capture_params, params);
+    struct encode_request r;
+    request_make(&r, NULL, NULL, &p);
+    return request_learns_first(&r) || p.jnd > 0.0;
+}
+
+// ---------------------------------------------------------------- checks
+
+struct number_range {
+    const char *option;
+    double value, least, most;
+};
+
+// 0 is the default of all of them.
+static relume_status check_ranges(const struct relume_encode_capture_params *p)
+{
+    const struct number_range range[] = {
+        {"--coefficients", p->coefficients, 1, RELUME_MOST_COEFFICIENTS},
+        {"--quality", p->quality_db, 10, 60},
+        {"--psnr", p->psnr_db, 10, 60},
+        {"--bytes-per-pixel", p->bytes_per_pixel, 1e-3, 100},
+        {"--jnd", p->jnd, 0.05, 100},
+        {"--ridge", p->ridge, 0, 1},
+    };
+    for (size_t i = 0; i < sizeof range / sizeof *range; i++) {
+        const struct number_range *r = &range[i];
+        if (r->value != 0.0 && !(r->value >= r->least && r->value <= r->most))
+            return log_fail(p->log, RELUME_EINVAL, "%s: expected %g to %g; found %g", r->option,
+                            r->least, r->most, r->value);
+    }
+    return RELUME_OK;
+}
+
+static relume_status check_loss(const struct relume_encode_capture_params *p)
+{
+    const bool jnd = p->jnd > 0.0, psnr = p->psnr_db > 0.0, bytes = p->bytes_per_pixel > 0.0;
+    if (!jnd && !psnr && !bytes)
+        return RELUME_OK;
+    if (p->books || p->storage || p->step || p->compression || p->quality_db > 0.0 ||
+        (psnr && bytes))
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--psnr and --bytes-per-pixel choose bits, step and compression; expected "
+                        "one of the two, without --bits, --step, --compression, --quality and "
+                        "--codebook");
+    if (jnd && (psnr || bytes || p->parts || p->learnt || p->team))
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--jnd encodes several times and compares; expected without --psnr, "
+                        "--bytes-per-pixel, and of one process");
+    if (p->display.curve == RELUME_CURVE_LOG)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--psnr and --bytes-per-pixel are about what a screen shows; expected "
+                        "them without --domain log");
+    return RELUME_OK;
+}
+
+static relume_status check_parts(const struct relume_encode_capture_params *p)
+{
+    if (p->team && (p->parts || p->learnt || p->learn_only))
+        return log_fail(p->log, RELUME_EINVAL,
+                        "relume-mpi makes the parts, and joins them; expected without --part, "
+                        "--commands and --learnt");
+    if (p->learn_only && !p->learnt)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--learn-only: expected --learnt FOLDER, where the share is left");
+    if (p->learnt && !p->parts)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--learnt is what parts share; expected --part or --commands with it");
+    if (p->parts && (p->part < 1 || p->part > p->parts))
+        return log_fail(p->log, RELUME_EINVAL, "--part: expected part 1 to %d of %d; found %d",
+                        p->parts, p->parts, p->part);
+    if (p->learnt && p->options && strchr(p->options, '\n'))
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--learnt keeps what was asked for in one line; expected options without "
+                        "line breaks");
+    if (p->books && p->share && !p->learnt && p->parts)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--share learns one set of codebooks from all views; expected --learnt "
+                        "FOLDER, where the parts share what it is learnt from");
+    return RELUME_OK;
+}
+
+relume_status relume_encode_check(const struct relume_encode_capture_params *params)
+{
+    const struct relume_encode_capture_params p = PARAMS(relume_encode_capture_params, params);
+    relume_status status = check_ranges(&p);
+    if (!status && p.quality_db > 0.0 &&
+        (p.basis || p.coefficients || p.books || p.robust || p.luminance))
+        status = log_fail(p.log, RELUME_EINVAL,
+                          "--quality chooses the coefficients of basis auto; expected without "
+                          "--basis, --coefficients, --codebook and --robust");
+    if (!status)
+        status = check_loss(&p);
+    return status ? status : check_parts(&p);
+}

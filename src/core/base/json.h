@@ -2,6 +2,8 @@
 #ifndef BASE_JSON_H
 #define BASE_JSON_H
 
+#include "core/base/json_write.h"
+
 #include <relume/base.h>
 
 // A value inside a tree; belongs to the root. Every function takes NULL for "absent".
@@ -53,9 +55,6 @@ char *jvalue_quote(const char *text);
 // Whether it can: it is UTF-8.
 bool jvalue_may_hold(const char *text);
 // A finite number, as short as gives the same one again.
-struct jnumber {
-    char text[32];
-};
 struct jnumber jvalue_number_text(double number);
 
 #endif

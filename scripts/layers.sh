@@ -26,7 +26,7 @@ site:publish"
 rules="cli/program:core/base:base image exchange/notes pack relight/slab_set
 cli/helper:core/base image/image shape/mesh:base
 cli/measure:core/base core/math core/kernel image/image:*
-cli:cli/program:*
+cli:core/base cli/program:*
 cli/mpi:cli:context format/team
 cli/materials:cli cli/program:*
 cli/studies:cli cli/program:*

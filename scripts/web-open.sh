@@ -67,7 +67,7 @@ theirs="$theirs $(compile "-O2 -w -DBITDEPTH=16 -I$dav1d -I$dav1d/include -I$wor
 rm -f "$work"/src_* "$work"/web_*
 own="-O2 -Wall -Wextra -Wno-unused-function -Iinclude -Isrc -DOPENS_FILES -I$dav1d/include -I$work -I$work/dav1d"
 parts="web/open/open.c web/open/absent.c web/core/absent.c \
-    $(of src/core/base arena beside called context_create cpu infile inputs inventory log memory names printable scratch thread tree) \
+    $(of src/core/base arena beside called context_create cpu infile inputs inventory json_write log memory names printable scratch thread tree) \
     $(of src/core/math base64 gram hsh hull lanczos markup sh) \
     $(of src/image/image exr exr_sums image piz response transfer) \
     $(of src/core/kernel dot_c kernels nearest_c psf_c turn_c unpack_c) \

@@ -5,6 +5,7 @@
 #include "cli/program/options.h"
 #include "cli/program/output_name.h"
 #include "cli/program/say.h"
+#include "core/base/json_write.h"
 
 #include <relume/extensions.h>
 #include <stddef.h>
@@ -98,9 +99,11 @@ struct shown {
     char text[4096];
 };
 const char *shown(struct shown *out, const char *text);
-// A number for JSON output: never NaN or Inf (null instead).
-void json_number(FILE *out, double value);
-// A text with its quotes. What a terminal would obey is escaped, what is no UTF-8 is U+FFFD.
-void json_text(FILE *out, const char *text);
+// A writer of the JSON that a command prints: nothing in it is obeyed by a terminal.
+struct jwriter json_to(FILE *out);
+// The same on stdout without blanks.
+struct jwriter json_dense(void);
+// A number of 9 digits; bytes and other whole numbers as they are.
+void json_measure(struct jwriter *w, const char *key, double value);
 
 #endif

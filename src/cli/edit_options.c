@@ -127,18 +127,22 @@ static void print_list(const relume_edits *edits)
 static void print_json(const relume_edits *edits)
 {
     const int count = relume_edits_count(edits);
-    printf("{\"edits\": %d, \"undone\": %d, \"list\": [", count, relume_edits_undone(edits));
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "edits", count);
+    jput_integer(&w, "undone", relume_edits_undone(edits));
+    jopen_array(&w, "list");
     for (int i = 0; i < count; i++) {
         const struct relume_edit *e = relume_edits_get(edits, i);
         char text[512];
         relume_edit_text(e, text, sizeof text);
-        printf("%s{\"operation\": \"%s\", \"undone\": %s, \"text\": ", i ? ", " : "",
-               relume_edit_operation_name(e->operation),
-               i < count - relume_edits_undone(edits) ? "false" : "true");
-        json_text(stdout, text);
-        putchar('}');
+        jopen_object(&w, NULL);
+        jput_text(&w, "operation", relume_edit_operation_name(e->operation));
+        jput_truth(&w, "undone", i >= count - relume_edits_undone(edits));
+        jput_text(&w, "text", text);
+        jclose(&w);
     }
-    puts("]}");
+    jend(&w);
 }
 
 relume_status edit_list_end(const relume_edits *edits, const struct args *args,

@@ -17,36 +17,20 @@ const char *judgement(double psnr_db)
                              : "clearly visible";
 }
 
-void json_number(FILE *out, double value)
+struct jwriter json_to(FILE *out)
 {
-    if (isfinite(value))
-        fprintf(out, "%.9g", value);
-    else
-        fputs("null", out);
+    return (struct jwriter){.file = out, .style = JSON_TERMINAL};
 }
 
-// Beyond the first 65536 characters JSON writes two halves.
-static void json_escape(FILE *out, uint32_t code)
+struct jwriter json_dense(void)
 {
-    if (code >= 0x10000)
-        fprintf(out, "\\u%04x\\u%04x", (unsigned)(0xd800 + ((code - 0x10000) >> 10)),
-                (unsigned)(0xdc00 + (code & 0x3ff)));
-    else
-        fprintf(out, "\\u%04x", (unsigned)code);
+    return (struct jwriter){.file = stdout, .style = JSON_TERMINAL | JSON_DENSE};
 }
 
-void json_text(FILE *out, const char *text)
+void json_measure(struct jwriter *w, const char *key, double value)
 {
-    uint32_t code;
-    fputc('"', out);
-    for (int n = relume_text_step(&code, text); n; n = relume_text_step(&code, text)) {
-        if (code == '"' || code == '\\')
-            fprintf(out, "\\%c", (char)code);
-        else if (relume_text_harmless(code))
-            fwrite(text, 1, (size_t)n, out);
-        else
-            json_escape(out, code);
-        text += n;
-    }
-    fputc('"', out);
+    if (value == floor(value))
+        jput_fixed(w, key, value, 0);
+    else
+        jput_number(w, key, value, 9);
 }

@@ -31,7 +31,7 @@ struct opened {
     struct relume_log log;
     struct relume_limits limits;
     struct scene scene;
-    struct text json;
+    char *json;
     bool bytes;                 // codes of 8 bits, as they are; else halves
     int held[MOST_HELD], next;  // views whose codes are in memory, -1: none; whose place is next
     void *out;                  // what was handed out last
@@ -201,11 +201,13 @@ static relume_status describe(struct opened *o)
         status = make_functions(&s->common, coder, s->levels.planes);
     if (!status)
         status = make_steps(o);
-    if (!status)
-        status = text_open(&o->json);
-    if (!status)
-        scene_print_json(o->json.file, s);
-    return status ? status : text_close(&o->json);
+    if (status)
+        return status;
+    struct jwriter w = {.style = JSON_MARKUP};
+    scene_put_json(&w, s);
+    jend(&w);
+    o->json = jtake(&w, NULL);
+    return o->json ? RELUME_OK : RELUME_ENOMEM;
 }
 
 EXPORT struct opened *open_file(char *name, double size)
@@ -235,7 +237,7 @@ EXPORT struct opened *open_file(char *name, double size)
 
 EXPORT const char *open_scene(const struct opened *o)
 {
-    return o->json.bytes;
+    return o->json;
 }
 
 EXPORT int open_is_bytes(const struct opened *o)
@@ -253,7 +255,7 @@ EXPORT void open_close(struct opened *o)
     mem_free(o->scene.levels.offset);
     mem_free(o->scene.layers);
     mem_free(o->scene.moving);
-    text_free(&o->json);
+    mem_free(o->json);
     mem_free(o->out);
     mem_free(o);
 }

@@ -4,7 +4,7 @@
 
 #include "capture/acquire/sha256.h"
 #include "core/base/infile.h"
-#include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
@@ -49,83 +49,72 @@ static void sum_file(void *context, size_t item, int worker)
     mem_free(bytes);
 }
 
-static void put_text(FILE *f, const char *key, const char *text)
-{
-    char *quoted = jvalue_quote(text);
-    fprintf(f, "\"%s\": %s", key, quoted ? quoted : "null");  // a name may be no UTF-8
-    mem_free(quoted);
-}
-
-static void put_number(FILE *f, const char *key, double value)
+static void put_positive(struct jwriter *w, const char *key, double value)
 {
     if (value > 0.0)
-        fprintf(f, ", \"%s\": %.6g", key, value);
+        jput_number(w, key, value, 6);
 }
 
-static void put_photograph(FILE *f, const struct shot *shot)
+static void put_photograph(struct jwriter *w, const struct shot *shot)
 {
     const struct relume_exif *e = &shot->notes;
     const time_t taken = (time_t)e->taken_s;
     struct tm tm;
     char text[32];
-    fputs("{", f);
-    put_text(f, "file", path_name(shot->path));
-    fprintf(f, ", \"bytes\": %llu, \"sha256\": \"%s\"", (unsigned long long)shot->bytes,
-            shot->sha256);
-    if (e->camera[0]) {
-        fputs(", ", f);
-        put_text(f, "camera", e->camera);
-    }
-    put_number(f, "exposure_s", e->time_s);
-    put_number(f, "f_number", e->f_number);
-    put_number(f, "iso", e->iso);
-    put_number(f, "focal_mm", e->focal_mm);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jput_text(w, "file", path_name(shot->path));
+    jput_integer(w, "bytes", (long long)shot->bytes);
+    jput_text(w, "sha256", shot->sha256);
+    if (e->camera[0])
+        jput_text(w, "camera", e->camera);
+    put_positive(w, "exposure_s", e->time_s);
+    put_positive(w, "f_number", e->f_number);
+    put_positive(w, "iso", e->iso);
+    put_positive(w, "focal_mm", e->focal_mm);
     if (taken && gmtime_r(&taken, &tm) && strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &tm))
-        fprintf(f, ", \"taken\": \"%s\"", text);  // by the camera's clock
-    fputs("}", f);
+        jput_text(w, "taken", text);  // by the camera's clock
+    jclose(w);
 }
 
-static void put_chart(FILE *f, const struct acquisition *s)
+static void put_pair(struct jwriter *w, const char *key, const double value[2])
+{
+    jopen_array(w, key);
+    jput_fixed(w, NULL, value[0], 3);
+    jput_fixed(w, NULL, value[1], 3);
+    jclose(w);
+}
+
+static void put_chart(struct jwriter *w, const struct acquisition *s)
 {
     const struct relume_chart *c = s->p.chart;
-    fputs("{\"target\": \"ColorChecker 24\"", f);
-    if (s->p.chart_path) {
-        fputs(", ", f);
-        put_text(f, "photograph", path_name(s->p.chart_path));
-    }
-    fputs(", \"matrix\": [", f);
-    for (int i = 0; i < 9; i++)
-        fprintf(f, "%s%.9g", i ? ", " : "", (double)c->matrix[i]);
-    fprintf(f,
-            "], \"exposure\": %.6g, \"patches\": %d, \"delta_e_2000\": {\"before\": [%.3f, %.3f], "
-            "\"white_balance\": [%.3f, %.3f], \"after\": [%.3f, %.3f]}}",
-            c->exposure, c->used, c->before[0], c->before[1], c->balanced[0], c->balanced[1],
-            c->after[0], c->after[1]);
+    jgap(w, "\n    ");
+    jopen_object(w, "colour");
+    jput_text(w, "target", "ColorChecker 24");
+    if (s->p.chart_path)
+        jput_text(w, "photograph", path_name(s->p.chart_path));
+    jput_floats(w, "matrix", c->matrix, 9, 9);
+    jput_number(w, "exposure", c->exposure, 6);
+    jput_integer(w, "patches", c->used);
+    jopen_object(w, "delta_e_2000");
+    put_pair(w, "before", c->before);
+    put_pair(w, "white_balance", c->balanced);
+    put_pair(w, "after", c->after);
+    jclose_levels(w, 2);
 }
 
 char *acquire_provenance(const struct acquisition *s)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f)
-        return NULL;
-    fputs("{\"program\": \"relume " RELUME_VERSION "\", \"photographs\": [", f);
-    for (int i = 0; i < s->shots; i++) {
-        fputs(i ? ",\n    " : "\n    ", f);
-        put_photograph(f, &s->shot[i]);
-    }
-    fputs("]", f);
-    if (s->p.chart) {
-        fputs(",\n    \"colour\": ", f);
-        put_chart(f, s);
-    }
-    fputs("}", f);
-    const bool failed = fclose(f) != 0;
-    char *out = mem_take(text);
-    if (failed)
-        mem_free(out);
-    return failed ? NULL : out;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jput_text(&w, "program", "relume " RELUME_VERSION);
+    jopen_array(&w, "photographs");
+    for (int i = 0; i < s->shots; i++)
+        put_photograph(&w, &s->shot[i]);
+    jclose(&w);
+    if (s->p.chart)
+        put_chart(&w, s);
+    return jtake(&w, NULL);
 }
 
 relume_status acquire_sum_files(struct acquisition *s)

@@ -1,131 +1,139 @@
 // manifest_write.c - capture.json, written
 #include "capture/manifest/manifest.h"
 
-#include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
-#include "core/base/memory.h"
-#include "core/base/outfile.h"
 #include "image/geometry/print.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-static void put_text(FILE *f, const char *text)
+// Ends the array as each of its items began: on a line of its own.
+static void close_lines(struct jwriter *w, const char *space)
 {
-    char *quoted = jvalue_quote(text);
-    fputs(quoted ? quoted : "\"\"", f);
-    mem_free(quoted);
+    jgap(w, space);
+    jclose(w);
 }
 
-static void put_vectors(FILE *f, const char *key, const struct relume_vec3 *v, int n)
+static void put_vectors(struct jwriter *w, const char *key, const struct relume_vec3 *v, int n)
 {
-    fprintf(f, "    \"%s\": [", key);
-    for (int i = 0; i < n; i++)
-        fprintf(f, "%s\n      [%.9g, %.9g, %.9g]", i ? "," : "", v[i].x, v[i].y, v[i].z);
-    fputs("\n    ]", f);
-}
-
-static void put_lights(FILE *f, const struct relume_manifest *m)
-{
-    fputs("  \"lights\": {\n", f);
-    put_vectors(f, "directions", m->directions, m->lights);
-    if (m->intensities) {
-        fputs(",\n    \"intensities\": [", f);
-        for (int i = 0; i < m->lights; i++)
-            fprintf(f, "%s\n      [%.9g, %.9g, %.9g]", i ? "," : "", (double)m->intensities[i][0],
-                    (double)m->intensities[i][1], (double)m->intensities[i][2]);
-        fputs("\n    ]", f);
+    jgap(w, "\n    ");
+    jopen_array(w, key);
+    for (int i = 0; i < n; i++) {
+        jgap(w, "\n      ");
+        jput_vector(w, NULL, v[i], 9);
     }
-    if (m->positions) {
-        fputs(",\n", f);
-        put_vectors(f, "positions", m->positions, m->lights);
-        if (m->no_falloff)
-            fputs(",\n    \"falloff\": \"none\"", f);
-    }
-    fputs("\n  },\n", f);
+    close_lines(w, "\n    ");
 }
 
-static void put_slabs(FILE *f, const struct relume_manifest *m)
+static void put_intensities(struct jwriter *w, const struct relume_manifest *m)
 {
-    fputs("  \"slabs\": [", f);
+    jgap(w, "\n    ");
+    jopen_array(w, "intensities");
+    for (int i = 0; i < m->lights; i++) {
+        jgap(w, "\n      ");
+        jput_floats(w, NULL, m->intensities[i], 3, 9);
+    }
+    close_lines(w, "\n    ");
+}
+
+static void put_lights(struct jwriter *w, const struct relume_manifest *m)
+{
+    jgap(w, "\n  ");
+    jopen_object(w, "lights");
+    put_vectors(w, "directions", m->directions, m->lights);
+    if (m->intensities)
+        put_intensities(w, m);
+    if (m->positions)
+        put_vectors(w, "positions", m->positions, m->lights);
+    if (m->positions && m->no_falloff) {
+        jgap(w, "\n    ");
+        jput_text(w, "falloff", "none");
+    }
+    close_lines(w, "\n  ");
+}
+
+static void put_slabs(struct jwriter *w, const struct relume_manifest *m)
+{
+    jgap(w, "\n  ");
+    jopen_array(w, "slabs");
     for (int i = 0; i < m->slabs; i++) {
         const struct relume_pose *pose = &m->slab[i].pose;
-        fputs(i ? ",\n    " : "\n    ", f);
-        geometry_print_planes(f, &m->slab[i]);
-        fprintf(f, ",\n     \"origin\": [%.9g, %.9g, %.9g], \"axes\": [", pose->origin.x,
-                pose->origin.y, pose->origin.z);
+        jgap(w, "\n    ");
+        jopen_object(w, NULL);
+        geometry_put_planes(w, &m->slab[i]);
+        jgap(w, "\n     ");
+        jput_vector(w, "origin", pose->origin, 9);
+        jopen_array(w, "axes");
         for (int a = 0; a < 3; a++)
-            fprintf(f, "%s[%.9g, %.9g, %.9g]", a ? ", " : "", pose->axis[a].x, pose->axis[a].y,
-                    pose->axis[a].z);
-        fputs("]}", f);
+            jput_vector(w, NULL, pose->axis[a], 9);
+        jclose_levels(w, 2);
     }
-    fputs("\n  ],\n", f);
+    close_lines(w, "\n  ");
 }
 
-static void put_geometry(FILE *f, const struct relume_manifest *m)
+static void put_geometry(struct jwriter *w, const struct relume_manifest *m)
 {
     if (!m->slabs) {
-        geometry_print(f, &m->geometry);
+        geometry_put(w, &m->geometry);
         return;
     }
-    geometry_print_projection(f, &m->geometry);
-    put_slabs(f, m);
+    geometry_put_projection(w, &m->geometry);
+    put_slabs(w, m);
 }
 
-static void put_view(FILE *f, const struct relume_manifest *m, const struct relume_manifest_view *v)
+static void put_view(struct jwriter *w, const struct relume_manifest *m,
+                     const struct relume_manifest_view *v)
 {
-    fputs("    {", f);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
     if (m->geometry.projection == RELUME_SLAB)
-        fprintf(f, "\"uv\": [%.9g, %.9g], ", v->uv[0], v->uv[1]);
+        jput_numbers(w, "uv", v->uv, 2, 9);
     if (m->slabs)
-        fprintf(f, "\"slab\": %d, ", v->slab);
-    if (v->depth) {
-        fputs("\"depth\": ", f);
-        put_text(f, v->depth);
-        fputs(", ", f);
+        jput_integer(w, "slab", v->slab);
+    if (v->depth)
+        jput_text(w, "depth", v->depth);
+    if (v->mask)
+        jput_text(w, "mask", v->mask);
+    jput_texts(w, "images", (const char *const *)v->images, (size_t)m->lights);
+    jclose(w);
+}
+
+static void put_head(struct jwriter *w, const struct relume_manifest *m)
+{
+    jgap(w, "\n  ");
+    jput_text(w, "format", "relume-capture");
+    jgap(w, "\n  ");
+    jput_integer(w, "version", MANIFEST_VERSION);
+    if (m->transfer.curve != RELUME_CURVE_AUTO) {
+        char transfer[32];
+        relume_transfer_text(m->transfer, transfer, sizeof transfer);
+        jgap(w, "\n  ");
+        jput_text(w, "transfer", transfer);
     }
-    if (v->mask) {
-        fputs("\"mask\": ", f);
-        put_text(f, v->mask);
-        fputs(", ", f);
+    if (m->provenance) {
+        jgap(w, "\n  ");
+        jput_raw(w, "provenance", m->provenance);
     }
-    fputs("\"images\": [", f);
-    for (int i = 0; i < m->lights; i++) {
-        fputs(i ? ", " : "", f);
-        put_text(f, v->images[i]);
-    }
-    fputs("]}", f);
 }
 
 relume_status relume_manifest_write(const struct relume_manifest *manifest, const char *path,
                                     const struct relume_log *log)
 {
-    char *text = NULL;
-    size_t size = 0;
     if (manifest->transfer.curve == RELUME_CURVE_RESPONSE)
         return log_fail(log, RELUME_EINVAL,
                         "%s: a response curve lives in a file of its own; expected linear pictures",
                         path);
-    FILE *f = open_memstream(&text, &size);
-    if (!f)
-        return RELUME_ENOMEM;
-    char transfer[32];
-    relume_transfer_text(manifest->transfer, transfer, sizeof transfer);
-    fprintf(f, "{\n  \"format\": \"relume-capture\",\n  \"version\": %d,\n", MANIFEST_VERSION);
-    if (manifest->transfer.curve != RELUME_CURVE_AUTO)
-        fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
-    if (manifest->provenance)
-        fprintf(f, "  \"provenance\": %s,\n", manifest->provenance);
-    put_geometry(f, manifest);
-    put_lights(f, manifest);
-    fputs("  \"views\": [\n", f);
-    for (int i = 0; i < manifest->views; i++) {
-        put_view(f, manifest, &manifest->view[i]);
-        fputs(i + 1 < manifest->views ? ",\n" : "\n", f);
-    }
-    fputs("  ]\n}\n", f);
-    const bool failed = fclose(f) != 0;
-    const relume_status status = failed ? RELUME_ENOMEM : outfile_save(path, text, size, log);
-    mem_free_libc(text);
-    return status;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    put_head(&w, manifest);
+    put_geometry(&w, manifest);
+    put_lights(&w, manifest);
+    jgap(&w, "\n  ");
+    jopen_array(&w, "views");
+    for (int i = 0; i < manifest->views; i++)
+        put_view(&w, manifest, &manifest->view[i]);
+    close_lines(&w, "\n  ");
+    jgap(&w, "\n");
+    return jsave(&w, path, log);
 }

@@ -93,38 +93,40 @@ static void print_text(const struct row *rows, int n, const char *processor, int
            rows[LOOP_COPY].seconds / rows[LOOP_LOOK_UP].seconds);
 }
 
-static void print_member(const char *name, double value)
+static void put_loop(struct jwriter *w, const struct row *r)
 {
-    printf(",\"%s\":", name);
-    json_number(stdout, value);
+    jopen_object(w, NULL);
+    jput_text(w, "name", r->loop->name);
+    jput_text(w, "what", r->loop->what);
+    jput_integer(w, "runs", r->times->n);
+    jput_number(w, "seconds", r->seconds, 9);
+    jput_number(w, "least_seconds", r->times->s[0], 9);
+    jput_number(w, "most_seconds", r->times->s[r->times->n - 1], 9);
+    jput_number(w, "bytes", r->loop->bytes, 9);
+    jput_number(w, "flops", r->loop->flops, 9);
+    jput_number(w, "gb_s", r->gb_s, 9);
+    jput_number(w, "gflop_s", r->gflop_s, 9);
+    jput_number(w, "share", r->share, 9);
+    jput_number(w, "readme_seconds", r->loop->readme_s > 0.0 ? r->loop->readme_s : (double)NAN, 9);
+    jclose(w);
 }
 
 static void print_json(const struct row *rows, int n, const char *processor, int threads)
 {
-    printf("{\"version\":\"%s\",\"processor\":", RELUME_VERSION);
-    json_text(stdout, processor);
-    printf(",\"instructions\":\"%s\",\"threads\":%d", loops_set(), threads);
-    print_member("read_gb_s", rows[LOOP_READ].gb_s);
-    print_member("gflop_s", rows[LOOP_ARITHMETIC].gflop_s);
-    print_member("relight_of_reading", rows[LOOP_READ].seconds / rows[LOOP_RELIGHT].seconds);
-    print_member("look_up_of_memcpy", rows[LOOP_COPY].seconds / rows[LOOP_LOOK_UP].seconds);
-    printf(",\"loops\":[");
-    for (int i = 0; i < n; i++) {
-        const struct row *r = &rows[i];
-        printf("%s{\"name\":\"%s\",\"what\":\"%s\",\"runs\":%d", i ? "," : "", r->loop->name,
-               r->loop->what, r->times->n);
-        print_member("seconds", r->seconds);
-        print_member("least_seconds", r->times->s[0]);
-        print_member("most_seconds", r->times->s[r->times->n - 1]);
-        print_member("bytes", r->loop->bytes);
-        print_member("flops", r->loop->flops);
-        print_member("gb_s", r->gb_s);
-        print_member("gflop_s", r->gflop_s);
-        print_member("share", r->share);
-        print_member("readme_seconds", r->loop->readme_s > 0.0 ? r->loop->readme_s : (double)NAN);
-        printf("}");
-    }
-    puts("]}");
+    struct jwriter w = json_dense();
+    jopen_object(&w, NULL);
+    jput_text(&w, "version", RELUME_VERSION);
+    jput_text(&w, "processor", processor);
+    jput_text(&w, "instructions", loops_set());
+    jput_integer(&w, "threads", threads);
+    jput_number(&w, "read_gb_s", rows[LOOP_READ].gb_s, 9);
+    jput_number(&w, "gflop_s", rows[LOOP_ARITHMETIC].gflop_s, 9);
+    jput_number(&w, "relight_of_reading", rows[LOOP_READ].seconds / rows[LOOP_RELIGHT].seconds, 9);
+    jput_number(&w, "look_up_of_memcpy", rows[LOOP_COPY].seconds / rows[LOOP_LOOK_UP].seconds, 9);
+    jopen_array(&w, "loops");
+    for (int i = 0; i < n; i++)
+        put_loop(&w, &rows[i]);
+    jend(&w);
 }
 
 // All loops in turns, so that whatever else the machine does falls on all of them alike. The first

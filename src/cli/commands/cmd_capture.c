@@ -416,72 +416,93 @@ static relume_status relight(const struct capture_options *o, const char *file)
 
 // ---------------------------------------------------------------- what to say
 
-static void put_vector(const char *key, struct relume_vec3 v)
+static void put_patch(struct jwriter *w, const struct relume_chart_patch *p)
 {
-    printf(",\"%s\":[%.9g,%.9g,%.9g]", key, v.x, v.y, v.z);
+    jopen_object(w, NULL);
+    jput_text(w, "name", p->name);
+    jput_number(w, "x", p->place[0], 6);
+    jput_number(w, "y", p->place[1], 6);
+    jput_floats(w, "found", p->found, 3, 6);
+    jput_number(w, "noise", p->noise, 4);
+    jput_truth(w, "used", p->used);
+    jput_number(w, "delta_e_before", p->delta_e_before, 4);
+    jput_number(w, "delta_e_white", p->delta_e_balance, 4);
+    jput_number(w, "delta_e", p->delta_e, 4);
+    jclose(w);
 }
 
-static void print_target(const struct relume_chart *c, const char *path)
+static void put_target(struct jwriter *w, const struct relume_chart *c, const char *path)
 {
-    fputs(",\"target\":{\"file\":", stdout);
-    json_text(stdout, path);
-    printf(",\"corners\":[");
+    jopen_object(w, "target");
+    jput_text(w, "file", path);
+    jopen_array(w, "corners");
     for (int i = 0; i < 4; i++)
-        printf("%s[%.6g,%.6g]", i ? "," : "", c->corner[i][0], c->corner[i][1]);
-    printf("],\"matrix\":[");
-    for (int i = 0; i < 9; i++)
-        printf("%s%.9g", i ? "," : "", (double)c->matrix[i]);
-    printf("],\"white\":[%.9g,%.9g,%.9g],\"exposure\":%.9g,\"uneven\":%.4g,\"used\":%d,"
-           "\"delta_e_before\":[%.4g,%.4g],\"delta_e_white\":[%.4g,%.4g],\"delta_e\":[%.4g,"
-           "%.4g],\"patches\":[",
-           (double)c->white[0], (double)c->white[1], (double)c->white[2], c->exposure, c->uneven,
-           c->used, c->before[0], c->before[1], c->balanced[0], c->balanced[1], c->after[0],
-           c->after[1]);
-    for (int i = 0; i < RELUME_CHART_PATCHES; i++) {
-        const struct relume_chart_patch *p = &c->patch[i];
-        printf("%s{\"name\":\"%s\",\"x\":%.6g,\"y\":%.6g,\"found\":[%.6g,%.6g,%.6g],"
-               "\"noise\":%.4g,\"used\":%s,\"delta_e_before\":%.4g,\"delta_e_white\":%.4g,"
-               "\"delta_e\":%.4g}",
-               i ? "," : "", p->name, p->place[0], p->place[1], (double)p->found[0],
-               (double)p->found[1], (double)p->found[2], p->noise, p->used ? "true" : "false",
-               p->delta_e_before, p->delta_e_balance, p->delta_e);
+        jput_numbers(w, NULL, c->corner[i], 2, 6);
+    jclose(w);
+    jput_floats(w, "matrix", c->matrix, 9, 9);
+    jput_floats(w, "white", c->white, 3, 9);
+    jput_number(w, "exposure", c->exposure, 9);
+    jput_number(w, "uneven", c->uneven, 4);
+    jput_integer(w, "used", c->used);
+    jput_numbers(w, "delta_e_before", c->before, 2, 4);
+    jput_numbers(w, "delta_e_white", c->balanced, 2, 4);
+    jput_numbers(w, "delta_e", c->after, 2, 4);
+    jopen_array(w, "patches");
+    for (int i = 0; i < RELUME_CHART_PATCHES; i++)
+        put_patch(w, &c->patch[i]);
+    jclose_levels(w, 2);
+}
+
+static void put_photograph(struct jwriter *w, const struct relume_acquisition *s, int i)
+{
+    jopen_object(w, NULL);
+    jput_text(w, "file", s->photo[i].path);
+    jput_vector(w, "direction", s->direction[i], 9);
+    if (s->position)
+        jput_vector(w, "position", s->position[i], 9);
+    if (s->intensity)
+        jput_floats(w, "intensity", s->intensity[i], 3, 9);
+    jput_number(w, "error_deg", s->photo[i].sigma_deg, 6);
+    jput_number(w, "saturated", (double)s->photo[i].saturated, 6);
+    jput_number(w, "sharpness", (double)s->photo[i].sharpness, 9);
+    jclose(w);
+}
+
+static void put_balls(struct jwriter *w, const struct relume_acquisition *s)
+{
+    jopen_array(w, "balls");
+    for (int b = 0; b < s->balls; b++) {
+        jopen_object(w, NULL);
+        jput_number(w, "x", s->ball[b].x, 9);
+        jput_number(w, "y", s->ball[b].y, 9);
+        jput_number(w, "radius", s->ball[b].radius, 9);
+        jput_number(w, "coverage", s->ball[b].coverage, 4);
+        jclose(w);
     }
-    printf("]}");
+    jclose(w);
 }
 
 static void print_json(const struct job *job)
 {
     const struct relume_acquisition *s = &job->acquisition;
-    printf("{\"lights\":%d,\"width\":%d,\"height\":%d,\"balls\":[", s->lights, s->width, s->height);
-    for (int b = 0; b < s->balls; b++)
-        printf("%s{\"x\":%.9g,\"y\":%.9g,\"radius\":%.9g,\"coverage\":%.4g}", b ? "," : "",
-               s->ball[b].x, s->ball[b].y, s->ball[b].radius, s->ball[b].coverage);
-    printf("],\"gap_deg\":%.6g,\"residual\":", s->gap_deg);
-    json_number(stdout, s->photometric.normal.data ? s->photometric.residual : (double)NAN);
-    printf(",\"position_error\":%.6g,\"photographs\":[", s->position_error);
-    for (int i = 0; i < s->lights; i++) {
-        printf("%s{\"file\":", i ? "," : "");
-        json_text(stdout, s->photo[i].path);
-        put_vector("direction", s->direction[i]);
-        if (s->position)
-            put_vector("position", s->position[i]);
-        if (s->intensity)
-            printf(",\"intensity\":[%.9g,%.9g,%.9g]", (double)s->intensity[i][0],
-                   (double)s->intensity[i][1], (double)s->intensity[i][2]);
-        printf(",\"error_deg\":%.6g,\"saturated\":%.6g,\"sharpness\":", s->photo[i].sigma_deg,
-               (double)s->photo[i].saturated);
-        json_number(stdout, (double)s->photo[i].sharpness);
-        putchar('}');
-    }
-    printf("],\"warnings\":[");
-    for (int i = 0; i < s->warnings; i++) {
-        fputs(i ? "," : "", stdout);
-        json_text(stdout, s->warning[i]);
-    }
-    putchar(']');
+    const bool measured = s->photometric.normal.data;
+    struct jwriter w = json_dense();
+    jopen_object(&w, NULL);
+    jput_integer(&w, "lights", s->lights);
+    jput_integer(&w, "width", s->width);
+    jput_integer(&w, "height", s->height);
+    put_balls(&w, s);
+    jput_number(&w, "gap_deg", s->gap_deg, 6);
+    jput_number(&w, "residual", measured ? s->photometric.residual : (double)NAN, 9);
+    jput_number(&w, "position_error", s->position_error, 6);
+    jopen_array(&w, "photographs");
+    for (int i = 0; i < s->lights; i++)
+        put_photograph(&w, s, i);
+    jclose(&w);
+    jput_texts(&w, "warnings", (const char *const *)s->warning, (size_t)s->warnings);
     if (job->chart_path)
-        print_target(&job->chart, job->chart_path);
-    puts("}");
+        put_target(&w, &job->chart, job->chart_path);
+    jend(&w);
 }
 
 static void say_made(const struct capture_options *o, const struct relume_acquisition *s)

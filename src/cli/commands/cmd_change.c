@@ -73,57 +73,58 @@ static void say_result(const struct change_options *o, const struct relume_chang
                  o->output, c->misplaced);
 }
 
-static void put_number(const char *name, double value)
+static void put_place(struct jwriter *w, const struct relume_change_place *p)
 {
-    printf(", \"%s\": ", name);
-    json_number(stdout, value);
+    jopen_object(w, NULL);
+    jput_integer(w, "x", p->box.left);
+    jput_integer(w, "y", p->box.top);
+    jput_integer(w, "width", p->box.width);
+    jput_integer(w, "height", p->box.height);
+    jput_integer(w, "area", p->area);
+    jput_integer(w, "shape", p->shape);
+    jput_integer(w, "colour", p->colour);
+    jput_integer(w, "gloss", p->gloss);
+    jput_number(w, "degrees", p->deg, 9);
+    jput_number(w, "delta_e", p->delta_e, 9);
+    jput_number(w, "gloss_by", p->gloss_by, 9);
+    jput_number(w, "significance", p->significance, 9);
+    jclose(w);
 }
 
-static void print_places(const struct relume_change *c)
+static void put_registration(struct jwriter *w, const struct relume_change *c)
 {
-    printf(", \"places\": [");
-    for (int i = 0; i < c->places; i++) {
-        const struct relume_change_place *p = &c->place[i];
-        printf("%s{\"x\": %d, \"y\": %d, \"width\": %d, \"height\": %d, \"area\": %d, \"shape\": "
-               "%d, \"colour\": %d, \"gloss\": %d",
-               i ? ", " : "", p->box.left, p->box.top, p->box.width, p->box.height, p->area,
-               p->shape, p->colour, p->gloss);
-        put_number("degrees", p->deg);
-        put_number("delta_e", p->delta_e);
-        put_number("gloss_by", p->gloss_by);
-        put_number("significance", p->significance);
-        putchar('}');
-    }
-    putchar(']');
+    jput_number(w, "correlation", c->registered.correlation, 9);
+    jput_number(w, "flow_pixels", c->flow, 9);
+    jput_number(w, "misplaced_pixels", c->misplaced, 9);
+    jput_number(w, "bend_degrees", c->bend_deg, 9);
+    jput_numbers(w, "gain", c->gain, 3, 9);
+    jopen_array(w, "homography");
+    for (int i = 0; i < 9; i++)
+        jput_number(w, NULL, c->registered.m[i / 3][i % 3], 9);
+    jclose(w);
 }
 
 static void print_json(const struct relume_change *c)
 {
-    printf("{\"width\": %d, \"height\": %d, \"known\": %zu, \"changed\": %zu, \"shape\": %zu, "
-           "\"colour\": %zu, \"gloss\": %zu, \"gloss_known\": %zu",
-           c->width, c->height, c->known, c->area, c->shape, c->colour, c->gloss_area,
-           c->gloss_known);
-    put_number("changed_percent", percent_of(c->area, c));
-    put_number("noise_degrees", c->noise_deg);
-    put_number("noise_delta_e", c->noise_de);
-    put_number("noise_gloss", c->noise_gloss);
-    put_number("correlation", c->registered.correlation);
-    put_number("flow_pixels", c->flow);
-    put_number("misplaced_pixels", c->misplaced);
-    put_number("bend_degrees", c->bend_deg);
-    printf(", \"gain\": [");
-    for (int i = 0; i < 3; i++) {
-        printf(i ? ", " : "");
-        json_number(stdout, c->gain[i]);
-    }
-    printf("], \"homography\": [");
-    for (int i = 0; i < 9; i++) {
-        printf(i ? ", " : "");
-        json_number(stdout, c->registered.m[i / 3][i % 3]);
-    }
-    putchar(']');
-    print_places(c);
-    puts("}");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "width", c->width);
+    jput_integer(&w, "height", c->height);
+    jput_integer(&w, "known", (long long)c->known);
+    jput_integer(&w, "changed", (long long)c->area);
+    jput_integer(&w, "shape", (long long)c->shape);
+    jput_integer(&w, "colour", (long long)c->colour);
+    jput_integer(&w, "gloss", (long long)c->gloss_area);
+    jput_integer(&w, "gloss_known", (long long)c->gloss_known);
+    jput_number(&w, "changed_percent", percent_of(c->area, c), 9);
+    jput_number(&w, "noise_degrees", c->noise_deg, 9);
+    jput_number(&w, "noise_delta_e", c->noise_de, 9);
+    jput_number(&w, "noise_gloss", c->noise_gloss, 9);
+    put_registration(&w, c);
+    jopen_array(&w, "places");
+    for (int i = 0; i < c->places; i++)
+        put_place(&w, &c->place[i]);
+    jend(&w);
 }
 
 // ---------------------------------------------------------------- the work

@@ -15,7 +15,7 @@ static const struct option options[] = {
 
 struct findings {
     const char *path;
-    bool json;
+    struct jwriter *json;  // NULL: lines for people
     int count;
 };
 
@@ -24,9 +24,11 @@ static void print_damage(void *user, const char *part, int row, int rows)
     struct findings *f = user;
     struct shown path, name;
     if (f->json) {
-        printf("%s{\"part\": ", f->count ? ", " : "");
-        json_text(stdout, part);
-        printf(", \"first_row\": %d, \"rows\": %d}", row, rows);
+        jopen_object(f->json, NULL);
+        jput_text(f->json, "part", part);
+        jput_integer(f->json, "first_row", row);
+        jput_integer(f->json, "rows", rows);
+        jclose(f->json);
     } else {
         printf("%s: part '%s', rows %d to %d: missing or damaged\n", shown(&path, f->path),
                shown(&name, part), row, row + rows - 1);
@@ -40,11 +42,15 @@ static void print_tile(void *user, const char *part, int column, int row,
     struct findings *f = user;
     struct shown path, name;
     if (f->json) {
-        printf("%s{\"part\": ", f->count ? ", " : "");
-        json_text(stdout, part);
-        printf(
-            ", \"column\": %d, \"row\": %d, \"x\": %d, \"y\": %d, \"width\": %d, \"height\": %d}",
-            column, row, at->left, at->top, at->width, at->height);
+        jopen_object(f->json, NULL);
+        jput_text(f->json, "part", part);
+        jput_integer(f->json, "column", column);
+        jput_integer(f->json, "row", row);
+        jput_integer(f->json, "x", at->left);
+        jput_integer(f->json, "y", at->top);
+        jput_integer(f->json, "width", at->width);
+        jput_integer(f->json, "height", at->height);
+        jclose(f->json);
     } else {
         printf("%s: part '%s', tile in column %d, row %d (pixels %d,%d to %d,%d): damaged\n",
                shown(&path, f->path), shown(&name, part), column, row, at->left, at->top,
@@ -53,16 +59,18 @@ static void print_tile(void *user, const char *part, int column, int row,
     f->count++;
 }
 
-static relume_status check_file(const struct check_options *o, const char *path)
+// Writes the findings to `json`, or says them where it is NULL.
+static relume_status check_file(const struct check_options *o, const char *path,
+                                struct jwriter *json)
 {
-    struct findings f = {.path = path, .json = o->json};
+    struct findings f = {.path = path, .json = json};
     struct relume_pack_part part;
     struct shown name;
     bool has_sums = false;
     if (f.json) {
-        printf("{\"file\": ");
-        json_text(stdout, path);
-        printf(", \"damaged\": [");
+        jopen_object(json, NULL);
+        jput_text(json, "file", path);
+        jopen_array(json, "damaged");
     }
     const relume_status status = relume_pack_check(
         path, relume_pack_check_params(.log = o->args.log, .threads = o->args.threads,
@@ -70,10 +78,12 @@ static relume_status check_file(const struct check_options *o, const char *path)
                                        .has_sums = &has_sums));
     const char *const unsure =
         has_sums ? "" : "; without check sums, so that not every changed byte is seen";
-    if (f.json)
-        printf("], \"check_sums\": %s, \"whole\": %s}", has_sums ? "true" : "false",
-               status ? "false" : "true");
-    else if (!status && is_part(&part, path))
+    if (json) {
+        jclose(json);
+        jput_truth(json, "check_sums", has_sums);
+        jput_truth(json, "whole", !status);
+        jclose(json);
+    } else if (!status && is_part(&part, path))
         printf("%s: whole; part %d of %d%s\n", shown(&name, path), part.part, part.parts, unsure);
     else if (!status)
         printf("%s: whole%s\n", shown(&name, path), unsure);
@@ -87,16 +97,17 @@ static relume_status run(const struct args *args)
 {
     const struct check_options *o = (const void *)args;
     relume_status worst = RELUME_OK;
-    if (o->json)
-        printf("{\"files\": [");
+    struct jwriter w = json_to(stdout);
+    if (o->json) {
+        jopen_object(&w, NULL);
+        jopen_array(&w, "files");
+    }
     for (int i = 0; i < o->args.inputs && worst != RELUME_ECANCEL; i++) {
-        if (o->json && i)
-            printf(", ");
-        const relume_status status = check_file(o, o->args.input[i]);
+        const relume_status status = check_file(o, o->args.input[i], o->json ? &w : NULL);
         worst = status && worst != RELUME_ENOMEM ? status : worst;
     }
     if (o->json)
-        printf("]}\n");
+        jend(&w);
     return worst;
 }
 

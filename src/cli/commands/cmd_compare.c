@@ -50,18 +50,19 @@ static void print(const struct compare_options *o, const struct relume_differenc
         {"max_abs", d->max_abs},
         {"ramp_error", ramps->slope > 0.0 ? sqrt(ramps->error / ramps->slope) : (double)NAN}};
     const size_t count = sizeof rows / sizeof *rows - !o->ramps;
+    struct jwriter w = json_to(stdout);
+    if (o->json)
+        jopen_object(&w, NULL);
     for (size_t i = 0; i < count; i++) {
-        if (!o->json && isfinite(rows[i].value))
+        if (o->json)
+            jput_number(&w, rows[i].name, rows[i].value, 9);
+        else if (isfinite(rows[i].value))
             printf("%-8s %.6g\n", rows[i].name, rows[i].value);
-        else if (!o->json)
+        else
             printf("%-8s -\n", rows[i].name);
-        if (!o->json)
-            continue;
-        printf("%s\"%s\": ", i ? ", " : "{", rows[i].name);
-        json_number(stdout, rows[i].value);
     }
     if (o->json)
-        puts("}");
+        jend(&w);
 }
 
 // `a` becomes the difference.

@@ -45,26 +45,23 @@ static void print_json(const struct relume_evaluation *e)
         {"raw_bytes", e->raw_bytes},
         {"ratio", e->ratio},
     };
-    printf("{\"views\": %d, \"lights\": %d, \"width\": %d, \"height\": %d", e->views, e->lights,
-           e->width, e->height);
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        if (!strncmp(rows[i].name, "jnd", 3) && !isfinite(rows[i].value))
-            continue;
-        printf(", \"%s\": ", rows[i].name);
-        if (rows[i].value == floor(rows[i].value))  // bytes as they are
-            printf("%.0f", rows[i].value);
-        else
-            json_number(stdout, rows[i].value);
-    }
-    printf(", \"per_light\": [");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "views", e->views);
+    jput_integer(&w, "lights", e->lights);
+    jput_integer(&w, "width", e->width);
+    jput_integer(&w, "height", e->height);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (strncmp(rows[i].name, "jnd", 3) || isfinite(rows[i].value))
+            json_measure(&w, rows[i].name, rows[i].value);
+    jopen_array(&w, "per_light");
     for (int i = 0; i < e->lights; i++) {
-        printf("%s{\"rms\": ", i ? ", " : "");
-        json_number(stdout, e->light[i].rms);
-        printf(", \"psnr_db\": ");
-        json_number(stdout, e->light[i].psnr_db);
-        putchar('}');
+        jopen_object(&w, NULL);
+        jput_number(&w, "rms", e->light[i].rms, 9);
+        jput_number(&w, "psnr_db", e->light[i].psnr_db, 9);
+        jclose(&w);
     }
-    puts("]}");
+    jend(&w);
 }
 
 static void print_text(const struct relume_evaluation *e)

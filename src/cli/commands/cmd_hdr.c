@@ -49,7 +49,7 @@ static bool is_file(const char *output)
 
 // ---------------------------------------------------------------- report
 
-static void put_photo_json(FILE *out, const struct bracket *b, int i)
+static void put_photo(struct jwriter *w, const struct bracket *b, int i)
 {
     const struct relume_exposure_report *r = &b->report[i];
     const struct {
@@ -67,27 +67,28 @@ static void put_photo_json(FILE *out, const struct bracket *b, int i)
         {"shift_px", b->shift[i]},
         {"ghosts", b->ghosts[i]},
     };
-    fprintf(out, "%s\n    {\"file\": ", i ? "," : "");
-    json_text(out, b->path[i]);
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
-        fprintf(out, ", \"%s\": ", numbers[k].name);
-        json_number(out, numbers[k].value);
-    }
-    fputc('}', out);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jput_text(w, "file", b->path[i]);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        jput_number(w, numbers[k].name, numbers[k].value, 9);
+    jclose(w);
 }
 
-static void print_json(FILE *out, const struct bracket *b, const char *output, int index)
+static void put_bracket(struct jwriter *w, const struct bracket *b, const char *output, int index)
 {
-    fprintf(out, "%s{\"output\": ", index ? ",\n  " : "");
-    json_text(out, output);
-    fprintf(out, ", \"width\": %d, \"height\": %d, \"anchor\": ", b->out.width, b->out.height);
-    json_text(out, b->path[b->anchor]);
-    fprintf(out, ", \"response\": ");
-    json_text(out, b->response_source);
-    fprintf(out, ", \"photos\": [");
+    if (index)
+        jgap(w, "\n  ");
+    jopen_object(w, NULL);
+    jput_text(w, "output", output);
+    jput_integer(w, "width", b->out.width);
+    jput_integer(w, "height", b->out.height);
+    jput_text(w, "anchor", b->path[b->anchor]);
+    jput_text(w, "response", b->response_source);
+    jopen_array(w, "photos");
     for (int i = 0; i < b->n; i++)
-        put_photo_json(out, b, i);
-    fprintf(out, "]}");
+        put_photo(w, b, i);
+    jclose_levels(w, 2);
 }
 
 static void print_table(FILE *out, const struct bracket *b, const char *output)
@@ -147,7 +148,7 @@ static relume_status whiten(struct bracket *b, const struct hdr_options *o)
 
 // Into the file `to`, which will be called `output`.
 static relume_status run_bracket(struct bracket *b, const char *output, const char *to, int index,
-                                 FILE *report, const struct hdr_options *o)
+                                 struct jwriter *report, const struct hdr_options *o)
 {
     const int threads = o->args.threads > 0 ? o->args.threads : relume_cpu_count();
     relume_status status = bracket_load(b, o);
@@ -165,9 +166,9 @@ static relume_status run_bracket(struct bracket *b, const char *output, const ch
         status = relume_image_save(&b->out, to,
                                    relume_image_params(.log = o->args.log, .threads = threads));
     if (!status && o->json)
-        print_json(report, b, output, index);
+        put_bracket(report, b, output, index);
     else if (!status)
-        print_table(report, b, output);
+        print_table(report->file, b, output);
     return status;
 }
 
@@ -205,7 +206,7 @@ static void output_name(char *out, size_t size, const struct bracket *b, const c
 
 static relume_status run_group(const struct relume_photographs *list,
                                const struct relume_exif *notes, const int *group, int which,
-                               const char *to, FILE *report, const struct hdr_options *o)
+                               const char *to, struct jwriter *report, const struct hdr_options *o)
 {
     char output[4096], written[4096];
     struct bracket *b = calloc(1, sizeof *b);
@@ -229,7 +230,7 @@ static relume_status run_group(const struct relume_photographs *list,
 }
 
 static relume_status run_groups(struct relume_photographs *list, struct relume_exif *notes,
-                                int *group, FILE *report, const struct hdr_options *o)
+                                int *group, struct jwriter *report, const struct hdr_options *o)
 {
     int groups = 1;
     struct fill folder = {.path = o->output};
@@ -238,10 +239,14 @@ static relume_status run_groups(struct relume_photographs *list, struct relume_e
         groups = relume_exif_brackets(group, notes, list->count, 0.0);
         status = groups > 0 ? fill_open(&folder, folder.path, o->args.log) : RELUME_ENOMEM;
     }
-    fputs(o->json ? "{\"brackets\": [" : "", report);
+    if (o->json) {
+        jopen_object(report, NULL);
+        jopen_array(report, "brackets");
+    }
     for (int i = 0; !status && i < groups; i++)
         status = run_group(list, notes, group, i, folder.path, report, o);
-    fputs(o->json ? "]}\n" : "", report);
+    if (o->json)
+        jend(report);
     return fill_end(&folder, status);
 }
 
@@ -262,9 +267,10 @@ static relume_status run(const struct args *args)
         return status;
     struct relume_exif *notes = calloc((size_t)list.count, sizeof *notes);
     int *group = calloc((size_t)list.count, sizeof *group);
-    FILE *report = open_memstream(&text, &size);
-    status = notes && group && report ? run_groups(&list, notes, group, report, o) : RELUME_ENOMEM;
-    if (report && fclose(report) && !status)
+    struct jwriter report = json_to(open_memstream(&text, &size));
+    status =
+        notes && group && report.file ? run_groups(&list, notes, group, &report, o) : RELUME_ENOMEM;
+    if (report.file && fclose(report.file) && !status)
         status = RELUME_ENOMEM;
     if (!status)
         fputs(text, stdout);

@@ -36,42 +36,59 @@ static double bits_per_pixel(const struct relume_pack_info *i, double bytes)
     return 8.0 * bytes / ((double)i->views * (double)i->width * (double)i->height);
 }
 
+static void put_sizes(struct jwriter *w, const struct relume_pack_info *i,
+                      const struct relume_coder_info *c, enum relume_kind kind)
+{
+    const bool slab = i->geometry.projection == RELUME_SLAB;
+    jput_text(w, "format", "relume");
+    jput_text(w, "source", relume_kind_name(kind));
+    jput_integer(w, "version", i->version);
+    jput_text(w, "projection", relume_projection_name(i->geometry.projection));
+    jput_integer(w, "views", i->views);
+    jput_integer(w, "width", i->width);
+    jput_integer(w, "height", i->height);
+    jput_integer(w, "lights", c->lights);
+    jput_truth(w, "hemispherical", c->hemispherical);
+    jput_truth(w, "discs", i->geometry.disc);
+    jput_integer(w, "slabs", i->slabs ? i->slabs : slab);
+}
+
+static void put_coding(struct jwriter *w, const struct relume_pack_info *i,
+                       const struct relume_coder_info *c, const char *display)
+{
+    jput_text(w, "basis", c->basis->name);
+    jput_integer(w, "coefficients", i->coefficients);
+    jput_integer(w, "planes", i->planes);
+    jput_text(w, "interpolant", c->interpolant ? c->interpolant->name : NULL);
+    jput_text(w, "domain", relume_domain_name(i->domain, i->display));
+    jput_text(w, "display", display);
+    jput_text(w, "bits", relume_storage_name(i->storage));
+    jput_text(w, "compression", i->compression);
+    jput_integer(w, "levels", i->levels);
+    jput_integer(w, "tile", i->tile);
+}
+
 static void print_json(const struct relume_pack_info *i, const struct relume_coder_info *c,
                        const char *display, enum relume_kind kind, double bytes)
 {
-    printf("{\"format\": \"relume\", \"source\": \"%s\", \"version\": %d, \"projection\": \"%s\", "
-           "\"views\": %d, "
-           "\"width\": %d, \"height\": %d, \"lights\": %d, \"hemispherical\": %s, ",
-           relume_kind_name(kind), i->version, relume_projection_name(i->geometry.projection),
-           i->views, i->width, i->height, c->lights, c->hemispherical ? "true" : "false");
-    printf("\"discs\": %s, ", i->geometry.disc ? "true" : "false");
-    printf("\"slabs\": %d, ", i->slabs ? i->slabs : i->geometry.projection == RELUME_SLAB);
-    printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"interpolant\": %s%s%s, "
-           "\"domain\": \"%s\", "
-           "\"display\": \"%s\", \"bits\": \"%s\", \"compression\": \"%s\", ",
-           c->basis->name, i->coefficients, i->planes, c->interpolant ? "\"" : "",
-           c->interpolant ? c->interpolant->name : "null", c->interpolant ? "\"" : "",
-           relume_domain_name(i->domain, i->display), display, relume_storage_name(i->storage),
-           i->compression);
-    printf("\"levels\": %d, \"tile\": %d, ", i->levels, i->tile);
-    printf("\"check_sums\": %s, ", kind == RELUME_KIND_RELUME && i->has_sums ? "true" : "false");
-    printf("\"made_from\": %s, ", i->provenance ? i->provenance : "null");
-    printf("\"books\": %d, \"codes\": %d, \"shared\": %s, ", i->books, i->codes,
-           i->shared ? "true" : "false");
-    printf("\"fit_rms\": ");
-    json_number(stdout, i->report.fit_rms);
-    printf(", \"store_rms\": ");
-    json_number(stdout, i->report.store_rms);
-    printf(", \"depth\": %s, \"mask\": %s, \"shadows\": %s, \"highlights\": %s, \"file_bytes\": ",
-           i->has_depth ? "true" : "false", i->has_mask ? "true" : "false",
-           i->has_shadow ? "true" : "false", i->has_gloss ? "true" : "false");
-    if (isfinite(bytes))
-        printf("%.0f", bytes);
-    else
-        json_number(stdout, bytes);
-    printf(", \"bits_per_pixel\": ");
-    json_number(stdout, bits_per_pixel(i, bytes));
-    printf("}\n");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    put_sizes(&w, i, c, kind);
+    put_coding(&w, i, c, display);
+    jput_truth(&w, "check_sums", kind == RELUME_KIND_RELUME && i->has_sums);
+    jput_raw(&w, "made_from", i->provenance);
+    jput_integer(&w, "books", i->books);
+    jput_integer(&w, "codes", i->codes);
+    jput_truth(&w, "shared", i->shared);
+    jput_number(&w, "fit_rms", i->report.fit_rms, 9);
+    jput_number(&w, "store_rms", i->report.store_rms, 9);
+    jput_truth(&w, "depth", i->has_depth);
+    jput_truth(&w, "mask", i->has_mask);
+    jput_truth(&w, "shadows", i->has_shadow);
+    jput_truth(&w, "highlights", i->has_gloss);
+    jput_fixed(&w, "file_bytes", bytes, 0);
+    jput_number(&w, "bits_per_pixel", bits_per_pixel(i, bytes), 9);
+    jend(&w);
 }
 
 // A share of white, as people say it.
@@ -144,18 +161,31 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
                bits_per_pixel(i, bytes));
 }
 
+static void print_part_json(const struct relume_pack_part *p)
+{
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_text(&w, "format", "relume part");
+    jput_integer(&w, "part", p->part);
+    jput_integer(&w, "parts", p->parts);
+    jput_integer(&w, "first_view", p->first);
+    jput_integer(&w, "views", p->views);
+    jput_integer(&w, "all_views", p->all_views);
+    jput_integer(&w, "first_row", p->row);
+    jput_integer(&w, "rows", p->rows);
+    jput_integer(&w, "tiles", p->tiles);
+    jput_integer(&w, "all_tiles", p->all_tiles);
+    jput_text(&w, "options", p->options);
+    jput_truth(&w, "check_sums", p->has_sums);
+    jput_integer(&w, "file_bytes", (long long)p->file_bytes);
+    jend(&w);
+}
+
 static void print_part(const struct relume_pack_part *p, bool json)
 {
     struct shown text;
     if (json) {
-        printf("{\"format\": \"relume part\", \"part\": %d, \"parts\": %d, \"first_view\": %d, "
-               "\"views\": %d, \"all_views\": %d, \"first_row\": %d, \"rows\": %d, "
-               "\"tiles\": %d, \"all_tiles\": %d, \"options\": ",
-               p->part, p->parts, p->first, p->views, p->all_views, p->row, p->rows, p->tiles,
-               p->all_tiles);
-        json_text(stdout, p->options);
-        printf(", \"check_sums\": %s, \"file_bytes\": %llu}\n", p->has_sums ? "true" : "false",
-               (unsigned long long)p->file_bytes);
+        print_part_json(p);
         return;
     }
     printf("part          %d of %d; 'relume join' makes one file of all parts\n", p->part,
@@ -175,26 +205,39 @@ static void print_part(const struct relume_pack_part *p, bool json)
 
 // ---------------------------------------------------------------- scene files
 
+static void put_entity(struct jwriter *w, const struct relume_tableau_entity *e)
+{
+    jopen_object(w, NULL);
+    jput_text(w, "name", e->name);
+    if (e->pack) {
+        const struct relume_geometry *g = &relume_pack_info(e->pack)->geometry;
+        jput_text(w, "kind", relume_projection_name(g->projection));
+        jput_integer(w, "instead_of", e->instead_of);
+    } else {
+        jput_text(w, "kind", "mesh");
+        jput_integer(w, "triangles", (long long)e->triangles);
+    }
+    jclose(w);
+}
+
 static void print_scene_json(const struct relume_tableau_info *info)
 {
     const struct relume_camera *c = &info->camera;
-    printf("{\"format\": \"relume scene\", \"captures\": %d, \"objects\": %d, \"entities\": [",
-           info->captures, info->entities - info->captures);
-    for (int i = 0; i < info->entities; i++) {
-        const struct relume_tableau_entity *e = &info->entity[i];
-        printf("%s{\"name\": ", i ? ", " : "");
-        json_text(stdout, e->name);
-        if (e->pack)
-            printf(", \"kind\": \"%s\", \"instead_of\": %d}",
-                   relume_projection_name(relume_pack_info(e->pack)->geometry.projection),
-                   e->instead_of);
-        else
-            printf(", \"kind\": \"mesh\", \"triangles\": %zu}", e->triangles);
-    }
-    printf("], \"eye\": [%.9g, %.9g, %.9g], \"look_at\": [%.9g, %.9g, %.9g], \"fov\": %.9g, "
-           "\"width\": %d, \"height\": %d}\n",
-           c->eye.x, c->eye.y, c->eye.z, c->look_at.at.x, c->look_at.at.y, c->look_at.at.z,
-           c->look_at.field_of_view_deg, c->width, c->height);
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_text(&w, "format", "relume scene");
+    jput_integer(&w, "captures", info->captures);
+    jput_integer(&w, "objects", info->entities - info->captures);
+    jopen_array(&w, "entities");
+    for (int i = 0; i < info->entities; i++)
+        put_entity(&w, &info->entity[i]);
+    jclose(&w);
+    jput_vector(&w, "eye", c->eye, 9);
+    jput_vector(&w, "look_at", c->look_at.at, 9);
+    jput_number(&w, "fov", c->look_at.field_of_view_deg, 9);
+    jput_integer(&w, "width", c->width);
+    jput_integer(&w, "height", c->height);
+    jend(&w);
 }
 
 static void print_scene_text(const struct relume_tableau_info *info)

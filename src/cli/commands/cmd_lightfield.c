@@ -98,14 +98,20 @@ static void print_depth(const struct relume_slab_depth_report *r, bool json)
                 100.0 * r->median_relative, 100.0 * r->bad);
         return;
     }
-    printf("{\"views\":%d,\"lights\":%d,\"width\":%d,\"height\":%d,\"planes\":%d,\"range\":[%.9g,"
-           "%.9g],\"plane_step\":%.9g,\"trusted\":%.9g,\"compared\":%zu,\"median_relative\":",
-           r->views, r->lights, r->width, r->height, r->planes, r->range[0], r->range[1],
-           r->plane_step, r->trusted, r->compared);
-    json_number(stdout, known ? r->median_relative : (double)NAN);
-    printf(",\"bad\":");
-    json_number(stdout, known ? r->bad : (double)NAN);
-    printf("}\n");
+    struct jwriter w = json_dense();
+    jopen_object(&w, NULL);
+    jput_integer(&w, "views", r->views);
+    jput_integer(&w, "lights", r->lights);
+    jput_integer(&w, "width", r->width);
+    jput_integer(&w, "height", r->height);
+    jput_integer(&w, "planes", r->planes);
+    jput_numbers(&w, "range", r->range, 2, 9);
+    jput_number(&w, "plane_step", r->plane_step, 9);
+    jput_number(&w, "trusted", r->trusted, 9);
+    jput_integer(&w, "compared", (long long)r->compared);
+    jput_number(&w, "median_relative", known ? r->median_relative : (double)NAN, 9);
+    jput_number(&w, "bad", known ? r->bad : (double)NAN, 9);
+    jend(&w);
 }
 
 static relume_status depth_of(const struct lightfield_options *o)

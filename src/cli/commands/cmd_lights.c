@@ -40,13 +40,17 @@ static const struct option options[] = {
 static void print_json(const struct relume_pattern *pattern, bool hemisphere,
                        const struct relume_vec3 *v, int n, double discrepancy)
 {
-    printf("{\"pattern\":\"%s\",\"n\":%d,\"hemisphere\":%s,\"directions\":[", pattern->name, n,
-           hemisphere ? "true" : "false");
+    struct jwriter w = json_dense();
+    jopen_object(&w, NULL);
+    jput_text(&w, "pattern", pattern->name);
+    jput_integer(&w, "n", n);
+    jput_truth(&w, "hemisphere", hemisphere);
+    jopen_array(&w, "directions");
     for (int i = 0; i < n; i++)
-        printf("%s[%.9g,%.9g,%.9g]", i ? "," : "", v[i].x, v[i].y, v[i].z);
-    printf("],\"discrepancy\":");
-    json_number(stdout, discrepancy);
-    puts("}");
+        jput_vector(&w, NULL, v[i], 9);
+    jclose(&w);
+    jput_number(&w, "discrepancy", discrepancy, 9);
+    jend(&w);
 }
 
 static relume_status check(const struct lights_options *o)

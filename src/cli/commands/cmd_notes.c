@@ -308,46 +308,43 @@ static void print_text(const relume_notes *notes, const char *unit)
     }
 }
 
-static void print_member(const char *name, const char *text)
+static void put_places(struct jwriter *w, const struct relume_note *n)
 {
-    printf(", \"%s\": ", name);
-    if (text)
-        json_text(stdout, text);
-    else
-        fputs("null", stdout);
+    jopen_array(w, "places");
+    for (int k = 0; k < n->places; k++) {
+        const double at[] = {n->place[k][0], n->place[k][1], n->z ? n->z[k] : 0.0};
+        jput_numbers(w, NULL, at, n->z ? 3 : 2, 17);
+    }
+    jclose(w);
+}
+
+static void put_note(struct jwriter *w, const struct relume_note *n)
+{
+    const struct relume_note_measures m = relume_note_measure(n);
+    jopen_object(w, NULL);
+    jput_text(w, "id", n->id);
+    jput_text(w, "kind", relume_note_kind_name(n->kind));
+    put_places(w, n);
+    jput_number(w, "length", m.length, 9);
+    jput_number(w, "area", m.area, 9);
+    jput_number(w, "degrees", m.degrees, 9);
+    jput_text(w, "text", n->text);
+    jput_text(w, "state", n->state);
+    jput_text(w, "creator", n->creator);
+    jput_text(w, "created", n->created);
+    jclose(w);
 }
 
 static void print_json(const relume_notes *notes, bool solid)
 {
     const double mm = relume_notes_scale(notes);
-    printf("{\"%s\": ", solid ? "mm_per_unit" : "mm_per_pixel");
-    json_number(stdout, mm > 0.0 ? mm : (double)NAN);
-    fputs(", \"notes\": [", stdout);
-    for (int i = 0; i < relume_notes_count(notes); i++) {
-        const struct relume_note *n = relume_notes_get(notes, i);
-        const struct relume_note_measures m = relume_note_measure(n);
-        printf("%s{\"id\": ", i ? ", " : "");
-        json_text(stdout, n->id);
-        printf(", \"kind\": \"%s\", \"places\": [", relume_note_kind_name(n->kind));
-        for (int k = 0; k < n->places; k++) {
-            printf("%s[%.17g, %.17g", k ? ", " : "", n->place[k][0], n->place[k][1]);
-            if (n->z)
-                printf(", %.17g", n->z[k]);
-            putchar(']');
-        }
-        fputs("], \"length\": ", stdout);
-        json_number(stdout, m.length);
-        fputs(", \"area\": ", stdout);
-        json_number(stdout, m.area);
-        fputs(", \"degrees\": ", stdout);
-        json_number(stdout, m.degrees);
-        print_member("text", n->text);
-        print_member("state", n->state);
-        print_member("creator", n->creator);
-        print_member("created", n->created);
-        putchar('}');
-    }
-    puts("]}");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_number(&w, solid ? "mm_per_unit" : "mm_per_pixel", mm > 0.0 ? mm : (double)NAN, 9);
+    jopen_array(&w, "notes");
+    for (int i = 0; i < relume_notes_count(notes); i++)
+        put_note(&w, relume_notes_get(notes, i));
+    jend(&w);
 }
 
 // ---------------------------------------------------------------- all

@@ -36,17 +36,23 @@ static const struct option options[] = {
     {0},
 };
 
-static void print_json(const float rgb[3])
+static void put_colour(struct jwriter *w, const char *key, const float rgb[3])
 {
-    if (isnan(rgb[0])) {
-        fputs("null", stdout);
-        return;
-    }
-    fputc('[', stdout);
-    for (int c = 0; c < 3; c++) {
-        json_number(stdout, (double)rgb[c]);
-        fputs(c < 2 ? ", " : "]", stdout);
-    }
+    if (isnan(rgb[0]))
+        jput_null(w, key);
+    else
+        jput_floats(w, key, rgb, 3, 9);
+}
+
+static void print_json(const float (*rgb)[3], int n, bool list)
+{
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    if (list)
+        jopen_array(&w, "rgb");
+    for (int i = 0; i < n; i++)
+        put_colour(&w, list ? NULL : "rgb", rgb[i]);
+    jend(&w);
 }
 
 // A list where a list was asked for.
@@ -60,12 +66,7 @@ static void print(const struct query_options *o, const float (*rgb)[3], int n)
                 printf("%.9g %.9g %.9g\n", (double)rgb[i][0], (double)rgb[i][1], (double)rgb[i][2]);
         return;
     }
-    fputs(o->rays ? "{\"rgb\": [" : "{\"rgb\": ", stdout);
-    for (int i = 0; i < n; i++) {
-        fputs(i ? ", " : "", stdout);
-        print_json(rgb[i]);
-    }
-    fputs(o->rays ? "]}\n" : "}\n", stdout);
+    print_json(rgb, n, o->rays);
 }
 
 static void count_none(const struct query_options *o, const float (*rgb)[3], int n)

@@ -144,16 +144,17 @@ void compare_print_seen(const struct compare_seen *seen, bool json)
     const struct row *rows = seen->metric == COMPARE_JND ? jnd : vdp;
     const size_t count =
         seen->metric == COMPARE_JND ? sizeof jnd / sizeof *jnd : sizeof vdp / sizeof *vdp;
+    struct jwriter w = json_to(stdout);
+    if (json)
+        jopen_object(&w, NULL);
     for (size_t i = 0; i < count; i++) {
-        if (!json) {
+        if (json)
+            jput_number(&w, rows[i].name, rows[i].value, 9);
+        else
             printf("%-8s %.6g\n", rows[i].name, rows[i].value);
-            continue;
-        }
-        printf("%s\"%s\": ", i ? ", " : "{", rows[i].name);
-        json_number(stdout, rows[i].value);
     }
     if (json)
-        puts("}");
+        jend(&w);
 }
 
 // Between black, blue, green, yellow and red, in linear light.

@@ -161,18 +161,18 @@ static void put_csv(FILE *f, const struct weighed *w)
 
 static void print_json(const struct weighed *w, const struct environment_order *o)
 {
-    fputs("{\"environment\":", stdout);
-    json_text(stdout, o->environment);
-    fputs(",\"lights\":[", stdout);
+    struct jwriter json = json_dense();
+    jopen_object(&json, NULL);
+    jput_text(&json, "environment", o->environment);
+    jopen_array(&json, "lights");
     for (int i = 0; i < w->lights; i++) {
-        const struct relume_vec3 d = w->direction[i];
-        const float *v = w->weight[i];
-        printf("%s{\"name\":", i ? "," : "");
-        json_text(stdout, w->name[i]);
-        printf(",\"direction\":[%.9g,%.9g,%.9g],\"weight\":[%.9g,%.9g,%.9g]}", d.x, d.y, d.z,
-               (double)v[0], (double)v[1], (double)v[2]);
+        jopen_object(&json, NULL);
+        jput_text(&json, "name", w->name[i]);
+        jput_vector(&json, "direction", w->direction[i], 9);
+        jput_floats(&json, "weight", w->weight[i], 3, 9);
+        jclose(&json);
     }
-    puts("]}");
+    jend(&json);
 }
 
 // As Nuke's reader of EXR calls a layer: digits before it are left out, what is no letter, digit or
@@ -244,7 +244,8 @@ static void print_blender(const struct weighed *w, const char *file)
     puts("# Blender: run in the Text Editor; makes the compositor's nodes\n"
          "import bpy");
     printf("path = ");
-    json_text(stdout, file);
+    struct jwriter text = json_to(stdout);
+    jput_text(&text, NULL, file);
     puts("  # the EXR of layers");
     print_list(w);
     puts("scene = bpy.context.scene\n"

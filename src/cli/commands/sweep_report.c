@@ -134,70 +134,61 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out)
 
 // ---------------------------------------------------------------- JSON
 
-static void json_field(FILE *out, const char *name, double value)
+static void put_quality(struct jwriter *w, const struct sweep_row *r)
 {
-    fprintf(out, ", \"%s\": ", name);
-    if (value == floor(value))
-        fprintf(out, "%.0f", value);
-    else
-        json_number(out, value);
+    json_measure(w, "planes", r->planes);
+    json_measure(w, "bytes", r->bytes);
+    json_measure(w, "bytes_per_pixel", r->bytes_per_pixel);
+    json_measure(w, "psnr_before_db", r->before_db);
+    json_measure(w, "psnr_db", r->quality.psnr_db);
+    json_measure(w, "psnr_pooled_db", r->quality.psnr_pooled_db);
+    json_measure(w, "ssim", r->quality.ssim);
+    json_measure(w, "seconds", r->seconds);
+    jput_truth(w, "hull", r->on_hull);
 }
 
-static void print_json_row(const struct sweep_row *r, FILE *out)
+static void put_row(struct jwriter *w, const struct sweep_row *r)
 {
     char words[DOMAIN_WORDS];
-    fprintf(out, "{\"basis\": \"%s\", \"interpolant\": ", r->basis->name);
-    if (r->interpolant)
-        json_text(out, r->interpolant->name);
+    jopen_object(w, NULL);
+    jput_text(w, "basis", r->basis->name);
+    jput_text(w, "interpolant", r->interpolant ? r->interpolant->name : NULL);
+    jput_text(w, "colour", r->luminance ? "luminance" : "rgb");
+    jput_integer(w, "coefficients", r->coefficients);
+    jput_text(w, "bits", relume_storage_name(r->store.storage));
+    jput_text(w, "step", sweep_step_name(r));
+    jput_integer(w, "codebook", r->books.codes);
+    jput_text(w, "domain", domain_words(words, &r->domain));
+    if (r->known)
+        put_quality(w, r);
     else
-        fputs("null", out);
-    fprintf(out,
-            ", \"colour\": \"%s\", \"coefficients\": %d, \"bits\": \"%s\", \"step\": \"%s\", "
-            "\"codebook\": %d, \"domain\": \"%s\"",
-            r->luminance ? "luminance" : "rgb", r->coefficients,
-            relume_storage_name(r->store.storage), sweep_step_name(r), r->books.codes,
-            domain_words(words, &r->domain));
-    if (!r->known) {
-        fputs(", \"skipped\": ", out);
-        json_text(out, r->skipped);
-        fputc('}', out);
-        return;
-    }
-    json_field(out, "planes", r->planes);
-    json_field(out, "bytes", r->bytes);
-    json_field(out, "bytes_per_pixel", r->bytes_per_pixel);
-    json_field(out, "psnr_before_db", r->before_db);
-    json_field(out, "psnr_db", r->quality.psnr_db);
-    json_field(out, "psnr_pooled_db", r->quality.psnr_pooled_db);
-    json_field(out, "ssim", r->quality.ssim);
-    json_field(out, "seconds", r->seconds);
-    fprintf(out, ", \"hull\": %s}", r->on_hull ? "true" : "false");
+        jput_text(w, "skipped", r->skipped);
+    jclose(w);
 }
 
 void sweep_print_json(const struct sweep *sweep, FILE *out)
 {
     char words[DOMAIN_WORDS];
-    fputs("{\"capture\": ", out);
-    json_text(out, sweep->capture);
-    fputs(", \"test\": ", out);
+    struct jwriter w = json_to(out);
+    jopen_object(&w, NULL);
+    jput_text(&w, "capture", sweep->capture);
+    jput_text(&w, "test", sweep->test);
     if (sweep->test)
-        json_text(out, sweep->test);
+        jput_null(&w, "leave_out");
     else
-        fputs("null", out);
-    fputs(", \"leave_out\": ", out);
-    fprintf(out, sweep->test ? "null" : "%d", sweep->leave_out);
-    fprintf(out,
-            ", \"views\": %d, \"lights\": %d, \"judged\": %d, \"width\": %d, \"height\": %d, "
-            "\"domain\": \"%s\", \"tone_mapped\": %s",
-            sweep->views, sweep->lights, sweep->judged, sweep->width, sweep->height,
-            domain_words(words, &sweep->row[0].domain), sweep->tone_mapped ? "true" : "false");
-    json_field(out, "measured", sweep->measured);
-    fputs(", \"rows\": [", out);
-    for (int i = 0; i < sweep->rows; i++) {
-        fputs(i ? ", " : "", out);
-        print_json_row(&sweep->row[i], out);
-    }
-    fputs("]}\n", out);
+        jput_integer(&w, "leave_out", sweep->leave_out);
+    jput_integer(&w, "views", sweep->views);
+    jput_integer(&w, "lights", sweep->lights);
+    jput_integer(&w, "judged", sweep->judged);
+    jput_integer(&w, "width", sweep->width);
+    jput_integer(&w, "height", sweep->height);
+    jput_text(&w, "domain", domain_words(words, &sweep->row[0].domain));
+    jput_truth(&w, "tone_mapped", sweep->tone_mapped);
+    json_measure(&w, "measured", sweep->measured);
+    jopen_array(&w, "rows");
+    for (int i = 0; i < sweep->rows; i++)
+        put_row(&w, &sweep->row[i]);
+    jend(&w);
 }
 
 // ---------------------------------------------------------------- the diagram

@@ -43,11 +43,12 @@ relume_status objects_tell_reflection(const relume_objects *objects, struct relu
     struct relume_object_reflection r;
     if (!relume_objects_reflect(&r, objects, eye, direction))
         return usage_error("--reflection-at: expected a pixel that shows an object");
-    const struct relume_vec3 p = r.place.position, e = r.edited;
-    printf("{\"position\": [%.6g, %.6g, %.6g], \"eye\": [%.9g, %.9g, %.9g], "
-           "\"direction\": [%.6g, %.6g, %.6g]}\n",
-           p.x, p.y, p.z, eye.x, eye.y, eye.z, e.x, e.y, e.z);
-    return RELUME_OK;
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_vector(&w, "position", r.place.position, 6);
+    jput_vector(&w, "eye", eye, 9);
+    jput_vector(&w, "direction", r.edited, 6);
+    return jend(&w);
 }
 
 static relume_status open_them(relume_objects **out, const struct btf_options *o)

@@ -5,21 +5,15 @@
 
 #include <math.h>
 
-static void member(const char *name, double value)
+static void put_error(struct jwriter *w, const struct relume_btf_error *e)
 {
-    printf(", \"%s\": ", name);
-    json_number(stdout, value);
-}
-
-static void members(const struct relume_btf_error *e)
-{
-    member("mae_avg", e->mean_avg);
-    member("mae_min", e->mean_min);
-    member("mae_max", e->mean_max);
-    member("rms", e->rms);
-    member("relative_rms", e->relative);
-    member("delta_e", e->delta_e);
-    member("ssim", e->ssim);
+    jput_number(w, "mae_avg", e->mean_avg, 9);
+    jput_number(w, "mae_min", e->mean_min, 9);
+    jput_number(w, "mae_max", e->mean_max, 9);
+    jput_number(w, "rms", e->rms, 9);
+    jput_number(w, "relative_rms", e->relative, 9);
+    jput_number(w, "delta_e", e->delta_e, 9);
+    jput_number(w, "ssim", e->ssim, 9);
 }
 
 static double bytes_per_texel(const struct relume_btf_fitted_info *info)
@@ -89,20 +83,23 @@ void btf_print(const struct btf_row *row)
     printf("\n");
 }
 
-void btf_print_json(const struct btf_row *row)
+void btf_put_row(struct jwriter *w, const struct btf_row *row)
 {
-    printf("{\"model\": \"%s\"", relume_btf_model_name(row->info.model));
-    members(&row->error);
-    printf(", \"bytes\": %llu", (unsigned long long)row->info.bytes);
-    member("bytes_per_texel", bytes_per_texel(&row->info));
-    member("fit_seconds", row->fit_s);
-    printf(", \"ops\": %d, \"fetches\": %d, \"light_ops\": %d, \"light_fetches\": %d",
-           row->cost.ops, row->cost.fetches, row->cost.light_ops, row->cost.light_fetches);
-    member("evaluations_per_second", row->evaluations);
-    member("frames_per_second", frames_per_second(row));
+    jopen_object(w, NULL);
+    jput_text(w, "model", relume_btf_model_name(row->info.model));
+    put_error(w, &row->error);
+    jput_integer(w, "bytes", (long long)row->info.bytes);
+    jput_number(w, "bytes_per_texel", bytes_per_texel(&row->info), 9);
+    jput_number(w, "fit_seconds", row->fit_s, 9);
+    jput_integer(w, "ops", row->cost.ops);
+    jput_integer(w, "fetches", row->cost.fetches);
+    jput_integer(w, "light_ops", row->cost.light_ops);
+    jput_integer(w, "light_fetches", row->cost.light_fetches);
+    jput_number(w, "evaluations_per_second", row->evaluations, 9);
+    jput_number(w, "frames_per_second", frames_per_second(row), 9);
     if (row->held_out) {
-        member("left_out_mae", row->held_out->mean_avg);
-        member("left_out_rms", row->held_out->rms);
+        jput_number(w, "left_out_mae", row->held_out->mean_avg, 9);
+        jput_number(w, "left_out_rms", row->held_out->rms, 9);
     }
-    printf("}");
+    jclose(w);
 }

@@ -19,6 +19,6 @@ double btf_speed(const relume_btf_fitted *fitted);
 
 void btf_heading(bool held_out);
 void btf_print(const struct btf_row *row);
-void btf_print_json(const struct btf_row *row);
+void btf_put_row(struct jwriter *w, const struct btf_row *row);
 
 #endif

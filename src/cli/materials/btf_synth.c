@@ -263,29 +263,36 @@ static double period(double base, int side)
     return base > 0.0 ? side / base : 0.0;
 }
 
-static void say_structure(const struct job *j, bool json)
+// Says the structure, or with `w` writes it as members of an object.
+static void say_structure(const struct job *j, struct jwriter *w)
 {
     const struct relume_regular_info *i = j->regular ? relume_regular_info(j->regular) : NULL;
     const bool regular = i && i->regular;
     const double x = regular ? period(i->base[0], j->texture.width) : 0.0,
                  y = regular ? period(i->base[1], j->texture.height) : 0.0;
-    if (json)
-        printf(
-            "\"regular\": %s, \"waves\": %d, \"waves_found\": %d, \"share\": %.4f, "
-            "\"common\": %s, \"period\": [%.4f, %.4f], \"rms_found\": %.4f, \"rms_fitted\": %.4f, "
-            "\"rms\": %.4f, ",
-            regular ? "true" : "false", regular ? i->count : 0, i ? i->found : 0,
-            regular ? i->share : 0.0, regular && i->common ? "true" : "false", x, y,
-            i ? i->rms_found : 0.0, i ? i->rms_fitted : 0.0, i ? i->rms : 0.0);
-    else if (!regular)
+    if (w) {
+        jput_truth(w, "regular", regular);
+        jput_integer(w, "waves", regular ? i->count : 0);
+        jput_integer(w, "waves_found", i ? i->found : 0);
+        jput_fixed(w, "share", regular ? i->share : 0.0, 4);
+        jput_truth(w, "common", regular && i->common);
+        jopen_array(w, "period");
+        jput_fixed(w, NULL, x, 4);
+        jput_fixed(w, NULL, y, 4);
+        jclose(w);
+        jput_fixed(w, "rms_found", i ? i->rms_found : 0.0, 4);
+        jput_fixed(w, "rms_fitted", i ? i->rms_fitted : 0.0, 4);
+        jput_fixed(w, "rms", i ? i->rms : 0.0, 4);
+    } else if (!regular) {
         puts("structure   none that repeats");
-    else if (!i->common)
+    } else if (!i->common) {
         printf("structure   %d waves, %.0f %% of the contrast, without a common period\n", i->count,
                100.0 * i->share);
-    else
+    } else {
         printf("structure   %d waves, %.0f %% of the contrast, repeats every %.2f x %.2f texels "
                "(0: does not change that way)\n",
                i->count, 100.0 * i->share, x, y);
+    }
 }
 
 static void say_list(const char *what, const relume_regular *regular)
@@ -315,6 +322,31 @@ static relume_status say_waves(const struct job *j)
     return RELUME_OK;
 }
 
+static relume_status print_json(const struct job *j, const struct relume_grow_quality *q)
+{
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "width", j->width);
+    jput_integer(&w, "height", j->height);
+    jput_integer(&w, "sample_width", j->texture.width);
+    jput_integer(&w, "sample_height", j->texture.height);
+    say_structure(j, &w);
+    jput_fixed(&w, "repetition", q->repetition, 4);
+    jopen_array(&w, "repetition_at");
+    jput_integer(&w, NULL, q->repetition_at[0]);
+    jput_integer(&w, NULL, q->repetition_at[1]);
+    jclose(&w);
+    jput_fixed(&w, "novelty", q->novelty, 4);
+    jput_fixed(&w, "worst", q->worst, 4);
+    jput_fixed(&w, "coverage", q->coverage, 4);
+    jput_fixed(&w, "cuts", q->cuts, 4);
+    jput_fixed(&w, "analysis_s", j->analysis_s, 3);
+    jput_fixed(&w, "synthesis_s", j->synthesis_s, 3);
+    jput_fixed(&w, "synthesis_cpu_s", j->synthesis_cpu_s, 3);
+    jput_fixed(&w, "peak_mb", peak_mb(), 1);
+    return jend(&w);
+}
+
 static relume_status report(const struct job *j)
 {
     const struct args *args = args_of(j);
@@ -325,20 +357,11 @@ static relume_status report(const struct job *j)
                                                      .threads = args->threads));
     if (status)
         return status;
-    if (j->o->btf.json) {
-        printf("{\"width\": %d, \"height\": %d, \"sample_width\": %d, \"sample_height\": %d, ",
-               j->width, j->height, j->texture.width, j->texture.height);
-        say_structure(j, true);
-        printf("\"repetition\": %.4f, \"repetition_at\": [%d, %d], \"novelty\": %.4f, \"worst\": "
-               "%.4f, \"coverage\": %.4f, \"cuts\": %.4f, \"analysis_s\": %.3f, \"synthesis_s\": "
-               "%.3f, \"synthesis_cpu_s\": %.3f, \"peak_mb\": %.1f}\n",
-               q.repetition, q.repetition_at[0], q.repetition_at[1], q.novelty, q.worst, q.coverage,
-               q.cuts, j->analysis_s, j->synthesis_s, j->synthesis_cpu_s, peak_mb());
-        return RELUME_OK;
-    }
+    if (j->o->btf.json)
+        return print_json(j, &q);
     printf("size        %d x %d texels from %d x %d\n", j->width, j->height, j->texture.width,
            j->texture.height);
-    say_structure(j, false);
+    say_structure(j, NULL);
     if (j->o->waves)
         status = say_waves(j);
     printf("repetition  %.2f at %d, %d (1: the sample laid side by side)\n", q.repetition,

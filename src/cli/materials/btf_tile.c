@@ -28,33 +28,47 @@ static relume_status make_map(relume_btf_map **out, const relume_btf_fitted *sam
                                 .seed = (uint64_t)o->seed, .threads = o->args.threads));
 }
 
+static void print_surface_json(const struct relume_btf_surface_info *i,
+                               const struct relume_btf_seams *s)
+{
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "width", i->width);
+    jput_integer(&w, "height", i->height);
+    jput_integer(&w, "tiles", i->map->tiles);
+    jput_integer(&w, "tile_width", i->map->width);
+    jput_integer(&w, "tile_height", i->map->height);
+    jput_integer(&w, "columns", i->map->columns);
+    jput_integer(&w, "rows", i->map->rows);
+    jput_text(&w, "model", relume_btf_model_name(relume_btf_fitted_info(i->model)->model));
+    jput_integer(&w, "levels", i->levels);
+    jput_integer(&w, "bytes", (long long)i->bytes);
+    if (s) {
+        jput_fixed(&w, "step_inside", s->inside, 6);
+        jput_fixed(&w, "step_across", s->across, 6);
+        jput_fixed(&w, "step_unrelated", s->unrelated, 6);
+        jput_fixed(&w, "seam_share", s->share, 6);
+    }
+    jend(&w);
+}
+
 void btf_say_surface(const struct relume_btf_surface_info *i, const struct relume_btf_seams *s,
                      bool json)
 {
     const char *model = relume_btf_model_name(relume_btf_fitted_info(i->model)->model);
     const double whole = (double)i->width * i->height;
-    if (json)
-        printf("{\"width\": %d, \"height\": %d, \"tiles\": %d, \"tile_width\": %d, "
-               "\"tile_height\": %d, \"columns\": %d, \"rows\": %d, \"model\": \"%s\", "
-               "\"levels\": %d, \"bytes\": %llu",
-               i->width, i->height, i->map->tiles, i->map->width, i->map->height, i->map->columns,
-               i->map->rows, model, i->levels, (unsigned long long)i->bytes);
-    else
-        printf("surface  %d x %d texels\ntiles    %d of %d x %d, laid out %d x %d\nmodel    %s, %d "
-               "levels of detail\nbytes    %llu, %.4f a texel of the surface\n",
-               i->width, i->height, i->map->tiles, i->map->width, i->map->height, i->map->columns,
-               i->map->rows, model, i->levels, (unsigned long long)i->bytes,
-               (double)i->bytes / whole);
-    if (s && json)
-        printf(", \"step_inside\": %.6f, \"step_across\": %.6f, \"step_unrelated\": %.6f, "
-               "\"seam_share\": %.6f",
-               s->inside, s->across, s->unrelated, s->share);
-    else if (s && s->inside > 0.0)
+    if (json) {
+        print_surface_json(i, s);
+        return;
+    }
+    printf("surface  %d x %d texels\ntiles    %d of %d x %d, laid out %d x %d\nmodel    %s, %d "
+           "levels of detail\nbytes    %llu, %.4f a texel of the surface\n",
+           i->width, i->height, i->map->tiles, i->map->width, i->map->height, i->map->columns,
+           i->map->rows, model, i->levels, (unsigned long long)i->bytes, (double)i->bytes / whole);
+    if (s && s->inside > 0.0)
         printf("seams    %.1f %% of neighbouring texels; jumps across seams are %.2f times those "
                "inside the sample (random neighbours: %.2f)\n",
                100.0 * s->share, s->across / s->inside, s->unrelated / s->inside);
-    if (json)
-        puts("}");
 }
 
 static relume_status save(const relume_btf_fitted *model, const relume_btf_map *map,

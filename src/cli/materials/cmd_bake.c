@@ -104,16 +104,24 @@ static const char *basis_of(const struct relume_baked_info *i)
 
 static void print_json(const char *file, const struct relume_baked_info *i)
 {
-    printf("{\"file\": ");
-    json_text(stdout, file);
-    printf(", \"fixed\": %s, \"basis\": \"%s\", \"coefficients\": %d, \"width\": %d, \"height\": "
-           "%d, \"texels\": %zu, \"views\": %d, \"clusters\": %d, \"components\": %d, "
-           "\"per_view\": %s, \"bounces\": %d, \"triangles\": %zu, \"bytes\": %llu, \"error\": ",
-           i->fixed ? "true" : "false", basis_of(i), i->coefficients, i->width, i->height,
-           i->texels, i->side * i->side, i->clusters, i->components, i->per_view ? "true" : "false",
-           i->bounces, i->triangles, (unsigned long long)i->bytes);
-    json_number(stdout, i->error);
-    printf("}\n");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_text(&w, "file", file);
+    jput_truth(&w, "fixed", i->fixed);
+    jput_text(&w, "basis", basis_of(i));
+    jput_integer(&w, "coefficients", i->coefficients);
+    jput_integer(&w, "width", i->width);
+    jput_integer(&w, "height", i->height);
+    jput_integer(&w, "texels", (long long)i->texels);
+    jput_integer(&w, "views", i->side * i->side);
+    jput_integer(&w, "clusters", i->clusters);
+    jput_integer(&w, "components", i->components);
+    jput_truth(&w, "per_view", i->per_view);
+    jput_integer(&w, "bounces", i->bounces);
+    jput_integer(&w, "triangles", (long long)i->triangles);
+    jput_integer(&w, "bytes", (long long)i->bytes);
+    jput_number(&w, "error", i->error, 9);
+    jend(&w);
 }
 
 void print_baked(const char *file, const relume_baked *baked, bool json)

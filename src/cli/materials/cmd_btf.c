@@ -191,9 +191,22 @@ static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
                                                     .unseen = o->unseen, .pictures = o->pictures));
 }
 
-// `before` is what stands before its row in JSON.
+// The first model opens the list.
+static void put_compared(struct jwriter *w, const struct btf_row *row)
+{
+    const bool first = w->style & JSON_DENSE;
+    if (first) {
+        jopen_object(w, NULL);
+        jopen_array(w, "models");
+        w->style &= ~(unsigned)JSON_DENSE;
+    } else {
+        jgap(w, "\n");
+    }
+    btf_put_row(w, row);
+}
+
 static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
-                                 const struct relume_btf_model *model, const char *before,
+                                 const struct relume_btf_model *model, struct jwriter *w,
                                  const struct btf_options *o)
 {
     const struct relume_btf_fit_params p = fit_params(o);
@@ -216,8 +229,9 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
     }
     if (!status) {
         if (o->json)
-            fputs(before, stdout);
-        (o->json ? btf_print_json : btf_print)(&row);
+            put_compared(w, &row);
+        else
+            btf_print(&row);
         fflush(stdout);
     }
     relume_btf_fitted_destroy(&fitted);
@@ -234,7 +248,7 @@ static relume_status compare(const struct args *args)
     if (!status && !o->json)
         btf_heading(part != NULL);
     const struct ints *named = &o->models;  // none: all that can be fitted
-    int printed = 0;
+    struct jwriter w = json_dense();
     for (int i = 0; !status && (named->count ? i < named->count : relume_btf_models[i] != NULL);
          i++) {
         const struct relume_btf_model *model = relume_btf_models[named->count ? named->item[i] : i];
@@ -244,10 +258,10 @@ static relume_status compare(const struct args *args)
                      "such lights",
                      relume_btf_model_name(model));
         else
-            status = compare_one(btf, part, model, printed++ ? ",\n" : "{\"models\":[", o);
+            status = compare_one(btf, part, model, &w, o);
     }
     if (!status && o->json)
-        puts("]}");
+        status = jend(&w);
     relume_btf_destroy(&part);
     relume_btf_destroy(&btf);
     return status;
@@ -311,8 +325,9 @@ static relume_status eval(const struct args *args)
     if (!status)
         status = judge(&row, fitted, btf, o);
     if (!status && o->json) {
-        btf_print_json(&row);
-        puts("");
+        struct jwriter w = json_to(stdout);
+        btf_put_row(&w, &row);
+        status = jend(&w);
     } else if (!status) {
         btf_heading(false);
         btf_print(&row);
@@ -325,6 +340,41 @@ static relume_status eval(const struct args *args)
 
 // ---------------------------------------------------------------- info
 
+static void print_fitted_json(const struct relume_btf_fitted_info *i, uint64_t raw)
+{
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_text(&w, "model", relume_btf_model_name(i->model));
+    jput_integer(&w, "width", i->width);
+    jput_integer(&w, "height", i->height);
+    jput_integer(&w, "views", i->views);
+    jput_integer(&w, "lights", i->lights);
+    jput_integer(&w, "clusters", i->clusters);
+    jput_integer(&w, "components", i->components);
+    jput_integer(&w, "lobes", i->lobes);
+    jput_integer(&w, "bytes", (long long)i->bytes);
+    jput_integer(&w, "bytes_each", (long long)i->bytes_each);
+    jput_integer(&w, "levels", i->levels);
+    jput_integer(&w, "bytes_levels", (long long)i->bytes_levels);
+    jput_integer(&w, "raw_bytes", (long long)raw);
+    jput_integer(&w, "edits", i->edits);
+    jput_integer(&w, "edits_undone", i->edits_undone);
+    jend(&w);
+}
+
+static void print_sample_json(const struct relume_btf_info *i, uint64_t raw)
+{
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "width", i->width);
+    jput_integer(&w, "height", i->height);
+    jput_integer(&w, "views", i->views);
+    jput_integer(&w, "lights", i->lights);
+    jput_truth(&w, "includes_cosine", !i->without_cosine);
+    jput_integer(&w, "raw_bytes", (long long)raw);
+    jend(&w);
+}
+
 static relume_status model_info(const struct btf_options *o)
 {
     relume_btf_fitted *fitted;
@@ -335,14 +385,7 @@ static relume_status model_info(const struct btf_options *o)
     const struct relume_btf_fitted_info *i = relume_btf_fitted_info(fitted);
     const uint64_t raw = relume_btf_bytes(i->width, i->height, i->views, i->lights);
     if (o->json)
-        printf("{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
-               "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
-               "\"bytes_each\": %llu, \"levels\": %d, \"bytes_levels\": %llu, \"raw_bytes\": %llu, "
-               "\"edits\": %d, \"edits_undone\": %d}\n",
-               relume_btf_model_name(i->model), i->width, i->height, i->views, i->lights,
-               i->clusters, i->components, i->lobes, (unsigned long long)i->bytes,
-               (unsigned long long)i->bytes_each, i->levels, (unsigned long long)i->bytes_levels,
-               (unsigned long long)raw, i->edits, i->edits_undone);
+        print_fitted_json(i, raw);
     else
         printf(
             "model    %s: %s\ntexels   %d x %d\nviews    %d\nlights   %d\nbytes    %llu, %llu of "
@@ -383,10 +426,7 @@ static relume_status info(const struct args *args)
     const struct relume_btf_info *i = relume_btf_info(btf);
     const uint64_t raw = relume_btf_bytes(i->width, i->height, i->views, i->lights);
     if (o->json)
-        printf("{\"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
-               "\"includes_cosine\": %s, \"raw_bytes\": %llu}\n",
-               i->width, i->height, i->views, i->lights, i->without_cosine ? "false" : "true",
-               (unsigned long long)raw);
+        print_sample_json(i, raw);
     else
         printf("BTF      %s\ntexels   %d x %d\nviews    %d\nlights   %d\nvalues   half RGB, %s "
                "n.l, %.3f GiB\n",

@@ -114,43 +114,43 @@ static void say_result(const struct maps_options *o, const struct relume_maps *m
     say_quality(o, m);
 }
 
-static void json_quality(const char *name, const struct relume_maps_quality *q)
+static void put_quality(struct jwriter *w, const char *name, const struct relume_maps_quality *q)
 {
-    const struct {
-        const char *name;
-        double value;
-    } rows[] = {{"psnr_db", q->psnr_db}, {"ssim", q->ssim},         {"delta_e", q->delta_e},
-                {"off", q->off},         {"shadowed", q->shadowed}, {"brighter", q->brighter}};
-    printf(", \"%s\": {\"lights\": %d", name, q->lights);
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        printf(", \"%s\": ", rows[i].name);
-        json_number(stdout, rows[i].value);
-    }
-    putchar('}');
+    jopen_object(w, name);
+    jput_integer(w, "lights", q->lights);
+    jput_number(w, "psnr_db", q->psnr_db, 9);
+    jput_number(w, "ssim", q->ssim, 9);
+    jput_number(w, "delta_e", q->delta_e, 9);
+    jput_number(w, "off", q->off, 9);
+    jput_number(w, "shadowed", q->shadowed, 9);
+    jput_number(w, "brighter", q->brighter, 9);
+    jclose(w);
 }
 
 static void print_json(const struct maps_options *o, const struct relume_maps *m)
 {
-    printf("{\"width\": %d, \"height\": %d, \"fitted_lights\": %d, \"gloss\": %s, \"gain\": ",
-           m->width, m->height, m->lights, m->matte_only ? "false" : "true");
-    json_number(stdout, m->gain);
-    printf(", \"width_mm\": ");
-    json_number(stdout, o->width > 0.0 ? o->width : (double)NAN);
-    printf(", \"materials\": [");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "width", m->width);
+    jput_integer(&w, "height", m->height);
+    jput_integer(&w, "fitted_lights", m->lights);
+    jput_truth(&w, "gloss", !m->matte_only);
+    jput_number(&w, "gain", m->gain, 9);
+    jput_number(&w, "width_mm", o->width > 0.0 ? o->width : (double)NAN, 9);
+    jopen_array(&w, "materials");
     for (int i = 0; i < m->materials; i++) {
         const struct relume_maps_material *k = &m->material[i];
-        printf("%s{\"metal\": %s, \"f0\": ", i ? ", " : "", k->metal ? "true" : "false");
-        json_number(stdout, k->metal ? (double)NAN : k->f0);
-        printf(", \"roughness\": ");
-        json_number(stdout, k->roughness);
-        printf(", \"share\": ");
-        json_number(stdout, k->share);
-        putchar('}');
+        jopen_object(&w, NULL);
+        jput_truth(&w, "metal", k->metal);
+        jput_number(&w, "f0", k->metal ? (double)NAN : k->f0, 9);
+        jput_number(&w, "roughness", k->roughness, 9);
+        jput_number(&w, "share", k->share, 9);
+        jclose(&w);
     }
-    putchar(']');
-    json_quality("held_out", &m->held_out);
-    json_quality("fitted", &m->fitted);
-    puts("}");
+    jclose(&w);
+    put_quality(&w, "held_out", &m->held_out);
+    put_quality(&w, "fitted", &m->fitted);
+    jend(&w);
 }
 
 // ---------------------------------------------------------------- the work

@@ -42,9 +42,10 @@ static relume_status convert(const struct mesh_options *o)
     if (!status)
         status = relume_mesh_write(&mesh, o->output, p);
     if (!status && o->json) {
-        putchar('{');
-        mesh_print_json(&made);
-        puts("}");
+        struct jwriter w = json_to(stdout);
+        jopen_object(&w, NULL);
+        mesh_put_made(&w, &made);
+        status = jend(&w);
     } else if (!status) {
         mesh_say(&o->args, &made);
     }

@@ -47,11 +47,16 @@ static void print(const struct billboards_options *o, const struct relume_billbo
                  100.0 * error, seconds);
         return;
     }
-    printf("{\"output\": ");
-    json_text(stdout, o->output);
-    printf(", \"billboards\": %zu, \"texels\": %zu, \"error\": %.9g, \"width\": %d, \"height\": %d"
-           ", \"seconds\": %.6f}\n",
-           cloud->count, cloud->texels, error, picture->width, picture->height, seconds);
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_text(&w, "output", o->output);
+    jput_integer(&w, "billboards", (long long)cloud->count);
+    jput_integer(&w, "texels", (long long)cloud->texels);
+    jput_number(&w, "error", error, 9);
+    jput_integer(&w, "width", picture->width);
+    jput_integer(&w, "height", picture->height);
+    jput_fixed(&w, "seconds", seconds, 6);
+    jend(&w);
 }
 
 static double longest_side(const struct relume_mesh *m)

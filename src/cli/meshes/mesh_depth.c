@@ -16,15 +16,17 @@ static void print(const struct args *args, const struct mesh_made *made,
                      r->psnr_db, 100.0 * r->shown);
         return;
     }
-    putchar('{');
-    mesh_print_json(made);
-    printf(", \"voxel\": ");
-    json_number(stdout, r->voxel);
-    printf(", \"volume\": [%d, %d, %d], \"unseen\": %zu", r->size[0], r->size[1], r->size[2],
-           r->unseen);
-    if (r->picture.data)
-        printf(", \"psnr_db\": %.4f, \"shown\": %.6f", r->psnr_db, r->shown);
-    puts("}");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    mesh_put_made(&w, made);
+    jput_number(&w, "voxel", r->voxel, 9);
+    jput_numbers(&w, "volume", (const double[]){r->size[0], r->size[1], r->size[2]}, 3, 0);
+    jput_integer(&w, "unseen", (long long)r->unseen);
+    if (r->picture.data) {
+        jput_fixed(&w, "psnr_db", r->psnr_db, 4);
+        jput_fixed(&w, "shown", r->shown, 6);
+    }
+    jend(&w);
 }
 
 static relume_status fuse(struct relume_mesh *mesh, struct relume_fusion_report *report,

@@ -38,15 +38,17 @@ relume_status mesh_write_both(struct relume_mesh *mesh, const char *output,
     return status;
 }
 
-void mesh_print_json(const struct mesh_made *m)
+void mesh_put_made(struct jwriter *w, const struct mesh_made *m)
 {
-    printf("\"output\": ");
-    json_text(stdout, m->output);
-    printf(", \"triangles\": %zu, \"vertices\": %zu, \"seconds\": %.6f", m->mesh->triangle_count,
-           m->mesh->vertex_count, m->seconds);
-    if (m->report)
-        printf(", \"block\": %d, \"boxes\": %zu, \"ambiguous\": %zu", m->block, m->report->boxes,
-               m->report->ambiguous);
+    jput_text(w, "output", m->output);
+    jput_integer(w, "triangles", (long long)m->mesh->triangle_count);
+    jput_integer(w, "vertices", (long long)m->mesh->vertex_count);
+    jput_fixed(w, "seconds", m->seconds, 6);
+    if (m->report) {
+        jput_integer(w, "block", m->block);
+        jput_integer(w, "boxes", (long long)m->report->boxes);
+        jput_integer(w, "ambiguous", (long long)m->report->ambiguous);
+    }
 }
 
 void mesh_say(const struct args *args, const struct mesh_made *m)

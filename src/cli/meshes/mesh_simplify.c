@@ -54,12 +54,15 @@ static void report(const struct simplify_options *o, const struct relume_simplif
                  s->triangles, before, s->vertices, time);
         return;
     }
-    printf("{\"triangles\": %zu, \"vertices\": %zu, \"triangles_before\": %zu, \"error\": ",
-           s->triangles, s->vertices, before);
-    json_number(stdout, s->error);
-    printf(", \"distance\": ");
-    json_number(stdout, s->distance);
-    printf(", \"seconds\": %.6f}\n", time);
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "triangles", (long long)s->triangles);
+    jput_integer(&w, "vertices", (long long)s->vertices);
+    jput_integer(&w, "triangles_before", (long long)before);
+    jput_number(&w, "error", s->error, 9);
+    jput_number(&w, "distance", s->distance, 9);
+    jput_fixed(&w, "seconds", time, 6);
+    jend(&w);
 }
 
 static relume_status run(const struct args *args)

@@ -23,7 +23,7 @@ char *mesh_picture_name(const char *output);
 relume_status mesh_write_both(struct relume_mesh *mesh, const char *output,
                               const struct relume_image *picture, char *png,
                               const struct relume_log *log);
-void mesh_print_json(const struct mesh_made *m);
+void mesh_put_made(struct jwriter *w, const struct mesh_made *m);
 void mesh_say(const struct args *args, const struct mesh_made *m);
 
 extern const struct command mesh_task_simplify, mesh_task_billboards;

@@ -153,7 +153,8 @@ static relume_status make_set(struct set *s, const relume_volume *volume)
     return status;
 }
 
-static void print_set(const struct set *s, bool json, bool several, bool first)
+// Says the meshes, or with `w` writes them.
+static void print_set(const struct set *s, struct jwriter *w)
 {
     for (int i = 0; i < s->count; i++) {
         const struct mesh_made m = {.output = s->name[i],
@@ -161,16 +162,23 @@ static void print_set(const struct set *s, bool json, bool several, bool first)
                                     .seconds = s->report[i].seconds,
                                     .report = &s->report[i],
                                     .block = s->block[i]};
-        if (!json) {
+        if (!w) {
             mesh_say(s->args, &m);
             continue;
         }
-        printf("%s{\"threshold\": %.9g, ", first ? several ? "{\"meshes\": [" : "" : ", ",
-               s->threshold);
-        mesh_print_json(&m);
-        printf("}");
-        first = false;
+        jopen_object(w, NULL);
+        jput_number(w, "threshold", s->threshold, 9);
+        mesh_put_made(w, &m);
+        jclose(w);
     }
+}
+
+static void begin_meshes(struct jwriter *w, bool list)
+{
+    if (!list)
+        return;
+    jopen_object(w, NULL);
+    jopen_array(w, "meshes");
 }
 
 static void free_set(struct set *s)
@@ -198,17 +206,20 @@ relume_status mesh_of_volume(const struct args *args, const struct volume_option
         status = open_volume(&volume, args, o);
     if (!status && !t.count)
         choose_threshold(&t, args, volume);
+    struct jwriter w = json_to(stdout);
     for (int i = 0; i < t.count && !status; i++) {
         struct set s = {.args = args};
         status = name_set(&s, &t, i, blocks, output);
         if (!status)
             status = make_set(&s, volume);
         if (!status)
-            print_set(&s, json, several, !i);
+            begin_meshes(&w, several && !i && json);
+        if (!status)
+            print_set(&s, json ? &w : NULL);
         free_set(&s);
     }
     if (!status && json)
-        puts(several ? "]}" : "");
+        status = jend(&w);
     relume_volume_destroy(&volume);
     return status;
 }

@@ -3,24 +3,12 @@
 
 #include <math.h>
 
-static void print_names(char *const *name, int n)
+static void put_counts(struct jwriter *w, const char *name, const int *count, int n)
 {
-    printf("\"conditions\": [");
-    for (int i = 0; i < n; i++) {
-        printf("%s", i ? ", " : "");
-        json_text(stdout, name[i]);
-    }
-    printf("]");
-}
-
-static void print_numbers(const char *name, const double *value, int n)
-{
-    printf(", \"%s\": [", name);
-    for (int i = 0; i < n; i++) {
-        printf("%s", i ? ", " : "");
-        json_number(stdout, value[i]);
-    }
-    printf("]");
+    jopen_array(w, name);
+    for (int i = 0; i < n; i++)
+        jput_integer(w, NULL, count[i]);
+    jclose(w);
 }
 
 static void print_pairs(const struct relume_study_pairs *p)
@@ -41,25 +29,29 @@ static void print_pairs(const struct relume_study_pairs *p)
     puts("");
 }
 
+static void put_pairs(struct jwriter *w, const struct relume_study_pairs *p)
+{
+    const int n = p->conditions, all = n * n;
+    jopen_object(w, NULL);
+    jput_text(w, "question", p->question);
+    jput_integer(w, "answers", p->answers);
+    jput_integer(w, "subjects", p->subjects);
+    jput_texts(w, "conditions", (const char *const *)p->name, (size_t)n);
+    jput_numbers(w, "z", p->scale, (size_t)n, 9);
+    put_counts(w, "wins", p->wins, all);
+    jput_numbers(w, "chi_squared", p->chi_squared, (size_t)all, 9);
+    jput_numbers(w, "p", p->p, (size_t)all, 9);
+    jclose(w);
+}
+
 static void print_pairs_json(const struct relume_study_result *r)
 {
-    printf("{\"questions\": [");
-    for (int q = 0; q < r->questions; q++) {
-        const struct relume_study_pairs *p = &r->pairs[q];
-        printf("%s{\"question\": ", q ? ", " : "");
-        json_text(stdout, p->question);
-        printf(", \"answers\": %d, \"subjects\": %d, ", p->answers, p->subjects);
-        print_names(p->name, p->conditions);
-        print_numbers("z", p->scale, p->conditions);
-        printf(", \"wins\": [");
-        for (int i = 0; i < p->conditions * p->conditions; i++)
-            printf("%s%d", i ? ", " : "", p->wins[i]);
-        printf("]");
-        print_numbers("chi_squared", p->chi_squared, p->conditions * p->conditions);
-        print_numbers("p", p->p, p->conditions * p->conditions);
-        printf("}");
-    }
-    puts("]}");
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jopen_array(&w, "questions");
+    for (int q = 0; q < r->questions; q++)
+        put_pairs(&w, &r->pairs[q]);
+    jend(&w);
 }
 
 static void print_ratings(const struct relume_study_ratings *r)
@@ -81,13 +73,16 @@ static void print_ratings(const struct relume_study_ratings *r)
 
 static void print_ratings_json(const struct relume_study_ratings *r)
 {
-    printf("{\"subjects\": %d, ", r->subjects);
-    print_names(r->name, r->conditions);
-    print_numbers("score", r->raw, r->conditions);
-    print_numbers("z", r->mean, r->conditions);
-    print_numbers("difference", r->difference, r->conditions * r->conditions);
-    print_numbers("t", r->t, r->conditions * r->conditions);
-    puts("}");
+    const size_t n = (size_t)r->conditions;
+    struct jwriter w = json_to(stdout);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "subjects", r->subjects);
+    jput_texts(&w, "conditions", (const char *const *)r->name, n);
+    jput_numbers(&w, "score", r->raw, n, 9);
+    jput_numbers(&w, "z", r->mean, n, 9);
+    jput_numbers(&w, "difference", r->difference, n * n, 9);
+    jput_numbers(&w, "t", r->t, n * n, 9);
+    jend(&w);
 }
 
 // ---------------------------------------------------------------- analyse

@@ -172,30 +172,10 @@ bool jvalue_may_hold(const char *text)
     return n == 0;
 }
 
-// JSON is UTF-8; a name that is not, as disks allow, is written as it is shown.
 char *jvalue_print(const jvalue *value)
 {
     char *made = json_dumps(value, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_ENCODE_ANY);
     return mem_take(made);
-}
-
-char *jvalue_quote(const char *text)
-{
-    char *copy = jvalue_may_hold(text) ? NULL : mem_text(text);
-    json_t *string = json_string(copy ? relume_printable(copy) : text);
-    char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
-    json_decref(string);
-    mem_free(copy);
-    return mem_take(quoted);
-}
-
-struct jnumber jvalue_number_text(double number)
-{
-    struct jnumber out;
-    snprintf(out.text, sizeof out.text, "%.15g", number);
-    if (strtod(out.text, NULL) != number)
-        snprintf(out.text, sizeof out.text, "%.17g", number);
-    return out;
 }
 
 // ---------------------------------------------------------------- places in the text

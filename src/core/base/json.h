@@ -1,4 +1,4 @@
-// json.h - reading JSON; the folder's door to jansson
+// json.h - reading JSON (json_write.h writes it); the folder's door to jansson
 #ifndef BASE_JSON_H
 #define BASE_JSON_H
 
@@ -48,14 +48,7 @@ bool jvalue_place(int line_column[2], const char *path, const struct relume_log 
 
 // The value as JSON in one line of ASCII, to be freed; NULL when memory is short.
 char *jvalue_print(const jvalue *value);
-// `text` as a JSON string with its quotes, to be freed; NULL when it cannot be one.
-char *jvalue_quote(const char *text);
-// Whether it can: it is UTF-8.
+// Returns whether JSON can hold `text` unchanged, that is, whether it is UTF-8.
 bool jvalue_may_hold(const char *text);
-// A finite number, as short as gives the same one again.
-struct jnumber {
-    char text[32];
-};
-struct jnumber jvalue_number_text(double number);
 
 #endif

@@ -1,6 +1,9 @@
 // base64.c - bytes as text of 64 characters, three as four
 #include "core/math/base64.h"
 
+#include "core/base/json_write.h"
+#include "core/base/memory.h"
+
 #include <string.h>
 
 const char base64_digits[65] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -25,6 +28,20 @@ void base64_print(FILE *to, const uint8_t *bytes, size_t n)
         base64_text(text, bytes + i, part);
         fwrite(text, 1, base64_length(part), to);
     }
+}
+
+void base64_put(struct jwriter *w, const char *key, const void *bytes, size_t n)
+{
+    const size_t length = base64_length(n);
+    char *text = mem_array(length + 1, 1);
+    if (text) {
+        base64_text(text, bytes, n);
+        text[length] = '\0';
+        jput_text(w, key, text);
+    } else {
+        jfail(w, RELUME_ENOMEM);
+    }
+    mem_free(text);
 }
 
 ptrdiff_t base64_bytes(uint8_t *out, const char *text)

@@ -14,6 +14,9 @@ static inline size_t base64_length(size_t n)
     return (n + 2) / 3 * 4;
 }
 void base64_text(char *out, const uint8_t *bytes, size_t n);
+// Writes the bytes as a text of a JSON object.
+struct jwriter;
+void base64_put(struct jwriter *w, const char *key, const void *bytes, size_t n);
 void base64_print(FILE *to, const uint8_t *bytes, size_t n);
 // How many bytes a whole text was, at most 3/4 of its length; -1 where it is none.
 ptrdiff_t base64_bytes(uint8_t *out, const char *text);

@@ -8,6 +8,7 @@
 #include "exchange/formats/export.h"
 
 #include "core/base/half.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
@@ -284,31 +285,46 @@ static const char *curve_words(const struct blocks *b, char text[32])
     return text;
 }
 
-static void print_ranges(FILE *out, const struct blocks *b)
+static void put_term(struct jwriter *w, const struct blocks *b, int k)
 {
-    for (int k = 0; k < b->terms; k++) {
-        const float *l = b->least + 3 * k, *m = b->most + 3 * k;
-        fprintf(
-            out,
-            "%s\n    { \"image\": \"eigenimage%02d.dds\", \"min\": [%.9g, %.9g, %.9g], \"max\": "
-            "[%.9g, %.9g, %.9g],\n      \"weight\": \"weight%02d.dds\", \"weight_min\": %.9g, "
-            "\"weight_max\": %.9g }",
-            k ? "," : "", k, (double)l[0], (double)l[1], (double)l[2], (double)m[0], (double)m[1],
-            (double)m[2], k, (double)b->low[k], (double)b->high[k]);
-    }
+    char image[32], weight[32];
+    snprintf(image, sizeof image, "eigenimage%02d.dds", k);
+    snprintf(weight, sizeof weight, "weight%02d.dds", k);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jgap(w, " ");
+    jput_text(w, "image", image);
+    jput_floats(w, "min", b->least + 3 * k, 3, 9);
+    jput_floats(w, "max", b->most + 3 * k, 3, 9);
+    jgap(w, "\n      ");
+    jput_text(w, "weight", weight);
+    jput_number(w, "weight_min", (double)b->low[k], 9);
+    jput_number(w, "weight_max", (double)b->high[k], 9);
+    jgap(w, " ");
+    jclose(w);
 }
 
-static void print_description(const void *context, FILE *out)
+static relume_status write_description(const struct blocks *b, const outdir *dir)
 {
-    const struct blocks *b = context;
-    char text[32];
-    fprintf(
-        out,
-        "{ \"format\": \"relume-eigenimages\", \"version\": 1,\n  \"width\": %d, \"height\": %d, "
-        "\"blocks\": \"%s\", \"curve\": \"%s\",\n  \"terms\": [",
-        b->codes->width, b->codes->height, b->format->name, curve_words(b, text));
-    print_ranges(out, b);
-    fputs(" ] }\n", out);
+    char curve[32];
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jgap(&w, " ");
+    jput_text(&w, "format", "relume-eigenimages");
+    jput_integer(&w, "version", 1);
+    jgap(&w, "\n  ");
+    jput_integer(&w, "width", b->codes->width);
+    jput_integer(&w, "height", b->codes->height);
+    jput_text(&w, "blocks", b->format->name);
+    jput_text(&w, "curve", curve_words(b, curve));
+    jgap(&w, "\n  ");
+    jopen_array(&w, "terms");
+    for (int k = 0; k < b->terms; k++)
+        put_term(&w, b, k);
+    jgap(&w, " ");
+    jclose(&w);
+    jgap(&w, " ");
+    return jsave_in(&w, outdir_path(dir), "eigenimages.json", b->e->log);
 }
 
 static void print_shader(const void *context, FILE *out)
@@ -456,7 +472,7 @@ static relume_status write_all(struct blocks *b, const char *path)
     if (!status)
         status = write_weights(b, dir);
     if (!status)
-        status = write_text(b, dir, "eigenimages.json", print_description);
+        status = write_description(b, dir);
     if (!status)
         status = write_text(b, dir, "relit.glsl", print_shader);
     return outdir_end(&dir, status);

@@ -1,6 +1,7 @@
 // web_write.c - planes become a folder that relight and OpenLIME read
 #include "exchange/formats/web.h"
 
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
@@ -196,14 +197,17 @@ int web_planes(const struct web_folder *w)
 
 // ---------------------------------------------------------------- info.json
 
-static void put_lights(FILE *f, const struct functions *functions)
+static void put_lights(struct jwriter *w, const struct functions *functions)
 {
-    fputs("\"lights\": [", f);
+    jgap(w, "\n");
+    jopen_array(w, "lights");
     for (int i = 0; i < functions->count; i++) {
         const struct relume_vec3 l = functions->lights[i];
-        fprintf(f, "%s%.3f, %.3f, %.3f", i ? ", " : "", l.x, l.y, l.z);
+        jput_fixed(w, NULL, l.x, 3);
+        jput_fixed(w, NULL, l.y, 3);
+        jput_fixed(w, NULL, l.z, 3);
     }
-    fputs("],\n", f);
+    jclose(w);
 }
 
 static int byte_of(double v)
@@ -222,21 +226,25 @@ static double range_of(const struct plan *plan, int plane)
     return 127.0 / most;
 }
 
-static void put_basis(FILE *f, const struct plan *plan, int planes)
+static void put_basis(struct jwriter *w, const struct plan *plan, int planes)
 {
     const int n = plan->functions.count;
-    fputs("\"basis\": [", f);
+    jgap(w, "\n");
+    jopen_array(w, "basis");
+    w->style |= JSON_DENSE;
     for (int j = 0; j < n; j++)
         for (int c = 0; c < 3; c++)
-            fprintf(f, "%s%d", j || c ? "," : "", byte_of(255.0 * plan->mean[c * n + j]));
+            jput_integer(w, NULL, byte_of(255.0 * plan->mean[c * n + j]));
     for (int p = 0; p < planes; p++) {
         const double range = range_of(plan, p);
         for (int j = 0; j < n; j++)
             for (int c = 0; c < 3; c++)
-                fprintf(f, ",%d",
-                        byte_of(127.0 + range * plan->transform[(c * plan->terms + p) * n + j]));
+                jput_integer(
+                    w, NULL,
+                    byte_of(127.0 + range * plan->transform[(c * plan->terms + p) * n + j]));
     }
-    fputs("],\n", f);
+    w->style &= ~(unsigned)JSON_DENSE;
+    jclose(w);
 }
 
 enum column { SCALE, BIAS, RANGE };
@@ -249,68 +257,84 @@ static double entry(const struct web_folder *w, enum column column, int p)
                             : range_of(w->plan, p);
 }
 
-static void put_column(FILE *f, const struct web_folder *w, const char *name, enum column column)
+static void put_column(struct jwriter *w, const struct web_folder *folder, const char *name,
+                       enum column column)
 {
-    fprintf(f, "\"%s\": [", name);
-    for (int p = 0; p < web_planes(w); p++)
-        fprintf(f, "%s%.8g", p ? ", " : "", entry(w, column, p));
-    fputs("]", f);
+    jgap(w, "\n");
+    jopen_array(w, name);
+    for (int p = 0; p < web_planes(folder); p++)
+        jput_number(w, NULL, entry(folder, column, p), 8);
+    jclose(w);
 }
 
-static void put_info(FILE *f, const struct web_folder *w, int quality)
+static void put_functions(struct jwriter *w, const struct plan *plan)
 {
     static const char *const kinds[] = {"ptm", "hsh", "sh", "rbf", "bilinear"};
     static const char *const spaces[] = {"rgb", "lrgb", "mrgb", "ycc"};
-    const bool yab = w->plan->chroma > 0;
-    const struct plan *plan = w->plan;
-    const bool joint = plan->form == FOREIGN_JOINT;
-    fprintf(f, "{\n\"width\": %d, \"height\": %d,\n\"format\": \"jpg\",\n", w->planes->width,
-            w->planes->height);
-    fprintf(f, "\"type\": \"%s\",\n\"colorspace\": \"%s\",\n", kinds[plan->functions.kind],
-            yab ? "mycc" : spaces[plan->form]);
-    if (plan->functions.kind == FUNCTIONS_GRID)
-        fprintf(f, "\"resolution\": %d,\n", plan->functions.resolution);
+    jgap(w, "\n");
+    jput_text(w, "type", kinds[plan->functions.kind]);
+    jgap(w, "\n");
+    jput_text(w, "colorspace", plan->chroma > 0 ? "mycc" : spaces[plan->form]);
+    if (plan->functions.kind == FUNCTIONS_GRID) {
+        jgap(w, "\n");
+        jput_integer(w, "resolution", plan->functions.resolution);
+    }
     if (plan->functions.kind == FUNCTIONS_GAUSS) {
-        fprintf(f, "\"sigma\": %.6g,\n", plan->functions.sigma);
-        put_lights(f, &plan->functions);
+        jgap(w, "\n");
+        jput_number(w, "sigma", plan->functions.sigma, 6);
+        put_lights(w, &plan->functions);
     }
-    if (yab) {
-        const int chroma = min_of(plan->chroma, w->kept);
-        const int luminance = web_planes(w) - 2 * chroma;
-        fprintf(f, "\"yccplanes\": [%d, %d, %d],\n", luminance, chroma, chroma);
-    } else {
-        fprintf(f, "\"nplanes\": %d,\n", web_planes(w));
-    }
-    fprintf(f, "\"quality\": %d,\n", quality);
-    if (joint)
-        put_basis(f, plan, web_planes(w));
-    fputs("\"materials\": [\n{\n", f);
-    put_column(f, w, "scale", SCALE);
-    fputs(",\n", f);
-    put_column(f, w, "bias", BIAS);
-    if (joint) {
-        fputs(",\n", f);
-        put_column(f, w, "range", RANGE);
-    }
-    fputs("\n}\n]\n}\n", f);
 }
 
-static relume_status write_info(const struct web_folder *w, const char *path, int quality,
+static void put_counts(struct jwriter *w, const struct web_folder *folder)
+{
+    const int planes = web_planes(folder);
+    jgap(w, "\n");
+    if (folder->plan->chroma > 0) {
+        const int chroma = min_of(folder->plan->chroma, folder->kept);
+        const double counts[] = {planes - 2 * chroma, chroma, chroma};
+        jput_numbers(w, "yccplanes", counts, 3, 0);
+    } else {
+        jput_integer(w, "nplanes", planes);
+    }
+}
+
+static void put_materials(struct jwriter *w, const struct web_folder *folder, bool joint)
+{
+    jgap(w, "\n");
+    jopen_array(w, "materials");
+    jgap(w, "\n");
+    jopen_object(w, NULL);
+    put_column(w, folder, "scale", SCALE);
+    put_column(w, folder, "bias", BIAS);
+    if (joint)
+        put_column(w, folder, "range", RANGE);
+    jgap(w, "\n");
+    jclose(w);
+    jgap(w, "\n");
+    jclose(w);
+}
+
+static relume_status write_info(const struct web_folder *folder, const char *path, int quality,
                                 const struct relume_log *log)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f)
-        return RELUME_ENOMEM;
-    put_info(f, w, quality);
-    const bool failed = fclose(f) != 0;
-    char *name = mem_format("%s/info.json", path);
-    const relume_status status =
-        failed || !name ? RELUME_ENOMEM : outfile_save(name, text, size, log);
-    mem_free_libc(text);
-    mem_free(name);
-    return status;
+    const bool joint = folder->plan->form == FOREIGN_JOINT;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jgap(&w, "\n");
+    jput_integer(&w, "width", folder->planes->width);
+    jput_integer(&w, "height", folder->planes->height);
+    jgap(&w, "\n");
+    jput_text(&w, "format", "jpg");
+    put_functions(&w, folder->plan);
+    put_counts(&w, folder);
+    jgap(&w, "\n");
+    jput_integer(&w, "quality", quality);
+    if (joint)
+        put_basis(&w, folder->plan, web_planes(folder));
+    put_materials(&w, folder, joint);
+    jgap(&w, "\n");
+    return jsave_in(&w, path, "info.json", log);
 }
 
 relume_status web_write(const struct web_folder *w, const char *path, int quality,

@@ -1,7 +1,7 @@
 // export.c - notes for spreadsheets, drawing programs and IIIF viewers
 #include "exchange/notes/list.h"
 
-#include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
 #include "exchange/notes/shape.h"
@@ -26,7 +26,7 @@ static void cell(FILE *f, const char *text)
 static void cell_number(FILE *f, double value)
 {
     if (isfinite(value))
-        fprintf(f, ",%s", jvalue_number_text(value).text);
+        fprintf(f, ",%s", jnumber_text(value).text);
     else
         fputc(',', f);
 }
@@ -43,9 +43,9 @@ static bool print_csv(FILE *f, const relume_notes *n, const char *canvas)
         cell(f, note->id);
         fprintf(f, ",%s,\"", relume_note_kind_name(note->kind));
         for (int k = 0; k < note->places; k++)
-            fprintf(f, "%s%s %s%s%s", k ? ", " : "", jvalue_number_text(note->place[k][0]).text,
-                    jvalue_number_text(note->place[k][1]).text, note->z ? " " : "",
-                    note->z ? jvalue_number_text(note->z[k]).text : "");
+            fprintf(f, "%s%s %s%s%s", k ? ", " : "", jnumber_text(note->place[k][0]).text,
+                    jnumber_text(note->place[k][1]).text, note->z ? " " : "",
+                    note->z ? jnumber_text(note->z[k]).text : "");
         fputc('"', f);
         cell_number(f, m.length);
         cell_number(f, m.area);
@@ -101,9 +101,8 @@ static void print_shape(FILE *f, const struct relume_note *note, const struct re
     escape(f, note->id);
     fputs("\">", f);
     if (note->kind == RELUME_NOTE_POINT)
-        fprintf(f, "<circle cx=\"%s\" cy=\"%s\" r=\"%g\"/>",
-                jvalue_number_text(at->place[0][0]).text, jvalue_number_text(at->place[0][1]).text,
-                size / 3.0);
+        fprintf(f, "<circle cx=\"%s\" cy=\"%s\" r=\"%g\"/>", jnumber_text(at->place[0][0]).text,
+                jnumber_text(at->place[0][1]).text, size / 3.0);
     else {
         fputs("<path d=\"", f);
         shape_print_path(f, at);
@@ -172,19 +171,22 @@ static bool print_seen(FILE *f, const struct relume_note *note, double mm, doubl
 
 static bool print_iiif(FILE *f, const relume_notes *n, const char *canvas)
 {
-    fputs("{\"@context\": [\"http://www.w3.org/ns/anno.jsonld\",\n"
-          "  \"http://iiif.io/api/presentation/3/context.json\", {\"relume\": \"urn:relume:\"}],\n"
-          "\"id\": ",
-          f);
+    struct jwriter w = {.file = f};
     char *id = mem_format("%s/notes", canvas ? canvas : n->name);
-    bool good = id && note_quote(f, id);
+    jopen_object(&w, NULL);
+    jput_raw(
+        &w, "@context",
+        "[\"http://www.w3.org/ns/anno.jsonld\",\n"
+        "  \"http://iiif.io/api/presentation/3/context.json\", {\"relume\": \"urn:relume:\"}]");
+    jgap(&w, "\n");
+    jput_text(&w, "id", id);
+    jput_text(&w, "type", "AnnotationPage");
+    jgap(&w, "\n");
+    jopen_array(&w, "items");
+    for (int i = 0; i < n->count; i++)
+        note_put(&w, &n->note[i].note, canvas ? canvas : n->name);
+    const bool good = id && !jend(&w);
     mem_free(id);
-    fputs(", \"type\": \"AnnotationPage\",\n\"items\": [", f);
-    for (int i = 0; i < n->count; i++) {
-        fputs(i ? ",\n" : "\n", f);
-        good = note_print(f, &n->note[i].note, canvas ? canvas : n->name) && good;
-    }
-    fputs("]}\n", f);
     return good;
 }
 

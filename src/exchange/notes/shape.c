@@ -300,50 +300,59 @@ relume_status shape_read(struct shape *out, const jvalue *selector)
 void shape_print_path(FILE *f, const struct relume_note *note)
 {
     for (int i = 0; i < note->places; i++)
-        fprintf(f, "%s%s,%s", i ? " L" : "M", jvalue_number_text(note->place[i][0]).text,
-                jvalue_number_text(note->place[i][1]).text);
+        fprintf(f, "%s%s,%s", i ? " L" : "M", jnumber_text(note->place[i][0]).text,
+                jnumber_text(note->place[i][1]).text);
     if (note->kind == RELUME_NOTE_POLYGON)
         fputs(" Z", f);
 }
 
-static void print_deep(FILE *f, const struct relume_note *note, int i)
-{
-    fprintf(f, "%s %s %s", jvalue_number_text(note->place[i][0]).text,
-            jvalue_number_text(note->place[i][1]).text, jvalue_number_text(note->z[i]).text);
-}
-
 // A line or polygon on an object; the ring of a polygon ends where it began.
-static void print_text(FILE *f, const struct relume_note *note)
+static void print_deep(FILE *f, const struct relume_note *note)
 {
     const bool closed = note->kind == RELUME_NOTE_POLYGON;
-    fprintf(f, "{\"type\": \"WktSelector\", \"value\": \"%s",
-            closed ? "POLYGON Z ((" : "LINESTRING Z (");
+    fputs(closed ? "POLYGON Z ((" : "LINESTRING Z (", f);
     for (int i = 0; i < note->places + closed; i++) {
-        fputs(i ? ", " : "", f);
-        print_deep(f, note, i % note->places);
+        const int k = i % note->places;
+        fprintf(f, "%s%s %s %s", i ? ", " : "", jnumber_text(note->place[k][0]).text,
+                jnumber_text(note->place[k][1]).text, jnumber_text(note->z[k]).text);
     }
-    fprintf(f, "%s\"}", closed ? "))" : ")");
+    fputs(closed ? "))" : ")", f);
 }
 
-void shape_print(FILE *f, const struct relume_note *note)
+static void print_flat(FILE *f, const struct relume_note *note)
+{
+    fputs("<svg xmlns='http://www.w3.org/2000/svg'><path d='", f);
+    shape_print_path(f, note);
+    fputs("'/></svg>", f);
+}
+
+static void put_point(struct jwriter *w, const char *key, const struct relume_note *note)
+{
+    jopen_object(w, key);
+    jput_text(w, "type", "PointSelector");
+    jput_number(w, "x", note->place[0][0], 0);
+    jput_number(w, "y", note->place[0][1], 0);
+    if (note->z)
+        jput_number(w, "z", note->z[0], 0);
+    jclose(w);
+}
+
+void shape_put(struct jwriter *w, const char *key, const struct relume_note *note)
 {
     if (note->kind == RELUME_NOTE_POINT) {
-        fprintf(f, "{\"type\": \"PointSelector\", \"x\": %s, \"y\": %s",
-                jvalue_number_text(note->place[0][0]).text,
-                jvalue_number_text(note->place[0][1]).text);
-        if (note->z)
-            fprintf(f, ", \"z\": %s", jvalue_number_text(note->z[0]).text);
-        fputc('}', f);
-    }
-    if (note->kind == RELUME_NOTE_POINT || note->kind == RELUME_NOTE_VIEW)
-        return;
-    if (note->z) {
-        print_text(f, note);
+        put_point(w, key, note);
         return;
     }
-    fputs("{\"type\": \"SvgSelector\", \"value\": \"<svg xmlns='http://www.w3.org/2000/svg'><path "
-          "d='",
-          f);
-    shape_print_path(f, note);
-    fputs("'/></svg>\"}", f);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *f = open_memstream(&text, &size);
+    if (f)
+        (note->z ? print_deep : print_flat)(f, note);
+    if (!f || fclose(f))
+        jfail(w, RELUME_ENOMEM);
+    jopen_object(w, key);
+    jput_text(w, "type", note->z ? "WktSelector" : "SvgSelector");
+    jput_text(w, "value", text);
+    jclose(w);
+    mem_free_libc(text);
 }

@@ -3,6 +3,7 @@
 #define NOTES_SHAPE_H
 
 #include "core/base/json.h"
+#include "core/base/json_write.h"
 
 #include <relume/exchange/notes.h>
 #include <stdio.h>
@@ -25,7 +26,7 @@ relume_status shape_read_fragment(struct shape *out, const char *text);
 
 // The path of a line or polygon, as an attribute `d`.
 void shape_print_path(FILE *f, const struct relume_note *note);
-// A selector as JSON; nothing for a view.
-void shape_print(FILE *f, const struct relume_note *note);
+// A selector; the note is no view.
+void shape_put(struct jwriter *w, const char *key, const struct relume_note *note);
 
 #endif

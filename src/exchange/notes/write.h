@@ -3,10 +3,8 @@
 #define NOTES_WRITE_H
 
 #include <relume/exchange/notes.h>
-#include <stdio.h>
-
-// As JSON; false: no memory.
-bool note_quote(FILE *f, const char *text);
-bool note_print(FILE *f, const struct relume_note *note, const char *source);
+// Writes the note as an annotation of `source`.
+struct jwriter;
+void note_put(struct jwriter *w, const struct relume_note *note, const char *source);
 
 #endif

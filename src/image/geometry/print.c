@@ -1,36 +1,52 @@
 // print.c - a geometry as members of a JSON object
 #include "image/geometry/print.h"
 
-void geometry_print_planes(FILE *f, const struct relume_geometry *g)
+void geometry_put_planes(struct jwriter *w, const struct relume_geometry *g)
 {
-    fprintf(f,
-            "{\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
-            "\"st_max\": [%.9g, %.9g]",
-            g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
+    jput_number(w, "uv_plane_z", g->uv_z, 9);
+    jput_number(w, "st_plane_z", g->st_z, 9);
+    jput_numbers(w, "st_min", g->st_min, 2, 9);
+    jput_numbers(w, "st_max", g->st_max, 2, 9);
 }
 
-void geometry_print_projection(FILE *f, const struct relume_geometry *g)
+void geometry_put_projection(struct jwriter *w, const struct relume_geometry *g)
 {
-    fprintf(f, "  \"projection\": \"%s\",\n", relume_projection_name(g->projection));
+    jgap(w, "\n  ");
+    jput_text(w, "projection", relume_projection_name(g->projection));
 }
 
-void geometry_print(FILE *f, const struct relume_geometry *g)
+static void put_window(struct jwriter *w, const struct relume_geometry *g)
 {
-    geometry_print_projection(f, g);
+    jopen_object(w, "window");
+    jput_numbers(w, "min", g->window_min, 2, 9);
+    jput_numbers(w, "max", g->window_max, 2, 9);
+    jput_text(w, "camera", g->perspective ? "perspective" : "orthographic");
+    jput_number(w, "camera_z", g->camera_z, 9);
+    jclose(w);
+}
+
+static void put_panorama(struct jwriter *w, const struct relume_geometry *g)
+{
+    jopen_object(w, "panorama");
+    jput_number(w, "v_min", g->v_min, 9);
+    jput_number(w, "v_max", g->v_max, 9);
+    if (g->disc)
+        jput_integer(w, "discs", g->disc);
+    jput_vector(w, "center", g->center, 9);
+    jclose(w);
+}
+
+void geometry_put(struct jwriter *w, const struct relume_geometry *g)
+{
+    geometry_put_projection(w, g);
+    jgap(w, "\n  ");
     if (g->projection == RELUME_PLANAR) {
-        fprintf(f,
-                "  \"window\": {\"min\": [%.9g, %.9g], \"max\": [%.9g, %.9g], \"camera\": \"%s\", "
-                "\"camera_z\": %.9g},\n",
-                g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
-                g->perspective ? "perspective" : "orthographic", g->camera_z);
+        put_window(w, g);
     } else if (g->projection == RELUME_SLAB) {
-        fputs("  \"slab\": ", f);
-        geometry_print_planes(f, g);
-        fputs("},\n", f);
+        jopen_object(w, "slab");
+        geometry_put_planes(w, g);
+        jclose(w);
     } else {
-        fprintf(f, "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, ", g->v_min, g->v_max);
-        if (g->disc)
-            fprintf(f, "\"discs\": %d, ", g->disc);
-        fprintf(f, "\"center\": [%.9g, %.9g, %.9g]},\n", g->center.x, g->center.y, g->center.z);
+        put_panorama(w, g);
     }
 }

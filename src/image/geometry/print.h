@@ -2,14 +2,15 @@
 #ifndef GEOMETRY_PRINT_H
 #define GEOMETRY_PRINT_H
 
-#include <relume/camera.h>
-#include <stdio.h>
+#include "core/base/json_write.h"
 
-// Its "projection".
-void geometry_print_projection(FILE *f, const struct relume_geometry *g);
-// And its "window", "slab" or "panorama"; both lines end with a comma.
-void geometry_print(FILE *f, const struct relume_geometry *g);
-// The object of a slab, but for its end.
-void geometry_print_planes(FILE *f, const struct relume_geometry *g);
+#include <relume/camera.h>
+
+// Its "projection", on a line of its own.
+void geometry_put_projection(struct jwriter *w, const struct relume_geometry *g);
+// And its "window", "slab" or "panorama", on another.
+void geometry_put(struct jwriter *w, const struct relume_geometry *g);
+// Members of the object of a slab.
+void geometry_put_planes(struct jwriter *w, const struct relume_geometry *g);
 
 #endif

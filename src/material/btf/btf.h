@@ -71,7 +71,8 @@ struct json_t;
 relume_status btf_read_directions(const struct json_t *array, const char *path, const char *what,
                                   const struct relume_limits *limits, vec3 **out, int *count,
                                   const struct relume_log *log);
-// ... and as text: "[[x, y, z], ...]", to be freed; NULL: no memory.
-char *btf_directions_text(const vec3 *d, int n);
+// Writes them as such an array, each on a line of its own.
+struct jwriter;
+void btf_put_directions(struct jwriter *w, const char *key, const vec3 *d, int n);
 
 #endif

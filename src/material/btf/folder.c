@@ -1,8 +1,8 @@
 // folder.c - a BTF on disk: btf.json and values.npy
 #include "core/base/outdir.h"
 #include "core/base/params.h"
-#include "core/base/outfile.h"
 #include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "material/btf/btf.h"
@@ -188,41 +188,42 @@ relume_status relume_btf_open(relume_btf **out, const char *path,
 
 // ---------------------------------------------------------------- writing
 
-char *btf_directions_text(const vec3 *d, int n)
+void btf_put_directions(struct jwriter *w, const char *key, const vec3 *d, int n)
 {
-    const size_t each = 80, room = (size_t)n * each + 8;
-    char *text = mem_array(room, 1);
-    size_t at = 0;
-    for (int i = 0; text && i < n; i++)
-        at += (size_t)snprintf(text + at, room - at, "%s[%.17g, %.17g, %.17g]", i ? ",\n  " : "[",
-                               d[i].x, d[i].y, d[i].z);
-    if (text)
-        snprintf(text + at, room - at, "]");
-    return text;
+    jgap(w, "\n  ");
+    jopen_array(w, key);
+    for (int i = 0; i < n; i++) {
+        jgap(w, i ? "\n  " : "");
+        jput_vector(w, NULL, d[i], 17);
+    }
+    jclose(w);
 }
 
 static relume_status save_json(const relume_btf *b, const char *folder,
                                const struct relume_log *log)
 {
     const struct relume_btf_info *i = &b->info;
-    char *path = mem_format("%s/btf.json", folder), *name = jvalue_quote(i->name);
-    char *view = btf_directions_text(b->view, i->views);
-    char *light = btf_directions_text(b->light, i->lights);
-    char *text = NULL;
-    if (path && name && view && light)
-        text = mem_format("{ \"format\": \"relume-btf\", \"version\": %d,\n  \"name\": %s,\n"
-                          "  \"width\": %d, \"height\": %d, \"includes_cosine\": %s,%s%s\n"
-                          "  \"view_directions\": %s,\n  \"light_directions\": %s }\n",
-                          VERSION, name, i->width, i->height, i->without_cosine ? "false" : "true",
-                          i->relief.data ? "\n  \"relief\": \"relief.exr\"," : "",
-                          i->normals.data ? " \"normals\": \"normals.exr\"," : "", view, light);
-    const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
-    mem_free(path);
-    mem_free(name);
-    mem_free(view);
-    mem_free(light);
-    mem_free(text);
-    return status;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jgap(&w, " ");
+    jput_text(&w, "format", "relume-btf");
+    jput_integer(&w, "version", VERSION);
+    jgap(&w, "\n  ");
+    jput_text(&w, "name", i->name);
+    jgap(&w, "\n  ");
+    jput_integer(&w, "width", i->width);
+    jput_integer(&w, "height", i->height);
+    jput_truth(&w, "includes_cosine", !i->without_cosine);
+    if (i->relief.data) {
+        jgap(&w, "\n  ");
+        jput_text(&w, "relief", "relief.exr");
+    }
+    if (i->normals.data)
+        jput_text(&w, "normals", "normals.exr");
+    btf_put_directions(&w, "view_directions", b->view, i->views);
+    btf_put_directions(&w, "light_directions", b->light, i->lights);
+    jgap(&w, " ");
+    return jsave_in(&w, folder, "btf.json", log);
 }
 
 static relume_status save_truth(const struct relume_image *image, const char *folder,

@@ -6,9 +6,9 @@
 
 #include "core/base/infile.h"
 #include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "core/base/outfile.h"
 #include "material/gbrdf/drawing.h"
 #include "material/gbrdf/operations.h"
 
@@ -29,75 +29,75 @@ char *edits_name(const char *path)
 
 // ---------------------------------------------------------------- writing
 
-static bool put_picture(FILE *f, const struct relume_image *image)
+static void put_picture(struct jwriter *w, const char *key, const struct relume_image *image)
 {
     char *text = drawing_text(image);
-    fprintf(f, "{\"width\": %d, \"height\": %d, \"packed\": \"%s\"}", image->width, image->height,
-            text ? text : "");
+    if (!text)
+        jfail(w, RELUME_ENOMEM);
+    jopen_object(w, key);
+    jput_integer(w, "width", image->width);
+    jput_integer(w, "height", image->height);
+    jput_text(w, "packed", text);
+    jclose(w);
     mem_free(text);
-    return text != NULL;
 }
 
-static bool put_value(FILE *f, const struct edit_parameter *p, const struct relume_edit *edit)
+static void put_labels(struct jwriter *w, const char *key, const int *label, int count)
+{
+    if (count == 1) {
+        jput_integer(w, key, *label);
+        return;
+    }
+    jopen_array(w, key);
+    for (int i = 0; i < count; i++)
+        jput_integer(w, NULL, label[i]);
+    jclose(w);
+}
+
+static void put_value(struct jwriter *w, const struct edit_parameter *p,
+                      const struct relume_edit *edit)
 {
     const void *value = parameter_of(p, edit);
-    const bool list = p->count > 1;
     switch (p->kind) {
     case PARAMETER_NUMBERS:
-        for (int i = 0; i < p->count; i++) {
-            fputs(i ? ", " : list ? "[" : "", f);
-            fputs(jvalue_number_text(((const double *)value)[i]).text, f);
-        }
+        if (p->count > 1)
+            jput_numbers(w, p->name, value, (size_t)p->count, 0);
+        else
+            jput_number(w, p->name, *(const double *)value, 0);
         break;
-    case PARAMETER_LABELS:
-        for (int i = 0; i < p->count; i++)
-            fprintf(f, "%s%d", i ? ", " : list ? "[" : "", ((const int *)value)[i]);
-        break;
-    case PARAMETER_CHANNELS: fprintf(f, "\"%s\"", (const char *)value); break;
-    case PARAMETER_PICTURE: return put_picture(f, value);
+    case PARAMETER_LABELS: put_labels(w, p->name, value, p->count); break;
+    case PARAMETER_CHANNELS: jput_text(w, p->name, value); break;
+    case PARAMETER_PICTURE: put_picture(w, p->name, value); break;
     }
-    if (list)
-        fputc(']', f);
-    return true;
 }
 
-static bool put_edit(FILE *f, const struct relume_edit *edit)
+static void put_edit(struct jwriter *w, const struct relume_edit *edit)
 {
     const struct relume_edit_operation *o = edit->operation;
-    bool good = true;
-    fprintf(f, "{\"operation\": \"%s\"", o->name);
-    for (int k = 0; good && k < MOST_PARAMETERS && o->parameter[k]; k++) {
-        const struct edit_parameter *p = o->parameter[k];
-        if (p->optional && !parameter_given(p, edit))
-            continue;
-        fprintf(f, ", \"%s\": ", p->name);
-        good = put_value(f, p, edit);
-    }
-    fputc('}', f);
-    return good;
+    jgap(w, "\n");
+    jopen_object(w, NULL);
+    jput_text(w, "operation", o->name);
+    for (int k = 0; k < MOST_PARAMETERS && o->parameter[k]; k++)
+        if (!o->parameter[k]->optional || parameter_given(o->parameter[k], edit))
+            put_value(w, o->parameter[k], edit);
+    jclose(w);
 }
 
 relume_status relume_edits_save(const relume_edits *edits, const char *path,
                                 const struct relume_log *log)
 {
-    char *name = edits_name(path), *text = NULL;
-    size_t size = 0;
-    FILE *f = name ? open_memstream(&text, &size) : NULL;
-    bool good = f != NULL;
-    if (f) {
-        fprintf(f,
-                "{\"relumeEdits\": %d, \"fingerprint\": \"%016llx\", \"undone\": %d,\n"
-                "\"operations\": [",
-                VERSION, (unsigned long long)edits->fingerprint, edits->undone);
-        for (int i = 0; good && i < edits->count; i++) {
-            fputs(i ? ",\n" : "\n", f);
-            good = put_edit(f, &edits->edit[i]);
-        }
-        fputs("]}\n", f);
-        good = !fclose(f) && good;
-    }
-    const relume_status status = good ? outfile_save(name, text, size, log) : RELUME_ENOMEM;
-    mem_free_libc(text);
+    char *name = edits_name(path), fingerprint[17];
+    struct jwriter w = {.status = name ? RELUME_OK : RELUME_ENOMEM};
+    snprintf(fingerprint, sizeof fingerprint, "%016llx", (unsigned long long)edits->fingerprint);
+    jopen_object(&w, NULL);
+    jput_integer(&w, "relumeEdits", VERSION);
+    jput_text(&w, "fingerprint", fingerprint);
+    jput_integer(&w, "undone", edits->undone);
+    jgap(&w, "\n");
+    jopen_array(&w, "operations");
+    for (int i = 0; i < edits->count; i++)
+        put_edit(&w, &edits->edit[i]);
+    const relume_status status = jsave(&w, name, log);
     mem_free(name);
     return status;
 }

@@ -1,6 +1,7 @@
 // write.c - a folder of maps (docs/maps.md)
 #include "material/maps/write.h"
 
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
@@ -163,53 +164,67 @@ static relume_status save_pictures(const struct writing *w)
 
 // ---------------------------------------------------------------- maps.json
 
-static void put_number(FILE *f, const char *name, double value)
+static void put_quality(struct jwriter *w, const char *name, const struct relume_maps_quality *q)
 {
-    if (isfinite(value))
-        fprintf(f, ", \"%s\": %.6g", name, value);
-    else
-        fprintf(f, ", \"%s\": null", name);
+    jgap(w, "\n");
+    jopen_object(w, name);
+    jput_integer(w, "lights", q->lights);
+    jput_number(w, "psnr_db", q->psnr_db, 6);
+    jput_number(w, "ssim", q->ssim, 6);
+    jput_number(w, "delta_e", q->delta_e, 6);
+    jput_number(w, "off", q->off, 6);
+    jput_number(w, "shadowed", q->shadowed, 6);
+    jput_number(w, "brighter", q->brighter, 6);
+    jclose(w);
 }
 
-static void put_quality(FILE *f, const char *name, const struct relume_maps_quality *q)
+static void put_material(struct jwriter *w, const struct relume_maps_material *k)
 {
-    fprintf(f, ",\n\"%s\": {\"lights\": %d", name, q->lights);
-    put_number(f, "psnr_db", q->psnr_db);
-    put_number(f, "ssim", q->ssim);
-    put_number(f, "delta_e", q->delta_e);
-    put_number(f, "off", q->off);
-    put_number(f, "shadowed", q->shadowed);
-    put_number(f, "brighter", q->brighter);
-    fputs("}", f);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jput_truth(w, "metal", k->metal);
+    jput_number(w, "f0", k->metal ? (double)NAN : k->f0, 6);
+    jput_number(w, "roughness", k->roughness, 6);
+    jput_number(w, "share", k->share, 6);
+    jclose(w);
 }
 
-static void put_description(const void *context, FILE *f)
+static void put_size(struct jwriter *w, const struct writing *writing)
 {
-    const struct writing *w = context;
-    const struct relume_maps *m = w->maps;
-    const double mm = w->params->width_mm;
-    fprintf(f, "{\n\"format\": \"relume-maps\", \"version\": 1,\n\"width\": %d, \"height\": %d",
-            m->width, m->height);
-    put_number(f, "width_mm", mm > 0.0 ? mm : NAN);
-    put_number(f, "width_world", m->pixel * m->width);
-    fprintf(f, ",\n\"height_unit\": \"%s\", \"normal_green\": \"%s\"", mm > 0.0 ? "mm" : "world",
-            w->params->directx ? "down" : "up");
-    put_number(f, "gain", m->gain);
-    put_number(f, "specular_factor", w->specular_most);
-    fprintf(f, ",\n\"gloss\": %s, \"fitted_lights\": %d, \"materials\": [",
-            m->matte_only ? "false" : "true", m->lights);
-    for (int i = 0; i < m->materials; i++) {
-        const struct relume_maps_material *k = &m->material[i];
-        fprintf(f, "%s\n    {\"metal\": %s", i ? "," : "", k->metal ? "true" : "false");
-        put_number(f, "f0", k->metal ? NAN : k->f0);
-        put_number(f, "roughness", k->roughness);
-        put_number(f, "share", k->share);
-        fputs("}", f);
-    }
-    fputs("]", f);
-    put_quality(f, "held_out", &m->held_out);
-    put_quality(f, "fitted", &m->fitted);
-    fputs("\n}\n", f);
+    const struct relume_maps *m = writing->maps;
+    const double mm = writing->params->width_mm;
+    jgap(w, "\n");
+    jput_integer(w, "width", m->width);
+    jput_integer(w, "height", m->height);
+    jput_number(w, "width_mm", mm > 0.0 ? mm : (double)NAN, 6);
+    jput_number(w, "width_world", m->pixel * m->width, 6);
+    jgap(w, "\n");
+    jput_text(w, "height_unit", mm > 0.0 ? "mm" : "world");
+}
+
+static relume_status write_description(const struct writing *writing)
+{
+    const struct relume_maps *m = writing->maps;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jgap(&w, "\n");
+    jput_text(&w, "format", "relume-maps");
+    jput_integer(&w, "version", 1);
+    put_size(&w, writing);
+    jput_text(&w, "normal_green", writing->params->directx ? "down" : "up");
+    jput_number(&w, "gain", m->gain, 6);
+    jput_number(&w, "specular_factor", writing->specular_most, 6);
+    jgap(&w, "\n");
+    jput_truth(&w, "gloss", !m->matte_only);
+    jput_integer(&w, "fitted_lights", m->lights);
+    jopen_array(&w, "materials");
+    for (int i = 0; i < m->materials; i++)
+        put_material(&w, &m->material[i]);
+    jclose(&w);
+    put_quality(&w, "held_out", &m->held_out);
+    put_quality(&w, "fitted", &m->fitted);
+    jgap(&w, "\n");
+    return jsave_in(&w, writing->folder, "maps.json", writing->params->log);
 }
 
 // ---------------------------------------------------------------- the folder
@@ -257,6 +272,6 @@ relume_status relume_maps_write(const struct relume_maps *maps, const char *path
     if (!status)
         status = write_materialx(&w);
     if (!status)
-        status = write_text(&w, "maps.json", put_description);
+        status = write_description(&w);
     return outdir_end(&dir, status);
 }

@@ -5,6 +5,7 @@
 // outlines.
 #include "material/maps/write.h"
 
+#include "core/base/json_write.h"
 #include "core/base/memory.h"
 #include "core/math/bilinear.h"
 #include "core/math/scalar.h"
@@ -95,93 +96,165 @@ static relume_status write_mesh(const struct writing *w, struct grid *g)
 
 // ---------------------------------------------------------------- model.gltf
 
-static void put_material(FILE *f, const struct writing *w)
+// The picture of a material's property, by its index.
+static void put_texture(struct jwriter *w, const char *key, int index)
 {
-    fputs("\"materials\": [{\"name\": \"maps\", \"doubleSided\": true,\n", f);
-    if (w->masked)
-        fputs("    \"alphaMode\": \"MASK\", \"alphaCutoff\": 0.5,\n", f);
-    fprintf(
-        f,
-        "    \"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0}, "
-        "\"metallicRoughnessTexture\": {\"index\": 1}},\n"
-        "    \"normalTexture\": {\"index\": 2}, \"occlusionTexture\": {\"index\": 1},\n"
-        "    \"extensions\": {\"KHR_materials_specular\": {\"specularTexture\": {\"index\": 3}, "
-        "\"specularColorTexture\": {\"index\": 3},\n"
-        "        \"specularColorFactor\": [%.9g, %.9g, %.9g]}}}],\n",
-        w->specular_most, w->specular_most, w->specular_most);
+    jopen_object(w, key);
+    jput_integer(w, "index", index);
+    jclose(w);
 }
 
-static void put_textures(FILE *f, const struct writing *w)
+static void put_specular(struct jwriter *w, double most)
 {
-    const char *const image[] = {"basecolor.png", "orm.png", w->gl_normal, "specular.png"};
-    fputs("\"images\": [", f);
-    for (int i = 0; i < 4; i++)
-        fprintf(f, "%s{\"uri\": \"%s\"}", i ? ", " : "", image[i]);
-    fputs("],\n\"samplers\": [{\"magFilter\": 9729, \"minFilter\": 9987, \"wrapS\": 33071, "
-          "\"wrapT\": 33071}],\n\"textures\": [",
-          f);
-    for (int i = 0; i < 4; i++)
-        fprintf(f, "%s{\"sampler\": 0, \"source\": %d}", i ? ", " : "", i);
-    fputs("],\n", f);
+    jopen_object(w, "extensions");
+    jopen_object(w, "KHR_materials_specular");
+    put_texture(w, "specularTexture", 3);
+    put_texture(w, "specularColorTexture", 3);
+    jgap(w, "\n        ");
+    jput_numbers(w, "specularColorFactor", (const double[]){most, most, most}, 3, 9);
+    jclose_levels(w, 2);
 }
 
-static void put_accessors(FILE *f, const struct grid *g)
+static void put_material(struct jwriter *w, const struct writing *writing)
 {
-    static const struct {
+    jgap(w, "\n");
+    jopen_array(w, "materials");
+    jopen_object(w, NULL);
+    jput_text(w, "name", "maps");
+    jput_truth(w, "doubleSided", true);
+    if (writing->masked) {
+        jgap(w, "\n    ");
+        jput_text(w, "alphaMode", "MASK");
+        jput_number(w, "alphaCutoff", 0.5, 1);
+    }
+    jgap(w, "\n    ");
+    jopen_object(w, "pbrMetallicRoughness");
+    put_texture(w, "baseColorTexture", 0);
+    put_texture(w, "metallicRoughnessTexture", 1);
+    jclose(w);
+    jgap(w, "\n    ");
+    put_texture(w, "normalTexture", 2);
+    put_texture(w, "occlusionTexture", 1);
+    jgap(w, "\n    ");
+    put_specular(w, writing->specular_most);
+    jclose_levels(w, 2);
+}
+
+static void put_textures(struct jwriter *w, const char *normal)
+{
+    const char *const image[] = {"basecolor.png", "orm.png", normal, "specular.png"};
+    jgap(w, "\n");
+    jopen_array(w, "images");
+    for (int i = 0; i < 4; i++) {
+        jopen_object(w, NULL);
+        jput_text(w, "uri", image[i]);
+        jclose(w);
+    }
+    jclose(w);
+    jgap(w, "\n");
+    jput_raw(w, "samplers",
+             "[{\"magFilter\": 9729, \"minFilter\": 9987, \"wrapS\": 33071, \"wrapT\": 33071}]");
+    jgap(w, "\n");
+    jopen_array(w, "textures");
+    for (int i = 0; i < 4; i++) {
+        jopen_object(w, NULL);
+        jput_integer(w, "sampler", 0);
+        jput_integer(w, "source", i);
+        jclose(w);
+    }
+    jclose(w);
+}
+
+static void put_accessors(struct jwriter *w, const struct grid *g)
+{
+    const struct {
         const char *type;
         int offset;
     } part[] = {{"VEC3", 0}, {"VEC3", 12}, {"VEC4", 24}, {"VEC2", 40}};
-    fputs("\"accessors\": [\n", f);
+    jgap(w, "\n");
+    jopen_array(w, "accessors");
     for (int i = 0; i < 4; i++) {
-        fprintf(f,
-                "    {\"bufferView\": 0, \"byteOffset\": %d, \"componentType\": 5126, \"count\": "
-                "%zu, \"type\": \"%s\"",
-                part[i].offset, g->vertices, part[i].type);
-        if (i == 0)
-            fprintf(f, ",\n        \"min\": [%.9g, %.9g, %.9g], \"max\": [%.9g, %.9g, %.9g]",
-                    (double)g->least[0], (double)g->least[1], (double)g->least[2],
-                    (double)g->most[0], (double)g->most[1], (double)g->most[2]);
-        fputs("},\n", f);
+        jgap(w, "\n    ");
+        jopen_object(w, NULL);
+        jput_integer(w, "bufferView", 0);
+        jput_integer(w, "byteOffset", part[i].offset);
+        jput_integer(w, "componentType", 5126);
+        jput_integer(w, "count", (long long)g->vertices);
+        jput_text(w, "type", part[i].type);
+        if (i == 0) {
+            jgap(w, "\n        ");
+            jput_floats(w, "min", g->least, 3, 9);
+            jput_floats(w, "max", g->most, 3, 9);
+        }
+        jclose(w);
     }
-    fprintf(f,
-            "    {\"bufferView\": 1, \"componentType\": 5125, \"count\": %zu, \"type\": "
-            "\"SCALAR\"}],\n",
-            g->indices);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jput_integer(w, "bufferView", 1);
+    jput_integer(w, "componentType", 5125);
+    jput_integer(w, "count", (long long)g->indices);
+    jput_text(w, "type", "SCALAR");
+    jclose_levels(w, 2);
 }
 
-static void put_buffers(FILE *f, const struct grid *g)
+static void put_buffers(struct jwriter *w, const struct grid *g)
 {
     const size_t stride = FLOATS * sizeof(float), vertices = g->vertices * stride;
     const size_t indices = g->indices * sizeof(uint32_t);
-    fprintf(f,
-            "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": %zu, \"byteStride\": %zu, "
-            "\"target\": 34962},\n    {\"buffer\": 0, \"byteOffset\": %zu, \"byteLength\": %zu, "
-            "\"target\": 34963}],\n\"buffers\": [{\"uri\": \"model.bin\", \"byteLength\": %zu}]\n",
-            vertices, stride, vertices, indices, vertices + indices);
+    jgap(w, "\n");
+    jopen_array(w, "bufferViews");
+    jopen_object(w, NULL);
+    jput_integer(w, "buffer", 0);
+    jput_integer(w, "byteLength", (long long)vertices);
+    jput_integer(w, "byteStride", (long long)stride);
+    jput_integer(w, "target", 34962);
+    jclose(w);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jput_integer(w, "buffer", 0);
+    jput_integer(w, "byteOffset", (long long)vertices);
+    jput_integer(w, "byteLength", (long long)indices);
+    jput_integer(w, "target", 34963);
+    jclose_levels(w, 2);
+    jgap(w, "\n");
+    jopen_array(w, "buffers");
+    jopen_object(w, NULL);
+    jput_text(w, "uri", "model.bin");
+    jput_integer(w, "byteLength", (long long)(vertices + indices));
+    jclose_levels(w, 2);
 }
 
-static relume_status write_scene(const struct writing *w, const struct grid *g)
+// One mesh of one primitive, whose attributes are the first four accessors.
+static void put_nodes(struct jwriter *w)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f)
-        return RELUME_ENOMEM;
-    fputs("{\n\"asset\": {\"version\": \"2.0\", \"generator\": \"relume " RELUME_VERSION "\"},\n"
-          "\"extensionsUsed\": [\"KHR_materials_specular\"],\n"
-          "\"scene\": 0, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],\n"
-          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0, \"NORMAL\": 1, "
-          "\"TANGENT\": 2, \"TEXCOORD_0\": 3}, \"indices\": 4, \"material\": 0}]}],\n",
-          f);
-    put_material(f, w);
-    put_textures(f, w);
-    put_accessors(f, g);
-    put_buffers(f, g);
-    fputs("}\n", f);
-    const relume_status status =
-        fclose(f) ? RELUME_ENOMEM : write_bytes(w, "model.gltf", text, size);
-    mem_free_libc(text);
-    return status;
+    jgap(w, "\n");
+    jput_integer(w, "scene", 0);
+    jput_raw(w, "scenes", "[{\"nodes\": [0]}]");
+    jput_raw(w, "nodes", "[{\"mesh\": 0}]");
+    jgap(w, "\n");
+    jput_raw(w, "meshes",
+             "[{\"primitives\": [{\"attributes\": {\"POSITION\": 0, \"NORMAL\": 1, "
+             "\"TANGENT\": 2, \"TEXCOORD_0\": 3}, \"indices\": 4, \"material\": 0}]}]");
+}
+
+static relume_status write_scene(const struct writing *writing, const struct grid *g)
+{
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jgap(&w, "\n");
+    jopen_object(&w, "asset");
+    jput_text(&w, "version", "2.0");
+    jput_text(&w, "generator", "relume " RELUME_VERSION);
+    jclose(&w);
+    jgap(&w, "\n");
+    jput_texts(&w, "extensionsUsed", (const char *const[]){"KHR_materials_specular"}, 1);
+    put_nodes(&w);
+    put_material(&w, writing);
+    put_textures(&w, writing->gl_normal);
+    put_accessors(&w, g);
+    put_buffers(&w, g);
+    jgap(&w, "\n");
+    return jsave_in(&w, writing->folder, "model.gltf", writing->params->log);
 }
 
 relume_status write_gltf(const struct writing *w)

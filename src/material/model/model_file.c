@@ -1,10 +1,10 @@
 // model_file.c - a fitted model on disk: model.json and one .npy file for each of its arrays
 #include "core/base/infile.h"
 #include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
-#include "core/base/outfile.h"
 #include "core/base/params.h"
 #include "material/model/edited.h"
 #include "material/model/gbrdf_file.h"
@@ -27,24 +27,28 @@ static char *level_folder(const char *folder, int level)
 static relume_status save_json(const relume_btf_fitted *m, const char *folder,
                                const struct relume_log *log)
 {
-    char *path = mem_format("%s/model.json", folder);
-    char *view = btf_directions_text(m->view, m->views);
-    char *light = btf_directions_text(m->light, m->lights), *text = NULL;
-    if (path && view && light)
-        text = mem_format("{ \"format\": \"relume-btf-model\", \"version\": %d,\n"
-                          "  \"model\": \"%s\", \"width\": %d, \"height\": %d,\n"
-                          "  \"clusters\": %d, \"components\": %d, \"lobes\": %d, \"levels\": %d,\n"
-                          "  \"texel_bytes\": %d, \"pair_bytes\": %d, \"includes_cosine\": %s,\n"
-                          "  \"view_directions\": %s,\n  \"light_directions\": %s }\n",
-                          VERSION, m->model->name, m->width, m->height, m->clusters, m->components,
-                          m->lobes, m->info.levels, m->texel_bytes, m->pair_bytes,
-                          m->without_cosine ? "false" : "true", view, light);
-    const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
-    mem_free(path);
-    mem_free(view);
-    mem_free(light);
-    mem_free(text);
-    return status;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jgap(&w, " ");
+    jput_text(&w, "format", "relume-btf-model");
+    jput_integer(&w, "version", VERSION);
+    jgap(&w, "\n  ");
+    jput_text(&w, "model", m->model->name);
+    jput_integer(&w, "width", m->width);
+    jput_integer(&w, "height", m->height);
+    jgap(&w, "\n  ");
+    jput_integer(&w, "clusters", m->clusters);
+    jput_integer(&w, "components", m->components);
+    jput_integer(&w, "lobes", m->lobes);
+    jput_integer(&w, "levels", m->info.levels);
+    jgap(&w, "\n  ");
+    jput_integer(&w, "texel_bytes", m->texel_bytes);
+    jput_integer(&w, "pair_bytes", m->pair_bytes);
+    jput_truth(&w, "includes_cosine", !m->without_cosine);
+    btf_put_directions(&w, "view_directions", m->view, m->views);
+    btf_put_directions(&w, "light_directions", m->light, m->lights);
+    jgap(&w, " ");
+    return jsave_in(&w, folder, "model.json", log);
 }
 
 static relume_status save_level(const relume_btf_fitted *m, const char *folder,

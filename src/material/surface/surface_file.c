@@ -1,9 +1,9 @@
 // surface_file.c - a surface on disk: surface.json, texel.npy, matrix.npy and the folder of a model
 #include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
-#include "core/base/outfile.h"
 #include "material/surface/surface.h"
 
 #include <errno.h>
@@ -46,16 +46,20 @@ static relume_status save_texels(const struct relume_btf_map_info *m, const char
 static relume_status save_json(const struct relume_btf_map_info *m, const char *folder,
                                const struct relume_log *log)
 {
-    char *path = mem_format("%s/surface.json", folder);
-    char *text = mem_format("{ \"format\": \"relume-btf-surface\", \"version\": %d,\n"
-                            "  \"tiles\": %d, \"tile_width\": %d, \"tile_height\": %d,\n"
-                            "  \"columns\": %d, \"rows\": %d }\n",
-                            VERSION, m->tiles, m->width, m->height, m->columns, m->rows);
-    const relume_status status =
-        path && text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
-    mem_free(path);
-    mem_free(text);
-    return status;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jgap(&w, " ");
+    jput_text(&w, "format", "relume-btf-surface");
+    jput_integer(&w, "version", VERSION);
+    jgap(&w, "\n  ");
+    jput_integer(&w, "tiles", m->tiles);
+    jput_integer(&w, "tile_width", m->width);
+    jput_integer(&w, "tile_height", m->height);
+    jgap(&w, "\n  ");
+    jput_integer(&w, "columns", m->columns);
+    jput_integer(&w, "rows", m->rows);
+    jgap(&w, " ");
+    return jsave_in(&w, folder, "surface.json", log);
 }
 
 static relume_status save_model(const relume_btf_fitted *model, const char *folder,

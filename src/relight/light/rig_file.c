@@ -3,9 +3,9 @@
 
 #include "core/base/context.h"
 #include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "core/base/outfile.h"
 #include "relight/light/spec.h"
 
 #include <libgen.h>
@@ -177,47 +177,45 @@ static char *relative(const char *file, const char *folder)
     return mem_format("%s%s", up, to + same);
 }
 
-static bool write_light(FILE *to, const struct relume_rig_entry *e, const char *folder)
+static void put_light(struct jwriter *w, const struct relume_rig_entry *e, const char *folder)
 {
     char *file = e->file ? relative(e->file, folder) : NULL;
     char *words = file || !e->file ? spec_text(&e->light, file) : NULL;
-    char *spec = words ? jvalue_quote(words) : NULL;
-    char *name = jvalue_quote(e->name);
-    if (spec && name)
-        fprintf(to,
-                "    { \"name\": %s, \"light\": %s, \"rgb\": [%.9g, %.9g, %.9g],\n"
-                "      \"intensity\": %.17g, \"on\": %s, \"solo\": %s }",
-                name, spec, (double)e->light.rgb[0], (double)e->light.rgb[1],
-                (double)e->light.rgb[2], e->intensity, e->on ? "true" : "false",
-                e->solo ? "true" : "false");
-    const bool good = spec && name;
-    mem_free(name);
-    mem_free(spec);
+    if (!words)
+        jfail(w, RELUME_ENOMEM);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jgap(w, " ");
+    jput_text(w, "name", e->name);
+    jput_text(w, "light", words);
+    jput_floats(w, "rgb", e->light.rgb, 3, 9);
+    jgap(w, "\n      ");
+    jput_number(w, "intensity", e->intensity, 17);
+    jput_truth(w, "on", e->on);
+    jput_truth(w, "solo", e->solo);
+    jgap(w, " ");
+    jclose(w);
     mem_free(words);
     mem_free(file);
-    return good;
 }
 
 relume_status relume_rig_save(const relume_rig *rig, const char *path, const struct relume_log *log)
 {
-    char *text = NULL, *copy = mem_text(path);
-    size_t size = 0;
-    FILE *to = copy ? open_memstream(&text, &size) : NULL;
-    bool good = to != NULL;
+    char *copy = mem_text(path);
     const char *folder = copy ? dirname(copy) : NULL;
-    if (good)
-        fputs("{ \"format\": \"relume-rig\", \"version\": 1,\n  \"lights\": [", to);
-    for (int i = 0; good && i < relume_rig_count(rig); i++) {
-        fputs(i ? ",\n" : "\n", to);
-        good = write_light(to, relume_rig_entry(rig, i), folder);
-    }
-    if (good)
-        fputs(" ] }\n", to);
-    good = (!to || fclose(to) == 0) && good;
-    const relume_status status =
-        good ? outfile_save(path, text, size, log)
-             : log_fail(log, RELUME_ENOMEM, "%s: out of memory, or a name is not UTF-8", path);
-    mem_free_libc(text);
+    struct jwriter w = {.status = copy ? RELUME_OK : RELUME_ENOMEM};
+    jopen_object(&w, NULL);
+    jgap(&w, " ");
+    jput_text(&w, "format", "relume-rig");
+    jput_integer(&w, "version", 1);
+    jgap(&w, "\n  ");
+    jopen_array(&w, "lights");
+    for (int i = 0; copy && i < relume_rig_count(rig); i++)
+        put_light(&w, relume_rig_entry(rig, i), folder);
+    jgap(&w, " ");
+    jclose(&w);
+    jgap(&w, " ");
+    const relume_status status = jsave(&w, path, log);
     mem_free(copy);
     return status;
 }

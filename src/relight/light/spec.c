@@ -2,7 +2,7 @@
 #include "relight/light/spec.h"
 
 #include "core/base/log.h"
-#include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/memory.h"
 #include "relight/light/light.h"
 
@@ -240,7 +240,7 @@ static void append(struct words *w, char *more)
 
 static void append_number(struct words *w, double number)
 {
-    append(w, mem_format(" %s", jvalue_number_text(number).text));
+    append(w, mem_format(" %s", jnumber_text(number).text));
 }
 
 static void append_vector(struct words *w, struct relume_vec3 v)

@@ -5,6 +5,7 @@
 #include "shape/mesh/mesh_write.h"
 
 #include "core/base/infile.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 
@@ -87,7 +88,7 @@ static int list_views(struct view view[MOST_VIEWS], const struct relume_mesh *m,
 
 // ---------------------------------------------------------------- the JSON chunk
 
-static void print_bounds(FILE *f, const struct relume_mesh *m)
+static void put_bounds(struct jwriter *w, const struct relume_mesh *m)
 {
     float least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < m->vertex_count; i++)
@@ -95,75 +96,106 @@ static void print_bounds(FILE *f, const struct relume_mesh *m)
             least[c] = fminf(least[c], m->position[i][c]);
             most[c] = fmaxf(most[c], m->position[i][c]);
         }
-    fprintf(f, ",\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]", (double)least[0],
-            (double)least[1], (double)least[2], (double)most[0], (double)most[1], (double)most[2]);
+    jput_floats(w, "min", least, 3, 9);
+    jput_floats(w, "max", most, 3, 9);
 }
 
-static void print_accessors(FILE *f, const struct relume_mesh *m, const struct view *view,
-                            int count)
+static void put_accessors(struct jwriter *w, const struct relume_mesh *m, const struct view *view,
+                          int count)
 {
-    fputs(",\"accessors\":[", f);
+    jopen_array(w, "accessors");
     for (int i = 0; i < count && view[i].name; i++) {
-        fprintf(f, "%s{\"bufferView\":%d,\"componentType\":%d,\"count\":%zu,\"type\":\"%s\"%s",
-                i ? "," : "", i, view[i].component, view[i].count, view[i].type,
-                view[i].normalised ? ",\"normalized\":true" : "");
+        jopen_object(w, NULL);
+        jput_integer(w, "bufferView", i);
+        jput_integer(w, "componentType", view[i].component);
+        jput_integer(w, "count", (long long)view[i].count);
+        jput_text(w, "type", view[i].type);
+        if (view[i].normalised)
+            jput_truth(w, "normalized", true);
         if (!strcmp(view[i].name, "POSITION"))
-            print_bounds(f, m);
-        fputc('}', f);
+            put_bounds(w, m);
+        jclose(w);
     }
-    fputs("],\"bufferViews\":[", f);
-    for (int i = 0; i < count; i++) {
-        fprintf(f, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", i ? "," : "",
-                view[i].offset, view[i].bytes);
-        if (view[i].name)
-            fprintf(f, ",\"target\":%d", *view[i].name ? 34962 : 34963);
-        fputc('}', f);
-    }
-    fputs("]", f);
+    jclose(w);
 }
 
-static void print_mesh(FILE *f, const struct relume_mesh *m, const struct view *view, int count,
-                       const struct picture *p)
+static void put_buffers(struct jwriter *w, const struct view *view, int count)
 {
-    fputs(",\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
-          "\"meshes\":[{\"primitives\":[{\"indices\":0,\"material\":0,\"attributes\":{",
-          f);
+    const struct view *last = &view[count - 1];
+    jopen_array(w, "bufferViews");
+    for (int i = 0; i < count; i++) {
+        jopen_object(w, NULL);
+        jput_integer(w, "buffer", 0);
+        jput_integer(w, "byteOffset", (long long)view[i].offset);
+        jput_integer(w, "byteLength", (long long)view[i].bytes);
+        if (view[i].name)
+            jput_integer(w, "target", *view[i].name ? 34962 : 34963);
+        jclose(w);
+    }
+    jclose(w);
+    jopen_array(w, "buffers");
+    jopen_object(w, NULL);
+    jput_integer(w, "byteLength", (long long)(last->offset + padded(last->bytes)));
+    jclose_levels(w, 2);
+}
+
+static void put_mesh(struct jwriter *w, const struct view *view, int count)
+{
+    jput_integer(w, "scene", 0);
+    jput_raw(w, "scenes", "[{\"nodes\":[0]}]");
+    jput_raw(w, "nodes", "[{\"mesh\":0}]");
+    jopen_array(w, "meshes");
+    jopen_object(w, NULL);
+    jopen_array(w, "primitives");
+    jopen_object(w, NULL);
+    jput_integer(w, "indices", 0);
+    jput_integer(w, "material", 0);
+    jopen_object(w, "attributes");
     for (int i = 1; i < count && view[i].name; i++)
-        fprintf(f, "%s\"%s\":%d", i > 1 ? "," : "", view[i].name, i);
-    fprintf(f,
-            "}}]}],\"materials\":[{\"doubleSided\":true%s,\"pbrMetallicRoughness\":{"
-            "\"metallicFactor\":0,\"roughnessFactor\":1",
-            m->cut_out && p->bytes ? ",\"alphaMode\":\"MASK\"" : "");
+        jput_integer(w, view[i].name, i);
+    jclose_levels(w, 5);
+}
+
+static void put_material(struct jwriter *w, const struct relume_mesh *m, int count,
+                         const struct picture *p)
+{
+    jopen_array(w, "materials");
+    jopen_object(w, NULL);
+    jput_truth(w, "doubleSided", true);
+    if (m->cut_out && p->bytes)
+        jput_text(w, "alphaMode", "MASK");
+    jopen_object(w, "pbrMetallicRoughness");
+    jput_integer(w, "metallicFactor", 0);
+    jput_integer(w, "roughnessFactor", 1);
     if (p->bytes)
-        fprintf(f,
-                ",\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{\"source\":0}],"
-                "\"images\":[{\"bufferView\":%d,\"mimeType\":\"%s\"}]",
-                count - 1, p->type);
-    else
-        fputs("}}]", f);
+        jput_raw(w, "baseColorTexture", "{\"index\":0}");
+    jclose_levels(w, 3);
+    if (!p->bytes)
+        return;
+    jput_raw(w, "textures", "[{\"source\":0}]");
+    jopen_array(w, "images");
+    jopen_object(w, NULL);
+    jput_integer(w, "bufferView", count - 1);
+    jput_text(w, "mimeType", p->type);
+    jclose_levels(w, 2);
 }
 
 static relume_status make_json(char **out, size_t *size, const struct relume_mesh *m,
                                const struct view *view, int count, const struct picture *p)
 {
-    char *text = NULL;
-    FILE *f = open_memstream(&text, size);
-    if (!f)
-        return RELUME_ENOMEM;
-    fputs("{\"asset\":{\"version\":\"2.0\",\"generator\":\"relume\"}", f);
+    struct jwriter w = {.style = JSON_DENSE};
+    jopen_object(&w, NULL);
+    jput_raw(&w, "asset", "{\"version\":\"2.0\",\"generator\":\"relume\"}");
     if (m->triangle_count) {
-        print_mesh(f, m, view, count, p);
-        print_accessors(f, m, view, count);
-        const struct view *last = &view[count - 1];
-        fprintf(f, ",\"buffers\":[{\"byteLength\":%zu}]", last->offset + padded(last->bytes));
+        put_mesh(&w, view, count);
+        put_material(&w, m, count, p);
+        put_accessors(&w, m, view, count);
+        put_buffers(&w, view, count);
     }
-    fputc('}', f);
-    while (!ferror(f) && ftell(f) % 4)
-        fputc(' ', f);
-    const bool good = !ferror(f);
-    *out = fclose(f) || !good ? NULL : text;
-    if (!*out)
-        mem_free_libc(text);
+    char *text = jtake(&w, size);
+    *out = text ? mem_format("%s%.*s", text, (int)(padded(*size) - *size), "   ") : NULL;
+    *size = padded(*size);
+    mem_free(text);
     return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -229,7 +261,7 @@ static relume_status write_chunks(struct sink *to, const struct relume_mesh *m, 
             put_arrays(to, m, p);
         }
     }
-    mem_free_libc(json);
+    mem_free(json);
     return total <= UINT32_MAX
                ? RELUME_OK
                : log_fail(log, RELUME_EINVAL,

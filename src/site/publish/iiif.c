@@ -12,6 +12,64 @@
 // Larger files are here reduced to MOST_SIDE, which lies in memory as floats.
 enum { TILE = 512, MOST_WHOLE = 1024, MOST_SIDE = 8192, MOST_FACTOR = 1 << 16 };
 
+// ---------------------------------------------------------------- addresses and words
+
+// Returns the address of a file of the site, to be freed; NULL when memory is short.
+static char *address_of(const struct site *site, const char *name, const char *what)
+{
+    struct text t;
+    char path[192], *address = NULL;
+    snprintf(path, sizeof path, "%s%s", name, what);
+    if (!text_open(&t)) {
+        site_put_address(t.file, site, path);
+        address = text_close(&t) ? NULL : mem_text(t.bytes);
+    }
+    text_free(&t);
+    return address;
+}
+
+static void put_address(struct jwriter *w, const char *key, const struct site *site,
+                        const char *name, const char *what)
+{
+    char *address = address_of(site, name, what);
+    if (!address)
+        jfail(w, RELUME_ENOMEM);
+    jput_text(w, key, address);
+    mem_free(address);
+}
+
+// "id", "type" and, unless it is NULL, "format".
+static void put_resource(struct jwriter *w, const struct site *site, const char *name,
+                         const char *what, const char *type, const char *format)
+{
+    put_address(w, "id", site, name, what);
+    jput_text(w, "type", type);
+    if (format)
+        jput_text(w, "format", format);
+}
+
+static void put_words(struct jwriter *w, const char *key, const char *language, const char *value)
+{
+    jopen_object(w, key);
+    jopen_array(w, language);
+    text_put(w, NULL, value);
+    jclose_levels(w, 2);
+}
+
+// A list of one object, which is left open.
+static void open_only(struct jwriter *w, const char *space, const char *key)
+{
+    jgap(w, space);
+    jopen_array(w, key);
+    jopen_object(w, NULL);
+}
+
+static void put_size(struct jwriter *w, int width, int height)
+{
+    jput_integer(w, "width", width);
+    jput_integer(w, "height", height);
+}
+
 // ---------------------------------------------------------------- the image service
 
 static relume_status save_whole(const struct site *site, const char *name, const char *size,
@@ -58,22 +116,23 @@ static relume_status halve(struct relume_image *picture)
 
 // All of the pyramid; `picture` is reduced on the way. sizes and factors for info.json.
 static relume_status save_pyramid(const struct site *site, const char *name,
-                                  struct relume_image *picture, FILE *sizes, FILE *factors)
+                                  struct relume_image *picture, struct jwriter *sizes,
+                                  struct jwriter *factors)
 {
     const int width = picture->width, height = picture->height;
-    const char *between = "";
     relume_status status = save_whole(site, name, "max", picture);
     for (int factor = 1; !status && factor <= MOST_FACTOR; factor *= 2) {
         const bool whole = larger_of(picture->width, picture->height) <= MOST_WHOLE;
         char size[32];
         snprintf(size, sizeof size, "%d,%d", picture->width, picture->height);
         status = save_tiles(site, name, picture, factor, width, height);
-        fprintf(factors, "%s%d", factor > 1 ? ", " : "", factor);
+        jput_integer(factors, NULL, factor);
         if (!status && whole) {
             status = save_whole(site, name, size, picture);
-            fprintf(sizes, "%s{\"width\": %d, \"height\": %d}", between, picture->width,
-                    picture->height);
-            between = ", ";
+            jopen_object(sizes, NULL);
+            jput_integer(sizes, "width", picture->width);
+            jput_integer(sizes, "height", picture->height);
+            jclose(sizes);
         }
         if (larger_of(picture->width, picture->height) <= TILE / 2)
             break;
@@ -83,127 +142,114 @@ static relume_status save_pyramid(const struct site *site, const char *name,
     return status;
 }
 
+static void put_tiles(struct jwriter *w, const char *factors)
+{
+    open_only(w, "\n  ", "tiles");
+    put_size(w, TILE, TILE);
+    jput_raw(w, "scaleFactors", factors);
+    jclose_levels(w, 2);
+}
+
 static relume_status write_service(const struct site *site, const char *name,
                                    struct relume_image *picture)
 {
     const int width = picture->width, height = picture->height;
-    struct text info = {0}, sizes = {0}, factors = {0};
-    char path[128];
-    relume_status status = text_open(&info);
+    struct jwriter w = {.style = JSON_MARKUP}, size_list = {0}, factor_list = {0};
+    jopen_array(&size_list, NULL);
+    jopen_array(&factor_list, NULL);
+    const relume_status status = save_pyramid(site, name, picture, &size_list, &factor_list);
+    char *sizes = jtake(&size_list, NULL), *factors = jtake(&factor_list, NULL);
+    if (!sizes || !factors)
+        jfail(&w, RELUME_ENOMEM);
+    jopen_object(&w, NULL);
+    jgap(&w, "\n  ");
+    jput_text(&w, "@context", "http://iiif.io/api/image/3/context.json");
+    jgap(&w, "\n  ");
+    put_address(&w, "id", site, name, "/iiif");
+    jgap(&w, "\n  ");
+    jput_text(&w, "type", "ImageService3");
+    jgap(&w, "\n  ");
+    jput_text(&w, "protocol", "http://iiif.io/api/image");
+    jgap(&w, "\n  ");
+    jput_text(&w, "profile", "level0");
+    jgap(&w, "\n  ");
+    jput_integer(&w, "width", width);
+    jgap(&w, "\n  ");
+    jput_integer(&w, "height", height);
+    jgap(&w, "\n  ");
+    jput_raw(&w, "sizes", sizes);
+    put_tiles(&w, factors);
+    jgap(&w, "\n");
+    mem_free(sizes);
+    mem_free(factors);
     if (!status)
-        status = text_open(&sizes);
-    if (!status)
-        status = text_open(&factors);
-    if (!status)
-        status = save_pyramid(site, name, picture, sizes.file, factors.file);
-    if (!status)
-        status = text_close(&sizes);
-    if (!status)
-        status = text_close(&factors);
-    if (!status) {
-        snprintf(path, sizeof path, "%s/iiif", name);
-        fputs("{\n  \"@context\": \"http://iiif.io/api/image/3/context.json\",\n  \"id\": \"",
-              info.file);
-        site_put_address(info.file, site, path);
-        fprintf(info.file,
-                "\",\n  \"type\": \"ImageService3\",\n"
-                "  \"protocol\": \"http://iiif.io/api/image\",\n  \"profile\": \"level0\",\n"
-                "  \"width\": %d,\n  \"height\": %d,\n  \"sizes\": [%s],\n"
-                "  \"tiles\": [{\"width\": %d, \"height\": %d, \"scaleFactors\": [%s]}]\n}\n",
-                width, height, sizes.bytes, TILE, TILE, factors.bytes);
-        snprintf(path, sizeof path, "%s/iiif/info.json", name);
-        status = site_save_text(site, path, false, &info);
-    }
-    text_free(&info);
-    text_free(&sizes);
-    text_free(&factors);
+        return site_save_json(site, name, "iiif/info.json", false, &w);
+    jdrop(&w);
     return status;
 }
 
 // ---------------------------------------------------------------- the manifest
 
-// "id": "...", of something of the file.
-static void put_id(FILE *f, const struct site *site, const char *name, const char *what)
+static void put_pair(struct jwriter *w, const char *key, const char *label, const char *value)
 {
-    char path[192];
-    snprintf(path, sizeof path, "%s%s", name, what);
-    fputs("\"id\": \"", f);
-    site_put_address(f, site, path);
-    fputs("\", ", f);
+    jopen_object(w, key);
+    put_words(w, "label", "en", label);
+    put_words(w, "value", "none", value);
+    jclose(w);
 }
 
-static void put_words(FILE *f, const char *key, const char *value)
-{
-    fprintf(f, "\"%s\": {\"none\": [", key);
-    text_json(f, value);
-    fputs("]}", f);
-}
-
-static void put_pair(FILE *f, const char *label, const char *value, const char *between)
-{
-    fprintf(f, "%s{\"label\": {\"en\": [\"%s\"]}, ", between, label);
-    put_words(f, "value", value);
-    putc('}', f);
-}
-
-static void put_metadata(FILE *f, const struct details *d)
+static void put_metadata(struct jwriter *w, const struct details *d)
 {
     const struct {
         const char *label, *value;
     } rows[] = {{"Maker", d->maker}, {"Object", d->object}, {"Licence", d->licence}};
-    const char *between = "";
-    fputs("  \"metadata\": [", f);
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        if (!rows[i].value)
-            continue;
-        put_pair(f, rows[i].label, rows[i].value, between);
-        between = ", ";
-    }
-    fputs("],\n", f);
+    jgap(w, "\n  ");
+    jopen_array(w, "metadata");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (rows[i].value)
+            put_pair(w, NULL, rows[i].label, rows[i].value);
+    jclose(w);
     if (d->description) {
-        fputs("  ", f);
-        put_words(f, "summary", d->description);
-        fputs(",\n", f);
+        jgap(w, "\n  ");
+        put_words(w, "summary", "none", d->description);
     }
-    if (!d->licence)
-        return;
-    fputs("  \"requiredStatement\": ", f);
-    put_pair(f, "Licence", d->licence, "");
-    fputs(",\n", f);
+    if (d->licence) {
+        jgap(w, "\n  ");
+        put_pair(w, "requiredStatement", "Licence", d->licence);
+    }
 }
 
-static void put_links(FILE *f, const struct site *site, const struct page *p)
+static void put_links(struct jwriter *w, const struct site *site, const struct page *p)
 {
-    fputs("  \"thumbnail\": [{", f);
-    put_id(f, site, p->name, "/poster.jpg");
-    fprintf(f,
-            "\"type\": \"Image\", \"format\": \"image/jpeg\", \"width\": %d, \"height\": %d}],\n",
-            p->poster_width, p->poster_height);
-    fputs("  \"homepage\": [{", f);
-    put_id(f, site, p->name, ".html");
-    fputs("\"type\": \"Text\", \"format\": \"text/html\", \"label\": {\"en\": [\"The page with the "
-          "moving light\"]}}],\n  \"seeAlso\": [{",
-          f);
-    put_id(f, site, p->name, p->object ? "/object.json" : "/scene.json");
-    fprintf(
-        f, "\"type\": \"%s\", \"format\": \"application/json\", \"label\": {\"en\": [\"%s\"]}}],\n",
-        p->object ? "Model" : "Dataset",
-        p->object ? "The relightable object (relume-web-object 1)"
-                  : "Coefficient layers of the relightable image (relume-web 1)");
+    open_only(w, "\n  ", "thumbnail");
+    put_resource(w, site, p->name, "/poster.jpg", "Image", "image/jpeg");
+    put_size(w, p->poster_width, p->poster_height);
+    jclose_levels(w, 2);
+    open_only(w, "\n  ", "homepage");
+    put_resource(w, site, p->name, ".html", "Text", "text/html");
+    put_words(w, "label", "en", "The page with the moving light");
+    jclose_levels(w, 2);
+    open_only(w, "\n  ", "seeAlso");
+    put_resource(w, site, p->name, p->object ? "/object.json" : "/scene.json",
+                 p->object ? "Model" : "Dataset", "application/json");
+    put_words(w, "label", "en",
+              p->object ? "The relightable object (relume-web-object 1)"
+                        : "Coefficient layers of the relightable image (relume-web 1)");
+    jclose_levels(w, 2);
     if (!p->object)
         return;
-    fputs("  \"rendering\": [{", f);
-    put_id(f, site, p->name, "/model.glb");
-    fputs("\"type\": \"Model\", \"format\": \"model/gltf-binary\", \"label\": {\"en\": [\"The "
-          "object in plain light (glTF)\"]}}],\n",
-          f);
+    open_only(w, "\n  ", "rendering");
+    put_resource(w, site, p->name, "/model.glb", "Model", "model/gltf-binary");
+    put_words(w, "label", "en", "The object in plain light (glTF)");
+    jclose_levels(w, 2);
 }
 
-static void put_notes(FILE *f, const struct site *site, const struct page *p)
+static void put_notes(struct jwriter *w, const char *space, const struct site *site,
+                      const struct page *p)
 {
-    fputs("\"annotations\": [{", f);
-    put_id(f, site, p->name, "/iiif/notes.json");
-    fputs("\"type\": \"AnnotationPage\"}]", f);
+    open_only(w, space, "annotations");
+    put_resource(w, site, p->name, "/iiif/notes.json", "AnnotationPage", NULL);
+    jclose_levels(w, 2);
 }
 
 // What a canvas shows: a picture below the file's folder; `service`: the file's image service has
@@ -216,88 +262,96 @@ struct canvas {
     bool model;      // it is no picture, but a mesh
 };
 
-static const char *body_of(const struct canvas *c)
+static void put_body(struct jwriter *w, const struct site *site, const struct page *p,
+                     const struct canvas *c)
 {
-    return c->model ? "\"type\": \"Model\", \"format\": \"model/gltf-binary\""
-                    : "\"type\": \"Image\", \"format\": \"image/jpeg\"";
+    jgap(w, "\n      ");
+    jopen_object(w, "body");
+    put_resource(w, site, p->name, c->picture, c->model ? "Model" : "Image",
+                 c->model ? "model/gltf-binary" : "image/jpeg");
+    if (!c->model)
+        put_size(w, c->width, c->height);
+    if (c->service) {
+        open_only(w, "\n        ", "service");
+        put_resource(w, site, p->name, "/iiif", "ImageService3", NULL);
+        jput_text(w, "profile", "level0");
+        jclose_levels(w, 2);
+    }
+    jclose(w);
 }
 
-static void put_canvas(FILE *f, const struct site *site, const struct page *p,
+static void put_painting(struct jwriter *w, const struct site *site, const struct page *p,
+                         const struct canvas *c, const char *id)
+{
+    char below[64];
+    open_only(w, "\n    ", "items");
+    snprintf(below, sizeof below, "%s/page", id);
+    put_resource(w, site, p->name, below, "AnnotationPage", NULL);
+    open_only(w, NULL, "items");
+    snprintf(below, sizeof below, "%s/picture", id);
+    put_resource(w, site, p->name, below, "Annotation", NULL);
+    jput_text(w, "motivation", "painting");
+    jgap(w, "\n      ");
+    put_address(w, "target", site, p->name, id);
+    put_body(w, site, p, c);
+    jclose_levels(w, 4);
+}
+
+static void put_canvas(struct jwriter *w, const struct site *site, const struct page *p,
                        const struct canvas *c)
 {
-    char id[32], below[64], whole[192];
+    char id[32];
     snprintf(id, sizeof id, "/canvas/%d", c->number);
-    fprintf(f, "%s{", c->number > 1 ? ", " : "");
-    put_id(f, site, p->name, id);
-    fprintf(f, "\"type\": \"Canvas\", \"width\": %d, \"height\": %d,\n    ", c->width, c->height);
-    put_words(f, "label", c->label);
+    jopen_object(w, NULL);
+    put_resource(w, site, p->name, id, "Canvas", NULL);
+    put_size(w, c->width, c->height);
+    jgap(w, "\n    ");
+    put_words(w, "label", "none", c->label);
     if (c->thumbnail) {
-        fputs(",\n    \"thumbnail\": [{", f);
-        put_id(f, site, p->name, c->model ? "/poster.jpg" : c->picture);
-        fputs("\"type\": \"Image\", \"format\": \"image/jpeg\"}]", f);
+        open_only(w, "\n    ", "thumbnail");
+        put_resource(w, site, p->name, c->model ? "/poster.jpg" : c->picture, "Image",
+                     "image/jpeg");
+        jclose_levels(w, 2);
     }
-    fputs(",\n    \"items\": [{", f);
-    snprintf(below, sizeof below, "%s/page", id);
-    put_id(f, site, p->name, below);
-    fputs("\"type\": \"AnnotationPage\", \"items\": [{", f);
-    snprintf(below, sizeof below, "%s/picture", id);
-    put_id(f, site, p->name, below);
-    fputs("\"type\": \"Annotation\", \"motivation\": \"painting\",\n      \"target\": \"", f);
-    snprintf(whole, sizeof whole, "%s%s", p->name, id);
-    site_put_address(f, site, whole);
-    fputs("\",\n      \"body\": {", f);
-    put_id(f, site, p->name, c->picture);
-    fputs(body_of(c), f);
-    if (!c->model)
-        fprintf(f, ", \"width\": %d, \"height\": %d", c->width, c->height);
-    if (c->service) {
-        fputs(",\n        \"service\": [{", f);
-        put_id(f, site, p->name, "/iiif");
-        fputs("\"type\": \"ImageService3\", \"profile\": \"level0\"}]", f);
-    }
-    fputs("}}]}]", f);
-    if (c->notes) {
-        fputs(",\n    ", f);
-        put_notes(f, site, p);
-    }
-    fputs("\n  }", f);
+    put_painting(w, site, p, c, id);
+    if (c->notes)
+        put_notes(w, "\n    ", site, p);
+    jgap(w, "\n  ");
+    jclose(w);
 }
 
 // All of a manifest before its canvases.
-static relume_status manifest_begin(struct text *t, const struct site *site, const struct page *p,
-                                    const char *name)
+static void begin_manifest(struct jwriter *w, const struct site *site, const struct page *p,
+                           const char *name)
 {
-    const relume_status status = text_open(t);
-    if (status)
-        return status;
-    fputs("{\n  \"@context\": \"http://iiif.io/api/presentation/3/context.json\",\n  ", t->file);
-    put_id(t->file, site, p->name, name);
-    fputs("\"type\": \"Manifest\",\n  ", t->file);
-    put_words(t->file, "label", p->details.title);
-    fputs(",\n", t->file);
-    put_metadata(t->file, &p->details);
-    put_links(t->file, site, p);
-    fputs("  \"items\": [", t->file);
-    return RELUME_OK;
+    *w = (struct jwriter){.style = JSON_MARKUP};
+    jopen_object(w, NULL);
+    jgap(w, "\n  ");
+    jput_text(w, "@context", "http://iiif.io/api/presentation/3/context.json");
+    jgap(w, "\n  ");
+    put_resource(w, site, p->name, name, "Manifest", NULL);
+    jgap(w, "\n  ");
+    put_words(w, "label", "none", p->details.title);
+    put_metadata(w, &p->details);
+    put_links(w, site, p);
+    jgap(w, "\n  ");
+    jopen_array(w, "items");
 }
 
-static relume_status manifest_end(struct text *t, const struct site *site, const struct page *p,
+// Saves the manifest below the folder of the page: `name` begins with a slash.
+static relume_status end_manifest(struct jwriter *w, const struct site *site, const struct page *p,
                                   const char *name)
 {
-    char path[128];
-    fputs("\n}\n", t->file);
-    snprintf(path, sizeof path, "%s%s", p->name, name);
-    return site_save_text(site, path, false, t);
+    jgap(w, "\n");
+    return site_save_json(site, p->name, name + 1, false, w);
 }
 
 static relume_status write_manifest(const struct site *site, const struct page *p, int width,
                                     int height, bool notes)
 {
-    struct text t;
-    const relume_status status = manifest_begin(&t, site, p, "/manifest.json");
-    if (status)
-        return status;
-    put_canvas(t.file, site, p,
+    struct jwriter w;
+    begin_manifest(&w, site, p, "/manifest.json");
+    put_canvas(&w, site, p,
                &(struct canvas){.number = 1,
                                 .width = width,
                                 .height = height,
@@ -305,18 +359,16 @@ static relume_status write_manifest(const struct site *site, const struct page *
                                 .label = p->details.title,
                                 .service = true,
                                 .notes = notes});
-    fputc(']', t.file);
-    return manifest_end(&t, site, p, "/manifest.json");
+    jclose(&w);
+    return end_manifest(&w, site, p, "/manifest.json");
 }
 
 // The mesh alone: viewers that show meshes look at the first canvas.
 static relume_status write_model(const struct site *site, const struct page *p)
 {
-    struct text t;
-    const relume_status status = manifest_begin(&t, site, p, "/iiif/model.json");
-    if (status)
-        return status;
-    put_canvas(t.file, site, p,
+    struct jwriter w;
+    begin_manifest(&w, site, p, "/iiif/model.json");
+    put_canvas(&w, site, p,
                &(struct canvas){.number = 1,
                                 .width = POSTER_WIDTH,
                                 .height = POSTER_HEIGHT,
@@ -324,23 +376,21 @@ static relume_status write_model(const struct site *site, const struct page *p)
                                 .label = p->details.title,
                                 .thumbnail = true,
                                 .model = true});
-    fputc(']', t.file);
-    return manifest_end(&t, site, p, "/iiif/model.json");
+    jclose(&w);
+    return end_manifest(&w, site, p, "/iiif/model.json");
 }
 
 relume_status iiif_write_object(const struct site *site, const struct page *p, bool notes)
 {
-    struct text t;
-    const relume_status status = manifest_begin(&t, site, p, "/manifest.json");
-    if (status)
-        return status;
+    struct jwriter w;
+    begin_manifest(&w, site, p, "/manifest.json");
     for (int step = 0; step < TURN_STEPS; step++) {
         char picture[32] = "/poster.jpg", label[64] = "From the front";
         if (step) {
             snprintf(picture, sizeof picture, "/iiif/turn-%d.jpg", step);
             snprintf(label, sizeof label, "From %d degrees to the right", step * 360 / TURN_STEPS);
         }
-        put_canvas(t.file, site, p,
+        put_canvas(&w, site, p,
                    &(struct canvas){.number = step + 1,
                                     .width = step ? TURN_WIDTH : POSTER_WIDTH,
                                     .height = step ? TURN_HEIGHT : POSTER_HEIGHT,
@@ -348,26 +398,16 @@ relume_status iiif_write_object(const struct site *site, const struct page *p, b
                                     .label = label,
                                     .thumbnail = true});
     }
-    fputc(']', t.file);
-    if (notes) {
-        fputs(",\n  ", t.file);
-        put_notes(t.file, site, p);
-    }
-    const relume_status written = manifest_end(&t, site, p, "/manifest.json");
+    jclose(&w);
+    if (notes)
+        put_notes(&w, "\n  ", site, p);
+    const relume_status written = end_manifest(&w, site, p, "/manifest.json");
     return written ? written : write_model(site, p);
 }
 
 char *iiif_target(const struct site *site, const struct page *page)
 {
-    struct text t;
-    char path[128], *canvas = NULL;
-    snprintf(path, sizeof path, "%s%s", page->name, page->object ? "/object.json" : "/canvas/1");
-    if (!text_open(&t)) {
-        site_put_address(t.file, site, path);
-        canvas = text_close(&t) ? NULL : mem_text(t.bytes);
-    }
-    text_free(&t);
-    return canvas;
+    return address_of(site, page->name, page->object ? "/object.json" : "/canvas/1");
 }
 
 relume_status iiif_write(const struct site *site, const struct page *page, relume_pack *pack,

@@ -235,22 +235,49 @@ static relume_status write_numbers(struct arrays *a, size_t *bytes, const struct
 
 // Functions of the light by name and lights; the basis is `transform` times these, where it has
 // one.
-static void put_basis(FILE *f, const struct baked_basis *b)
+static void put_basis(struct jwriter *w, const struct baked_basis *b)
 {
     const struct relume_coder_info *info = relume_coder_info(b->coder);
     const size_t n = (size_t)b->count * (size_t)info->functions;
-    fprintf(f, "  \"basis\": {\"name\": \"%s\", \"coefficients\": %d, \"pole\": \"y\",",
-            info->basis->name, b->count);
+    jgap(w, "\n  ");
+    jopen_object(w, "basis");
+    jput_text(w, "name", info->basis->name);
+    jput_integer(w, "coefficients", b->count);
+    jput_text(w, "pole", "y");
     if (info->transform) {
-        fputs("\n    \"transform\": \"", f);
-        base64_print(f, (const uint8_t *)info->transform, n * sizeof *info->transform);
-        fputs("\",", f);
+        jgap(w, "\n    ");
+        base64_put(w, "transform", info->transform, n * sizeof *info->transform);
     }
-    fputs("\n    \"lights\": [", f);
-    for (int i = 0; i < b->directions; i++)
-        fprintf(f, "%s%.9g, %.9g, %.9g", i ? ", " : "", b->direction[i].x, b->direction[i].y,
-                b->direction[i].z);
-    fprintf(f, "], \"functions\": %d},\n", info->functions);
+    jgap(w, "\n    ");
+    jopen_array(w, "lights");
+    for (int i = 0; i < b->directions; i++) {
+        const vec3 d = b->direction[i];
+        jput_number(w, NULL, d.x, 9);
+        jput_number(w, NULL, d.y, 9);
+        jput_number(w, NULL, d.z, 9);
+    }
+    jclose(w);
+    jput_integer(w, "functions", info->functions);
+    jclose(w);
+}
+
+static void put_sizes(struct jwriter *w, const struct relume_baked_info *i, const struct arrays *a,
+                      size_t bytes)
+{
+    jgap(w, "\n  ");
+    jput_integer(w, "width", i->width);
+    jput_integer(w, "height", i->height);
+    jput_integer(w, "side", i->side);
+    jput_integer(w, "clusters", i->clusters);
+    jput_integer(w, "components", i->components);
+    jgap(w, "\n  ");
+    jput_integer(w, "triangles", (long long)i->triangles);
+    jput_integer(w, "vertices", (long long)a->vertices);
+    jgap(w, "\n  ");
+    jput_floats(w, "min", a->box[0], 3, 9);
+    jput_floats(w, "max", a->box[1], 3, 9);
+    jgap(w, "\n  ");
+    jput_integer(w, "bytes", (long long)bytes);
 }
 
 static relume_status write_json(const struct site *site, const struct page *page,
@@ -258,31 +285,28 @@ static relume_status write_json(const struct site *site, const struct page *page
                                 const relume_notes *notes)
 {
     const struct relume_baked_info *i = &b->info;
-    char name[128];
-    struct text t;
-    const relume_status status = text_open(&t);
-    if (status)
-        return status;
-    FILE *f = t.file;
-    fputs("{\n  \"format\": \"relume-web-object\", \"version\": 1,\n", f);
-    text_details(f, page->name, &page->details);
-    if (relume_notes_scale(notes) > 0.0)
-        fprintf(f, "  \"mm_per_unit\": %.9g,\n", relume_notes_scale(notes));
-    if (relume_notes_count(notes))
-        fputs("  \"notes\": true,\n", f);
+    struct jwriter w = {.style = JSON_MARKUP};
+    jopen_object(&w, NULL);
+    jgap(&w, "\n  ");
+    jput_text(&w, "format", "relume-web-object");
+    jput_integer(&w, "version", 1);
+    text_put_details(&w, page->name, &page->details);
+    if (relume_notes_scale(notes) > 0.0) {
+        jgap(&w, "\n  ");
+        jput_number(&w, "mm_per_unit", relume_notes_scale(notes), 9);
+    }
+    if (relume_notes_count(notes)) {
+        jgap(&w, "\n  ");
+        jput_truth(&w, "notes", true);
+    }
     if (!i->fixed)
-        put_basis(f, &b->basis);
-    fprintf(f, "  \"fixed\": %s, \"coefficients\": %d,\n", i->fixed ? "true" : "false", b->kept);
-    fprintf(
-        f, "  \"width\": %d, \"height\": %d, \"side\": %d, \"clusters\": %d, \"components\": %d,\n",
-        i->width, i->height, i->side, i->clusters, i->components);
-    fprintf(f, "  \"triangles\": %zu, \"vertices\": %zu,\n", i->triangles, a->vertices);
-    fprintf(f, "  \"min\": [%.9g, %.9g, %.9g], \"max\": [%.9g, %.9g, %.9g],\n",
-            (double)a->box[0][0], (double)a->box[0][1], (double)a->box[0][2], (double)a->box[1][0],
-            (double)a->box[1][1], (double)a->box[1][2]);
-    fprintf(f, "  \"bytes\": %zu\n}\n", bytes);
-    snprintf(name, sizeof name, "%s/object.json", page->name);
-    return site_save_text(site, name, true, &t);
+        put_basis(&w, &b->basis);
+    jgap(&w, "\n  ");
+    jput_truth(&w, "fixed", i->fixed);
+    jput_integer(&w, "coefficients", b->kept);
+    put_sizes(&w, i, a, bytes);
+    jgap(&w, "\n");
+    return site_save_json(site, page->name, "object.json", true, &w);
 }
 
 // ---------------------------------------------------------------- notes

@@ -35,8 +35,8 @@ struct scene {
 relume_status scene_write(struct scene *s);
 void scene_free(struct scene *s);
 
-// scene.json alone, when all else is known: its text, and the file.
-void scene_print_json(FILE *f, const struct scene *s);
+// scene.json alone, when all else is known: its members, and the file.
+void scene_put_json(struct jwriter *w, const struct scene *s);
 relume_status scene_write_json(const struct scene *s);
 
 #endif

@@ -9,87 +9,117 @@
 #include <string.h>
 
 // Little-endian on every machine that the library runs on.
-static void put_floats(FILE *f, const char *key, const float *v, size_t n)
+static void put_floats(struct jwriter *w, const char *key, const float *v, size_t n)
 {
-    fprintf(f, "  \"%s\": \"", key);
-    base64_print(f, (const uint8_t *)v, n * sizeof *v);
-    fputs("\",\n", f);
+    jgap(w, "\n  ");
+    base64_put(w, key, v, n * sizeof *v);
 }
 
-static void put_numbers(FILE *f, const char *key, const float *v, int n)
+static void put_details(struct jwriter *w, const struct scene *s)
 {
-    fprintf(f, "  \"%s\": [", key);
-    for (int i = 0; i < n; i++)
-        fprintf(f, "%s%.9g", i ? ", " : "", (double)v[i]);
-    fputs("],\n", f);
+    text_put_details(w, s->name, &s->details);
+    if (s->mm_per_pixel > 0.0) {
+        jgap(w, "\n  ");
+        jput_number(w, "mm_per_pixel", s->mm_per_pixel, 9);
+    }
+    if (s->notes) {
+        jgap(w, "\n  ");
+        jput_truth(w, "notes", true);
+    }
 }
 
-static void put_details(FILE *f, const struct scene *s)
-{
-    text_details(f, s->name, &s->details);
-    if (s->mm_per_pixel > 0.0)
-        fprintf(f, "  \"mm_per_pixel\": %.9g,\n", s->mm_per_pixel);
-    if (s->notes)
-        fputs("  \"notes\": true,\n", f);
-}
-
-static void put_basis(FILE *f, const struct common *c)
+static void put_basis(struct jwriter *w, const struct common *c)
 {
     const struct relume_coder_info *info = relume_coder_info(c->raw);
-    fprintf(f, "  \"basis\": {\"name\": \"%s\", ", info->basis->name);
-    if (info->interpolant)
-        fprintf(f, "\"interpolant\": \"%s\", \"parameter\": [%.9g, %.9g, %.9g, %.9g], ",
-                info->interpolant->name, info->parameter[0], info->parameter[1], info->parameter[2],
-                info->parameter[3]);
-    fprintf(f, "\"coefficients\": %d, \"hemispherical\": %s, \"pole\": \"%s\",\n    \"lights\": [",
-            info->coefficients, info->hemispherical ? "true" : "false", info->pole_y ? "y" : "z");
-    for (int i = 0; i < info->lights; i++)
-        fprintf(f, "%s%.9g, %.9g, %.9g", i ? ", " : "", info->directions[i].x,
-                info->directions[i].y, info->directions[i].z);
-    fputs("]},\n", f);
+    jgap(w, "\n  ");
+    jopen_object(w, "basis");
+    jput_text(w, "name", info->basis->name);
+    if (info->interpolant) {
+        jput_text(w, "interpolant", info->interpolant->name);
+        jput_numbers(w, "parameter", info->parameter, 4, 9);
+    }
+    jput_integer(w, "coefficients", info->coefficients);
+    jput_truth(w, "hemispherical", info->hemispherical);
+    jput_text(w, "pole", info->pole_y ? "y" : "z");
+    jgap(w, "\n    ");
+    jopen_array(w, "lights");
+    for (int i = 0; i < info->lights; i++) {
+        jput_number(w, NULL, info->directions[i].x, 9);
+        jput_number(w, NULL, info->directions[i].y, 9);
+        jput_number(w, NULL, info->directions[i].z, 9);
+    }
+    jclose_levels(w, 2);
 }
 
-static void put_levels(FILE *f, const struct scene *s)
+static void put_planes(struct jwriter *w, const struct scene *s)
+{
+    const struct common *c = &s->common;
+    const size_t functions = (size_t)c->functions, planes = (size_t)s->levels.planes;
+    jgap(w, "\n  ");
+    jput_integer(w, "functions", c->functions);
+    jput_integer(w, "planes", s->levels.planes);
+    put_floats(w, "transform", c->transform, 3 * planes * functions);
+    put_floats(w, "mean", c->mean, 3 * functions);
+    jgap(w, "\n  ");
+    jput_floats(w, "scale", s->levels.scale, planes, 9);
+    jgap(w, "\n  ");
+    jput_floats(w, "offset", s->levels.offset, planes, 9);
+}
+
+static void put_levels(struct jwriter *w, const struct scene *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     int width = info->width, height = info->height;
-    const int n = s->levels.count;
-    fprintf(f, "  \"tile\": %d, \"levels\": [", LEVELS_TILE);
-    for (int i = 0; i < n; i++) {
-        fprintf(f, "%s{\"width\": %d, \"height\": %d}", i ? ", " : "", width, height);
+    jgap(w, "\n  ");
+    jput_integer(w, "tile", LEVELS_TILE);
+    jopen_array(w, "levels");
+    for (int i = 0; i < s->levels.count; i++) {
+        jopen_object(w, NULL);
+        jput_integer(w, "width", width);
+        jput_integer(w, "height", height);
+        jclose(w);
         width = (width + 1) / 2;
         height = (height + 1) / 2;
     }
-    fprintf(f, "],\n  \"first_level\": %d,\n", s->first_level);
+    jclose(w);
+    jgap(w, "\n  ");
+    jput_integer(w, "first_level", s->first_level);
 }
 
-static void put_moving(FILE *f, const struct moving *m)
-{
-    fputs(", \"moving\": {\"scale\": [", f);
-    for (int i = 0; i < MOVING_NUMBERS; i++)
-        fprintf(f, "%s%.9g", i ? ", " : "", (double)m->scale[i]);
-    fputs("], \"offset\": [", f);
-    for (int i = 0; i < MOVING_NUMBERS; i++)
-        fprintf(f, "%s%.9g", i ? ", " : "", (double)m->offset[i]);
-    fputs("]}", f);
-}
-
-static void put_views(FILE *f, const struct scene *s)
+static void put_view(struct jwriter *w, const struct scene *s, int i)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
-    fputs("  \"views\": [", f);
-    for (int i = 0; i < info->views; i++) {
-        fprintf(f, "%s{\"name\": \"v%d\"", i ? ",\n    " : "\n    ", i);
-        if (info->geometry.projection == RELUME_SLAB)
-            fprintf(f, ", \"uv\": [%.9g, %.9g]", info->uv[i][0], info->uv[i][1]);
-        if (s->layers[i].depth)
-            fprintf(f, ", \"depth\": true, \"depth_min\": %.9g, \"depth_step\": %.9g",
-                    s->layers[i].depth_min, s->layers[i].depth_step);
-        if (s->moving[i].there)
-            put_moving(f, &s->moving[i]);
-        fprintf(f, "%s}", s->layers[i].mask ? ", \"mask\": true" : "");
+    char name[16];
+    snprintf(name, sizeof name, "v%d", i);
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jput_text(w, "name", name);
+    if (info->geometry.projection == RELUME_SLAB)
+        jput_numbers(w, "uv", info->uv[i], 2, 9);
+    if (s->layers[i].depth) {
+        jput_truth(w, "depth", true);
+        jput_number(w, "depth_min", s->layers[i].depth_min, 9);
+        jput_number(w, "depth_step", s->layers[i].depth_step, 9);
     }
-    fputs("\n  ]\n", f);
+    if (s->moving[i].there) {
+        jopen_object(w, "moving");
+        jput_floats(w, "scale", s->moving[i].scale, MOVING_NUMBERS, 9);
+        jput_floats(w, "offset", s->moving[i].offset, MOVING_NUMBERS, 9);
+        jclose(w);
+    }
+    if (s->layers[i].mask)
+        jput_truth(w, "mask", true);
+    jclose(w);
+}
+
+static void put_views(struct jwriter *w, const struct scene *s)
+{
+    jgap(w, "\n  ");
+    jopen_array(w, "views");
+    for (int i = 0; i < relume_pack_info(s->pack)->views; i++)
+        put_view(w, s, i);
+    jgap(w, "\n  ");
+    jclose(w);
 }
 
 // Whether planes are coded while the file blends the pictures of neighbouring lights in linear
@@ -102,49 +132,59 @@ static bool is_linear_between(const struct scene *s)
            !strcmp(info->interpolant->name, "delaunay");
 }
 
-void scene_print_json(FILE *f, const struct scene *s)
+static void put_light(struct jwriter *w, const struct scene *s)
+{
+    const struct common *c = &s->common;
+    char transfer[32];
+    relume_transfer_text(c->source.coding, transfer, sizeof transfer);
+    jgap(w, "\n  ");
+    jput_text(w, "transfer", transfer);
+    if (is_linear_between(s)) {
+        jgap(w, "\n  ");
+        jput_text(w, "between", "linear");
+    }
+    put_basis(w, c);
+    put_planes(w, s);
+    if (c->guided) {
+        jgap(w, "\n  ");
+        jput_number(w, "knee", (double)GUIDE_KNEE, 6);
+    }
+    if (s->levels.layers != RELUME_PUBLISH_JPEG) {
+        jgap(w, "\n  ");
+        jput_text(w, "pictures", s->levels.layers == RELUME_PUBLISH_AVIF ? "avif" : "both");
+    }
+    if (s->metered) {
+        jgap(w, "\n  ");
+        jput_number(w, "exposure", s->exposure, 6);
+    }
+}
+
+void scene_put_json(struct jwriter *w, const struct scene *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
-    const struct common *c = &s->common;
-    const size_t functions = (size_t)c->functions;
-    char transfer[32];
-    fprintf(f, "{\n  \"format\": \"relume-web\", \"version\": %d,\n",
-            c->guided || s->levels.layers == RELUME_PUBLISH_AVIF ? 2 : 1);
-    put_details(f, s);
-    fprintf(f, "  \"width\": %d, \"height\": %d,\n", info->width, info->height);
-    geometry_print(f, &info->geometry);
-    relume_transfer_text(c->source.coding, transfer, sizeof transfer);
-    fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
-    if (is_linear_between(s))
-        fputs("  \"between\": \"linear\",\n", f);
-    put_basis(f, c);
-    fprintf(f, "  \"functions\": %d, \"planes\": %d,\n", c->functions, s->levels.planes);
-    put_floats(f, "transform", c->transform, 3 * (size_t)s->levels.planes * functions);
-    put_floats(f, "mean", c->mean, 3 * functions);
-    put_numbers(f, "scale", s->levels.scale, s->levels.planes);
-    put_numbers(f, "offset", s->levels.offset, s->levels.planes);
-    if (c->guided)
-        fprintf(f, "  \"knee\": %g,\n", (double)GUIDE_KNEE);
-    if (s->levels.layers != RELUME_PUBLISH_JPEG)
-        fprintf(f, "  \"pictures\": \"%s\",\n",
-                s->levels.layers == RELUME_PUBLISH_AVIF ? "avif" : "both");
-    if (s->metered)
-        fprintf(f, "  \"exposure\": %g,\n", s->exposure);
-    put_levels(f, s);
-    if (info->has_shadow || info->has_gloss)
-        fprintf(f, "  \"moves\": \"%s\",\n", info->has_shadow ? "shadows" : "highlights");
-    put_views(f, s);
-    fputs("}\n", f);
+    const bool newer = s->common.guided || s->levels.layers == RELUME_PUBLISH_AVIF;
+    jopen_object(w, NULL);
+    jgap(w, "\n  ");
+    jput_text(w, "format", "relume-web");
+    jput_integer(w, "version", newer ? 2 : 1);
+    put_details(w, s);
+    jgap(w, "\n  ");
+    jput_integer(w, "width", info->width);
+    jput_integer(w, "height", info->height);
+    geometry_put(w, &info->geometry);
+    put_light(w, s);
+    put_levels(w, s);
+    if (info->has_shadow || info->has_gloss) {
+        jgap(w, "\n  ");
+        jput_text(w, "moves", info->has_shadow ? "shadows" : "highlights");
+    }
+    put_views(w, s);
+    jgap(w, "\n");
 }
 
 relume_status scene_write_json(const struct scene *s)
 {
-    char name[128];
-    struct text t;
-    const relume_status status = text_open(&t);
-    if (status)
-        return status;
-    scene_print_json(t.file, s);
-    snprintf(name, sizeof name, "%s/scene.json", s->name);
-    return site_save_text(s->site, name, true, &t);
+    struct jwriter w = {.style = JSON_MARKUP};
+    scene_put_json(&w, s);
+    return site_save_json(s->site, s->name, "scene.json", true, &w);
 }

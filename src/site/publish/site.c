@@ -42,7 +42,7 @@ static relume_status save_twin(const struct site *site, const char *name, const 
     relume_status status = twin ? text_open(&t) : RELUME_ENOMEM;
     if (!status) {
         fputs("relume.put(", t.file);
-        text_json(t.file, name);
+        text_put(&(struct jwriter){.file = t.file, .style = JSON_MARKUP}, NULL, name);
         fputs(", \"", t.file);
         base64_print(t.file, bytes, size);
         fputs("\");\n", t.file);
@@ -70,6 +70,21 @@ relume_status site_save_text(const struct site *site, const char *name, bool dat
         status = data ? site_save_data(site, name, t->bytes, t->size)
                       : site_save(site, name, t->bytes, t->size);
     text_free(t);
+    return status;
+}
+
+relume_status site_save_json(const struct site *site, const char *folder, const char *name,
+                             bool data, struct jwriter *w)
+{
+    size_t size;
+    relume_status status = jend(w);
+    char *text = jtake(w, &size), *path = mem_format("%s/%s", folder, name);
+    if (!status)
+        status = !text || !path ? RELUME_ENOMEM
+                 : data         ? site_save_data(site, path, text, size)
+                                : site_save(site, path, text, size);
+    mem_free(text);
+    mem_free(path);
     return status;
 }
 

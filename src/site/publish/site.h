@@ -19,6 +19,9 @@ relume_status site_save_data(const struct site *site, const char *name, const vo
                              size_t size);
 // Either of a text that is closed here, and freed.
 relume_status site_save_text(const struct site *site, const char *name, bool data, struct text *t);
+// Either of a JSON text, the file `name` in a folder of the site. Frees what the writer holds.
+relume_status site_save_json(const struct site *site, const char *folder, const char *name,
+                             bool data, struct jwriter *w);
 
 // Where a file of the site will be, for others: below its address, or relative where nobody knows.
 void site_put_address(FILE *f, const struct site *site, const char *name);

@@ -2,47 +2,33 @@
 #include "site/publish/text.h"
 
 #include "core/base/memory.h"
-#include "core/math/markup.h"
 #include "site/publish/details.h"
 
 #include <string.h>
 
-static const char *json(uint32_t code)
+void text_put(struct jwriter *w, const char *key, const char *text)
 {
-    switch (code) {
-    case '"': return "\\\"";
-    case '\\': return "\\\\";
-    case '<': return "\\u003c";
-    case '>': return "\\u003e";
-    case '&': return "\\u0026";
-    default: return NULL;
+    char *copy = text ? mem_text(text) : NULL;
+    if (text && !copy)
+        jfail(w, RELUME_ENOMEM);
+    for (char *at = copy; at && *(at += strcspn(at, "\n\t"));)
+        *at = ' ';
+    jput_text(w, key, copy ? relume_printable(copy) : NULL);
+    mem_free(copy);
+}
+
+void text_put_details(struct jwriter *w, const char *name, const struct details *d)
+{
+    const struct {
+        const char *key, *text;
+    } rows[] = {{"name", name},          {"title", d->title},   {"maker", d->maker},
+                {"licence", d->licence}, {"object", d->object}, {"description", d->description}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (!rows[i].text)
+            continue;
+        jgap(w, "\n  ");
+        text_put(w, rows[i].key, rows[i].text);
     }
-}
-
-void text_json(FILE *to, const char *text)
-{
-    putc('"', to);
-    markup_escape(to, text, json);
-    putc('"', to);
-}
-
-void text_member(FILE *to, const char *key, const char *value)
-{
-    if (!value)
-        return;
-    fprintf(to, "  \"%s\": ", key);
-    text_json(to, value);
-    fputs(",\n", to);
-}
-
-void text_details(FILE *to, const char *name, const struct details *d)
-{
-    text_member(to, "name", name);
-    text_member(to, "title", d->title);
-    text_member(to, "maker", d->maker);
-    text_member(to, "licence", d->licence);
-    text_member(to, "object", d->object);
-    text_member(to, "description", d->description);
 }
 
 void text_address(FILE *to, const char *text)

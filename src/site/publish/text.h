@@ -2,17 +2,18 @@
 #ifndef PUBLISH_TEXT_H
 #define PUBLISH_TEXT_H
 
+#include "core/base/json_write.h"
+
 #include <relume/base.h>
 #include <stdio.h>
 
 struct details;
 
-// As a JSON string with its quotes, which may also stand inside a script of a page.
-void text_json(FILE *to, const char *text);
-// A line of a JSON object with a comma; none where `value` is NULL.
-void text_member(FILE *to, const char *key, const char *value);
-// Such lines of a file's name and of what visitors read of it.
-void text_details(FILE *to, const char *name, const struct details *d);
+// A text of people: line ends are blanks, what is no text or would be obeyed is a question mark.
+// Writers of this folder have the style JSON_MARKUP.
+void text_put(struct jwriter *w, const char *key, const char *text);
+// A file's name and what visitors read of it, each on a line of its own.
+void text_put_details(struct jwriter *w, const char *name, const struct details *d);
 // As an address: what may not stand in one is percent-encoded.
 void text_address(FILE *to, const char *text);
 

@@ -1,9 +1,8 @@
 // make.c - stimuli gathered into the folder of a study
-#include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
-#include "core/base/outfile.h"
 #include "core/base/params.h"
 #include "site/study/stimuli.h"
 
@@ -218,55 +217,42 @@ static relume_status copy_all(struct make *m)
 
 // ---------------------------------------------------------------- study.json
 
-static relume_status put_texts(FILE *to, const char *name, const char *const *text, int n)
+static void put_frames(struct jwriter *w, const struct make *m)
 {
-    fprintf(to, "  \"%s\": [", name);
-    for (int i = 0; i < n; i++) {
-        char *quoted = jvalue_quote(text[i]);
-        if (!quoted)
-            return RELUME_ENOMEM;
-        fprintf(to, "%s%s", i ? ", " : "", quoted);
-        mem_free(quoted);
+    jopen_array(w, "frames");
+    for (int s = 0; s < m->scenes; s++) {
+        jopen_array(w, NULL);
+        for (int c = 0; c < m->conditions; c++)
+            jput_integer(w, NULL, m->frames[s][c]);
+        jclose(w);
     }
-    fputs("],\n", to);
-    return RELUME_OK;
+    jclose(w);
 }
 
 static relume_status write_json(const struct make *m, const char *const *question, int questions)
 {
+    const double rate = m->p->frames_per_second;
     const char *names[RELUME_STUDY_CONDITIONS];
-    char *text = NULL, *path = mem_format("%s/study.json", m->to);
-    size_t size;
-    FILE *to = path ? open_memstream(&text, &size) : NULL;
-    relume_status status = to ? RELUME_OK : RELUME_ENOMEM;
+    struct jwriter w = {0};
     for (int c = 0; c < m->conditions; c++)
         names[c] = m->condition[c].name;
-    if (to) {
-        fputs("{ \"format\": \"relume-study\", \"version\": 1,\n", to);
-        status = put_texts(to, "conditions", names, m->conditions);
-        if (!status)
-            status = put_texts(to, "scenes", (const char *const *)m->scene, m->scenes);
-        if (!status)
-            status = put_texts(to, "questions", question, questions);
-        fputs("  \"frames\": [", to);
-        for (int s = 0; s < m->scenes; s++)
-            for (int c = 0; c < m->conditions; c++)
-                fprintf(to, "%s%d%s",
-                        c   ? ", "
-                        : s ? ", ["
-                            : "[",
-                        m->frames[s][c], c + 1 < m->conditions ? "" : "]");
-        fprintf(to, "],\n  \"frames_per_second\": %.9g, \"seed\": %llu }\n",
-                m->p->frames_per_second > 0.0 ? m->p->frames_per_second : 24.0,
-                (unsigned long long)m->p->seed);
-        if (fclose(to) && !status)
-            status = RELUME_ENOMEM;
-    }
-    if (!status)
-        status = outfile_save(path, text, size, m->p->log);
-    mem_free_libc(text);
-    mem_free(path);
-    return status;
+    jopen_object(&w, NULL);
+    jgap(&w, " ");
+    jput_text(&w, "format", "relume-study");
+    jput_integer(&w, "version", 1);
+    jgap(&w, "\n  ");
+    jput_texts(&w, "conditions", names, (size_t)m->conditions);
+    jgap(&w, "\n  ");
+    jput_texts(&w, "scenes", (const char *const *)m->scene, (size_t)m->scenes);
+    jgap(&w, "\n  ");
+    jput_texts(&w, "questions", question, (size_t)questions);
+    jgap(&w, "\n  ");
+    put_frames(&w, m);
+    jgap(&w, "\n  ");
+    jput_number(&w, "frames_per_second", rate > 0.0 ? rate : 24.0, 9);
+    jput_integer(&w, "seed", (long long)m->p->seed);
+    jgap(&w, " ");
+    return jsave_in(&w, m->to, "study.json", m->p->log);
 }
 
 static bool are_sound(const struct relume_study_condition *condition, int conditions,

@@ -1,6 +1,6 @@
 // page.c - the page on which a subject chooses: one HTML file with all pictures in it
 #include "core/base/infile.h"
-#include "core/base/json.h"
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
@@ -115,21 +115,11 @@ static relume_status put_stimulus(FILE *to, const char *folder, const struct stu
 // As a script may hold it: an end of the script is none.
 static relume_status put_texts(FILE *to, const char *name, const char *const *text, int n)
 {
-    fprintf(to, "const %s = [", name);
-    for (int i = 0; i < n; i++) {
-        char *quoted = jvalue_quote(text[i]);
-        if (!quoted)
-            return RELUME_ENOMEM;
-        fputs(i ? ", " : "", to);
-        for (const char *c = quoted; *c; c++)
-            if (*c == '<')
-                fputs("\\u003c", to);
-            else
-                fputc(*c, to);
-        mem_free(quoted);
-    }
-    fputs("];\n", to);
-    return RELUME_OK;
+    struct jwriter w = {.file = to, .style = JSON_MARKUP};
+    fprintf(to, "const %s = ", name);
+    jput_texts(&w, NULL, text, (size_t)n);
+    fputs(";\n", to);
+    return w.status;
 }
 
 // ---------------------------------------------------------------- trials

@@ -1,7 +1,7 @@
 // reflections.c - edits of reflections in JSON, and of which object they are
+#include "core/base/json_write.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "core/base/outfile.h"
 #include "core/base/params.h"
 #include "world/object/object.h"
 
@@ -316,44 +316,54 @@ relume_status relume_objects_load_reflections(relume_objects *o, const char *pat
 
 // ---------------------------------------------------------------- writing
 
-static void put_vector(FILE *to, const char *before, vec3 v)
-{
-    fprintf(to, "%s[%.9g, %.9g, %.9g]", before, v.x, v.y, v.z);
-}
-
-static void put_region(FILE *to, const struct relume_reflection_region *g)
+static void put_region(struct jwriter *w, const struct relume_reflection_region *g)
 {
     static const char *const words[] = {"ball", "geodesic", "stroke"};
-    fprintf(to, "        {\"%s\": ", words[g->shape]);
-    if (g->shape != RELUME_REFLECTION_STROKES)
-        put_vector(to, "", g->centre);
-    for (int i = 0; i < g->points; i++)
-        put_vector(to, i ? ", " : "[", g->stroke[i]);
-    fprintf(to, "%s, \"radius\": %.9g, \"border\": %.9g}",
-            g->shape == RELUME_REFLECTION_STROKES ? "]" : "", g->radius, g->border);
+    jgap(w, "\n        ");
+    jopen_object(w, NULL);
+    if (g->shape == RELUME_REFLECTION_STROKES) {
+        jopen_array(w, words[g->shape]);
+        for (int i = 0; i < g->points; i++)
+            jput_vector(w, NULL, g->stroke[i], 9);
+        jclose(w);
+    } else {
+        jput_vector(w, words[g->shape], g->centre, 9);
+    }
+    jput_number(w, "radius", g->radius, 9);
+    jput_number(w, "border", g->border, 9);
+    jclose(w);
 }
 
-static void put_edit(FILE *to, int object, const struct relume_reflection_edit *e)
+static void put_constraint(struct jwriter *w, const struct relume_reflection_constraint *c)
 {
-    fprintf(to, "    {\"object\": %d, \"distance\": \"%s\",", object,
-            e->geodesic ? "geodesic" : "straight");
+    jgap(w, "\n        ");
+    jopen_object(w, NULL);
+    jput_vector(w, "position", c->position, 9);
+    jput_vector(w, "eye", c->eye, 9);
+    jgap(w, "\n         ");
+    jput_vector(w, "original", c->original, 9);
+    jput_vector(w, "direction", c->edited, 9);
+    jclose(w);
+}
+
+static void put_edit(struct jwriter *w, int object, const struct relume_reflection_edit *e)
+{
+    jgap(w, "\n    ");
+    jopen_object(w, NULL);
+    jput_integer(w, "object", object);
+    jput_text(w, "distance", e->geodesic ? "geodesic" : "straight");
     if (e->frozen)
-        put_vector(to, " \"frozen\": ", e->eye);
-    fprintf(to, "%s\n      \"constraints\": [", e->frozen ? "," : "");
-    for (int i = 0; i < e->constraints; i++) {
-        const struct relume_reflection_constraint *c = &e->constraint[i];
-        put_vector(to, i ? ",\n        {\"position\": " : "\n        {\"position\": ", c->position);
-        put_vector(to, ", \"eye\": ", c->eye);
-        put_vector(to, ",\n         \"original\": ", c->original);
-        put_vector(to, ", \"direction\": ", c->edited);
-        fputs("}", to);
-    }
-    fputs("],\n      \"regions\": [", to);
-    for (int i = 0; i < e->regions; i++) {
-        fputs(i ? ",\n" : "\n", to);
-        put_region(to, &e->region[i]);
-    }
-    fputs("]}", to);
+        jput_vector(w, "frozen", e->eye, 9);
+    jgap(w, "\n      ");
+    jopen_array(w, "constraints");
+    for (int i = 0; i < e->constraints; i++)
+        put_constraint(w, &e->constraint[i]);
+    jclose(w);
+    jgap(w, "\n      ");
+    jopen_array(w, "regions");
+    for (int i = 0; i < e->regions; i++)
+        put_region(w, &e->region[i]);
+    jclose_levels(w, 2);
 }
 
 // What is there and is no list of reflections is kept.
@@ -375,27 +385,17 @@ static relume_status check_replaced(const char *path, const struct relume_log *l
 relume_status relume_objects_save_reflections(const relume_objects *o, const char *path,
                                               const struct relume_log *log)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *to = open_memstream(&text, &size);
-    const char *comma = "\n";
-    if (!to)
-        return RELUME_ENOMEM;
-    fprintf(to, "{\"format\": \"%s\", \"version\": %d, \"edits\": [", FORMAT, VERSION);
-    for (int i = 0; i < o->info.objects; i++) {
-        if (!o->reflection[i])
-            continue;
-        fputs(comma, to);
-        comma = ",\n";
-        put_edit(to, i, relume_reflection_edit(o->reflection[i]));
-    }
-    fputs("\n]}\n", to);
-    const bool written = !ferror(to);
-    relume_status status = fclose(to) || !written ? RELUME_ENOMEM : RELUME_OK;
-    if (!status)
-        status = check_replaced(path, log);
-    if (!status)
-        status = outfile_save(path, text, size, log);
-    mem_free_libc(text);
-    return status;
+    const relume_status status = check_replaced(path, log);
+    if (status)
+        return status;
+    struct jwriter w = {0};
+    jopen_object(&w, NULL);
+    jput_text(&w, "format", FORMAT);
+    jput_integer(&w, "version", VERSION);
+    jopen_array(&w, "edits");
+    for (int i = 0; i < o->info.objects; i++)
+        if (o->reflection[i])
+            put_edit(&w, i, relume_reflection_edit(o->reflection[i]));
+    jgap(&w, "\n");
+    return jsave(&w, path, log);
 }

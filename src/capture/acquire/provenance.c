@@ -87,12 +87,9 @@ static void put_photograph(FILE *f, const struct shot *shot)
 
 static void put_chart(FILE *f, const struct acquisition *s)
 {
-    const struct relume_chart *c = s->p.chart;
-    fputs("{\"target\": \"ColorChecker 24\"", f);
-    if (s->p.chart_path) {
-        fputs(", ", f);
-        put_text(f, "photograph", path_name(s->p.chart_path));
-    }
+    const struct relume_chart *c = &s->out->chart;
+    fputs("{\"target\": \"ColorChecker 24\", ", f);
+    put_text(f, "photograph", path_name(s->out->target));
     fputs(", \"matrix\": [", f);
     for (int i = 0; i < 9; i++)
         fprintf(f, "%s%.9g", i ? ", " : "", (double)c->matrix[i]);
@@ -116,7 +113,7 @@ char *acquire_provenance(const struct acquisition *s)
         put_photograph(f, &s->shot[i]);
     }
     fputs("]", f);
-    if (s->p.chart) {
+    if (s->out->target) {
         fputs(",\n    \"colour\": ", f);
         put_chart(f, s);
     }

@@ -78,8 +78,8 @@ CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
-# Every folder of src is a wing of the library, and theirs are rooms, but for the programs. Benches share cli/measure.
-LIB_C    := $(filter-out src/cli/% src/shape/mesh/mesh_assimp.c,$(wildcard src/*/*/*.c)) $(wildcard src/cli/measure/*.c)
+# Every folder of src is a wing of the library, and theirs are rooms, but for the programs.
+LIB_C    := $(filter-out src/cli/% src/shape/mesh/mesh_assimp.c,$(wildcard src/*/*/*.c))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/image/picture.h)
 MODULE_CXX := src/image/image/oiio.cpp
@@ -94,7 +94,7 @@ HELPER_C := $(wildcard src/cli/helper/*.c)
 # bring mpicc without the header
 MPI_C    := $(if $(shell echo 'int mpi;' | mpicc -include mpi.h -fsyntax-only -x c - 2>/dev/null && echo there),$(wildcard src/cli/mpi/*.c))
 # src/cli/program is what the tool and the viewer share.
-CLI_C    := $(filter-out src/cli/helper/% src/cli/measure/% src/cli/mpi/%,$(wildcard src/cli/*.c src/cli/*/*.c))
+CLI_C    := $(filter-out src/cli/helper/% src/cli/mpi/%,$(wildcard src/cli/*.c src/cli/*/*.c))
 VIEWER_C := $(wildcard src/cli/program/*.c viewer/*/*.c)
 VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 # What `relume publish` puts into every site; the core is compiled by make web
@@ -321,7 +321,10 @@ $B/relume-view: $(VIEWER_O) $B/librelume.a
 $(filter-out $(THREADS),$(UNIT)): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) $(FIXED) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS) $(CMOCKA)
+# What the tool measures stands outside of the library.
+$B/tests/unit/test_octree: $B/obj/src/cli/measure/octree.o
+$B/tests/unit/test_reflected_places: $(addprefix $B/obj/src/cli/measure/,bezier.o triangle.o)
 # The map of the linker says which sources of the library they take. For `make config=tsan check-threads` these are
 # compiled and no others, half of all; a member that the release did not ask for is the release's.
 TAKES := $(if $(filter tsan,$(config)),$(filter check-threads,$(MAKECMDGOALS)))

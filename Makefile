@@ -63,8 +63,8 @@ GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 
 # ---------------------------------------------------------------- sources
 
-# Every folder of src is a wing of the library, and theirs are rooms, but for the programs. Benches share cli/measure.
-LIB_C    := $(filter-out src/cli/% src/shape/mesh/mesh_assimp.c,$(wildcard src/*/*/*.c)) $(wildcard src/cli/measure/*.c)
+# Every folder of src is a wing of the library, and theirs are rooms, but for the programs.
+LIB_C    := $(filter-out src/cli/% src/shape/mesh/mesh_assimp.c,$(wildcard src/*/*/*.c))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/image/picture.h)
 MODULE_CXX := src/image/image/oiio.cpp
@@ -79,7 +79,7 @@ HELPER_C := $(wildcard src/cli/helper/*.c)
 # bring mpicc without the header
 MPI_C    := $(if $(shell echo 'int mpi;' | mpicc -include mpi.h -fsyntax-only -x c - 2>/dev/null && echo there),$(wildcard src/cli/mpi/*.c))
 # src/cli/program is what the tool and the viewer share.
-CLI_C    := $(filter-out src/cli/helper/% src/cli/measure/% src/cli/mpi/%,$(wildcard src/cli/*.c src/cli/*/*.c))
+CLI_C    := $(filter-out src/cli/helper/% src/cli/mpi/%,$(wildcard src/cli/*.c src/cli/*/*.c))
 VIEWER_C := $(wildcard src/cli/program/*.c viewer/*/*.c)
 VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 SHADERS  := $(wildcard viewer/shaders/*.glsl viewer/shaders/*/*.glsl)

@@ -33,8 +33,11 @@ TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold) $(if $(filter release
 $(UNIT): $B/tests/%: $B/obj/tests/%.o
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) $(if $(filter $@,$(THREADS)),-Wl$(comma)-Map=$@.map) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) $(if $(filter $@,$(THREADS)),-Wl$(comma)-Map=$@.map) $(FIXED) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS) $(CMOCKA)
 $(filter-out $(THREADS),$(UNIT)): $B/librelume.a
+# What the tool measures stands outside of the library.
+$B/tests/unit/test_octree: $B/obj/src/cli/measure/octree.o
+$B/tests/unit/test_reflected_places: $(addprefix $B/obj/src/cli/measure/,bezier.o triangle.o)
 $(TOOLS_C:%.c=$B/%): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)

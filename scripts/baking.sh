@@ -16,7 +16,7 @@ description "{\"mesh\":\"$data/meshes/spot.obj\",\"pose\":{\"rotate\":[0,1,0,150
     {\"mesh\":\"floor.obj\",\"parts\":[{\"material\":{\"diffuse\":[0.8,0.3,0.2]}}]}" >"$out/cow.json"
 for way in sh table; do
     [ -e "$out/cow-$way.exr" ] ||
-        "$relume" bake "$out/cow.json" -o "$out/cow-$way.exr" --basis $way $([ $way = sh ] && echo '-k 100' || echo '-k 400') --bounces 3 --components 24 -q
+        "$relume" bake "$out/cow.json" -o "$out/cow-$way.exr" --basis $way $([ $way = sh ] && echo '--coefficients 100' || echo '--coefficients 400') --bounces 3 --components 24 -q
     description "{\"baked\":\"cow-$way.exr\"}" >"$out/cow-$way.json"
 done
 lamp='dir -0.6 0.9 0.9'

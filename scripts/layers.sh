@@ -25,12 +25,12 @@ site:publish"
 # folder of a program: private folders it may include beside its own | public headers it may include (* = all)
 rules="cli/program:core/base:base image exchange/notes pack relight/slab_set
 cli/helper:core/base image/image shape/mesh:base
-cli/measure:core/base core/math core/kernel image/image:*
+cli/measure:core/base core/math core/kernel image/image shape/mesh world/stage:*
 cli:core/base cli/program:*
-cli/mpi:cli:context format/team
+cli/mpi:cli core/math:context format/team
 cli/materials:cli cli/program:*
 cli/studies:cli cli/program:*
-cli/commands:cli cli/materials cli/program cli/measure:*
+cli/commands:cli cli/materials cli/program cli/measure core/math:*
 cli/meshes:cli cli/program:*
 viewer/common::base core/vec
 viewer/app:common cli/program:*

@@ -10,4 +10,19 @@
 #define relume_object_vertex relume_mesh_vertex
 #define relume_pack_shadows  relume_shadows_open
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+static inline relume_status relume_publish(const char *const *files, int count, const char *site,
+                                           struct relume_publish_report *reports,
+                                           const struct relume_publish_params *params)
+{
+    return relume_publish_files(site, files, count, params, reports);
+}
+
+#ifdef __cplusplus
+}
+#endif
+
 #endif

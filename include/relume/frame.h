@@ -69,7 +69,8 @@ struct relume_frame_params {
                       // need more
     // How strong `pass` is; pictures, range and threads in it are not looked at. Default: NULL.
     const struct relume_pass_params *strength;
-    bool once;  // a renderer draws one frame, as relume_relighter_params; relume_frame does
+    bool once;    // a renderer draws one frame, as relume_relighter_params; relume_frame does
+    bool masked;  // relume_frame of a captured view at its own size: black outside of its mask
 };
 #define relume_frame_params(...)                                                                   \
     (&(const struct relume_frame_params){RELUME_SIZED(relume_frame_params), __VA_ARGS__})

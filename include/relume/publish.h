@@ -62,7 +62,14 @@ struct relume_publish_params {
 #define relume_publish_params(...)                                                                 \
     (&(const struct relume_publish_params){RELUME_SIZED(relume_publish_params), __VA_ARGS__})
 
-// What became of one file. Plain data.
+// Advice that brings the page of a file nearer to it.
+enum relume_publish_advice {
+    RELUME_PUBLISH_NO_ADVICE = 0,  // differences are hardly visible, or quality was asked for
+    RELUME_PUBLISH_CODE_DISPLAY,   // a file of display values: linear ones need more than 8 bits
+    RELUME_PUBLISH_RAISE_QUALITY,  // quality 100: hard shadows and highlights were softened
+};
+
+// Report of one file that was published. Plain data.
 struct relume_publish_report {
     char name[64];         // of its page, without ".html", and of its folder
     int views, planes;     // that its folder holds; 0 of a baked object
@@ -73,17 +80,20 @@ struct relume_publish_report {
     double psnr_db;  // of pictures: of one view, mean over at most 16 lights, 8-bit sRGB, against
                      // the file's own pictures
     bool linear;     // its planes hold linear light
+    enum relume_publish_advice advice;
 };
 
-// Publish `files`, `count` of them, whatever relume_open or relume_baked_open opens, as the folder
-// `site`: whole or not at all. `reports` (may be NULL) has room for `count`. RELUME_EINVAL (no
+// Publishes `count` files, whatever relume_open or relume_baked_open opens, as the folder `site`:
+// whole or not at all. `reports` (may be NULL) has room for `count`. RELUME_EINVAL (no
 // file, no name; a folder that is not empty, without `force` or that relume did not make), an input
 // status, RELUME_EUNFIT (a size or PSNR that cannot be reached), RELUME_EUNSUPPORTED (slabs around
 // an object; baked objects of wavelets, of views apart or too large for a page), RELUME_EIO,
 // RELUME_ENOMEM, RELUME_ECANCEL. Output bytes do not depend on `threads`.
-RELUME_RESULT relume_status relume_publish(const char *const *files, int count, const char *site,
-                                           struct relume_publish_report *reports,
-                                           const struct relume_publish_params *params);
+// `relume publish` makes the same call.
+RELUME_RESULT relume_status relume_publish_files(const char *site, const char *const *files,
+                                                 int count,
+                                                 const struct relume_publish_params *params,
+                                                 struct relume_publish_report *reports);
 
 #ifdef __cplusplus
 }

@@ -114,7 +114,7 @@ struct relume_heldout_store { int storage; int step; void *books; bool share; };
 struct relume_heldout_quality { double psnr_db; double psnr_pooled_db; double ssim; };
 struct relume_frame_params { size_t struct_size; void *log; unsigned cpu_off; int threads; double assume_depth;
     int pass; void *capture; int interpolation; double aperture, focus; int filter;
-    uint64_t memory; void *strength; bool once; };
+    uint64_t memory; void *strength; bool once; bool masked; };
 struct relume_rect { int left, top, width, height; };
 struct relume_target { void *data; int format; int width, height; ptrdiff_t stride;
     float exposure_ev; };

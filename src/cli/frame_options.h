@@ -24,7 +24,7 @@ struct light_options {
     NAME("--interpolate", interpolation, "I",                                                      \
          "slab: constant, linear or depth; default: depth where the file has it, else linear",     \
          RELUME_INTERPOLATE_CONSTANT, "constant", "linear", "depth"),                              \
-    FLAG("--nearest", nearest, "slab: the same as --interpolate constant")
+    FLAG("--nearest", nearest, NULL)
 #define CPU_OPTION                                                                                 \
     INT("--cpu-mask", cpu_mask, "M", "CPU features to use, 0: plain C; default: all", 0, 65535)
 // clang-format on

@@ -178,7 +178,7 @@ static bool is_same_output(const char *a, const char *b)
                (S_ISREG(s.st_mode) || S_ISDIR(s.st_mode));
     char *folder_a = strdup(a);
     char *folder_b = strdup(b);
-    const bool same = folder_a && folder_b && !strcmp(base_name(a), base_name(b)) &&
+    const bool same = folder_a && folder_b && !strcmp(path_name(a), path_name(b)) &&
                       !stat(dirname(folder_a), &s) && !stat(dirname(folder_b), &t) &&
                       s.st_dev == t.st_dev && s.st_ino == t.st_ino;
     free(folder_a);

@@ -15,6 +15,10 @@ small="--size 32x32 --rays 8"
 expect_ok 'bake' - "$RELUME" bake ball.json -o any.exr $small --lights 128 -q
 expect_ok 'the same again' - "$RELUME" bake ball.json -o again.exr $small --lights 128 -q --threads 1
 check 'byte for byte' cmp any.exr again.exr
+expect_ok '--coefficients' - "$RELUME" bake ball.json -o few.exr $small --coefficients 9 --lights 32 -q
+expect_ok 'its old spelling' - "$RELUME" bake ball.json -o old.exr $small -k 9 --lights 32 -q
+check 'says the same' cmp few.exr old.exr
+check 'and help shows one of them' sh -c '"$0" bake --help | grep -q "^  --coefficients K" && ! "$0" bake --help | grep -q "^  -k"' "$RELUME"
 expect_ok 'draw it' - "$RELUME" btf render alone.json -o any.pfm --picture 32x32 --light 'dir 0 1 1'
 "$RELUME" btf render any.exr -o direct.pfm --picture 32x32 --light 'dir 0 1 1' -q
 check 'the file itself, too' cmp any.pfm direct.pfm

@@ -37,6 +37,38 @@ read, sums = b["loops"][0], b["loops"][1]
 assert abs(read["share"] - 1) < 1e-6 and abs(sums["share"] - 1) < 1e-6
 EOF
 fi
+expect_fail 'no mesh' 1 'missing.ply' - "$RELUME" bench reflections missing.ply
+awk -v n=12 -f "$TOP/scripts/ball.awk" >ball.obj
+"$RELUME" bench reflections ball.obj >text.txt
+for method in 'Bezier patch' '4 x 4 x 2 triangles' '64 x 64 x 2 triangles'; do
+    check "$method has a row" grep -qE "^$method +[0-9.]+ +[0-9.-]+ +[0-9.]+e-[0-9]+ +20000$" text.txt
+done
+check 'the mesh is named' grep -qE '^200000 rays off a mirror ball to ball.obj, [0-9]+ triangles$' text.txt
+check 'the ray tracer has a row' grep -qE '^ray tracer, exact +[0-9.]+ +-( +[0-9.]+){4} +- +-$' text.txt
+check 'an octree has a row' grep -qE '^octree of depth 9, cone +[0-9.]+ +[0-9]+( +[0-9.]+){5} +0.[0-9]+$' text.txt
+check 'help names the task' sh -c '"$0" bench --help | grep -q "^  reflections "' "$RELUME"
+if [ "$python" ]; then
+    "$RELUME" bench reflections --json >out.json
+    check 'one JSON object of reflections' "$python" - out.json <<'EOF'
+import json, sys
+b = json.load(open(sys.argv[1]))
+patch, *triangles = b["mirror"]
+assert patch["method"] == "patch" and patch["error"] < 1e-9 and 1 < patch["iterations"] < 32
+assert [t["triangles"] for t in triangles] == [32, 512, 8192]
+for coarse, fine in zip(triangles, triangles[1:]):  # four times as fine: the error falls by about 16
+    assert 8 < coarse["error"] / fine["error"] < 32, (coarse, fine)
+assert all(m["found"] == b["positions"] == 20000 and m["seconds"] > 0 for m in b["mirror"])
+(mesh,) = b["meshes"]
+tracer, *octrees = mesh["tracing"]
+assert mesh["name"] == "teapot" and mesh["triangles"] == 16384
+assert tracer["method"] == "tracer" and tracer["error"] is None
+assert [(o["depth"], o["cone"]) for o in octrees] == [(d, c) for d in (7, 8, 9) for c in (False, True)]
+full = [o for o in octrees if not o["cone"]]
+for coarse, fine in zip(full, full[1:]):  # cells of half the side
+    assert 1.5 < coarse["error"] / fine["error"] < 2.5 and fine["bytes"] > 2 * coarse["bytes"], (coarse, fine)
+assert all(o["one_only"] < 0.01 and o["rays_per_second"] > 0 for o in octrees)
+EOF
+fi
 expect_fail 'no input' 2 'bench: expected' - "$RELUME" bench x.exr
 expect_fail 'no rounds' 2 'rounds' - "$RELUME" bench --rounds 0
 expect_fail 'instructions that nobody has' 2 'RELUME_CPU: expected plain.*found sse9' - env RELUME_CPU=sse9 "$RELUME" bench

@@ -7,7 +7,7 @@ docs="$TOP/docs"
 {
     "$VIEWER" --help
     for c in $("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" --help; done
-    for c in btf maps mesh study; do
+    for c in bench btf maps mesh study; do
         for t in $("$RELUME" "$c" --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" "$t" --help; done
     done
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt

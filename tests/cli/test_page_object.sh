@@ -14,7 +14,7 @@ object '"mesh":"ball.obj","parts":[{"material":{"diffuse":[0.8,0.4,0.2]}}]' >bal
 object '"mesh":"ball.obj","parts":[{"material":"leather"}]' >shiny.json
 small="--size 24x24 --bounces 0 --lights 64 --clusters 4 -q"
 bake() { "$RELUME" bake "$@" 2>note.txt || { not_ok "bake $*" "$(cat note.txt)"; finish; exit; }; }
-bake ball.json -o any.exr $small -k 25
+bake ball.json -o any.exr $small --coefficients 25
 bake shiny.json -o shiny.exr $small --views 3 -k 16
 bake ball.json -o fixed.exr --size 24x24 --rays 8 --light 'dir 1 1 1' --light 'dir -1 0 1 rgb 0 0 1' -q
 bake ball.json -o haar.exr --size 16x16 --bounces 0 --haar 2 -q

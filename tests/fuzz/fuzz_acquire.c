@@ -104,12 +104,6 @@ relume_status refuse(relume_status status, const char *format, ...)
     return status;
 }
 
-const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 static bool try_times(const char *path, struct bytes b)
 {
     char names[2][16] = {"IMG_1.jpg", "IMG_2.jpg"}, *photos[] = {names[0], names[1]};

@@ -33,11 +33,6 @@ static void photograph(struct photographs *p, struct made_scene s, double distan
     }
 }
 
-static struct relume_acquire_params params_of(const struct photographs *p)
-{
-    return (struct relume_acquire_params){.photographs = p->list, .photograph_count = LAMPS};
-}
-
 static void check_positions(double fov_deg, double tolerance)
 {
     struct made_scene s = {.fov_deg = fov_deg,
@@ -49,11 +44,11 @@ static void check_positions(double fov_deg, double tolerance)
     struct relume_acquisition acquisition;
     double squares = 0.0;
     photograph(&p, s, 3.0, -1);
-    struct relume_acquire_params params = params_of(&p);
+    struct relume_acquire_params params = {0};
     params.near = true;
     params.balls = 3;
     params.fov_deg = fov_deg;
-    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
     assert_int_equal(acquisition.lights, LAMPS);
     for (int i = 0; i < LAMPS; i++) {
         const struct relume_vec3 off = vec3_sub(acquisition.position[i], lamp_at(i, 3.0));
@@ -106,9 +101,9 @@ static void check_stone(bool matte)
         CHECK_OK(relume_image_save(&image, p.path[i], NULL));
         relume_image_destroy(&image);
     }
-    struct relume_acquire_params params = params_of(&p);
+    struct relume_acquire_params params = {0};
     params.matte = matte;
-    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
     assert_true(acquisition.ball[0].x > 0.5 * MADE_WIDTH);
     relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
@@ -138,11 +133,11 @@ static void an_outline_too_small(void **state)
     struct relume_acquisition acquisition;
     photograph(&p, s, 1.0, -1);
     for (int round = 0; round < 2; round++) {
-        struct relume_acquire_params params = params_of(&p);
+        struct relume_acquire_params params = {0};
         params.ball = &outline[round];
         params.balls = 1;
         params.force = true;
-        CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+        CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
         int said = 0;
         for (int i = 0; i < acquisition.warnings; i++)
             said += strstr(acquisition.warning[i], "behind it") != NULL;
@@ -168,10 +163,10 @@ static void check_table(double fov_deg, struct relume_vec3 middle, bool matte, d
     struct relume_acquisition acquisition;
     double squares = 0.0;
     photograph(&p, s, 1.0, -1);
-    struct relume_acquire_params params = params_of(&p);
+    struct relume_acquire_params params = {0};
     params.fov_deg = fov_deg;
     params.matte = matte;
-    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
     for (int i = 0; i < LAMPS; i++) {
         const double cosine = vec3_dot(acquisition.direction[i], lamp_at(i, 1.0));
         squares += (2.0 - 2.0 * cosine) / LAMPS;
@@ -206,21 +201,23 @@ static void a_dark_photograph(void **state)
     struct relume_acquisition acquisition;
     struct test_log log;
     photograph(&p, s, 1.0, 2);
-    struct relume_acquire_params params = params_of(&p);
+    struct relume_acquire_params params = {0};
     test_log_init(&log);
     params.log = &log.log;
-    assert_int_equal(relume_acquire(&acquisition, p.out, &params), RELUME_EUNFIT);
+    assert_int_equal(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition),
+                     RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "p2.png"));
     assert_null(acquisition.photo);
     assert_int_equal(access(p.out, F_OK), -1);
     params.skip_bad = true;
-    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
     assert_int_equal(acquisition.lights, LAMPS - 1);
     assert_true(acquisition.warnings > 0);
     assert_non_null(strstr(acquisition.photo[2].path, "p3.png"));
     relume_acquisition_destroy(&acquisition);
     // what exists is not replaced unasked
-    assert_int_equal(relume_acquire(&acquisition, p.out, &params), RELUME_EINVAL);
+    assert_int_equal(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition),
+                     RELUME_EINVAL);
     test_folder_remove(p.folder);
 }
 
@@ -272,13 +269,13 @@ static void check_even(enum unevenness u, int flats, bool radial)
     assert_non_null(f);
     fputs(text, f);
     fclose(f);
-    struct relume_acquire_params params = params_of(&p);
+    struct relume_acquire_params params = {0};
     params.lights = lights;
     params.flats = flat_list;
     params.flat_count = flats;
     params.radial = radial;
     params.white[0] = 10, params.white[1] = 8, params.white[2] = 12, params.white[3] = 6;
-    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
     relume_capture *capture;
     CHECK_OK(relume_capture_open(&capture, p.out, NULL));
     for (int i = 0; i < LAMPS; i++) {
@@ -299,6 +296,84 @@ static void light_is_evened_out(void **state)
     check_even(ROUND, 1, false);
     check_even(ROUND, 1, true);
     check_even(SLANTED, LAMPS, false);
+}
+
+// ---------------------------------------------------------------- what lies beside
+
+// Four pictures of a board and the list of their lights.
+static void save_board(struct photographs *p)
+{
+    static const double lamp[3] = {0.5, 0.5, 0.5};
+    char path[128];
+    test_folder(p->folder);
+    snprintf(p->out, sizeof p->out, "%s/out", p->folder);
+    snprintf(path, sizeof path, "%s/light_directions.txt", p->folder);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    for (int i = 0; i < LAMPS; i++) {
+        const struct relume_vec3 d = lamp_at(i, 1.0);
+        fprintf(f, "%f %f %f\n", d.x, d.y, d.z);
+        snprintf(p->path[i], sizeof p->path[i], "%.63s/p%d.exr", p->folder, i);
+        save_uneven(p->path[i], ROUND, i, lamp);
+    }
+    fclose(f);
+}
+
+// A folder is enough: photographs and lights are found in it, and by-products are written.
+static void a_folder_of_photographs(void **state)
+{
+    (void)state;
+    struct photographs p;
+    struct relume_acquisition report;
+    struct relume_image albedo;
+    char path[128];
+    save_board(&p);
+    snprintf(path, sizeof path, "%s/albedo.exr", p.folder);
+    const char *const folder = p.folder;
+    CHECK_OK(relume_capture_photographs(p.out, &folder, 1, relume_acquire_params(.albedo = path),
+                                        &report));
+    assert_int_equal(report.lights, LAMPS);
+    CHECK_NEAR(report.direction[1].x, lamp_at(1, 1.0).x, 1e-5);
+    CHECK_NEAR(report.direction_error_deg, 0.0, 0.0);  // as the list says
+    assert_int_equal(report.photometric.albedo.width, WIDE);
+    CHECK_OK(relume_image_load(&albedo, path, NULL));
+    assert_int_equal(albedo.width, WIDE);
+    relume_image_destroy(&albedo);
+    relume_acquisition_destroy(&report);
+    test_folder_remove(p.folder);
+}
+
+// Members that need or exclude each other are refused before anything is read.
+static void members_that_disagree(void **state)
+{
+    (void)state;
+    const char *const nowhere = "nowhere";
+    const double corner[4][2] = {{0, 0}};
+    const struct {
+        struct relume_acquire_params params;
+        const char *sentence;
+    } cases[] = {
+        {{.fov_deg = 40, .focal_mm = 50}, "expected one of --fov and --focal"},
+        {{.refine_lights = true, .refine_brightness = true}, "which refines brightness as well"},
+        {{.ball_transfer = {.curve = RELUME_CURVE_SRGB}}, "--ball-transfer needs --ball-photos"},
+        {{.refine_brightness = true, .integrable = true}, "--integrable needs --refine-lights"},
+        {{.radial = true}, "--radial needs --flat FILE"},
+        {{.white = {1, 1, 4, 4}, .target = "auto"}, "expected one of --white and --target"},
+        {{.target_values = "values.txt"}, "--target-values needs --target FILE"},
+        {{.target_corner = corner}, "--target-corners needs --target FILE"},
+        {{.width_mm = 20}, "--width needs --height FILE.exr"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct relume_acquire_params params = cases[i].params;
+        struct test_log log;
+        test_log_init(&log);
+        params.struct_size = sizeof params;
+        params.log = &log.log;
+        assert_int_equal(relume_capture_photographs("out", &nowhere, 1, &params, NULL),
+                         RELUME_EINVAL);
+        if (!strstr(log.text, cases[i].sentence))
+            fail_msg("expected '%s', found '%s'", cases[i].sentence, log.text);
+    }
 }
 
 // ---------------------------------------------------------------- a camera on the lamp
@@ -346,16 +421,17 @@ static void a_camera_on_the_lamp(void **state)
         p.list[i] = p.path[i];
         save_uneven(p.path[i], ROUND, i, lamp);
     }
-    struct relume_acquire_params params = params_of(&p);
+    struct relume_acquire_params params = {0};
     test_log_init(&log);
     params.log = &log.log;
     params.lights = p.folder;
     params.near = true;
     write_model(p.folder, LAMPS - 1);
-    assert_int_equal(relume_acquire(&acquisition, p.out, &params), RELUME_EUNFIT);
+    assert_int_equal(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition),
+                     RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "3 photographs from the lamp; expected 4"));
     write_model(p.folder, LAMPS);
-    CHECK_OK(relume_acquire(&acquisition, p.out, &params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
     for (int i = 0; i < LAMPS; i++) {
         const struct relume_vec3 off = vec3_sub(acquisition.position[i], lamp_at(i, 2.0));
         CHECK_NEAR(vec3_dot(off, off), 0.0, 1e-12);
@@ -372,6 +448,7 @@ static void a_camera_on_the_lamp(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_folder_of_photographs), cmocka_unit_test(members_that_disagree),
         cmocka_unit_test(light_is_evened_out),     cmocka_unit_test(a_camera_on_the_lamp),
         cmocka_unit_test(positions_orthographic),  cmocka_unit_test(positions_perspective),
         cmocka_unit_test(a_dark_photograph),       cmocka_unit_test(a_round_stone_is_no_ball),

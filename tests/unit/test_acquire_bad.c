@@ -14,7 +14,7 @@ struct photographs {
 
 static void begin(struct photographs *p)
 {
-    *p = (struct photographs){.params = {.photographs = p->list, .photograph_count = LAMPS}};
+    *p = (struct photographs){0};
     char folder[64];
     memcpy(p->folder, test_folder(folder), sizeof folder);
     snprintf(p->out, sizeof p->out, "%s/out", folder);
@@ -36,7 +36,8 @@ static void save(const struct photographs *p, int i, struct relume_image *image)
 static void expect_refused(struct photographs *p, const char *sentence)
 {
     struct relume_acquisition acquisition;
-    assert_int_equal(relume_acquire(&acquisition, p->out, &p->params), RELUME_EUNFIT);
+    assert_int_equal(relume_capture_photographs(p->out, p->list, LAMPS, &p->params, &acquisition),
+                     RELUME_EUNFIT);
     if (!strstr(p->log.text, sentence))
         fail_msg("expected '%s', found '%s'", sentence, p->log.text);
     assert_int_equal(access(p->out, F_OK), -1);
@@ -89,7 +90,7 @@ static void a_ball_that_is_cut_off(void **state)
     for (int i = 0; i < LAMPS; i++)
         photograph(&p, i, a_ball(0.8));
     p.params.ball = circle;
-    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &p.params, &acquisition));
     assert_true(warns(&acquisition, "ball at 288,120", "cut off by the picture's border"));
     relume_acquisition_destroy(&acquisition);
     test_folder_remove(p.folder);
@@ -109,7 +110,7 @@ static void highlights_that_do_not_tell(void **state)
     photograph(&p, 1, two);
     photograph(&p, 2, rim);
     photograph(&p, 3, a_ball(0.1));
-    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &p.params, &acquisition));
     assert_true(warns(&acquisition, "p1.png", "two highlights"));
     assert_true(warns(&acquisition, "p2.png", "rim"));
     assert_false(warns(&acquisition, "p0.png", "of the ball") ||
@@ -148,7 +149,7 @@ static void many_alike(void **state)
         two.lamp = (struct relume_vec3){0.5, 0.1 + 0.1 * i, 1};
         photograph(&p, i, two);
     }
-    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &p.params, &acquisition));
     for (int i = 0; i < LAMPS; i++)
         assert_true(warns(&acquisition, strrchr(p.path[i], '/') + 1, "two highlights"));
     assert_int_equal(counted.lines, 1);
@@ -192,12 +193,12 @@ static void another_scene(void **state)
     struct relume_acquisition acquisition;
     begin_boards(&p, lights);
     board(&p, 2, 2, 1.0);
-    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &p.params, &acquisition));
     assert_true(warns(&acquisition, "p2.png", "seems to show another scene"));
     assert_int_equal(acquisition.lights, LAMPS);
     relume_acquisition_destroy(&acquisition);
     p.params.skip_bad = p.params.force = true;
-    CHECK_OK(relume_acquire(&acquisition, p.out, &p.params));
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &p.params, &acquisition));
     assert_true(warns(&acquisition, "p2.png", "left out: shows another scene"));
     assert_int_equal(acquisition.lights, LAMPS - 1);
     CHECK_NEAR(acquisition.direction[2].z, 1.0, 1e-9);  // the others keep their lights

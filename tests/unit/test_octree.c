@@ -1,7 +1,7 @@
 // Cells of an octree against the ray tracer, and against all of its cells one by one.
 #include "core/base/memory.h"
 #include "core/math/random.h"
-#include "shape/mesh/octree.h"
+#include "cli/measure/octree.h"
 #include "shape/mesh/trace.h"
 #include "test.h"
 #include "world/stage/shapes.h"

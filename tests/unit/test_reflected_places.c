@@ -2,8 +2,8 @@
 // cubic of triangles against places that it is made of.
 #include "core/math/random.h"
 #include "test.h"
-#include "world/reflect/bezier.h"
-#include "world/reflect/triangle.h"
+#include "cli/measure/bezier.h"
+#include "cli/measure/triangle.h"
 
 // A bulge over the square from (-1, -1) to (1, 1).
 static void make_bulge(struct bezier *out, double height)

@@ -507,6 +507,37 @@ static void one_ray_finds_its_texels(void **state)
     check_file(&around, "around.exr", NULL);
 }
 
+// Outside of a view's mask a masked frame is black to the bit; inside it is the frame.
+static void masked_frames_are_black_outside(void **state)
+{
+    (void)state;
+    const struct fixture f = {.width = 17, .height = 13, .lights = 7, .views = 1, .mask = true};
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
+    char folder_masked[64], path[96];
+    relume_pack *pack;
+    struct relume_image frame, masked, mask;
+    int outside = 0;
+    test_folder(folder_masked);
+    fixture_write(&f, folder_masked);
+    snprintf(path, sizeof path, "%s/pack.exr", folder_masked);
+    CHECK_OK(fixture_encode(folder_masked, path, &relume_basis_sh, 4, NULL));
+    CHECK_OK(relume_pack_open(&pack, path, NULL));
+    CHECK_OK(relume_pack_mask(&mask, pack, 0));
+    CHECK_OK(relume_frame(&frame, pack, &camera, lights, 2, NULL));
+    CHECK_OK(relume_frame(&masked, pack, &camera, lights, 2, relume_frame_params(.masked = true)));
+    for (int i = 0; i < 3 * 17 * 13; i++) {
+        const bool inside = mask.data[i / 3] > 0.5f;
+        outside += !inside;
+        CHECK_NEAR(masked.data[i], inside ? frame.data[i] : 0.0f, 0.0);
+    }
+    assert_true(outside > 0);
+    relume_image_destroy(&frame);
+    relume_image_destroy(&masked);
+    relume_image_destroy(&mask);
+    relume_pack_destroy(&pack);
+    test_folder_remove(folder_masked);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -520,6 +551,7 @@ int main(void)
         cmocka_unit_test(a_pixel_is_that_of_the_frame),
         cmocka_unit_test(places_are_where_depth_says),
         cmocka_unit_test(one_ray_finds_its_texels),
+        cmocka_unit_test(masked_frames_are_black_outside),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

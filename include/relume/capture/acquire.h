@@ -1,7 +1,8 @@
 // acquire.h - from photographs of one scene, each under one light, to a capture with known lights
 //
 // Reads photographs, finds the lights, checks what can be checked, and writes a capture folder:
-// linear half-float images, capture.json, lights.lp, lights.svg and report.html.
+// linear half-float images, capture.json, lights.lp, lights.svg and report.html. `relume capture`
+// makes the same call.
 #ifndef RELUME_ACQUIRE_H
 #define RELUME_ACQUIRE_H
 
@@ -15,54 +16,63 @@
 extern "C" {
 #endif
 
+// Parameters of a capture of photographs. Paths name files and folders, as relume_photographs_list
+// takes them. Zero or NULL in a field means its default. Borrowed during the call.
 struct relume_acquire_params {
     size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // warnings, progress
     const struct relume_limits *limits;
-    const char *const *photographs;  // [photograph_count]
-    int photograph_count;
-    // The balls stand in photographs of their own: ball_photographs[i] under the light of
-    // photographs[i], both in the order given. NULL: the balls stand in the photographs themselves.
-    const char *const *ball_photographs;
-    int ball_photograph_count;
-    const char *mask;         // of the object, or NULL
-    const char *ball_mask;    // of the ball, or NULL
-    const double (*ball)[3];  // [balls]: x, y, radius of the outlines, pixels; NULL: to be found
-    int balls;                // default 1
-    bool matte;               // matte white balls; default mirrors
-    double fov_deg;           // horizontal field of view; default: orthographic
-    double ball_z;            // height of the balls' middles, world units (window: width 2)
-    // The lights are known: a file as relume_captured_lights_load reads it, positions with `near`;
-    // or a folder of COLMAP's text files that pose a camera tied to the lamp, one photograph for
-    // every light in the order of their names, and one of `photographs`. NULL: balls.
+    struct relume_transfer transfer;  // overrides what the files say
+    const char *mask;  // white where the object is; default: the mask among the photographs
+    bool skip_bad;     // leave photographs out that cannot be read, show another scene, or
+                       // no highlight; default: an error that names them
+    bool force;        // replace an existing folder
+    int threads;       // default: all cores
+
+    // Finding the lights. The lights are known: a file as relume_captured_lights_load reads it,
+    // positions with `near`; or a folder of COLMAP's text files that pose a camera tied to the
+    // lamp, one photograph for every light in the order of their names, and one of the
+    // photographs. Default: balls where a member below describes them, else the list that lies
+    // with the photographs, else one mirror ball.
     const char *lights;
-    bool near;        // positions: from two balls or more, or from `lights`
-    bool refine;      // relume_acquire_refine afterwards
-    bool brightness;  // the same with its `brightness`
-    bool integrable;  // the same with its `integrable`
-    bool align;       // bring photographs on top of the first one by homographies
-    bool skip_bad;    // leave photographs out that cannot be read, show another scene, or
-                      // no highlight; default: an error that names them
-    bool force;       // replace an existing folder
-    struct relume_transfer transfer;       // overrides what the files say
-    struct relume_transfer ball_transfer;  // the same of the balls' own photographs; default: too
-    int threads;                           // default: all cores
+    bool near;                // positions: from two balls or more, or from `lights`
+    const double (*ball)[3];  // [balls]: x, y, radius of the outlines, pixels; default: found
+    int balls;                // at most 16; default 1
+    bool matte;               // matte white balls; default mirrors
+    const char *ball_mask;    // white where the ball is
+    // Separate photographs of the balls, one under the light of each photograph, both in the order
+    // of their names; default: the balls stand in the photographs themselves.
+    const char *const *ball_photographs;  // [ball_photograph_count]
+    int ball_photograph_count;
+    struct relume_transfer ball_transfer;  // of these; default: `transfer`
+    double ball_z;                         // height of the balls' middles, world units
+    double fov_deg;                        // horizontal field of view; default: orthographic
+    double focal_mm;                       // the same as a focal length, for a sensor 36 mm wide
+    bool refine_lights;                    // relume_acquire_refine of directions and brightness
+    bool refine_brightness;                // relume_acquire_refine of the brightness alone
+    bool integrable;                       // refine_lights with its `integrable`
+
+    // Corrections
+    int white[4];  // x, y, width, height of a grey region, which gives the lamps' colour;
+                   // width 0: none
+    // A photograph of a ColorChecker 24 whose colours are made right; "auto": the target stands in
+    // the photographs. Not with `white`.
+    const char *target;
+    const double (*target_corner)[2];  // [4] as relume_chart_params; default: found
+    const char *target_values;         // a file for relume_chart_reference_load
     // Photographs of an even surface, which the others are divided by: one against vignetting, or
-    // one under each light; `radial`: by an even polynomial of the distance from the middle that is
-    // fitted to them, else pixel by pixel.
+    // one under each light.
     const char *const *flats;  // [flat_count]
     int flat_count;
-    bool radial;   // `flats` as a polynomial
-    int white[4];  // x, y, width, height of a region that is grey, which gives the lamps' colour;
-                   // width 0: none
-    // Colours of the photographs, and of the balls' own, are made right by this matrix; NULL: they
-    // are left as they are. Not with `white`.
-    const struct relume_chart *chart;
-    const char *chart_path;     // of the photograph that shows it; for the report
-    const char *likely_lights;  // a file that may be meant as `lights`: where no ball is found the
-                                // sentence names it; or NULL
-    bool quick;  // the surface is not wanted: `photometric` is fitted to small photographs, of at
-                 // most 168 pixels a side, to see whether they fit their lights
+    bool radial;  // by an even polynomial of the distance from the middle that is fitted to
+                  // `flats`; default: pixel by pixel
+    bool align;   // bring photographs on top of the first one by homographies
+
+    // By-products: pictures that are written beside the capture. Default: none.
+    const char *normals, *albedo, *height;
+    double width_mm;  // of the picture: `height` in millimetres; default: world units
+    bool surface;     // the report's `photometric` at full size, as it is fitted for by-products;
+                      // default: of at most 168 pixels a side, to see whether photographs fit
 };
 #define relume_acquire_params(...)                                                                 \
     (&(const struct relume_acquire_params){RELUME_SIZED(relume_acquire_params), __VA_ARGS__})
@@ -81,7 +91,7 @@ struct relume_acquired_photo {
 
 enum { RELUME_ACQUIRE_SUGGESTIONS = 12 };
 
-// What came out. Thread-safety: plain data.
+// Report of a capture that was made. Thread-safety: plain data.
 struct relume_acquisition {
     int width, height, lights;
     struct relume_acquired_photo *photo;  // [lights]: those that were used
@@ -99,13 +109,21 @@ struct relume_acquisition {
     struct relume_photometric photometric;   // normals, albedo; empty where lights do not allow it
     char **warning;                          // [warnings]: sentences, also sent to the log
     int warnings;
+    double direction_error_deg;  // mean over the lights of sigma_deg
+    char *target;                // the photograph that shows the colour target, or NULL
+    struct relume_chart chart;   // the colour target, with `target`
 };
 
-// Make the folder `dir`, whole or not at all. On failure `out` is empty. An input status,
-// RELUME_EINVAL (the folder exists; counts do not match), RELUME_EIO, RELUME_ENOMEM,
-// RELUME_ECANCEL.
-RELUME_RESULT relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
-                                           const struct relume_acquire_params *params);
+// Makes the capture folder `dir` from `count` paths of photographs, in the order of the numbers in
+// their names: whole or not at all. By-products follow once the folder is there. `report` (may be
+// NULL) is empty on failure, else to be destroyed. RELUME_EINVAL (members that exclude each other;
+// the folder exists), an input status, RELUME_EUNFIT (counts that do not match, no lights found, no
+// target, normals that the lights do not allow), RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. Output
+// bytes do not depend on `threads`. Thread-safe.
+RELUME_RESULT relume_status relume_capture_photographs(const char *dir,
+                                                       const char *const *photographs, int count,
+                                                       const struct relume_acquire_params *params,
+                                                       struct relume_acquisition *report);
 RELUME_API void relume_acquisition_destroy(struct relume_acquisition *acquisition);
 
 // How lights are refined. Borrowed while relume_acquire_refine runs; `curl` is filled.

@@ -16,6 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
+static const double SENSOR_MM = 36.0;      // width of the frame that focal lengths are given for
 static const double OUTLIER = 3.0;         // times what photographs usually miss
 static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
 
@@ -56,6 +57,7 @@ void relume_acquisition_destroy(struct relume_acquisition *acquisition)
     mem_free(acquisition->intensity);
     mem_free(acquisition->ball);
     mem_free(acquisition->warning);
+    mem_free(acquisition->target);
     relume_photometric_destroy(&acquisition->photometric);
     *acquisition = (struct relume_acquisition){0};
 }
@@ -68,9 +70,9 @@ static relume_status alloc_result(struct acquisition *s)
     out->direction = mem_array(n, sizeof *out->direction);
     out->position = s->p.near ? mem_array(n, sizeof *out->position) : NULL;
     out->intensity =
-        s->has_intensities || s->p.refine ? mem_array(n, sizeof *out->intensity) : NULL;
+        s->has_intensities || acquire_refines(s) ? mem_array(n, sizeof *out->intensity) : NULL;
     if (!out->photo || !out->direction || (s->p.near && !out->position) ||
-        ((s->has_intensities || s->p.refine) && !out->intensity))
+        ((s->has_intensities || acquire_refines(s)) && !out->intensity))
         return RELUME_ENOMEM;
     out->lights = s->shots;
     return RELUME_OK;
@@ -95,6 +97,7 @@ static relume_status fill_result(struct acquisition *s)
         };
         if (!out->photo[i].path)
             return RELUME_ENOMEM;
+        out->direction_error_deg += from->sigma_deg / s->shots;
         out->direction[i] = s->p.near ? vec3_unit(from->position) : from->direction;
         if (out->position) {
             out->position[i] = from->position;
@@ -206,7 +209,7 @@ static relume_status refine(struct acquisition *s, const relume_capture *capture
     const struct relume_acquire_refine_params p = {
         .log = s->p.log,
         .threads = s->p.threads,
-        .brightness = s->p.brightness,
+        .brightness = s->p.refine_brightness,
         .integrable = s->p.integrable,
         .curl = curl,
     };
@@ -220,7 +223,8 @@ static relume_status refine(struct acquisition *s, const relume_capture *capture
     if (status || residual[1] == residual[0])  // they stay, and that has been said
         return status ? status : describe(s);
     log_line(s->p.log, RELUME_NOTE, "%s refined: brightness error %.1f %%, %.1f %% before",
-             s->p.brightness ? "brightness" : "lights", 100.0 * residual[1], 100.0 * residual[0]);
+             s->p.refine_brightness ? "brightness" : "lights", 100.0 * residual[1],
+             100.0 * residual[0]);
     if (s->p.integrable)
         log_line(s->p.log, RELUME_NOTE,
                  "lights refined: the surface's curl is %.3f of its curvature, %.3f before",
@@ -265,7 +269,7 @@ static relume_status fit(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
     relume_status status =
-        s->p.quick && s->width > s->shot[0].small.width
+        !acquire_keeps_surface(s) && s->width > s->shot[0].small.width
             ? acquire_fit_small(s, capture)
             : relume_photometric_fit(
                   &out->photometric, capture, 0,
@@ -296,7 +300,7 @@ static relume_status open_and(struct acquisition *s,
     return status;
 }
 
-static relume_status run(struct acquisition *s)
+static relume_status fill_folder(struct acquisition *s)
 {
     relume_status status = acquire_read(s);
     if (!status)
@@ -315,7 +319,7 @@ static relume_status run(struct acquisition *s)
         status = acquire_check_lights(s);
     if (!status)
         status = describe(s);
-    if (!status && s->p.refine)
+    if (!status && acquire_refines(s))
         status = open_and(s, refine);
     if (!status)
         status = open_and(s, fit);
@@ -357,58 +361,93 @@ static const char *odd_one(const char *const *list, int n, const char *const *ot
     return count == n - m ? odd : NULL;
 }
 
-static relume_status check_balls(const struct relume_acquire_params *p)
+static relume_status check_balls(const struct acquisition *s)
 {
-    const int balls = p->ball_photograph_count, objects = p->photograph_count;
-    if (!p->ball_photographs || balls == objects)
+    const char *const *ball_list = (const char *const *)s->balls.path;
+    const char *const *object_list = (const char *const *)s->photographs.path;
+    const int balls = s->balls.count, objects = s->photographs.count;
+    if (!s->p.ball_photograph_count || balls == objects)
         return RELUME_OK;
     const bool more = balls > objects;
-    const char *odd = more ? odd_one(p->ball_photographs, balls, p->photographs, objects)
-                           : odd_one(p->photographs, objects, p->ball_photographs, balls);
+    const char *odd = more ? odd_one(ball_list, balls, object_list, objects)
+                           : odd_one(object_list, objects, ball_list, balls);
     const char *what = more ? "photograph of the object" : "photograph of the ball";
     if (balls == 1)
-        return log_fail(p->log, RELUME_EUNFIT,
+        return log_fail(s->p.log, RELUME_EUNFIT,
                         "1 photograph of the ball, %d of the object; expected one for each; give "
                         "the folder of the ball's photographs, not its files (a shell's * leaves "
                         "all but the first to the object)",
                         objects);
     if (odd)
-        return log_fail(p->log, RELUME_EUNFIT,
+        return log_fail(s->p.log, RELUME_EUNFIT,
                         "%s: there is no %s with this number; expected one for each; found %d of "
                         "the ball, %d of the object",
                         odd, what, balls, objects);
-    return log_fail(p->log, RELUME_EUNFIT,
+    return log_fail(s->p.log, RELUME_EUNFIT,
                     "%d photographs of the ball; expected %d, one for each of the object", balls,
                     objects);
 }
 
+// ---------------------------------------------------------------- parameters
+
+// Returns a sentence about members that need or exclude each other, NULL where all agree.
+static const char *find_conflict(const struct relume_acquire_params *p)
+{
+    if (p->fov_deg > 0.0 && p->focal_mm > 0.0)
+        return "expected one of --fov and --focal";
+    if (p->refine_brightness && p->refine_lights)
+        return "expected one of --refine-lights, which refines brightness as well, and "
+               "--refine-brightness";
+    if (p->ball_transfer.curve != RELUME_CURVE_AUTO && !p->ball_photograph_count)
+        return "--ball-transfer needs --ball-photos; for the photographs themselves use "
+               "--transfer";
+    if (p->integrable && !p->refine_lights)
+        return "--integrable needs --refine-lights";
+    if (p->radial && !p->flat_count)
+        return "--radial needs --flat FILE";
+    if (p->white[2] && p->target)
+        return "expected one of --white and --target, which gives the white balance as well";
+    if (p->target_values && !p->target)
+        return "--target-values needs --target FILE";
+    if (p->target_corner && !p->target)
+        return "--target-corners needs --target FILE";
+    if (p->width_mm > 0.0 && !p->height)
+        return "--width needs --height FILE.exr";
+    return NULL;
+}
+
 static relume_status check_params(const struct relume_acquire_params *p)
 {
-    if (p->photograph_count < 3)
-        return log_fail(p->log, RELUME_EUNFIT, "%d photograph%s; expected at least 3",
-                        p->photograph_count, relume_plural(p->photograph_count));
-    const relume_status status = check_balls(p);
+    const char *conflict = find_conflict(p);
+    return conflict ? log_fail(p->log, RELUME_EINVAL, "capture: %s", conflict) : RELUME_OK;
+}
+
+// Compares the params with the photographs and lights that were found.
+static relume_status check_inputs(const struct acquisition *s)
+{
+    const struct relume_acquire_params *p = &s->p;
+    const int count = s->photographs.count;
+    if (count < 3)
+        return log_fail(p->log, RELUME_EUNFIT, "%d photograph%s; expected at least 3", count,
+                        relume_plural(count));
+    const relume_status status = check_balls(s);
     if (status)
         return status;
-    if (p->flat_count > 1 && p->flat_count != p->photograph_count)
+    if (s->flats.count > 1 && s->flats.count != count)
         return log_fail(p->log, RELUME_EUNFIT,
                         "%d flat fields; expected 1, or %d as photographs, each under its light",
-                        p->flat_count, p->photograph_count);
+                        s->flats.count, count);
     if (p->white[2] && p->matte && !p->lights)
         return log_fail(
             p->log, RELUME_EINVAL,
             "--white: the matte ball shows the lamps' colour already; leave out --white");
-    if (p->white[2] && p->chart)
-        return log_fail(p->log, RELUME_EINVAL,
-                        "--white: the colour target gives the white balance; leave out --white");
-    if (p->integrable && !p->refine)
-        return log_fail(p->log, RELUME_EINVAL,
-                        "lights are made to fit a surface only where they are refined");
-    if (p->refine && p->near)
+    if (acquire_refines(s) && p->near)
         return log_fail(p->log, RELUME_EINVAL,
                         "near lights cannot be refined; expected distant ones");
     return RELUME_OK;
 }
+
+// ---------------------------------------------------------------- the call
 
 static void release(struct acquisition *s)
 {
@@ -421,30 +460,57 @@ static void release(struct acquisition *s)
     relume_image_destroy(&s->mean);
     relume_image_destroy(&s->peak);
     relume_image_destroy(&s->change);
+    relume_photographs_free(&s->photographs);
+    relume_photographs_free(&s->balls);
+    relume_photographs_free(&s->flats);
 }
 
-relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
-                             const struct relume_acquire_params *params)
+static relume_status list_shots(struct acquisition *s)
 {
-    struct acquisition s = {.p = PARAMS_WORK(relume_acquire_params, params), .out = out};
-    params = &s.p;
-    s.shots = params->photograph_count;
-    *out = (struct relume_acquisition){0};
-    relume_status status = check_params(params);
-    if (status)
-        return status;
-    s.shot = mem_zeroed((size_t)s.shots, sizeof *s.shot);
-    for (int i = 0; s.shot && i < s.shots; i++) {
-        s.shot[i].number = i;
-        s.shot[i].path = params->photographs[i];
-        s.shot[i].ball_path = params->ball_photographs ? params->ball_photographs[i] : NULL;
+    s->shot = mem_zeroed((size_t)s->photographs.count, sizeof *s->shot);
+    if (!s->shot)
+        return RELUME_ENOMEM;
+    s->shots = s->photographs.count;
+    for (int i = 0; i < s->shots; i++) {
+        s->shot[i].number = i;
+        s->shot[i].path = s->photographs.path[i];
+        s->shot[i].ball_path = s->balls.count ? s->balls.path[i] : NULL;
     }
-    status = s.shot ? outdir_open(&s.dir, dir, params->force, params->log) : RELUME_ENOMEM;
+    return RELUME_OK;
+}
+
+static relume_status make_folder(struct acquisition *s, const char *dir)
+{
+    relume_status status = outdir_open(&s->dir, dir, s->p.force, s->p.log);
     if (!status)
-        status = run(&s);
-    status = outdir_end(&s.dir, status);
+        status = fill_folder(s);
+    return outdir_end(&s->dir, status);
+}
+
+relume_status relume_capture_photographs(const char *dir, const char *const *photographs, int count,
+                                         const struct relume_acquire_params *params,
+                                         struct relume_acquisition *report)
+{
+    struct relume_acquisition unread, *out = report ? report : &unread;
+    struct acquisition s = {.p = PARAMS_WORK(relume_acquire_params, params), .out = out};
+    *out = (struct relume_acquisition){0};
+    relume_status status = check_params(&s.p);
+    if (s.p.focal_mm > 0.0)
+        s.p.fov_deg = 2.0 * atan(SENSOR_MM / 2.0 / s.p.focal_mm) * 180.0 / M_PI;
+    if (!status)
+        status = acquire_find_inputs(&s, photographs, count);
+    if (!status)
+        status = acquire_read_target(&s);
+    if (!status)
+        status = check_inputs(&s);
+    if (!status)
+        status = list_shots(&s);
+    if (!status)
+        status = make_folder(&s, dir);
+    if (!status)
+        status = acquire_write_products(&s);
     release(&s);
-    if (status)
+    if (status || !report)
         relume_acquisition_destroy(out);
     return status;
 }

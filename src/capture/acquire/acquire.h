@@ -6,8 +6,8 @@
 #include "core/base/outdir.h"
 #include "core/math/vec.h"
 
-#include <relume/image/photograph.h>
 #include <relume/capture/acquire.h>
+#include <relume/image/photograph.h>
 
 // One photograph and, where balls have photographs of their own, that of the ball under its light.
 struct shot {
@@ -49,7 +49,10 @@ struct alike {
 };
 
 struct acquisition {
-    struct relume_acquire_params p;
+    struct relume_acquire_params p;  // masks and lights as they were found
+    struct relume_photographs photographs, balls, flats;
+    char likely_lights[4096];  // a file that may be meant as lights: where no ball is found the
+                               // sentence names it; "": none
     struct relume_acquisition *out;
     outdir *dir;
     int shots;
@@ -81,6 +84,24 @@ void acquire_say_alike(struct acquisition *s);
 // Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
 __attribute__((format(printf, 3, 4))) relume_status acquire_drop(struct acquisition *s, int i,
                                                                  const char *format, ...);
+
+static inline bool acquire_refines(const struct acquisition *s)
+{
+    return s->p.refine_lights || s->p.refine_brightness;
+}
+// Returns true where the surface is fitted to photographs of full size.
+static inline bool acquire_keeps_surface(const struct acquisition *s)
+{
+    return s->p.surface || s->p.normals || s->p.albedo || s->p.height;
+}
+
+// Finds the photographs, masks and lights that the params name, or that lie beside. An input
+// status.
+relume_status acquire_find_inputs(struct acquisition *s, const char *const *paths, int count);
+// Fills out->chart from the colour target, where there is one. An input status.
+relume_status acquire_read_target(struct acquisition *s);
+// Writes normals, albedo and height, where they are wanted. RELUME_EUNFIT, RELUME_EIO.
+relume_status acquire_write_products(const struct acquisition *s);
 
 // One photograph of the camera that stands still, turned as the first is. `notes` may be NULL. An
 // input status.

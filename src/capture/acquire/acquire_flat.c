@@ -40,13 +40,13 @@ static relume_status make_gain(const struct acquisition *s, struct relume_image 
 relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
                               struct relume_image *image)
 {
-    const bool each = s->p.flat_count > 1;
-    if (!s->p.flat_count)
+    const bool each = s->flats.count > 1;
+    if (!s->flats.count)
         return RELUME_OK;
     if (each)
         relume_image_destroy(&s->gain);
     if (!s->gain.data) {
-        const relume_status status = make_gain(s, &s->gain, s->p.flats[each ? shot->number : 0]);
+        const relume_status status = make_gain(s, &s->gain, s->flats.path[each ? shot->number : 0]);
         if (status)
             return status;
     }
@@ -57,8 +57,8 @@ relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
 
 void acquire_correct(const struct acquisition *s, struct relume_image *image, bool floats)
 {
-    if (s->p.chart)
-        relume_chart_apply(image, s->p.chart->matrix, !floats);
+    if (s->out->target)
+        relume_chart_apply(image, s->out->chart.matrix, !floats);
 }
 
 relume_status acquire_add_grey(struct acquisition *s, const struct relume_image *image)

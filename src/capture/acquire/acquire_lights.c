@@ -201,7 +201,7 @@ static relume_status no_ball(const struct acquisition *s)
     return log_fail(s->p.log, RELUME_EUNFIT,
                     "%s: %s %s ball%s found; give --lights %s, or --ball x,y,r where one is%s",
                     ball_photo(&s->shot[0]), what, s->p.matte ? "matte" : "mirror",
-                    relume_plural(n), s->p.likely_lights ? s->p.likely_lights : "FILE",
+                    relume_plural(n), *s->likely_lights ? s->likely_lights : "FILE",
                     s->p.matte ? "" : ", or --matte for a white ball");
 }
 
@@ -544,10 +544,9 @@ static relume_status lights_from_file(struct acquisition *s)
         status = relume_captured_lights_load(&list, s->p.lights, s->p.near, s->p.log);
     if (!status && is_lp(s->p.lights))
         status = match_names(s, order, &matched);
-    if (!status && !matched && list.count != s->p.photograph_count)
-        status =
-            log_fail(s->p.log, RELUME_EUNFIT, "%s: %d light%s; expected %d as photographs",
-                     s->p.lights, list.count, relume_plural(list.count), s->p.photograph_count);
+    if (!status && !matched && list.count != s->photographs.count)
+        status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d light%s; expected %d as photographs",
+                          s->p.lights, list.count, relume_plural(list.count), s->photographs.count);
     if (!status)
         take_lights(s, &list, order);
     if (!status && matched)

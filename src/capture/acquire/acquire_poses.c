@@ -21,8 +21,8 @@ bool acquire_has_poses(const char *path)
 
 static bool is_photograph(const struct acquisition *s, const char *name)
 {
-    for (int i = 0; i < s->p.photograph_count; i++)
-        if (!strcmp(path_name(s->p.photographs[i]), path_name(name)))
+    for (int i = 0; i < s->photographs.count; i++)
+        if (!strcmp(path_name(s->photographs.path[i]), path_name(name)))
             return true;
     return false;
 }
@@ -74,13 +74,13 @@ static relume_status tell_apart(const struct acquisition *s, const struct posed_
         return log_fail(
             s->p.log, RELUME_EUNFIT,
             "%s: has a pose for none of the photographs; expected '%s' or another of them",
-            s->p.lights, path_name(s->p.photographs[0]));
-    if (lamps == s->p.photograph_count)
+            s->p.lights, path_name(s->photographs.path[0]));
+    if (lamps == s->photographs.count)
         return RELUME_OK;
     return log_fail(s->p.log, RELUME_EUNFIT,
                     "%s: poses of %d photograph%s from the lamp; expected %d, one for each of the "
                     "object",
-                    s->p.lights, lamps, relume_plural(lamps), s->p.photograph_count);
+                    s->p.lights, lamps, relume_plural(lamps), s->photographs.count);
 }
 
 static void place(struct acquisition *s, const struct posed_camera *object,

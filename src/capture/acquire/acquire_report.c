@@ -75,15 +75,12 @@ static void put_patch(FILE *f, const float photographed[3], const struct relume_
 
 static void put_chart(struct report *r)
 {
-    const struct relume_chart *c = r->s->p.chart;
+    const struct relume_chart *c = &r->s->out->chart;
     FILE *f = r->f;
-    if (!c)
+    if (!r->s->out->target)
         return;
-    fputs("<h2>Colour</h2>\n<p>Corrected by a colour target", f);
-    if (r->s->p.chart_path) {
-        fputs(" in ", f);
-        markup_text(f, path_name(r->s->p.chart_path));
-    }
+    fputs("<h2>Colour</h2>\n<p>Corrected by a colour target in ", f);
+    markup_text(f, path_name(r->s->out->target));
     fprintf(f,
             ", %d of 24 patches used. Colour difference (CIEDE2000, mean and largest): %.1f and "
             "%.1f as photographed, %.1f and %.1f with white balance, <b>%.1f and %.1f</b> as "

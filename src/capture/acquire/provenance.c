@@ -87,12 +87,11 @@ static void put_pair(struct jwriter *w, const char *key, const double value[2])
 
 static void put_chart(struct jwriter *w, const struct acquisition *s)
 {
-    const struct relume_chart *c = s->p.chart;
+    const struct relume_chart *c = &s->out->chart;
     jgap(w, "\n    ");
     jopen_object(w, "colour");
     jput_text(w, "target", "ColorChecker 24");
-    if (s->p.chart_path)
-        jput_text(w, "photograph", path_name(s->p.chart_path));
+    jput_text(w, "photograph", path_name(s->out->target));
     jput_floats(w, "matrix", c->matrix, 9, 9);
     jput_number(w, "exposure", c->exposure, 6);
     jput_integer(w, "patches", c->used);
@@ -112,7 +111,7 @@ char *acquire_provenance(const struct acquisition *s)
     for (int i = 0; i < s->shots; i++)
         put_photograph(&w, &s->shot[i]);
     jclose(&w);
-    if (s->p.chart)
+    if (s->out->target)
         put_chart(&w, s);
     return jtake(&w, NULL);
 }

@@ -4,6 +4,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "core/math/fnv.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -12,17 +13,9 @@
 
 enum { MIDDLE = 4096 };  // bytes that are looked at
 
-static uint64_t hash(uint64_t h, const void *bytes, size_t n)
-{
-    const unsigned char *b = bytes;
-    for (size_t i = 0; i < n; i++)
-        h = (h ^ b[i]) * 0x100000001b3u;  // FNV-1a
-    return h;
-}
-
 static uint64_t hash_number(uint64_t h, double number)
 {
-    return hash(h, &number, sizeof number);
+    return fnv_of(h, &number, sizeof number);
 }
 
 static uint64_t hash_geometry(uint64_t h, const struct relume_geometry *g)
@@ -32,21 +25,21 @@ static uint64_t hash_geometry(uint64_t h, const struct relume_geometry *g)
         g->perspective, g->camera_z,      g->uv_z,          g->st_z,          g->st_min[0],
         g->st_min[1],   g->st_max[0],     g->st_max[1],     g->v_min,         g->v_max,
         g->disc,        g->center.x,      g->center.y,      g->center.z};
-    h = hash(h, numbers, sizeof numbers);
-    return hash(h, &g->pose, sizeof g->pose);
+    h = fnv_of(h, numbers, sizeof numbers);
+    return fnv_of(h, &g->pose, sizeof g->pose);
 }
 
 static uint64_t hash_manifest(const relume_capture *c)
 {
     const struct relume_manifest *m = &c->draft.m;
-    uint64_t h = hash_number(0xcbf29ce484222325u, (double)c->width);
+    uint64_t h = hash_number(FNV_START, (double)c->width);
     h = hash_number(h, (double)c->height);
     h = hash_number(h, (double)m->views);
-    h = hash(h, m->directions, (size_t)m->lights * sizeof *m->directions);
+    h = fnv_of(h, m->directions, (size_t)m->lights * sizeof *m->directions);
     if (m->positions)
-        h = hash(h, m->positions, (size_t)m->lights * sizeof *m->positions);
+        h = fnv_of(h, m->positions, (size_t)m->lights * sizeof *m->positions);
     if (m->intensities)
-        h = hash(h, m->intensities, (size_t)m->lights * sizeof *m->intensities);
+        h = fnv_of(h, m->intensities, (size_t)m->lights * sizeof *m->intensities);
     h = hash_number(h, (double)m->no_falloff);
     h = hash_number(h, (double)m->transfer.curve);
     h = hash_number(h, (double)m->transfer.gamma);
@@ -54,7 +47,7 @@ static uint64_t hash_manifest(const relume_capture *c)
     for (int i = 0; i < m->slabs; i++)
         h = hash_geometry(h, &m->slab[i]);
     for (int i = 0; i < m->views; i++) {
-        h = hash(h, m->view[i].uv, sizeof m->view[i].uv);
+        h = fnv_of(h, m->view[i].uv, sizeof m->view[i].uv);
         h = hash_number(h, (double)m->view[i].slab);
         h = hash_number(h, (double)((m->view[i].depth != NULL) + 2 * (m->view[i].mask != NULL)));
     }
@@ -81,7 +74,7 @@ static void digest_file(struct digesting *d, size_t item)
         const ssize_t n = infile_read(&in, bytes, sizeof bytes, in.size / 2);
         d->failed[item] = n < 0 ? errno : 0;
         d->image[item] =
-            hash(hash_number(0xcbf29ce484222325u, (double)in.size), bytes, n < 0 ? 0 : (size_t)n);
+            fnv_of(hash_number(FNV_START, (double)in.size), bytes, n < 0 ? 0 : (size_t)n);
     }
     infile_close(&in);
 }
@@ -94,8 +87,7 @@ static void digest_array(struct digesting *d, size_t item)
     const size_t size =
         (size_t)p->width * (size_t)p->height * (size_t)p->channels * sizes[p->sample];
     const char *middle = (const char *)p->data + item * size + size / 2;
-    d->image[item] =
-        hash(0xcbf29ce484222325u, middle, size - size / 2 < MIDDLE ? size - size / 2 : MIDDLE);
+    d->image[item] = fnv_of(FNV_START, middle, size - size / 2 < MIDDLE ? size - size / 2 : MIDDLE);
 }
 
 static void digest_image(void *context, size_t item, int worker)
@@ -125,7 +117,7 @@ relume_status relume_capture_digest(char text[RELUME_DIGEST], const relume_captu
                                        "cannot be read", d.failed[i]);
     if (!status)
         snprintf(text, RELUME_DIGEST, "%016" PRIx64,
-                 hash(hash_manifest(capture), d.image, images * sizeof *d.image));
+                 fnv_of(hash_manifest(capture), d.image, images * sizeof *d.image));
     mem_free(d.image);
     mem_free(d.failed);
     return status;

@@ -25,12 +25,6 @@ bool is_dome(const jvalue *root)
     return jvalue_member(root, "lightConfiguration") || jvalue_member(root, "positionsSphere");
 }
 
-static relume_status wrong(const char *path, const char *where, const char *expected,
-                           const struct relume_log *log)
-{
-    return log_fail(log, RELUME_EFORMAT, "%s: %s; expected %s", path, where, expected);
-}
-
 // {"x":..., "y":..., "z":...} or [x, y, z].
 static bool triple(double out[3], const jvalue *value, const char *const keys[3])
 {
@@ -50,7 +44,7 @@ static relume_status read_vectors(struct relume_captured_lights *out, const jval
     const size_t n = jvalue_count(array);
     char where[64];
     if (n < 1 || n > (size_t)limits_or_default(NULL).max_lights)
-        return wrong(path, key, "one {x, y, z} for every light, within the limits", log);
+        return log_wrong(log, path, key, "one {x, y, z} for every light, within the limits");
     out->count = (int)n;
     out->direction = mem_array(n, sizeof *out->direction);
     out->position = mem_array(n, sizeof *out->position);
@@ -60,11 +54,11 @@ static relume_status read_vectors(struct relume_captured_lights *out, const jval
         double v[3];
         snprintf(where, sizeof where, "%s[%zu]", key, i);
         if (!triple(v, jvalue_item(array, i), xyz))
-            return wrong(path, where, "three finite numbers x, y, z", log);
+            return log_wrong(log, path, where, "three finite numbers x, y, z");
         out->position[i] = vec3_scale(vec3_of(v[0], v[1], v[2]), scale);
         out->direction[i] = out->position[i];
         if (!direction_normalise(&out->direction[i]))
-            return wrong(path, where, "a light away from the middle of the picture", log);
+            return log_wrong(log, path, where, "a light away from the middle of the picture");
     }
     return RELUME_OK;
 }
@@ -76,7 +70,7 @@ static relume_status read_adjustments(struct relume_captured_lights *out, const 
     if (!jvalue_count(array))
         return RELUME_OK;
     if (jvalue_count(array) != (size_t)out->count)
-        return wrong(path, "ledAdjust", "one {r, g, b} for every light", log);
+        return log_wrong(log, path, "ledAdjust", "one {r, g, b} for every light");
     out->intensity = mem_array((size_t)out->count, sizeof *out->intensity);
     if (!out->intensity)
         return RELUME_ENOMEM;
@@ -85,8 +79,8 @@ static relume_status read_adjustments(struct relume_captured_lights *out, const 
             double gain[3];
             if (!triple(gain, jvalue_item(array, (size_t)i), rgb) || !(gain[c] >= 1e-6) ||
                 gain[c] > 1e6)
-                return wrong(path, "ledAdjust", "three numbers from 1e-6 to 1e6 for every light",
-                             log);
+                return log_wrong(log, path, "ledAdjust",
+                                 "three numbers from 1e-6 to 1e6 for every light");
             out->intensity[i][c] = (float)(1.0 / gain[c]);
         }
     return RELUME_OK;
@@ -103,9 +97,9 @@ relume_status dome_lights(struct relume_captured_lights *out, const jvalue *root
     while (named && form < FORMS && strcmp(named, forms[form].configuration))
         form++;
     if (!named || form == FORMS)
-        return wrong(path, "lightConfiguration", "directional, spherical or lights3d", log);
+        return log_wrong(log, path, "lightConfiguration", "directional, spherical or lights3d");
     if (width && (!jvalue_number(width, &width_mm) || width_mm < 0.0))
-        return wrong(path, "imageWidth", "a width in mm", log);
+        return log_wrong(log, path, "imageWidth", "a width in mm");
     relume_status status =
         read_vectors(out, jvalue_member(root, forms[form].key),
                      2.0 / (width_mm > 0.0 ? width_mm : 1.0), forms[form].key, path, log);

@@ -25,11 +25,6 @@ struct parser {
     bool allow_outside;
 };
 
-static relume_status wrong(const struct parser *p, const char *where, const char *expected)
-{
-    return manifest_wrong(p->path, where, expected, p->log);
-}
-
 // An optional member: absent leaves `out` as it is.
 static relume_status get_numbers(const struct parser *p, const jvalue *object, const char *key,
                                  double *out, size_t count)
@@ -41,7 +36,8 @@ static relume_status get_numbers(const struct parser *p, const jvalue *object, c
         return RELUME_OK;
     char expected[32];
     snprintf(expected, sizeof expected, "%zu number%s", count, relume_plural((int64_t)count));
-    return jvalue_numbers(value, out, count) ? RELUME_OK : wrong(p, key, expected);
+    return jvalue_numbers(value, out, count) ? RELUME_OK
+                                             : log_wrong(p->log, p->path, key, expected);
 }
 
 bool leaves_folder(const char *name)
@@ -68,7 +64,7 @@ static relume_status get_path(const struct parser *p, const jvalue *value, const
 {
     const char *text = jvalue_text(value);
     if (!text || !*text)
-        return wrong(p, where, "a file name");
+        return log_wrong(p->log, p->path, where, "a file name");
     if (!p->allow_outside && leaves_folder(text))
         return log_fail(p->log, RELUME_ELIMIT,
                         "%s: %s names '%.200s', outside its folder; expected a file inside; if you "
@@ -93,7 +89,8 @@ static relume_status read_vectors(const struct parser *p, const jvalue *array, c
     char where[64];
     const size_t n = jvalue_count(array);
     if (n < 1 || n > (size_t)p->limits.max_lights)
-        return wrong(p, what, "an array of [x, y, z], not empty and within the limits");
+        return log_wrong(p->log, p->path, what,
+                         "an array of [x, y, z], not empty and within the limits");
     struct relume_vec3 *v = arena_array(&p->d->arena, n, sizeof *v);
     if (!v)
         return RELUME_ENOMEM;
@@ -101,7 +98,7 @@ static relume_status read_vectors(const struct parser *p, const jvalue *array, c
         double xyz[3];
         snprintf(where, sizeof where, "%s[%zu]", what, i);
         if (!jvalue_numbers(jvalue_item(array, i), xyz, 3))
-            return wrong(p, where, "three finite numbers");
+            return log_wrong(p->log, p->path, where, "three finite numbers");
         v[i] = vec3_of(xyz[0], xyz[1], xyz[2]);
     }
     *out = v;
@@ -112,7 +109,7 @@ static relume_status read_vectors(const struct parser *p, const jvalue *array, c
 static relume_status read_intensities(const struct parser *p, const jvalue *array, int lights)
 {
     if (jvalue_count(array) != (size_t)lights)
-        return wrong(p, "lights.intensities", "one [r, g, b] for every light");
+        return log_wrong(p->log, p->path, "lights.intensities", "one [r, g, b] for every light");
     struct draft *d = p->d;
     d->intensities = arena_array(&d->arena, (size_t)lights, sizeof *d->intensities);
     if (!d->intensities)
@@ -120,7 +117,7 @@ static relume_status read_intensities(const struct parser *p, const jvalue *arra
     for (int i = 0; i < lights; i++) {
         double rgb[3];
         if (!jvalue_numbers(jvalue_item(array, (size_t)i), rgb, 3))
-            return wrong(p, "lights.intensities", MANIFEST_INTENSITIES);
+            return log_wrong(p->log, p->path, "lights.intensities", MANIFEST_INTENSITIES);
         for (int c = 0; c < 3; c++)
             d->intensities[i][c] = (float)rgb[c];
     }
@@ -133,7 +130,7 @@ static relume_status read_falloff(const struct parser *p, const jvalue *value)
     if (!value || jvalue_is_null(value))
         return RELUME_OK;
     if (!text || (strcmp(text, "inverse-square") && strcmp(text, "none")))
-        return wrong(p, "lights.falloff", "inverse-square or none");
+        return log_wrong(p->log, p->path, "lights.falloff", "inverse-square or none");
     p->d->m.no_falloff = !strcmp(text, "none");
     return RELUME_OK;
 }
@@ -149,14 +146,14 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
     relume_status status = RELUME_OK;
     int n = 0;
     if (!directions && !positions)
-        return wrong(p, "lights", "directions or positions");
+        return log_wrong(p->log, p->path, "lights", "directions or positions");
     if (positions)
         status = read_vectors(p, positions, "lights.positions", &d->positions, &n);
     if (!status && directions) {
         int m = 0;
         status = read_vectors(p, directions, "lights.directions", &d->directions, &m);
         if (!status && positions && m != n)
-            return wrong(p, "lights", "as many positions as directions");
+            return log_wrong(p->log, p->path, "lights", "as many positions as directions");
         n = m;
     }
     if (!status && intensities && !jvalue_is_null(intensities))
@@ -195,10 +192,12 @@ static relume_status read_pose(const struct parser *p, const jvalue *slab, int i
     relume_status status = get_numbers(p, slab, "origin", v[3], 3);
     snprintf(where, sizeof where, "slabs[%d].axes", index);
     if (!status && axes && jvalue_count(axes) != 3)
-        status = wrong(p, where, "three vectors: the slab's x, y and z in the world");
+        status =
+            log_wrong(p->log, p->path, where, "three vectors: the slab's x, y and z in the world");
     for (size_t i = 0; !status && axes && i < 3; i++)
         if (!jvalue_numbers(jvalue_item(axes, i), v[i], 3))
-            status = wrong(p, where, "three vectors: the slab's x, y and z in the world");
+            status = log_wrong(p->log, p->path, where,
+                               "three vectors: the slab's x, y and z in the world");
     if (status)
         return status;
     pose->origin = vec3_of(v[3][0], v[3][1], v[3][2]);
@@ -212,7 +211,7 @@ static relume_status read_slabs(const struct parser *p, const jvalue *slabs)
     struct draft *d = p->d;
     const size_t n = jvalue_count(slabs);
     if (n < 1 || n > RELUME_MOST_SLABS)
-        return wrong(p, "slabs", "an array of 1 to 64 slabs");
+        return log_wrong(p->log, p->path, "slabs", "an array of 1 to 64 slabs");
     d->slab = arena_array(&d->arena, n, sizeof *d->slab);
     if (!d->slab)
         return RELUME_ENOMEM;
@@ -233,11 +232,12 @@ static relume_status read_slab(const struct parser *p, const jvalue *root)
     const jvalue *one = jvalue_member(root, "slab");
     const jvalue *several = jvalue_member(root, "slabs");
     if (one && several)
-        return wrong(p, "slab and slabs", "one of them");
+        return log_wrong(p->log, p->path, "slab and slabs", "one of them");
     if (several)
         return read_slabs(p, several);
     if (!one)
-        return wrong(p, "slab", "an object with uv_plane_z, st_plane_z, st_min, st_max");
+        return log_wrong(p->log, p->path, "slab",
+                         "an object with uv_plane_z, st_plane_z, st_min, st_max");
     return read_planes(p, one, &p->d->m.geometry);
 }
 
@@ -248,7 +248,8 @@ static relume_status read_discs(const struct parser *p, const jvalue *panorama)
     const jvalue *value = jvalue_member(panorama, "discs");
     if (!value || jvalue_is_null(value) || jvalue_whole(value, 0, p->limits.max_side, &g->disc))
         return RELUME_OK;
-    return wrong(p, "panorama.discs", "the side of a disc's square in pixels, or 0");
+    return log_wrong(p->log, p->path, "panorama.discs",
+                     "the side of a disc's square in pixels, or 0");
 }
 
 static relume_status read_geometry(const struct parser *p, const jvalue *root)
@@ -260,14 +261,15 @@ static relume_status read_geometry(const struct parser *p, const jvalue *root)
         projection = jvalue_text(value);
     enum relume_projection kind;
     if (!projection || relume_projection_parse(&kind, projection))
-        return wrong(p, "projection", "planar, slab, cylindrical, spherical or cube");
+        return log_wrong(p->log, p->path, "projection",
+                         "planar, slab, cylindrical, spherical or cube");
     *g = relume_geometry_default(kind, 1, 1);
 
     const jvalue *window = jvalue_member(root, "window");
     const jvalue *panorama = jvalue_member(root, "panorama");
     const char *camera = jvalue_text(jvalue_member(window, "camera"));
     if (camera && strcmp(camera, "orthographic") && strcmp(camera, "perspective"))
-        return wrong(p, "window.camera", "orthographic or perspective");
+        return log_wrong(p->log, p->path, "window.camera", "orthographic or perspective");
     g->perspective = camera && !strcmp(camera, "perspective");
     p->d->has_window = jvalue_member(window, "min") && jvalue_member(window, "max");
     if (kind == RELUME_SLAB)
@@ -310,7 +312,7 @@ static relume_status read_view(const struct parser *p, const jvalue *object, int
     snprintf(where, sizeof where, "views[%d].images", index);
     const jvalue *images = jvalue_member(object, "images");
     if (!jvalue_is_array(images))
-        return wrong(p, where, "an array of file names");
+        return log_wrong(p->log, p->path, where, "an array of file names");
     if (jvalue_count(images) != (size_t)d->m.lights)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: %s; expected %d images for %d lights, found %zu", p->path, where,
@@ -330,7 +332,7 @@ static relume_status read_view(const struct parser *p, const jvalue *object, int
     if (status)
         return status;
     if (d->m.geometry.projection == RELUME_SLAB && !jvalue_member(object, "uv"))
-        return wrong(p, "views[].uv", "two numbers for every view of a slab");
+        return log_wrong(p->log, p->path, "views[].uv", "two numbers for every view of a slab");
     return get_numbers(p, object, "uv", v->uv, 2);
 }
 
@@ -339,7 +341,8 @@ static relume_status read_views(const struct parser *p, const jvalue *views)
     struct draft *d = p->d;
     const size_t n = jvalue_count(views);
     if (n < 1 || n > (size_t)p->limits.max_views)
-        return wrong(p, "views", "an array of views, not empty and within the limits");
+        return log_wrong(p->log, p->path, "views",
+                         "an array of views, not empty and within the limits");
     d->view = arena_array(&d->arena, n, sizeof *d->view);
     if (!d->view)
         return RELUME_ENOMEM;
@@ -361,7 +364,8 @@ static relume_status read_transfer(const struct parser *p, const jvalue *value)
     if (status == RELUME_ENOMEM)
         return status;
     if (status || !input_exists(path, p->log))
-        return wrong(p, "transfer", "linear, srgb, gamma:NUMBER or a response-curve file");
+        return log_wrong(p->log, p->path, "transfer",
+                         "linear, srgb, gamma:NUMBER or a response-curve file");
     struct relume_response *response = arena_array(&d->arena, 1, sizeof *response);
     if (!response)
         return RELUME_ENOMEM;
@@ -374,7 +378,7 @@ static relume_status read_provenance(const struct parser *p, const jvalue *value
     if (!value || jvalue_is_null(value))
         return RELUME_OK;
     if (!jvalue_is_object(value))
-        return wrong(p, "provenance", "an object");
+        return log_wrong(p->log, p->path, "provenance", "an object");
     char *text = jvalue_print(value);
     p->d->m.provenance = text ? arena_text(&p->d->arena, text) : NULL;
     mem_free(text);
@@ -385,10 +389,10 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
 {
     const char *format = jvalue_text(jvalue_member(root, "format"));
     if (!format || strcmp(format, "relume-capture"))
-        return wrong(p, "format", "\"relume-capture\"");
+        return log_wrong(p->log, p->path, "format", "\"relume-capture\"");
     long long version;
     if (!jvalue_integer(jvalue_member(root, "version"), &version) || version < 1)
-        return wrong(p, "version", "1");
+        return log_wrong(p->log, p->path, "version", "1");
     if (version > MANIFEST_VERSION)
         return log_fail(p->log, RELUME_EUNSUPPORTED,
                         "%s: version %lld is newer than this program; expected %d", p->path,

@@ -46,9 +46,6 @@ relume_status draft_check_views(const struct draft *d, const char *path,
 // The draft's arrays are those of its manifest from now on.
 void draft_publish(struct draft *d);
 
-// "PATH: WHERE; expected ..." as an input status.
-relume_status manifest_wrong(const char *path, const char *where, const char *expected,
-                             const struct relume_log *log);
 #define MANIFEST_INTENSITIES "three numbers from 1e-30 to 1e30 for every light"
 
 // Whether a name is absolute, here or on Windows, or climbs out of the folder that it begins in.

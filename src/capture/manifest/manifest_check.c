@@ -5,12 +5,6 @@
 
 #include <stdio.h>
 
-relume_status manifest_wrong(const char *path, const char *where, const char *expected,
-                             const struct relume_log *log)
-{
-    return log_fail(log, RELUME_EFORMAT, "%s: %s; expected %s", path, where, expected);
-}
-
 void draft_publish(struct draft *d)
 {
     d->m.directions = d->directions;
@@ -28,12 +22,12 @@ static relume_status check_vectors(struct relume_vec3 *v, int n, bool unit, cons
     for (int i = 0; v && i < n; i++) {
         snprintf(where, sizeof where, "lights.%s[%d]", unit ? "directions" : "positions", i);
         if (!isfinite(vec3_length(v[i])))
-            return manifest_wrong(path, where, "three finite numbers", log);
+            return log_wrong(log, path, where, "three finite numbers");
         if (!(vec3_length(v[i]) > 0.0) && !unit)
-            return manifest_wrong(path, where,
-                                  "a place of a lamp; found 0, 0, 0, the middle of the scene", log);
+            return log_wrong(log, path, where,
+                             "a place of a lamp; found 0, 0, 0, the middle of the scene");
         if (unit && !direction_normalise(&v[i]))
-            return manifest_wrong(path, where, "a direction; found a zero vector", log);
+            return log_wrong(log, path, where, "a direction; found a zero vector");
     }
     return RELUME_OK;
 }
@@ -53,7 +47,7 @@ relume_status draft_check_lights(struct draft *d, const char *path, const struct
         for (int c = 0; !status && c < 3; c++)
             // Pixels are divided by it in single precision.
             if (!(d->intensities[i][c] >= 1e-30f && d->intensities[i][c] <= 1e30f))
-                status = manifest_wrong(path, "lights.intensities", MANIFEST_INTENSITIES, log);
+                status = log_wrong(log, path, "lights.intensities", MANIFEST_INTENSITIES);
     return status;
 }
 
@@ -68,9 +62,8 @@ static relume_status check_slab(const struct relume_geometry *g, const char *pat
                                 const struct relume_log *log)
 {
     if (!rises(g->st_min, g->st_max))
-        return manifest_wrong(path, "window", "min below max", log);
-    return g->uv_z == g->st_z ? manifest_wrong(path, "slab", "two different planes", log)
-                              : RELUME_OK;
+        return log_wrong(log, path, "window", "min below max");
+    return g->uv_z == g->st_z ? log_wrong(log, path, "slab", "two different planes") : RELUME_OK;
 }
 
 static relume_status check_slabs(struct draft *d, const char *path, const struct relume_log *log)
@@ -81,8 +74,8 @@ static relume_status check_slabs(struct draft *d, const char *path, const struct
         status = check_slab(&d->slab[i], path, log);
         snprintf(where, sizeof where, "slabs[%d].axes", i);
         if (!status && !relume_pose_normalise(&d->slab[i].pose))
-            status = manifest_wrong(path, where,
-                                    "a rotation: unit vectors, perpendicular, right-handed", log);
+            status = log_wrong(log, path, where,
+                               "a rotation: unit vectors, perpendicular, right-handed");
     }
     d->m.slab = d->slab;
     d->m.geometry = d->slab[0];
@@ -93,11 +86,11 @@ static relume_status check_panorama(const struct relume_geometry *g, const char 
                                     const struct relume_log *log)
 {
     if (!(g->v_min < g->v_max))
-        return manifest_wrong(path, "panorama", "v_min below v_max", log);
+        return log_wrong(log, path, "panorama", "v_min below v_max");
     if (g->disc && g->projection != RELUME_CYLINDRICAL)
-        return manifest_wrong(path, "panorama.discs", "none but of a cylinder", log);
+        return log_wrong(log, path, "panorama.discs", "none but of a cylinder");
     if (g->disc && !(g->v_min < 0.0 && g->v_max > 0.0))
-        return manifest_wrong(path, "panorama.discs", "v_min below 0 and v_max above it", log);
+        return log_wrong(log, path, "panorama.discs", "v_min below 0 and v_max above it");
     return RELUME_OK;
 }
 
@@ -109,7 +102,7 @@ relume_status draft_check_geometry(struct draft *d, const char *path, const stru
     if (g->projection == RELUME_SLAB)
         return check_slab(g, path, log);
     if (!rises(g->window_min, g->window_max))
-        return manifest_wrong(path, "window", "min below max", log);
+        return log_wrong(log, path, "window", "min below max");
     return check_panorama(g, path, log);
 }
 
@@ -125,13 +118,13 @@ relume_status draft_check_views(const struct draft *d, const char *path,
         const int slab = d->view[i].slab;
         snprintf(where, sizeof where, "views[%d].slab", i);
         if (slab < 0 || slab >= d->m.slabs)
-            return manifest_wrong(path, where, expected, log);
+            return log_wrong(log, path, where, expected);
         seen[slab] = true;
     }
     for (int i = 0; i < d->m.slabs; i++) {
         snprintf(where, sizeof where, "slabs[%d]", i);
         if (!seen[i])
-            return manifest_wrong(path, where, "at least one view of every slab", log);
+            return log_wrong(log, path, where, "at least one view of every slab");
     }
     return RELUME_OK;
 }

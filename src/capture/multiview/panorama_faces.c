@@ -1,6 +1,7 @@
 // panorama_faces.c - six faces become a cube side by side
 #include "capture/multiview/panorama.h"
 
+#include "core/base/tree.h"
 #include "core/base/log.h"
 
 #include <ctype.h>
@@ -27,8 +28,7 @@ enum { WORDS = sizeof words / sizeof *words };
 // The face that a name ends in, before its extension; FACES: none.
 static int face_named(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *name = slash ? slash + 1 : path;
+    const char *name = path_name(path);
     const char *dot = strrchr(name, '.');
     const size_t length = dot ? (size_t)(dot - name) : strlen(name);
     for (int i = 0; i < WORDS; i++) {

@@ -180,7 +180,7 @@ static const char *relative(struct arena *arena, const char *from, const char *t
 static const char *link_photo(struct arena *arena, const outdir *folder, const char *target)
 {
     char *photos = mem_format("%s/photos", outdir_path(folder)), seen[PATH_MAX];
-    const char *to = arena_format(arena, "../%s", target), *name = strrchr(target, '/') + 1;
+    const char *to = arena_format(arena, "../%s", target), *name = path_name(target);
     const char *out = NULL;
     bool more = photos && to && (!mkdir(photos, 0777) || errno == EEXIST);
     for (int n = 0; more; n++) {

@@ -112,7 +112,7 @@ static relume_status check_order(const struct bracket *b, const int *order)
             mean[i + 1] < mean[i] - clear_codes)
             return data_error("%s: darker than %s though its exposure is %.3g times as long; give "
                               "the true exposure times with --times",
-                              b->path[order[i + 1]], base_name(b->path[order[i]]),
+                              b->path[order[i + 1]], path_name(b->path[order[i]]),
                               b->exposure[order[i + 1]] / b->exposure[order[i]]);
     return RELUME_OK;
 }

@@ -90,7 +90,7 @@ static relume_status load(const char *path, struct times *t, const struct relume
 static const double *find(const struct times *t, const char *name)
 {
     for (int i = 0; i < t->count; i++)
-        if (!strcmp(base_name(t->line[i].name), name))
+        if (!strcmp(path_name(t->line[i].name), name))
             return &t->line[i].seconds;
     return NULL;
 }
@@ -104,10 +104,10 @@ static relume_status assign(const char *path, const struct times *t,
                           t->count, relume_plural(t->count), list->count);
     for (int i = 0; i < list->count; i++) {
         const double *seconds =
-            named ? find(t, base_name(list->path[i])) : &t->line[i % t->count].seconds;
+            named ? find(t, path_name(list->path[i])) : &t->line[i % t->count].seconds;
         if (!seconds)
             return data_error("%s: no line for %s; expected 'name seconds' for every photograph",
-                              path, base_name(list->path[i]));
+                              path, path_name(list->path[i]));
         notes[i].time_s = *seconds;
         notes[i].f_number = notes[i].iso = 0.0;
     }

@@ -177,10 +177,14 @@ static relume_status run(const struct args *args)
     return RELUME_OK;
 }
 
+extern const struct command bench_task_reflections;
+static const struct command *const tasks[] = {&bench_task_reflections, NULL};
+
 const struct command command_bench = {
     COMMAND(
         "bench", "[--rounds N] [--json]",
         "measure how fast relume runs on this machine, and what its memory and arithmetic allow",
         "relume bench --json", 0, 0),
     .defaults = &defaults,
+    .tasks = tasks,
 };

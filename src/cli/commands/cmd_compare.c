@@ -22,7 +22,7 @@ static const struct option options[] = {
     NAME("--metric", metric, "M",
          "jnd: in just noticeable differences; vdp: how likely it is seen; -o writes the map",
          COMPARE_JND, "jnd", "vdp"),
-    FLAG("--jnd", jnd, "short for --metric jnd"),
+    FLAG("--jnd", jnd, NULL),
     NUMBER("--pixels-per-degree", look.ppd, "P",
            "of the viewer's sight; default 40, a desktop screen at 60 cm", 1, 1000),
     NUMBER("--luminance", look.white, "CD", "of white, in candela per square metre; default 200",

@@ -44,7 +44,7 @@ static const struct option options[] = {
 // -o names one picture: all photographs are one bracket.
 static bool is_file(const char *output)
 {
-    return strchr(base_name(output), '.') || relume_image_saves_linear(output);
+    return strchr(path_name(output), '.') || relume_image_saves_linear(output);
 }
 
 // ---------------------------------------------------------------- report
@@ -101,7 +101,7 @@ static void print_table(FILE *out, const struct bracket *b, const char *output)
     for (int i = 0; i < b->n; i++) {
         const struct relume_exposure_report *r = &b->report[i];
         fprintf(out, "%-24s %10.5g %9.3f %8.3f %8.3f %6.1f%% %6.1f%% %7.2f %6.1f%%%s\n",
-                shown(&name, base_name(b->path[i])), b->notes[i].time_s, r->residual_ev, r->bias_ev,
+                shown(&name, path_name(b->path[i])), b->notes[i].time_s, r->residual_ev, r->bias_ev,
                 r->noise_ev, 100.0 * r->saturated, 100.0 * r->black, b->shift[i],
                 100.0 * b->ghosts[i], i == b->anchor ? "  anchor" : "");
     }
@@ -196,7 +196,7 @@ static relume_status read_notes(struct relume_exif *notes, struct relume_photogr
 // Of a bracket into `to`, a file or a folder.
 static void output_name(char *out, size_t size, const struct bracket *b, const char *to, bool file)
 {
-    const char *name = base_name(b->path[0]);
+    const char *name = path_name(b->path[0]);
     const char *dot = strrchr(name, '.');
     if (file)
         snprintf(out, size, "%s", to);

@@ -438,7 +438,7 @@ static relume_status on_picture(const struct notes_options *o)
     relume_status status = relume_open(&pack, path, relume_open_params(.log = o->args.log));
     if (!status) {
         const struct relume_pack_info *info = relume_pack_info(pack);
-        const struct relume_notes_file file = notes_file_of(pack, base_name(path));
+        const struct relume_notes_file file = notes_file_of(pack, path_name(path));
         status = o->view < info->views
                      ? work(pack, &file, o)
                      : usage_error("--view %d: %s has %d view%s, counted from 0", o->view, path,
@@ -451,7 +451,7 @@ static relume_status on_picture(const struct notes_options *o)
 static relume_status on_object(const struct notes_options *o)
 {
     const char *path = o->args.input[0];
-    struct relume_notes_file file = {.name = base_name(path), .solid = true};
+    struct relume_notes_file file = {.name = path_name(path), .solid = true};
     relume_baked *baked = NULL;
     float box[2][3];
     if (o->embed || o->extract)

@@ -50,17 +50,33 @@ static const struct option options[] = {
     {0},
 };
 
-// Below this people see that it is not the original.
-#define SEEN_DB 38.0
+static void print_advice(const struct publish_options *o, const struct relume_publish_report *r)
+{
+    switch (r->advice) {
+    case RELUME_PUBLISH_NO_ADVICE: break;
+    case RELUME_PUBLISH_CODE_DISPLAY:
+        announce(&o->args, RELUME_NOTE,
+                 "%s/%s.html: dark places of linear files need more than its 8 bits; a file of "
+                 "'relume encode --domain display' comes nearer",
+                 o->output, r->name);
+        break;
+    case RELUME_PUBLISH_RAISE_QUALITY:
+        announce(
+            &o->args, RELUME_NOTE,
+            "%s/%s.html: its hard shadows and highlights are softer than in the file, for they "
+            "need more than %d planes; --quality 100 comes nearest",
+            o->output, r->name, r->planes);
+        break;
+    }
+}
 
-static void say_result(const struct publish_options *o, const struct relume_publish_report *r)
+static void print_report(const struct publish_options *o, const struct relume_publish_report *r)
 {
     if (!r->views) {
         announce(&o->args, RELUME_NOTE, "%s/%s.html: an object, %.1f kB", o->output, r->name,
                  (double)r->bytes / 1e3);
         return;
     }
-    const bool wished = o->quality || o->psnr > 0.0 || o->bytes_per_pixel > 0.0 || o->coefficients;
     announce(&o->args, RELUME_NOTE,
              "%s/%s.html: %d view%s, %d planes, %.1f kB, of which %.1f kB show the first picture; "
              "%.2f dB from the original (%s)",
@@ -71,28 +87,14 @@ static void say_result(const struct publish_options *o, const struct relume_publ
         announce(&o->args, RELUME_NOTE, "%s/%s.html: %.1f kB of it as AVIF, %.1f kB as JPEG",
                  o->output, r->name, (double)r->avif_bytes / 1e3,
                  (double)(r->bytes - r->avif_bytes) / 1e3);
-    if (r->psnr_db < SEEN_DB && r->linear)
-        announce(&o->args, RELUME_NOTE,
-                 "%s/%s.html: dark places of linear files need more than its 8 bits; a file of "
-                 "'relume encode --domain display' comes nearer",
-                 o->output, r->name);
-    else if (r->psnr_db < SEEN_DB && !wished)
-        announce(
-            &o->args, RELUME_NOTE,
-            "%s/%s.html: its hard shadows and highlights are softer than in the file, for they "
-            "need more than %d planes; --quality 100 comes nearest",
-            o->output, r->name, r->planes);
+    print_advice(o, r);
 }
 
-static relume_status run(const struct args *args)
+static struct relume_publish_params read_options(const struct publish_options *o)
 {
-    const struct publish_options *o = (const void *)args;
-    if ((o->quality > 0) + (o->psnr > 0.0) + (o->bytes_per_pixel > 0.0) > 1)
-        return usage_error("publish: expected one of --quality, --psnr and --bytes-per-pixel");
-    struct relume_publish_report report[MOST_FILES];
-    const struct relume_publish_params p = {
-        .struct_size = sizeof p,
-        .log = args->log,
+    return (struct relume_publish_params){
+        .struct_size = sizeof(struct relume_publish_params),
+        .log = o->args.log,
         .title = o->title,
         .maker = o->maker,
         .licence = o->licence,
@@ -110,11 +112,19 @@ static relume_status run(const struct args *args)
         .force = o->force,
         .allow_outside = o->allow_outside,
         .keep_going = o->keep_going,
-        .threads = args->threads,
+        .threads = o->args.threads,
     };
-    const relume_status status = relume_publish(args->input, args->inputs, o->output, report, &p);
+}
+
+static relume_status run(const struct args *args)
+{
+    const struct publish_options *o = (const void *)args;
+    const struct relume_publish_params params = read_options(o);
+    struct relume_publish_report report[MOST_FILES];
+    const relume_status status =
+        relume_publish_files(o->output, args->input, args->inputs, &params, report);
     for (int i = 0; !status && i < args->inputs; i++)
-        say_result(o, &report[i]);
+        print_report(o, &report[i]);
     return status;
 }
 

@@ -187,7 +187,7 @@ relume_status save_pattern(struct viewer_eye *e, const struct args *args, const 
     struct fill folder;
     char name[4200];
     relume_status status = relume_psf_update(e->psf, e->eye);
-    if (status || strchr(base_name(path), '.'))
+    if (status || strchr(path_name(path), '.'))
         return status ? status : save_psf(e, path, args->log);
     if (strlen(path) > 4000)
         return usage_error("--psf: expected a shorter name");

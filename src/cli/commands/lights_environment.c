@@ -65,8 +65,8 @@ static relume_status of_pack(struct weighed *w, const struct args *args, const c
 // "stage.exr: light0007" -> light0007, "view00/light0007.exr" -> light0007
 static void name_of(char name[NAME], const char *image)
 {
-    const char *layer = strstr(image, ": "), *slash = strrchr(image, '/');
-    const char *from = layer ? layer + 2 : slash ? slash + 1 : image;
+    const char *layer = strstr(image, ": ");
+    const char *from = layer ? layer + 2 : path_name(image);
     const char *dot = layer ? NULL : strrchr(from, '.');
     snprintf(name, NAME, "%.*s", dot ? (int)(dot - from) : (int)strlen(from), from);
 }

@@ -5,6 +5,7 @@
 // figures depend on, so that a changed photograph or option finds nothing. Lines are only ever
 // appended, each under the file's lock, so that several sweeps may keep theirs in one file.
 #include "cli/commands/sweep.h"
+#include "core/math/fnv.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -23,22 +24,14 @@ struct sweep_resume {
 
 static const char HEADER[] = "relume sweep, finished rows, 1\n";
 
-static uint64_t hash(uint64_t h, const void *bytes, size_t n)
-{
-    const unsigned char *b = bytes;
-    for (size_t i = 0; i < n; i++)
-        h = (h ^ b[i]) * 0x100000001b3u;
-    return h;
-}
-
 static uint64_t hash_text(uint64_t h, const char *text)
 {
-    return hash(h, text ? text : "", text ? strlen(text) + 1 : 1);
+    return fnv_of(h, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
 static uint64_t hash_number(uint64_t h, int64_t number)
 {
-    return hash(h, &number, sizeof number);
+    return fnv_of(h, &number, sizeof number);
 }
 
 static uint64_t hash_file(uint64_t h, const char *path)
@@ -55,12 +48,12 @@ static uint64_t hash_file(uint64_t h, const char *path)
 static uint64_t hash_capture(uint64_t h, const relume_capture *capture)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
-    h = hash(h, m->directions, (size_t)m->lights * sizeof *m->directions);
-    h = hash(h, &m->geometry.projection, sizeof m->geometry.projection);
+    h = fnv_of(h, m->directions, (size_t)m->lights * sizeof *m->directions);
+    h = fnv_of(h, &m->geometry.projection, sizeof m->geometry.projection);
     h = hash_number(h, m->transfer.curve);
-    h = hash(h, &m->transfer.gamma, sizeof m->transfer.gamma);
+    h = fnv_of(h, &m->transfer.gamma, sizeof m->transfer.gamma);
     if (m->intensities)
-        h = hash(h, m->intensities, (size_t)m->lights * sizeof *m->intensities);
+        h = fnv_of(h, m->intensities, (size_t)m->lights * sizeof *m->intensities);
     for (int v = 0; v < m->views; v++) {
         h = hash_file(h, m->view[v].mask);
         for (int i = 0; i < m->lights; i++)
@@ -78,7 +71,7 @@ static uint64_t row_key(const sweep_resume *r, const struct sweep_row *row)
     h = hash_number(h, row->wanted);
     h = hash_number(h, row->domain.domain);
     h = hash_number(h, row->domain.display.curve);
-    h = hash(h, &row->domain.display.gamma, sizeof row->domain.display.gamma);
+    h = fnv_of(h, &row->domain.display.gamma, sizeof row->domain.display.gamma);
     h = hash_text(h, relume_storage_name(row->store.storage));
     h = hash_number(h, row->store.step);
     if (!row->books.codes)
@@ -86,13 +79,13 @@ static uint64_t row_key(const sweep_resume *r, const struct sweep_row *row)
     const struct relume_books_params *b = &row->books;
     const int64_t form[] = {b->codes, b->stages,        b->split,        b->groups,
                             b->start, (int64_t)b->seed, row->store.share};
-    h = hash(h, form, sizeof form);
-    return hash(h, &b->dither, sizeof b->dither);
+    h = fnv_of(h, form, sizeof form);
+    return fnv_of(h, &b->dither, sizeof b->dither);
 }
 
 static uint64_t line_sum(const char *line, size_t n)
 {
-    return hash(0xcbf29ce484222325u, line, n) & 0xffffffff;
+    return fnv_of(FNV_START, line, n) & 0xffffffff;
 }
 
 // ---------------------------------------------------------------- reading
@@ -240,7 +233,7 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
         return RELUME_ENOMEM;
     }
     snprintf(r->path, size, "%s.resume", sweep->out);
-    r->key = hash_text(0xcbf29ce484222325u, RELUME_VERSION);
+    r->key = hash_text(FNV_START, RELUME_VERSION);
     for (; *captures; captures++)
         r->key = hash_capture(r->key, *captures);
     r->key = hash_number(r->key, sweep->test ? -1 : sweep->leave_out);

@@ -7,6 +7,7 @@
 // calls, a process that fails stops the others at their next one, and people read one voice: that
 // of the first process, and of others what it has not said.
 #include "cli/start.h"
+#include "core/math/fnv.h"
 
 #include <mpi.h>
 #include <signal.h>
@@ -31,13 +32,10 @@ static FILE *hearing;
 
 // ---------------------------------------------------------------- pieces
 
-// A name as a number that is not negative, FNV-1a.
+// A name as a number that is not negative.
 static int64_t number_of(const char *what)
 {
-    uint64_t sum = 0xcbf29ce484222325u;
-    for (; *what; what++)
-        sum = (sum ^ (unsigned char)*what) * 0x100000001b3u;
-    return (int64_t)(sum >> 1);
+    return (int64_t)(fnv_of_text(what) >> 1);
 }
 
 // Everybody's number; negative ones say that their process has failed.

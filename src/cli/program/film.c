@@ -57,7 +57,7 @@ bool film_is(const char *path)
     int digits;
     const char *after;
     return is_film(path) || find_number(path, &before, &digits, &after) ||
-           !strchr(base_name(path), '.');
+           !strchr(path_name(path), '.');
 }
 
 const char *film_name(struct film *f)

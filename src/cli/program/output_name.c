@@ -6,15 +6,9 @@
 #include <string.h>
 #include <strings.h>
 
-const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 const char *name_ending(const char *path)
 {
-    const char *name = base_name(path);
+    const char *name = path_name(path);
     const char *dot = strrchr(name, '.');
     return dot && dot > name ? dot : "";
 }

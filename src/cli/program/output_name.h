@@ -2,6 +2,8 @@
 #ifndef PROGRAM_OUTPUT_NAME_H
 #define PROGRAM_OUTPUT_NAME_H
 
+#include "core/base/tree.h"
+
 #include <relume/image.h>
 
 // `path` as the value of `option`. RELUME_EINVAL with a sentence. A picture of any format, one of
@@ -11,8 +13,6 @@ relume_status floats_name(const struct relume_log *log, const char *option, cons
 relume_status rig_name(const struct relume_log *log, const char *option, const char *path);
 relume_status relume_name(const struct relume_log *log, const char *option, const char *path);
 
-// The last part of `path`.
-const char *base_name(const char *path);
 // The ending of the last part of `path` with its dot; "" where there is none.
 const char *name_ending(const char *path);
 

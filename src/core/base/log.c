@@ -36,6 +36,13 @@ relume_status log_fail(const struct relume_log *log, relume_status status, const
     return status;
 }
 
+relume_status log_wrong(const struct relume_log *log, const char *path, const char *what,
+                        const char *expected)
+{
+    return log_fail(log, RELUME_EFORMAT, "%s%s%s; expected %s", path ? path : "", path ? ": " : "",
+                    what, expected);
+}
+
 bool log_progress(const struct relume_log *log, const char *what, double done)
 {
     return !log || !log->progress || log->progress(log->user, what, done);

@@ -12,6 +12,10 @@ __attribute__((format(printf, 3, 4))) void log_line(const struct relume_log *log
 __attribute__((format(printf, 3, 4))) relume_status log_fail(const struct relume_log *log,
                                                              relume_status status,
                                                              const char *format, ...);
+// "PATH: WHAT; expected EXPECTED" of a file at fault: RELUME_EFORMAT. Without a path "WHAT;
+// expected EXPECTED", to a log that names the file.
+relume_status log_wrong(const struct relume_log *log, const char *path, const char *what,
+                        const char *expected);
 // False when the caller asked to stop.
 bool log_progress(const struct relume_log *log, const char *what, double done);
 

@@ -53,8 +53,7 @@ char *tree_parent(const char *path)
 
 char *tree_base(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    return mem_text(slash ? slash + 1 : path);
+    return mem_text(path_name(path));
 }
 
 // One step along a link; the old string is freed.
@@ -101,6 +100,16 @@ const char *path_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
+}
+
+int path_folder(const char *path)
+{
+    return (int)(path_name(path) - path);
+}
+
+char *path_beside(const char *path, const char *name)
+{
+    return mem_format("%.*s%s", name[0] == '/' ? 0 : path_folder(path), path, name);
 }
 
 bool tree_is_folder(const char *path)

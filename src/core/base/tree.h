@@ -20,9 +20,13 @@ char *tree_base(const char *path);
 // new string. NULL with errno, ELOOP among others.
 char *tree_resolve(const char *path);
 
-// Whether `path` ends so, upper and lower case alike; what follows its last slash, in it.
+// Whether `path` ends so, upper and lower case alike.
 bool path_ends(const char *path, const char *ending);
+// The file's name, behind the last slash of `path`; the number of bytes before it.
 const char *path_name(const char *path);
+int path_folder(const char *path);
+// `name` in the folder of the file `path`: a new string. Absolute names stay.
+char *path_beside(const char *path, const char *name);
 
 // What is there, followed through links: a folder; neither a file nor a folder.
 bool tree_is_folder(const char *path);

@@ -11,11 +11,6 @@
 
 const int ptm_term_of_place[PTM_TERMS] = {3, 5, 4, 1, 2, 0};
 
-relume_status ptm_wrong(const struct ptm_header *h, const char *what, const char *expected)
-{
-    return log_fail(h->log, RELUME_EFORMAT, "%s: %s; expected %s", h->path, what, expected);
-}
-
 static relume_status read_format(struct ptm_header *h, struct bytes *b)
 {
     static const struct {
@@ -30,12 +25,13 @@ static relume_status read_format(struct ptm_header *h, struct bytes *b)
     char word[40];
     if (!bytes_word(b, word, sizeof word) || strncmp(word, "PTM_", 4) ||
         sscanf(word + 4, "%lf", &h->version) != 1)
-        return ptm_wrong(h, "not a polynomial texture map", "PTM_1.2 in the first line");
+        return log_wrong(h->log, h->path, "not a polynomial texture map",
+                         "PTM_1.2 in the first line");
     if (!(h->version >= 1.0 && h->version < 2.0))
         return log_fail(h->log, RELUME_EUNSUPPORTED,
                         "%s: %s; expected a version from PTM_1.0 to PTM_1.2", h->path, word);
     if (!bytes_word(b, word, sizeof word))
-        return ptm_wrong(h, "no format", "PTM_FORMAT_RGB or another");
+        return log_wrong(h->log, h->path, "no format", "PTM_FORMAT_RGB or another");
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         if (!strcmp(word, formats[i].name)) {
             h->luminance = formats[i].luminance;
@@ -54,13 +50,13 @@ static relume_status read_header(struct ptm_header *h, struct bytes *b)
     if (status)
         return status;
     if (!bytes_integer(b, &h->width) || !bytes_integer(b, &h->height))
-        return ptm_wrong(h, "no size", "width and height");
+        return log_wrong(h->log, h->path, "no size", "width and height");
     for (int i = 0; i < PTM_TERMS; i++)
         if (!bytes_number(b, &h->scale[i]) || fabs(h->scale[i]) > 1e6)
-            return ptm_wrong(h, "scale", "six numbers, at most 1e6");
+            return log_wrong(h->log, h->path, "scale", "six numbers, at most 1e6");
     for (int i = 0; i < PTM_TERMS; i++)
         if (!bytes_integer(b, &h->bias[i]) || h->bias[i] < -1000000 || h->bias[i] > 1000000)
-            return ptm_wrong(h, "bias", "six whole numbers from 0 to 255");
+            return log_wrong(h->log, h->path, "bias", "six whole numbers from 0 to 255");
     return RELUME_OK;
 }
 
@@ -124,7 +120,7 @@ static void read_raw_lrgb(const struct foreign *f, const uint8_t *body, bool int
 static relume_status read_raw(struct foreign *f, const struct ptm_header *h, struct bytes *b)
 {
     if (!bytes_line_end(b))
-        return ptm_wrong(h, "bias", "six whole numbers and the end of the line");
+        return log_wrong(h->log, h->path, "bias", "six whole numbers and the end of the line");
     const relume_status allowed = limits_picture(h->limits, h->path, h->width, h->height, h->log);
     if (allowed)
         return allowed;

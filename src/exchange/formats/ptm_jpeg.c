@@ -21,24 +21,26 @@ static relume_status check_jpegs(const struct ptm_header *h, struct jpegs *j)
     for (int i = 0; i < j->count; i++) {
         const long turn = j->field[PTM_ORDER][i];
         if (j->field[PTM_TRANSFORM][i] < 0 || j->field[PTM_TRANSFORM][i] >= PTM_TRANSFORMS)
-            return ptm_wrong(h, "transforms of the planes", "0, 1 (inversion) or 2 (motion)");
+            return log_wrong(h->log, h->path, "transforms of the planes",
+                             "0, 1 (inversion) or 2 (motion)");
         if (j->field[PTM_TRANSFORM][i] == PTM_MOVED &&
             (j->field[PTM_MOTION_X][i] || j->field[PTM_MOTION_Y][i]))
-            return ptm_wrong(h, "planes predicted by motion are not supported", "motion vectors 0");
+            return log_wrong(h->log, h->path, "planes predicted by motion are not supported",
+                             "motion vectors 0");
         if (turn < 0 || turn >= j->count || j->at_turn[turn] >= 0)
-            return ptm_wrong(h, "order of the planes", "every number once");
+            return log_wrong(h->log, h->path, "order of the planes", "every number once");
         j->at_turn[turn] = i;
         if (j->field[PTM_REFERENCE][i] < -1 || j->field[PTM_REFERENCE][i] >= j->count)
-            return ptm_wrong(h, "reference planes", "-1 or the number of a plane");
+            return log_wrong(h->log, h->path, "reference planes", "-1 or the number of a plane");
         if (j->field[PTM_BYTES][i] < 1 || j->field[PTM_SIDE_BYTES][i] < 0 ||
             j->field[PTM_SIDE_BYTES][i] % PTM_RECORD)
-            return ptm_wrong(h, "sizes of the planes",
+            return log_wrong(h->log, h->path, "sizes of the planes",
                              "at least one byte, side information in fives");
     }
     for (int i = 0; i < j->count; i++) {
         const long r = j->field[PTM_REFERENCE][i];
         if (r >= 0 && j->field[PTM_ORDER][r] >= j->field[PTM_ORDER][i])
-            return ptm_wrong(h, "reference planes", "planes that are decoded before");
+            return log_wrong(h->log, h->path, "reference planes", "planes that are decoded before");
     }
     return RELUME_OK;
 }
@@ -48,14 +50,14 @@ static relume_status read_jpeg_table(const struct ptm_header *h, struct bytes *b
     long quality;
     j->count = h->luminance ? PTM_TERMS + 3 : 3 * PTM_TERMS;
     if (!bytes_integer(b, &quality))
-        return ptm_wrong(h, "no JPEG quality", "a whole number");
+        return log_wrong(h->log, h->path, "no JPEG quality", "a whole number");
     for (int field = 0; field < PTM_FIELDS; field++)
         for (int i = 0; i < j->count; i++)
             if (!bytes_integer(b, &j->field[field][i]))
-                return ptm_wrong(h, "table of planes",
+                return log_wrong(h->log, h->path, "table of planes",
                                  "seven lines of a whole number for every plane");
     if (!bytes_line_end(b))
-        return ptm_wrong(h, "table of planes", "the end of the line");
+        return log_wrong(h->log, h->path, "table of planes", "the end of the line");
     const relume_status status = check_jpegs(h, j);
     if (status)
         return status;
@@ -83,7 +85,7 @@ static relume_status correct(const struct foreign *f, const struct ptm_header *h
         const size_t pixel =
             (size_t)side[0] << 24 | (size_t)side[1] << 16 | (size_t)side[2] << 8 | (size_t)side[3];
         if (pixel >= foreign_pixels(f))
-            return ptm_wrong(h, "side information", "pixels inside the picture");
+            return log_wrong(h->log, h->path, "side information", "pixels inside the picture");
         const size_t width = (size_t)f->width;
         ptm_row(f, plane, (int)(pixel / width))[pixel % width] = side[4];
     }

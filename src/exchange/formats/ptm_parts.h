@@ -24,7 +24,6 @@ struct ptm_header {
 };
 
 // An input status and "PATH: what; expected ...".
-relume_status ptm_wrong(const struct ptm_header *h, const char *what, const char *expected);
 // Space for the header's picture, with its scales and offsets.
 relume_status ptm_create(struct foreign *f, const struct ptm_header *h);
 

@@ -21,26 +21,21 @@ struct header {
     float scale[MOST_TERMS], offset[MOST_TERMS];  // of codes 0..255
 };
 
-static relume_status wrong(const struct header *h, const char *what, const char *expected)
-{
-    return log_fail(h->log, RELUME_EFORMAT, "%s: %s; expected %s", h->path, what, expected);
-}
-
 static relume_status read_text(struct header *h, struct bytes *b)
 {
     long kind, channels, terms, colour, size;
     bytes_skip_comments(b, '#');
     if (!bytes_integer(b, &kind))
-        return wrong(h, "not a relightable image", "comments, then 3 for HSH");
+        return log_wrong(h->log, h->path, "not a relightable image", "comments, then 3 for HSH");
     if (kind != KIND_HSH)
         return log_fail(h->log, RELUME_EUNSUPPORTED,
                         "%s: kind %ld is not supported; expected 3, hemispherical harmonics",
                         h->path, kind);
     if (!bytes_integer(b, &h->width) || !bytes_integer(b, &h->height) ||
         !bytes_integer(b, &channels))
-        return wrong(h, "no size", "width, height, channels");
+        return log_wrong(h->log, h->path, "no size", "width, height, channels");
     if (!bytes_integer(b, &terms) || !bytes_integer(b, &colour) || !bytes_integer(b, &size))
-        return wrong(h, "no layout", "terms, colour type, bytes of an element");
+        return log_wrong(h->log, h->path, "no layout", "terms, colour type, bytes of an element");
     if (channels != 3 || colour != COLOUR_RGB || size != 1)
         return log_fail(h->log, RELUME_EUNSUPPORTED,
                         "%s: layout; expected 3 channels, colour type 2, elements of 1 byte",
@@ -49,7 +44,8 @@ static relume_status read_text(struct header *h, struct bytes *b)
         return log_fail(h->log, RELUME_EUNSUPPORTED, "%s: %ld terms; expected 1, 4, 9 or 16",
                         h->path, terms);
     h->terms = (int)terms;
-    return bytes_line_end(b) ? RELUME_OK : wrong(h, "layout", "the end of the line");
+    return bytes_line_end(b) ? RELUME_OK
+                             : log_wrong(h->log, h->path, "layout", "the end of the line");
 }
 
 static relume_status read_ranges(struct header *h, struct bytes *b, bool old)

@@ -41,11 +41,6 @@ static relume_status refuse(const struct folder *w, relume_status status, const 
     return log_fail(w->log, status, "%s: %s; expected %s", w->info, what, expected);
 }
 
-static relume_status wrong(const struct folder *w, const char *what, const char *expected)
-{
-    return refuse(w, RELUME_EFORMAT, what, expected);
-}
-
 static bool find_name(const char *name, const char *const *names, int count, int *index)
 {
     for (int i = 0; name && i < count; i++)
@@ -69,7 +64,8 @@ static relume_status read_kinds(struct folder *w)
     w->f->functions.kind = (enum function_kind)kind;
     w->space = (enum space)space;
     if ((kind == FUNCTIONS_GAUSS || kind == FUNCTIONS_GRID) != (space >= SPACE_MRGB))
-        return wrong(w, "colorspace", "mrgb or mycc for rbf and bilinear, others for the rest");
+        return log_wrong(w->log, w->info, "colorspace",
+                         "mrgb or mycc for rbf and bilinear, others for the rest");
     return RELUME_OK;
 }
 
@@ -98,7 +94,7 @@ static relume_status read_lights(struct folder *w)
     const struct relume_limits limits = limits_or_default(w->limits);
     const size_t n = jvalue_count(lights) / 3;
     if (n < 1 || jvalue_count(lights) % 3)
-        return wrong(w, "lights", "x y z of every light");
+        return log_wrong(w->log, w->info, "lights", "x y z of every light");
     if (n > (size_t)limits.max_lights || n > FUNCTIONS_MOST)
         return refuse(w, RELUME_ELIMIT, "lights", "a number within the limits");
     struct relume_vec3 *light = mem_array(n, sizeof *light);
@@ -120,7 +116,7 @@ static relume_status read_lights(struct folder *w)
     }
     if (!jvalue_number(jvalue_member(w->root, "sigma"), &w->f->functions.sigma) ||
         !(w->f->functions.sigma > 1e-4 && w->f->functions.sigma < 1e4))
-        return wrong(w, "sigma", "a number above 0");
+        return log_wrong(w->log, w->info, "sigma", "a number above 0");
     return RELUME_OK;
 }
 
@@ -131,7 +127,7 @@ static relume_status read_functions(struct folder *w)
         return read_lights(w);
     if (f->kind == FUNCTIONS_GRID) {
         if (!jvalue_whole(jvalue_member(w->root, "resolution"), 2, 64, &f->resolution))
-            return wrong(w, "resolution", "a whole number from 2 to 64");
+            return log_wrong(w->log, w->info, "resolution", "a whole number from 2 to 64");
         f->count = f->resolution * f->resolution;
     }
     return RELUME_OK;
@@ -147,12 +143,12 @@ static relume_status read_plane_count(struct folder *w)
             !jvalue_whole(jvalue_item(split, 1), 0, FOREIGN_MOST_PLANES / 3, &w->chroma) ||
             !jvalue_whole(jvalue_item(split, 2), 0, FOREIGN_MOST_PLANES / 3, &b) ||
             b != w->chroma || w->chroma > w->luminance)
-            return wrong(w, "yccplanes", "[Y, C, C] with C at most Y");
+            return log_wrong(w->log, w->info, "yccplanes", "[Y, C, C] with C at most Y");
         w->planes = w->luminance + 2 * w->chroma;
         return RELUME_OK;
     }
     if (!jvalue_whole(jvalue_member(w->root, "nplanes"), 1, FOREIGN_MOST_PLANES, &w->planes))
-        return wrong(w, "nplanes", "a whole number from 1 to 1024");
+        return log_wrong(w->log, w->info, "nplanes", "a whole number from 1 to 1024");
     return RELUME_OK;
 }
 
@@ -167,7 +163,8 @@ static relume_status count_terms(struct folder *w)
     }
     const int n = w->space == SPACE_LRGB ? w->planes - 3 : w->planes / 3;
     if ((w->space != SPACE_LRGB && w->planes % 3) || !web_has_count(f->functions.kind, n))
-        return wrong(w, "nplanes", "a number that the type has in this colour space");
+        return log_wrong(w->log, w->info, "nplanes",
+                         "a number that the type has in this colour space");
     f->functions.count = n;
     f->terms = n;
     f->form = w->space == SPACE_LRGB ? FOREIGN_LUMINANCE : FOREIGN_CHANNELS;
@@ -187,14 +184,14 @@ static relume_status get_column(struct folder *w, const char *key, double **out)
         return RELUME_ENOMEM;
     if (jvalue_numbers(jvalue_member(w->material, key), *out, (size_t)w->planes))
         return RELUME_OK;
-    return wrong(w, key, "a finite number for every plane");
+    return log_wrong(w->log, w->info, key, "a finite number for every plane");
 }
 
 static relume_status read_material(struct folder *w)
 {
     const jvalue *materials = jvalue_member(w->root, "materials");
     if (jvalue_count(materials) != 1)
-        return wrong(w, "materials", "an array of one object");
+        return log_wrong(w->log, w->info, "materials", "an array of one object");
     w->material = jvalue_item(materials, 0);
     relume_status status = get_column(w, "scale", &w->scale);
     if (!status)
@@ -204,7 +201,7 @@ static relume_status read_material(struct folder *w)
     for (int p = 0; !status && p < w->planes; p++)
         if (fabs(w->scale[p]) > 1e6 || fabs(w->bias[p]) > 1e6 ||
             (w->range && !(fabs(w->range[p]) > 1e-6 && fabs(w->range[p]) < 1e12)))
-            status = wrong(w, "materials", "scale, bias and range within reason");
+            status = log_wrong(w->log, w->info, "materials", "scale, bias and range within reason");
     return status;
 }
 
@@ -217,7 +214,7 @@ static relume_status read_basis_file(struct folder *w, size_t size)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
     if (!input_exists(path, w->log))
-        status = wrong(w, "no basis", "a member 'basis' or a file materials.bin");
+        status = log_wrong(w->log, w->info, "no basis", "a member 'basis' or a file materials.bin");
     if (!status)
         status = bytes_load(&b, path, w->log);
     if (!status && b.size != size)
@@ -388,7 +385,7 @@ static relume_status read_planes(struct folder *w)
     struct jpeg_codes codes;
     if (!jvalue_whole(jvalue_member(w->root, "width"), 1, 1 << 30, &f->width) ||
         !jvalue_whole(jvalue_member(w->root, "height"), 1, 1 << 30, &f->height))
-        return wrong(w, "size", "width and height, whole numbers from 1");
+        return log_wrong(w->log, w->info, "size", "width and height, whole numbers from 1");
     // the first picture proves the size before memory is allocated for all
     relume_status status = read_jpeg(w, 0, &codes);
     if (!status)

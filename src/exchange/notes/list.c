@@ -3,6 +3,7 @@
 
 #include "core/base/json.h"
 #include "core/base/memory.h"
+#include "core/math/fnv.h"
 
 #include <math.h>
 #include <string.h>
@@ -102,12 +103,9 @@ void relume_notes_destroy(relume_notes **notes)
 
 // ---------------------------------------------------------------- ids
 
-// FNV-1a.
 static size_t slot_of(const relume_notes *n, const char *id)
 {
-    uint64_t hash = 14695981039346656037u;
-    for (; *id; id++)
-        hash = (hash ^ (uint8_t)*id) * 1099511628211u;
+    const uint64_t hash = fnv_of_text(id);
     return (size_t)(hash ^ hash >> 32) & (n->slots - 1);
 }
 

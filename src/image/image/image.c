@@ -422,8 +422,7 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
 // /dev/stdout and the like have no extension that names the format.
 static bool is_device(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    return !strchr(slash ? slash : path, '.') && tree_is_device(path);
+    return !strchr(path_name(path), '.') && tree_is_device(path);
 }
 
 bool relume_image_saves_linear(const char *path)

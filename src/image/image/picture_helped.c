@@ -1,5 +1,6 @@
 // picture_helped.c - pictures of other formats, read by OpenImageIO in other processes. What comes
 // back is believed as little as the file.
+#include "core/base/tree.h"
 #include "core/base/channel.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -218,12 +219,11 @@ static relume_status open_there(struct helped *h, int file, const char *path,
                                 const struct picture_kind *kind, uint64_t file_bytes,
                                 const struct relume_limits *limits)
 {
-    const char *slash = strrchr(path, '/');
     struct picture_answer answer;
     struct picture_ask what = {
         .what = PICTURE_OPEN, .limits = limits_or_default(limits), .file_bytes = file_bytes};
     snprintf(what.format, sizeof what.format, "%s", kind->reader);
-    snprintf(what.name, sizeof what.name, "%s", slash ? slash + 1 : path);
+    snprintf(what.name, sizeof what.name, "%s", path_name(path));
     h->job.processor_s = picture_open_s(file_bytes);
     const relume_status status = ask(h, &answer, what, file);
     if (status)

@@ -3,6 +3,7 @@
 //
 // A camera is as near as it stands: the direction to it, which differs over the window, is that
 // from the window's middle.
+#include "core/base/tree.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "material/btf/btf.h"
@@ -64,9 +65,9 @@ static relume_status start(relume_btf **out, const struct captured *c, const cha
                            const struct relume_btf_params *params)
 {
     const struct relume_log *log = params ? params->log : NULL;
-    const char *slash = strrchr(path, '/');
+    const char *name = path_name(path);
     const struct relume_btf_info info = {
-        .name = slash && slash[1] ? slash + 1 : path,
+        .name = *name ? name : path,
         .width = relume_capture_width(c->capture),
         .height = relume_capture_height(c->capture),
         .views = c->m->views,

@@ -73,9 +73,8 @@ static int angles_in(const char *name, double angle[4])
 // view for all that is in it.
 static int parse(struct picture *p, const char *name)
 {
-    const char *slash = strrchr(name, '/');
     double a[4];
-    const int found = angles_in(slash ? slash + 1 : name, a);
+    const int found = angles_in(path_name(name), a);
     if (found == 0)
         return 0;
     if (found < 4 && angles_in(name, a) < 4)
@@ -449,10 +448,10 @@ static relume_status make_btf(relume_btf **out, const struct pictures *p)
     struct relume_image first = {0};
     vec3 *view = directions(p->views, p->view_count);
     vec3 *light = directions(p->lights, p->light_count);
-    const char *slash = strrchr(p->path, '/');
+    const char *name = path_name(p->path);
     relume_status status = view && light ? load(p, 0, &first, p->log) : RELUME_ENOMEM;
     const struct relume_btf_info info = {
-        .name = slash && slash[1] ? slash + 1 : p->path,
+        .name = *name ? name : p->path,
         .width = first.width,
         .height = first.height,
         .views = p->view_count,

@@ -4,6 +4,7 @@
 // what is assumed. Little endian throughout, nothing is aligned.
 #include "material/btf/ubo.h"
 
+#include "core/base/tree.h"
 #include "core/base/context.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
@@ -386,8 +387,7 @@ static relume_status map_file(struct ubo *u)
 // The file's name without its folder and ".btf", to be freed.
 static char *name_of(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    char *name = mem_text(slash ? slash + 1 : path);
+    char *name = mem_text(path_name(path));
     char *dot = name ? strrchr(name, '.') : NULL;
     if (dot && dot > name && !strcmp(dot, ".btf"))
         *dot = '\0';

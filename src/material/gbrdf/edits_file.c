@@ -104,11 +104,6 @@ relume_status relume_edits_save(const relume_edits *edits, const char *path,
 
 // ---------------------------------------------------------------- reading
 
-static relume_status wrong(const struct relume_log *log, const char *what, const char *expected)
-{
-    return log_fail(log, RELUME_EFORMAT, "%s; expected %s", what, expected);
-}
-
 static relume_status read_picture(struct relume_image *out, const jvalue *value,
                                   const struct edit_parameter *p, const struct relume_log *log)
 {
@@ -118,7 +113,8 @@ static relume_status read_picture(struct relume_image *out, const jvalue *value,
     if (!text || !jvalue_whole(jvalue_member(value, "width"), 1, RELUME_EDIT_MOST_SIDE, &width) ||
         !jvalue_whole(jvalue_member(value, "height"), 1, RELUME_EDIT_MOST_SIDE, &height) ||
         !drawing_from_text(out, width, height, text, &status))
-        return wrong(log, p->name, "width and height up to 1024, and so many packed pixels");
+        return log_wrong(log, NULL, p->name,
+                         "width and height up to 1024, and so many packed pixels");
     return status;
 }
 
@@ -146,7 +142,7 @@ static relume_status read_value(struct relume_edit *edit, const jvalue *value,
     case PARAMETER_CHANNELS: good = text && snprintf(out, 4, "%s", text) == 3; break;
     case PARAMETER_PICTURE: return read_picture(out, value, p, log);
     }
-    return good && parameter_is_good(p, edit) ? RELUME_OK : wrong(log, p->name, p->form);
+    return good && parameter_is_good(p, edit) ? RELUME_OK : log_wrong(log, NULL, p->name, p->form);
 }
 
 // What is not known would be lost, or mean something else.
@@ -200,17 +196,17 @@ static relume_status read_list(relume_edits *edits, const jvalue *root,
     const jvalue *operations = jvalue_member(root, "operations");
     int version = 0;
     if (!jvalue_whole(jvalue_member(root, "relumeEdits"), 1, 1000, &version))
-        return wrong(log, "no list of edits", "\"relumeEdits\": 1");
+        return log_wrong(log, NULL, "no list of edits", "\"relumeEdits\": 1");
     if (version != VERSION)
         return log_fail(log, RELUME_EUNSUPPORTED, "expected version %d; found %d", VERSION,
                         version);
     if (!read_fingerprint(&edits->fingerprint, root))
-        return wrong(log, "fingerprint", "16 hexadecimal digits");
+        return log_wrong(log, NULL, "fingerprint", "16 hexadecimal digits");
     if (!jvalue_is_array(operations) || jvalue_count(operations) > RELUME_EDIT_MOST)
-        return wrong(log, "operations", "a list of at most 256");
+        return log_wrong(log, NULL, "operations", "a list of at most 256");
     if (!jvalue_whole(jvalue_member(root, "undone"), 0, (long long)jvalue_count(operations),
                       &edits->undone))
-        return wrong(log, "undone", "at most as many as there are operations");
+        return log_wrong(log, NULL, "undone", "at most as many as there are operations");
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < jvalue_count(operations); i++) {
         if (!mem_grow(&edits->edit, i, sizeof *edits->edit))

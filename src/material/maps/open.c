@@ -16,11 +16,6 @@ struct reader {
     const struct relume_log *log;
 };
 
-static relume_status wrong(const struct reader *r, const char *what, const char *expected)
-{
-    return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %s", r->json, what, expected);
-}
-
 // A number above 0, or null.
 static bool read_width(double *out, const jvalue *value)
 {
@@ -32,7 +27,7 @@ static relume_status read_materials(struct relume_maps *m, const jvalue *list,
                                     const struct reader *r)
 {
     if (!jvalue_is_array(list) || jvalue_count(list) > RELUME_MAPS_MOST_MATERIALS)
-        return wrong(r, "materials", "a list of at most 16");
+        return log_wrong(r->log, r->json, "materials", "a list of at most 16");
     m->materials = (int)jvalue_count(list);
     for (int i = 0; i < m->materials; i++) {
         const jvalue *item = jvalue_item(list, (size_t)i);
@@ -41,7 +36,8 @@ static relume_status read_materials(struct relume_maps *m, const jvalue *list,
             !jvalue_number(jvalue_member(item, "roughness"), &k->roughness) ||
             !jvalue_number(jvalue_member(item, "share"), &k->share) ||
             (!k->metal && !jvalue_number(jvalue_member(item, "f0"), &k->f0)))
-            return wrong(r, "materials", "metal, f0, roughness and share of each");
+            return log_wrong(r->log, r->json, "materials",
+                             "metal, f0, roughness and share of each");
     }
     return RELUME_OK;
 }
@@ -57,16 +53,16 @@ static relume_status read_description(struct relume_maps *m, const struct reader
         return status;
     if (!jvalue_whole(jvalue_member(root, "width"), 1, 1 << 20, &m->width) ||
         !jvalue_whole(jvalue_member(root, "height"), 1, 1 << 20, &m->height))
-        return wrong(r, "width, height", "pixels");
+        return log_wrong(r->log, r->json, "width, height", "pixels");
     if (!jvalue_number(jvalue_member(root, "width_world"), &width) || !(width > 0.0) ||
         !read_width(&m->width_mm, jvalue_member(root, "width_mm")))
-        return wrong(r, "width_world, width_mm", "widths above 0");
+        return log_wrong(r->log, r->json, "width_world, width_mm", "widths above 0");
     if (!green || (strcmp(green, "up") && strcmp(green, "down")))
-        return wrong(r, "normal_green", "up or down");
+        return log_wrong(r->log, r->json, "normal_green", "up or down");
     if (!jvalue_truth(jvalue_member(root, "gloss"), &gloss) ||
         !jvalue_number(jvalue_member(root, "gain"), &m->gain) ||
         !jvalue_whole(jvalue_member(root, "fitted_lights"), 0, 1 << 20, &m->lights))
-        return wrong(r, "gloss, gain, fitted_lights", "what relume writes");
+        return log_wrong(r->log, r->json, "gloss, gain, fitted_lights", "what relume writes");
     m->pixel = width / m->width;
     m->directx = !strcmp(green, "down");
     m->matte_only = !gloss;

@@ -147,11 +147,6 @@ struct reader {
     const struct relume_log *log;
 };
 
-static relume_status wrong(const struct reader *r, const char *what, const char *expected)
-{
-    return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %s", r->path, what, expected);
-}
-
 static relume_status find_parts(struct reader *r)
 {
     for (int i = 0; i < PARTS; i++) {
@@ -171,7 +166,7 @@ static relume_status find_parts(struct reader *r)
                             parts[i].channels > 1 ? "s, R, G and B," : "");
         for (int c = 0; parts[i].channels == 3 && c < 3; c++)
             if (strcmp(exr_channel_name(r->file, r->part[i], c), color[c]))
-                return wrong(r, "channels of another name", "R, G and B");
+                return log_wrong(r->log, r->path, "channels of another name", "R, G and B");
     }
     return RELUME_OK;
 }
@@ -183,14 +178,14 @@ static relume_status read_sizes(relume_btf_fitted *m, const struct reader *r)
     m->width = depth.width, m->height = depth.height;
     m->texels = (size_t)m->width * (size_t)m->height;
     if (!limits_allow(&r->limits, m->width, m->height))
-        return wrong(r, "depth", "a size within the limits");
+        return log_wrong(r->log, r->path, "depth", "a size within the limits");
     m->clusters = ndf.width / NDF_SIDE;
     if (ndf.height != NDF_SIDE || ndf.width % NDF_SIDE || m->clusters > model_gbrdf.most_clusters)
-        return wrong(r, "part 'ndf'", "1 to 64 squares of 32 x 32 side by side");
+        return log_wrong(r->log, r->path, "part 'ndf'", "1 to 64 squares of 32 x 32 side by side");
     for (int i = 0; i < NDF_PART; i++) {
         const struct exr_part_info info = exr_part_info(r->file, r->part[i]);
         if (info.width != m->width || info.height != m->height)
-            return wrong(r, parts[i].name, "a map as large as the depth");
+            return log_wrong(r->log, r->path, parts[i].name, "a map as large as the depth");
     }
     return RELUME_OK;
 }
@@ -202,7 +197,7 @@ static relume_status read_directions(vec3 **out, int *count, const struct reader
     const float *f = exr_get_floats(r->file, r->part[0], name, &n);
     const int most = r->limits.max_views;
     if (!f || n < 9 || n % 3 || n / 3 > most)
-        return wrong(r, name, "at least 3 directions within the limits");
+        return log_wrong(r->log, r->path, name, "at least 3 directions within the limits");
     *count = n / 3;
     *out = mem_array((size_t)*count, sizeof **out);
     if (!*out)
@@ -211,7 +206,7 @@ static relume_status read_directions(vec3 **out, int *count, const struct reader
         const vec3 d = vec3_of((double)f[3 * i], (double)f[3 * i + 1], (double)f[3 * i + 2]);
         const double length = vec3_length(d);
         if (!(fabs(length - 1.0) < 1e-3) || !(d.z > 0.0))
-            return wrong(r, name, "unit vectors with z > 0");
+            return log_wrong(r->log, r->path, name, "unit vectors with z > 0");
         (*out)[i] = vec3_scale(d, 1.0 / length);
     }
     return RELUME_OK;
@@ -274,20 +269,21 @@ static relume_status read_maps(relume_btf_fitted *m, const struct reader *r)
     int n = 0;
     const float *light = exr_get_floats(r->file, r->part[0], "light", &n);
     if (!status && (!light || n != 1))
-        return wrong(r, "light", "one number");
+        return log_wrong(r->log, r->path, "light", "one number");
     if (!status)
         *model_floats(m, PARTS) = *light;
     const char *fault = status ? NULL : model_gbrdf.fault(m);
-    return fault ? wrong(r, "a map is out of range", fault) : status;
+    return fault ? log_wrong(r->log, r->path, "a map is out of range", fault) : status;
 }
 
 static relume_status read_about(relume_btf_fitted *m, const struct reader *r)
 {
     int version = 0, cosine = 0;
     if (!exr_get_int(r->file, r->part[0], "gbrdfVersion", &version) || version != VERSION)
-        return wrong(r, "gbrdfVersion", "1: made by a newer relume, or no g-BRDF");
+        return log_wrong(r->log, r->path, "gbrdfVersion",
+                         "1: made by a newer relume, or no g-BRDF");
     if (!exr_get_int(r->file, r->part[0], "includesCosine", &cosine))
-        return wrong(r, "includesCosine", "0 or 1");
+        return log_wrong(r->log, r->path, "includesCosine", "0 or 1");
     m->model = &model_gbrdf;
     m->without_cosine = !cosine;
     return read_sizes(m, r);

@@ -106,11 +106,6 @@ struct reader {
     const struct relume_log *log;
 };
 
-static relume_status wrong(const struct reader *r, const char *what, const char *expected)
-{
-    return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %s", r->json, what, expected);
-}
-
 static relume_status read_model(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
 {
     const char *name = jvalue_text(jvalue_member(root, "model"));
@@ -119,7 +114,7 @@ static relume_status read_model(relume_btf_fitted *m, const jvalue *root, const 
     if (status)
         return status;
     m->model = name ? relume_btf_model_find(name) : NULL;
-    return m->model ? RELUME_OK : wrong(r, "model", "the name of a model");
+    return m->model ? RELUME_OK : log_wrong(r->log, r->json, "model", "the name of a model");
 }
 
 static relume_status read_counts(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
@@ -129,19 +124,20 @@ static relume_status read_counts(relume_btf_fitted *m, const jvalue *root, const
     if (!jvalue_whole(jvalue_member(root, "width"), 0, r->limits.max_side, &m->width) ||
         !jvalue_whole(jvalue_member(root, "height"), 0, r->limits.max_side, &m->height) ||
         !limits_allow(&r->limits, m->width, m->height))
-        return wrong(r, "width, height", "texels within the limits");
+        return log_wrong(r->log, r->json, "width, height", "texels within the limits");
     if (!jvalue_whole(jvalue_member(root, "clusters"), 0, 65536, &m->clusters) ||
         !jvalue_whole(jvalue_member(root, "components"), 0, 1024, &m->components) ||
         !jvalue_whole(jvalue_member(root, "lobes"), 0, MODEL_LOBES, &m->lobes) ||
         !m->clusters != !k->clusters || !m->components != !k->components || !m->lobes != !k->lobes)
-        return wrong(r, "clusters, components, lobes", "counts that fit the model");
+        return log_wrong(r->log, r->json, "clusters, components, lobes",
+                         "counts that fit the model");
     if (k->bit_rows &&
         (!jvalue_whole(jvalue_member(root, "texel_bytes"), 0, 1 << 16, &m->texel_bytes) ||
          !jvalue_whole(jvalue_member(root, "pair_bytes"), 0, 1 << 16, &m->pair_bytes) ||
          !m->texel_bytes || !m->pair_bytes))
-        return wrong(r, "texel_bytes, pair_bytes", "counts of bytes");
+        return log_wrong(r->log, r->json, "texel_bytes, pair_bytes", "counts of bytes");
     if (!jvalue_truth(jvalue_member(root, "includes_cosine"), &cosine))
-        return wrong(r, "includes_cosine", "true or false");
+        return log_wrong(r->log, r->json, "includes_cosine", "true or false");
     m->texels = (size_t)m->width * (size_t)m->height;
     m->without_cosine = !cosine;
     return RELUME_OK;
@@ -232,7 +228,7 @@ static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const st
         status = read_array(&m->array[i], r);
     const char *fault = status || !m->model->fault ? NULL : m->model->fault(m);
     if (fault)
-        status = wrong(r, "arrays do not fit together", fault);
+        status = log_wrong(r->log, r->json, "arrays do not fit together", fault);
     return status || !m->model->prepare ? status : m->model->prepare(m);
 }
 
@@ -258,7 +254,7 @@ static relume_status open_level(relume_btf_fitted **out, const char *folder, int
     const jvalue *count = jvalue_member(root, "levels");
     if (!status && count &&
         (!jvalue_whole(jvalue_member(root, "levels"), 0, MOST_LEVELS, levels) || *levels < 1))
-        status = wrong(&r, "levels", "at least 1");
+        status = log_wrong(r.log, r.json, "levels", "at least 1");
     if (status)
         relume_btf_fitted_destroy(&m);
     *out = m;

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "core/math/fnv.h"
 
 #include <math.h>
 #include <string.h>
@@ -329,7 +330,7 @@ void canvas_destroy(struct canvas *canvas)
 // Another eye has other fixed parts, and may stand where the last one stood in memory.
 static uint64_t key_of(const struct relume_aperture *a)
 {
-    uint64_t key = 0xcbf29ce484222325u, word;
+    uint64_t key = FNV_START, word;
     const char *const parts[2] = {(const char *)(a->disc + a->cornea.first),
                                   (const char *)(a->stroke + a->fibres.first)};
     const size_t sizes[2] = {(size_t)a->cornea.count * sizeof *a->disc,
@@ -338,7 +339,7 @@ static uint64_t key_of(const struct relume_aperture *a)
         for (size_t i = 0; i < sizes[k]; i += sizeof word) {
             word = sizes[k];
             memcpy(&word, parts[k] + i, sizes[k] - i < sizeof word ? sizes[k] - i : sizeof word);
-            key = (key ^ word) * 0x100000001b3u;  // FNV-1a, eight bytes at a time
+            key = fnv_of_word(key, word);
             key ^= key >> 32;
         }
     return key;

@@ -1,6 +1,7 @@
 // subject.c - one person's measures: defaults, ranges and their file
 #include <relume/relight/eye.h>
 
+#include "core/base/tree.h"
 #include "core/base/infile.h"
 #include "core/base/json.h"
 #include "core/base/log.h"
@@ -165,10 +166,10 @@ static int line_of(const struct reading *r, const char *group, const char *name)
     return found;
 }
 
-__attribute__((format(printf, 4, 5))) static relume_status wrong(const struct reading *r,
-                                                                 const char *group,
-                                                                 const char *name,
-                                                                 const char *format, ...)
+__attribute__((format(printf, 4, 5))) static relume_status fail_field(const struct reading *r,
+                                                                      const char *group,
+                                                                      const char *name,
+                                                                      const char *format, ...)
 {
     char sentence[300];
     va_list arguments;
@@ -184,13 +185,13 @@ static relume_status take_picture(struct relume_subject *s, const struct reading
                                   const struct field *f, const jvalue *value)
 {
     char *const path = (char *)s + f->offset;
-    const char *const name = jvalue_text(value), *const slash = strrchr(r->path, '/');
-    const int folder = name && name[0] != '/' && slash ? (int)(slash - r->path) + 1 : 0;
+    const char *const name = jvalue_text(value);
+    const int folder = name && name[0] != '/' ? path_folder(r->path) : 0;
     struct lashes lashes;
     if (!name || !name[0])
-        return wrong(r, f->group, f->name, "expected a file's name");
+        return fail_field(r, f->group, f->name, "expected a file's name");
     if (snprintf(path, RELUME_SUBJECT_PATH, "%.*s%s", folder, r->path, name) >= RELUME_SUBJECT_PATH)
-        return wrong(r, f->group, f->name, "expected a shorter name");
+        return fail_field(r, f->group, f->name, "expected a shorter name");
     const relume_status status = lashes_load(&lashes, path, r->log);
     lashes_destroy(&lashes);
     return status;
@@ -206,19 +207,19 @@ static relume_status take_field(struct relume_subject *s, const struct reading *
     bool truth = false;
     if (f->kind == TRUTH) {
         if (!jvalue_truth(value, &truth))
-            return wrong(r, f->group, f->name, "expected true or false");
+            return fail_field(r, f->group, f->name, "expected true or false");
         number = truth;
     } else if (f->kind == NUMBER) {
         if (!jvalue_number(value, &number))
-            return wrong(r, f->group, f->name, "expected a number");
+            return fail_field(r, f->group, f->name, "expected a number");
     } else {
         if (!jvalue_integer(value, &whole))
-            return wrong(r, f->group, f->name, "expected a whole number");
+            return fail_field(r, f->group, f->name, "expected a whole number");
         number = (double)whole;
     }
     if (!(number >= f->least && number <= f->most))
-        return wrong(r, f->group, f->name, "expected %g to %g; found %g", f->least, f->most,
-                     number);
+        return fail_field(r, f->group, f->name, "expected %g to %g; found %g", f->least, f->most,
+                          number);
     set_value(s, f, number);
     return RELUME_OK;
 }
@@ -258,8 +259,9 @@ static relume_status check_names(const struct reading *r, const jvalue *object, 
     if (!unknown)
         return RELUME_OK;
     const char *const near = relume_name_nearest(unknown, names);
-    return wrong(r, group, unknown, "unknown%s%s%s; expected one of the fields in docs/glare.md",
-                 near ? "; did you mean \"" : "", near ? near : "", near ? "\"" : "");
+    return fail_field(r, group, unknown,
+                      "unknown%s%s%s; expected one of the fields in docs/glare.md",
+                      near ? "; did you mean \"" : "", near ? near : "", near ? "\"" : "");
 }
 
 static relume_status take_all(struct relume_subject *s, const struct reading *r, const jvalue *root)
@@ -270,7 +272,7 @@ static relume_status take_all(struct relume_subject *s, const struct reading *r,
         const jvalue *object = root;
         if (group && (object = jvalue_member(root, group))) {
             if (!jvalue_is_object(object))
-                return wrong(r, NULL, group, "expected an object");
+                return fail_field(r, NULL, group, "expected an object");
             status = check_names(r, object, group);
         }
         const jvalue *const value = jvalue_member(object, fields[i].name);
@@ -278,8 +280,8 @@ static relume_status take_all(struct relume_subject *s, const struct reading *r,
             status = take_field(s, r, find_field(group, fields[i].name), value);
     }
     if (!status && s->fibres.inner_mm > s->fibres.outer_mm)
-        return wrong(r, "fibres", "inner_mm", "expected at most outer_mm, %g; found %g",
-                     s->fibres.outer_mm, s->fibres.inner_mm);
+        return fail_field(r, "fibres", "inner_mm", "expected at most outer_mm, %g; found %g",
+                          s->fibres.outer_mm, s->fibres.inner_mm);
     return status;
 }
 

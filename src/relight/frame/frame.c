@@ -173,6 +173,24 @@ relume_status relume_renderer_places(struct relume_image *out, relume_renderer *
     return draw_frame(out, r, camera, SHOWN_PLACES);
 }
 
+// Blackens pixels of a captured view outside of its mask, where nothing is known of them.
+static relume_status blacken_masked(struct relume_image *frame, const relume_renderer *r,
+                                    const struct relume_camera *camera)
+{
+    struct relume_camera sized = *camera;
+    struct relume_image mask;
+    sized.width = frame->width;
+    sized.height = frame->height;
+    if (!is_whole_view(r, &sized))
+        return RELUME_OK;
+    const relume_status status = relume_pack_mask(&mask, r->pack, camera->view);
+    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
+    for (size_t i = 0; !status && mask.data && i < 3 * pixels; i++)
+        frame->data[i] *= mask.data[i / 3] > 0.5f ? 1.0f : 0.0f;
+    relume_image_destroy(&mask);
+    return status;
+}
+
 relume_status relume_frame(struct relume_image *out, relume_pack *pack,
                            const struct relume_camera *camera, const struct relume_light *lights,
                            int n, const struct relume_frame_params *params)
@@ -187,6 +205,8 @@ relume_status relume_frame(struct relume_image *out, relume_pack *pack,
         status = relume_renderer_set_lights(r, lights, n);
     if (!status)
         status = relume_renderer_frame(out, r, camera);
+    if (!status && once.masked)
+        status = blacken_masked(out, r, camera);
     relume_renderer_destroy(&r);
     return status;
 }

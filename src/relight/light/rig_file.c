@@ -36,17 +36,17 @@ static void say_about(void *user, enum relume_level level, const char *text)
         log_line(a->to, level, "%s: light %d; %s", a->path, a->light, text);
 }
 
-static relume_status wrong(struct about *a, const char *member, const char *expected)
+static relume_status fail_member(struct about *a, const char *member, const char *expected)
 {
     a->member = member;
-    return log_fail(&a->log, RELUME_EFORMAT, "%s; expected %s", member, expected);
+    return log_wrong(&a->log, NULL, member, expected);
 }
 
 static relume_status take_truth(struct about *a, const jvalue *object, const char *member,
                                 bool *out)
 {
     const jvalue *value = jvalue_member(object, member);
-    return !value || jvalue_truth(value, out) ? RELUME_OK : wrong(a, member, "true or false");
+    return !value || jvalue_truth(value, out) ? RELUME_OK : fail_member(a, member, "true or false");
 }
 
 static relume_status take_values(struct about *a, const jvalue *object, struct relume_rig_entry *e)
@@ -56,11 +56,11 @@ static relume_status take_values(struct about *a, const jvalue *object, struct r
     const jvalue *name = jvalue_member(object, "name");
     double rgb[3];
     if (name && !(e->name = jvalue_text(name)))
-        return wrong(a, "name", "a text");
+        return fail_member(a, "name", "a text");
     if (intensity && !jvalue_number(intensity, &e->intensity))
-        return wrong(a, "intensity", "a number");
+        return fail_member(a, "intensity", "a number");
     if (colour && !jvalue_numbers(colour, rgb, 3))
-        return wrong(a, "rgb", "three numbers");
+        return fail_member(a, "rgb", "three numbers");
     for (int c = 0; colour && c < 3; c++)
         e->light.rgb[c] = (float)rgb[c];
     const relume_status status = take_truth(a, object, "on", &e->on);
@@ -75,10 +75,10 @@ static relume_status take_light(relume_rig *rig, const jvalue *object, const cha
         return log_fail(&a->log, RELUME_EFORMAT, "expected an object");
     const char *unknown = jvalue_unknown(object, members);
     if (unknown)
-        return wrong(a, unknown, "name, light, rgb, intensity, on or solo");
+        return fail_member(a, unknown, "name, light, rgb, intensity, on or solo");
     const char *spec = jvalue_text(jvalue_member(object, "light"));
     if (!spec)
-        return wrong(a, "light", "words such as \"dir 0 0 1\"");
+        return fail_member(a, "light", "words such as \"dir 0 0 1\"");
     a->member = "light";
     relume_status status = relume_rig_add(rig, spec, folder, &a->log);
     a->member = NULL;

@@ -65,11 +65,3 @@ int mesh_file_picture(struct mesh_file *file, const char *name)
             return i;
     return mesh_file_picture_of(file, name, NULL, 0);
 }
-
-char *mesh_beside(const char *path, const char *name)
-{
-    const char *slash = strrchr(path, '/');
-    if (name[0] == '/' || !slash)
-        return mem_text(name);
-    return mem_format("%.*s%s", (int)(slash - path) + 1, path, name);
-}

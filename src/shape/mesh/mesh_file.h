@@ -94,7 +94,5 @@ relume_status mesh_read_mtl(struct mesh_library *library, struct mesh_file *out,
                             const struct relume_log *log);
 // NULL: it says nothing of a material of that name.
 const struct mesh_look *mesh_library_find(const struct mesh_library *library, const char *name);
-// `name` in the folder of `path`; NULL when memory is short.
-char *mesh_beside(const char *path, const char *name);
 
 #endif

@@ -1,6 +1,7 @@
 // mesh_mtl.c - material libraries of Wavefront OBJ: newmtl, Kd, map_Kd, d (opacity), and of the
 // physically based extension Pr and Pm (roughness, metal), Ke and map_Ke (emission) and norm (a
 // picture of normals); every other keyword is passed over
+#include "core/base/tree.h"
 #include "core/base/infile.h"
 #include "core/base/memory.h"
 #include "core/math/scalar.h"
@@ -70,7 +71,7 @@ static relume_status read_picture(int *to, struct mesh_file *out, const char *te
 {
     if (!*name_in(text))
         return RELUME_OK;
-    char *name = mesh_beside(path, name_in(text));
+    char *name = path_beside(path, name_in(text));
     const int number = name ? mesh_file_picture(out, name) : -1;
     if (number < 0) {
         mem_free(name);

@@ -1,5 +1,6 @@
 // mesh_obj.c - Wavefront OBJ: v, vt, vn, f, mtllib, usemtl and g; every other keyword is passed
 // over
+#include "core/base/tree.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -156,7 +157,7 @@ static relume_status read_face(struct obj *o, char *text)
 
 static relume_status read_library(struct obj *o, const char *name)
 {
-    char *path = mesh_beside(o->path, name);
+    char *path = path_beside(o->path, name);
     if (!path)
         return RELUME_ENOMEM;
     const relume_status status = mesh_read_mtl(&o->library, o->out, path, o->log);

@@ -2,6 +2,7 @@
 // little as the file
 #include "shape/mesh/mesh_other.h"
 
+#include "core/base/tree.h"
 #include "core/base/channel.h"
 #include "core/base/inputs.h"
 #include "core/base/log.h"
@@ -46,7 +47,7 @@ static bool stays_below(const char *name)
 static int open_beside(const char *path, const char *name, const struct relume_log *log)
 {
     uint64_t bytes;
-    char *beside = stays_below(name) ? mesh_beside(path, name) : NULL;
+    char *beside = stays_below(name) ? path_beside(path, name) : NULL;
     int file = -1;
     if (beside && !open_regular(&file, beside, &bytes, NULL))
         input_note(log, beside);
@@ -146,7 +147,7 @@ static char *picture_file(const char *path, const char *name)
 {
     const char *slash = strrchr(name, '/'), *back = strrchr(name, '\\');
     const char *last = slash && (!back || slash > back) ? slash + 1 : back ? back + 1 : name;
-    char *file = mesh_beside(path, stays_below(name) ? name : last);
+    char *file = path_beside(path, stays_below(name) ? name : last);
     if (!file || !access(file, R_OK))
         return file;
     char *decoded = mem_text(name);
@@ -154,7 +155,7 @@ static char *picture_file(const char *path, const char *name)
         decode_uri(decoded);
     if (decoded && strcmp(decoded, name) && stays_below(decoded)) {
         mem_free(file);
-        file = mesh_beside(path, decoded);
+        file = path_beside(path, decoded);
     }
     mem_free(decoded);
     return file;
@@ -239,11 +240,10 @@ static relume_status read_there(struct mesh_file *out, struct helper_job *job, c
                                 int file, uint64_t file_bytes, const struct relume_log *log)
 {
     const struct relume_limits *given = limits_of(NULL, log), limits = limits_or_default(given);
-    const char *slash = strrchr(path, '/');
     struct mesh_answer answer;
     struct mesh_ask what = {
         .what = MESH_OPEN, .file_bytes = file_bytes, .max_memory = limits.max_memory};
-    strncpy(what.name, slash ? slash + 1 : path, sizeof what.name - 1);
+    strncpy(what.name, path_name(path), sizeof what.name - 1);
     job->processor_s = mesh_read_s(file_bytes);
     relume_status status = have_read(job, &answer, path, file, &what, log);
     if (status)

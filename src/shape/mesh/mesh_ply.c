@@ -3,6 +3,7 @@
 // A header declares elements and their properties; the body holds them in that order. Positions,
 // normals, texture coordinates and colours of `vertex`, the index list of `face` and the comment
 // TextureFile are used, the rest is read past.
+#include "core/base/tree.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "shape/mesh/mesh_file.h"
@@ -183,7 +184,7 @@ static bool header_line(struct ply *p, char *line, size_t room)
 // As MeshLab names the texture of the whole.
 static relume_status take_picture(struct ply *p, const char *name)
 {
-    p->out->picture = mesh_beside(p->path, name);
+    p->out->picture = path_beside(p->path, name);
     return p->out->picture ? RELUME_OK : RELUME_ENOMEM;
 }
 

@@ -1,6 +1,7 @@
 // mesh_write.c - meshes into files: the format by its ending, Wavefront OBJ and PLY
 #include "shape/mesh/mesh_write.h"
 
+#include "core/base/tree.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
@@ -46,8 +47,7 @@ void sink_print(struct sink *s, const char *format, ...)
 
 const char *mesh_write_picture(const struct relume_mesh *mesh, const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
+    const size_t folder = (size_t)path_folder(path);
     return strncmp(mesh->picture, path, folder) ? mesh->picture : mesh->picture + folder;
 }
 
@@ -89,7 +89,7 @@ relume_status mesh_write_obj(struct sink *to, const struct relume_mesh *m, const
 {
     (void)log;
     if (has_library(m)) {
-        const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+        const char *name = path_name(path);
         sink_print(to, "mtllib %.*s.mtl\nusemtl picture\n", (int)(strrchr(name, '.') - name), name);
     }
     put_vertices(to, m);

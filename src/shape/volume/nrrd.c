@@ -4,6 +4,7 @@
 // names. Read are three axes of plain numbers, raw or packed by gzip.
 #include "shape/volume/readers.h"
 
+#include "core/base/tree.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -173,12 +174,7 @@ static relume_status load_header(struct store *s, struct nrrd *n, const char *pa
 
 static char *file_of(const struct nrrd *n, const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    if (!n->detached)
-        return mem_text(path);
-    return n->file[0] == '/' || !slash
-               ? mem_text(n->file)
-               : mem_format("%.*s%s", (int)(slash - path) + 1, path, n->file);
+    return n->detached ? path_beside(path, n->file) : mem_text(path);
 }
 
 static relume_status take_file(struct store *s, const struct nrrd *n, const char *file,

@@ -1,6 +1,7 @@
 // raw.c - samples without a header; how many they are may stand in the name of their file
 #include "shape/volume/readers.h"
 
+#include "core/base/tree.h"
 #include "core/base/log.h"
 
 #include <stdio.h>
@@ -59,7 +60,7 @@ static bool fits(const struct store *s, unpack *from, const int64_t size[3], con
 static bool guess(int64_t size[3], const char **type, unpack *from, const char *path,
                   const struct relume_volume_params *p)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *name = path_name(path);
     const char *one = *type ? *type : type_in_name(name);
     const struct store quiet = {.path = path};
     uint64_t left;

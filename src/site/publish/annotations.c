@@ -1,6 +1,7 @@
 // annotations.c - notes that lie beside a file, or inside it, go into the site
 #include "site/publish/annotations.h"
 
+#include "core/base/tree.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -14,7 +15,7 @@ relume_status annotations_open(relume_notes **out, const struct site *site, cons
                                relume_pack *pack)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
-    const struct relume_notes_file file = {.name = names_file(path),
+    const struct relume_notes_file file = {.name = path_name(path),
                                            .width = info->width,
                                            .height = info->height,
                                            .views = info->views,

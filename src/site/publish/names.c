@@ -9,12 +9,6 @@
 // Room for "-255" behind it.
 enum { LONGEST = 48 };
 
-const char *names_file(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 char *names_stem(const char *path)
 {
     size_t end = strlen(path);

@@ -6,8 +6,6 @@
 
 enum { SITE_NAME = 64 };  // with its end
 
-// The file's name without its folder.
-const char *names_file(const char *path);
 // The file's name without folder and ending, for people; NULL when memory is short.
 char *names_stem(const char *path);
 // names[count] of small letters, digits, '-' and '_', from the stems, all different.

@@ -5,6 +5,7 @@
 // and components, which stay halves. The page multiplies these by the light's weights, and adds.
 #include "site/publish/object.h"
 
+#include "core/base/tree.h"
 #include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -314,7 +315,7 @@ static relume_status write_json(const struct site *site, const struct page *page
 static relume_status open_notes(relume_notes **notes, const struct site *site, const char *path,
                                 const struct arrays *a)
 {
-    struct relume_notes_file file = {.name = names_file(path), .solid = true};
+    struct relume_notes_file file = {.name = path_name(path), .solid = true};
     for (int k = 0; k < 2; k++)
         for (int c = 0; c < 3; c++)
             file.box[k][c] = (double)a->box[k][c];

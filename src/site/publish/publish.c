@@ -20,6 +20,8 @@
 #include <string.h>
 
 enum { POSTER_SIDE = 800 };
+// PSNR in dB below which differences from the original are visible.
+static const double SEEN_DB = 38.0;
 
 relume_status relume_publish_for_parse(enum relume_publish_for *out, const char *name)
 {
@@ -129,6 +131,18 @@ static relume_status write_all(struct scene *s, struct page *page, const char *p
     return status;
 }
 
+static enum relume_publish_advice advise(const struct relume_publish_report *r,
+                                         const struct relume_publish_params *p)
+{
+    const bool wished =
+        p->quality > 0 || p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 || p->coefficients > 0;
+    if (!r->views || r->psnr_db >= SEEN_DB)
+        return RELUME_PUBLISH_NO_ADVICE;
+    if (r->linear)
+        return RELUME_PUBLISH_CODE_DISPLAY;
+    return wished ? RELUME_PUBLISH_NO_ADVICE : RELUME_PUBLISH_RAISE_QUALITY;
+}
+
 static relume_status publish_file(struct work *w, int i, const struct site *site)
 {
     struct log_place place;
@@ -153,6 +167,7 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
         status = write_all(&s, page, w->files[i], site_title);
     }
     scene_free(&s);
+    report.advice = advise(&report, w->params);
     if (w->reports)
         w->reports[i] = report;
     return status;
@@ -188,7 +203,7 @@ static relume_status check(const char *const *files, int count, const char *path
                         "nothing to publish; expected a file or more, and a name for the site");
     if ((p->bytes_per_pixel > 0.0) + (p->psnr_db > 0.0) + (p->quality > 0) > 1)
         return log_fail(p->log, RELUME_EINVAL,
-                        "expected at most one of bytes per pixel, PSNR and quality");
+                        "publish: expected one of --quality, --psnr and --bytes-per-pixel");
     if (p->coefficients < 0 || p->coefficients > PUBLISH_MOST_PLANES)
         return log_fail(p->log, RELUME_EINVAL, "%d coefficients; expected 1 to %d", p->coefficients,
                         PUBLISH_MOST_PLANES);
@@ -198,9 +213,9 @@ static relume_status check(const char *const *files, int count, const char *path
     return RELUME_OK;
 }
 
-relume_status relume_publish(const char *const *files, int count, const char *path,
-                             struct relume_publish_report *reports,
-                             const struct relume_publish_params *params)
+relume_status relume_publish_files(const char *path, const char *const *files, int count,
+                                   const struct relume_publish_params *params,
+                                   struct relume_publish_report *reports)
 {
     const struct relume_publish_params p = PARAMS_WORK(relume_publish_params, params);
     struct work w = {.params = &p, .files = files, .count = count, .reports = reports};

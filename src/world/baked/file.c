@@ -288,11 +288,6 @@ static int find_part(const struct reader *r, int part)
     return -1;
 }
 
-static relume_status wrong(const struct reader *r, const char *what, const char *expected)
-{
-    return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %s", r->path, what, expected);
-}
-
 static relume_status read_number(int *out, const struct reader *r, const char *name, int low,
                                  int high)
 {
@@ -330,14 +325,16 @@ static relume_status read_basis(relume_baked *b, const struct reader *r)
                           !(i->cube & (i->cube - 1)) && i->kept >= 1 &&
                           i->kept <= i->cube * i->cube;
         status = good ? basis_make(&b->basis, NULL, 0, i->cube, 0, r->log)
-                      : wrong(r, "its attributes 'coefficients' and 'kept' fit no cube of lights",
-                              "2, 4, 8, 16 or 32, and from 1 to its square");
+                      : log_wrong(r->log, r->path,
+                                  "its attributes 'coefficients' and 'kept' fit no cube of lights",
+                                  "2, 4, 8, 16 or 32, and from 1 to its square");
     } else if (i->basis && !i->basis->learned && !i->basis->upper_only && !i->basis->joint &&
                i->basis->has_count(i->coefficients) && directions >= i->coefficients) {
         status = basis_make(&b->basis, i->basis, i->coefficients, 0, directions, r->log);
     } else {
-        status = wrong(r, "its basis of light is unknown, or has another number of coefficients",
-                       "fixed, haar, or one for light from all sides");
+        status = log_wrong(r->log, r->path,
+                           "its basis of light is unknown, or has another number of coefficients",
+                           "fixed, haar, or one for light from all sides");
     }
     i->coefficients = b->basis.count;
     b->kept = i->cube ? 6 * i->kept : i->coefficients;
@@ -349,8 +346,8 @@ static relume_status read_about(relume_baked *b, const struct reader *r)
     struct relume_baked_info *i = &b->info;
     int version = 0, per_view = 0, triangles = 0, n = 0;
     if (!exr_get_int(r->file, 0, "bakedVersion", &version) || version != VERSION)
-        return wrong(r, "its attribute 'bakedVersion' is not 1",
-                     "an object that relume bake has made, by no newer version");
+        return log_wrong(r->log, r->path, "its attribute 'bakedVersion' is not 1",
+                         "an object that relume bake has made, by no newer version");
     relume_status status = read_basis(b, r);
     if (!status)
         status = read_number(&i->side, r, "viewSide", 1, RELUME_BAKED_MOST_SIDE);
@@ -457,12 +454,12 @@ static relume_status check_texels(relume_baked *b, const struct reader *r)
         const bool none = b->cluster[i] == BAKED_NONE;
         b->info.texels += !none;
         if (!none && has_part(b, FRAMES) && !good_frame(b->frame[i]))
-            return wrong(r, "its part 'frames' has a vector of another length",
-                         "normals and tangents of length 1");
+            return log_wrong(r->log, r->path, "its part 'frames' has a vector of another length",
+                             "normals and tangents of length 1");
         for (int k = 1; k < b->blocks; k++)
             if ((b->cluster[(size_t)k * n + i] == BAKED_NONE) != none)
-                return wrong(r, "a texel has clusters for some views only",
-                             "for all views, or for none");
+                return log_wrong(r->log, r->path, "a texel has clusters for some views only",
+                                 "for all views, or for none");
     }
     return RELUME_OK;
 }

@@ -1,4 +1,5 @@
 // description.c - the description of objects in JSON
+#include "core/base/tree.h"
 #include "core/base/json.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -68,7 +69,7 @@ static relume_status read_folder(const struct reader *r, const jvalue *text, int
         return log_fail(r->log, RELUME_EFORMAT,
                         "material: expected the folder of a BTF or of a model, {\"diffuse\": 0.5}, "
                         "{\"mirror\": 1}, {\"translucent\": \"marble\"}, or a list of them");
-    char *folder = mesh_beside(r->path, name);
+    char *folder = path_beside(r->path, name);
     const relume_status status =
         folder ? objects_material(r->o, folder, number, r->params) : RELUME_ENOMEM;
     mem_free(folder);
@@ -195,7 +196,7 @@ static relume_status read_baked(const struct reader *r, const jvalue *object)
     struct frame frame;
     if (!name || !*name)
         return log_fail(r->log, RELUME_EFORMAT, "baked: expected the name of a file");
-    char *path = mesh_beside(r->path, name);
+    char *path = path_beside(r->path, name);
     relume_status status = path ? jvalue_check_known(object, known, r->log) : RELUME_ENOMEM;
     if (!status)
         status = objects_read_pose(&frame, jvalue_member(object, "pose"), r->log);
@@ -243,7 +244,7 @@ static relume_status read_object(const struct reader *r, const jvalue *object)
     const char *mesh = jvalue_text(jvalue_member(object, "mesh"));
     if (!jvalue_is_object(object) || !mesh || !*mesh)
         return log_fail(r->log, RELUME_EFORMAT, "mesh: expected the name of a file");
-    char *path = mesh_beside(r->path, mesh);
+    char *path = path_beside(r->path, mesh);
     relume_status status = path ? jvalue_check_known(object, known, r->log) : RELUME_ENOMEM;
     if (!status)
         status = objects_read_pose(&s.frame, jvalue_member(object, "pose"), r->log);

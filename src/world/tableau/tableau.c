@@ -1,6 +1,7 @@
 // tableau.c - a scene file, what it names, and which of it is shown
 #include "world/tableau/tableau.h"
 
+#include "core/base/tree.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
@@ -78,8 +79,7 @@ static relume_status count(int *n, const relume_tableau *t, const char *name, in
 static char *name_of(const jvalue *entry, const char *file)
 {
     const char *name = jvalue_text(jvalue_member(entry, "name"));
-    const char *slash = strrchr(file, '/');
-    return mem_text(name && *name ? name : slash ? slash + 1 : file);
+    return mem_text(name && *name ? name : path_name(file));
 }
 
 static int object_named(const relume_tableau *t, const char *name)
@@ -116,7 +116,7 @@ static relume_status read_capture(relume_tableau *t, int number)
     if (!jvalue_is_object(entry) || !file || !*file)
         return log_fail(log, RELUME_EFORMAT, "file: expected the name of a file");
     e->name = name_of(entry, file);
-    char *path = mesh_beside(t->path, file);
+    char *path = path_beside(t->path, file);
     relume_status status = e->name && path ? jvalue_check_known(entry, known, log) : RELUME_ENOMEM;
     if (!status && relume_tableau_is(path))
         status = log_fail(log, RELUME_EFORMAT,
@@ -219,8 +219,8 @@ static relume_status read_rig(relume_tableau *t)
     int n = 0;
     if (!status)
         status = count(&n, t, "lights", 0, MOST_LIGHTS);
-    const char *slash = strrchr(t->path, '/');
-    char *folder = slash ? mem_format("%.*s", (int)(slash - t->path) + 1, t->path) : mem_text(".");
+    const int length = path_folder(t->path);
+    char *folder = length ? mem_format("%.*s", length, t->path) : mem_text(".");
     if (!folder)
         status = RELUME_ENOMEM;
     if (!status && !lights)

@@ -4,7 +4,7 @@
 //     p = (1 - a - b) (t1 + k d1) + a (t2 + k d2) + b (t3 + k d3)                          (11.12)
 // so that the three t_i - p + k d_i lie in a plane, which is a cubic in k. The thesis prints a sign
 // of C and Cardano's q and rho wrongly; here they are as they follow from the determinant.
-#include "world/reflect/triangle.h"
+#include "cli/measure/triangle.h"
 
 void mirror_triangle_make(struct mirror_triangle *out, const vec3 corner[3], const vec3 normal[3],
                           vec3 eye)

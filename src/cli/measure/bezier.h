@@ -1,6 +1,6 @@
 // bezier.h - where a curved mirror of four by four control points reflects a place to an eye
-#ifndef REFLECT_BEZIER_H
-#define REFLECT_BEZIER_H
+#ifndef MEASURE_BEZIER_H
+#define MEASURE_BEZIER_H
 
 #include "core/math/vec.h"
 

@@ -1,7 +1,7 @@
 // octree.h - triangles as cells of an octree, for rays that may be wrong by a cell: what
 // reflections were traced with where no ray tracer was at hand (Meseth 2008, 11.4)
-#ifndef MESH_OCTREE_H
-#define MESH_OCTREE_H
+#ifndef MEASURE_OCTREE_H
+#define MEASURE_OCTREE_H
 
 #include "shape/mesh/mesh.h"
 

@@ -4,7 +4,7 @@
 //     d(u, v) = |S - eye| + |S - place|
 // Newton's method from the middle, with steps that are halved while half of one leads to less. The
 // powers' matrix has (-1)^(j - i) C(3, j) C(j, i); the thesis prints (-1)^(j - 1).
-#include "world/reflect/bezier.h"
+#include "cli/measure/bezier.h"
 
 void bezier_make(struct bezier *out, const vec3 control[4][4])
 {

@@ -4,7 +4,7 @@
 // area in it, and the material of the largest area is the cell's. A ray goes from cell to cell:
 // down to the one that holds a point of it, past that where it is empty, up while the point is
 // outside.
-#include "shape/mesh/octree.h"
+#include "cli/measure/octree.h"
 
 #include "core/base/memory.h"
 

@@ -1,6 +1,6 @@
 // triangle.h - where a triangle with normals at its corners reflects a place to an eye
-#ifndef REFLECT_TRIANGLE_H
-#define REFLECT_TRIANGLE_H
+#ifndef MEASURE_TRIANGLE_H
+#define MEASURE_TRIANGLE_H
 
 #include "core/math/vec.h"
 

@@ -87,56 +87,60 @@ static void print_text(const struct mirror_result *mirrors, const struct traced_
 
 // ---------------------------------------------------------------- JSON
 
-static void print_member(const char *name, double value)
+static void put_mirror(struct jwriter *w, const struct mirror_result *r)
 {
-    printf(",\"%s\":", name);
-    json_number(stdout, value);
+    jopen_object(w, NULL);
+    jput_text(w, "method", r->triangles ? "triangles" : "patch");
+    jput_integer(w, "triangles", 2 * r->triangles * r->triangles);
+    jput_number(w, "seconds", r->seconds, 9);
+    jput_number(w, "iterations", r->iterations, 9);
+    jput_number(w, "error", r->error, 9);
+    jput_integer(w, "found", r->found);
+    jclose(w);
 }
 
-static void print_mirror_json(const struct mirror_result *r)
+static void put_tracing(struct jwriter *w, const struct tracing_result *r)
 {
-    printf("{\"method\":\"%s\"", r->triangles ? "triangles" : "patch");
-    print_member("triangles", 2.0 * r->triangles * r->triangles);
-    print_member("seconds", r->seconds);
-    print_member("iterations", r->iterations);
-    print_member("error", r->error);
-    printf(",\"found\":%d}", r->found);
+    jopen_object(w, NULL);
+    jput_text(w, "method", r->depth ? "octree" : "tracer");
+    jput_integer(w, "depth", r->depth);
+    jput_truth(w, "cone", r->cone);
+    jput_number(w, "build_seconds", r->build_s, 9);
+    jput_integer(w, "bytes", (long long)r->bytes);
+    jput_number(w, "rays_per_second", r->rays_per_s, 9);
+    jput_number(w, "one_only", r->one_only, 9);
+    jput_number(w, "error", r->error, 9);
+    jclose(w);
 }
 
-static void print_tracing_json(const struct tracing_result *r)
+static void put_mesh(struct jwriter *w, const struct traced_mesh *mesh)
 {
-    printf("{\"method\":\"%s\",\"depth\":%d,\"cone\":%s", r->depth ? "octree" : "tracer", r->depth,
-           r->cone ? "true" : "false");
-    print_member("build_seconds", r->build_s);
-    printf(",\"bytes\":%zu", r->bytes);
-    print_member("rays_per_second", r->rays_per_s);
-    print_member("one_only", r->one_only);
-    print_member("error", r->error);
-    putchar('}');
+    jopen_object(w, NULL);
+    jput_text(w, "name", mesh->name);
+    jput_integer(w, "triangles", (long long)mesh->triangles);
+    jopen_array(w, "tracing");
+    for (int i = 0; i < TRACING_METHODS; i++)
+        put_tracing(w, &mesh->result[i]);
+    jclose_levels(w, 2);
 }
 
 static void print_json(const struct mirror_result *mirrors, const struct traced_mesh *meshes, int n,
                        const char *processor)
 {
-    printf("{\"version\":\"%s\",\"processor\":", RELUME_VERSION);
-    json_text(stdout, processor);
-    printf(",\"positions\":%d,\"rays\":%d,\"mirror\":[", MIRROR_POSITIONS, REFLECTED_RAYS);
-    for (int i = 0; i < MIRROR_METHODS; i++) {
-        fputs(i ? "," : "", stdout);
-        print_mirror_json(&mirrors[i]);
-    }
-    printf("],\"meshes\":[");
-    for (int m = 0; m < n; m++) {
-        printf("%s{\"name\":", m ? "," : "");
-        json_text(stdout, meshes[m].name);
-        printf(",\"triangles\":%zu,\"tracing\":[", meshes[m].triangles);
-        for (int i = 0; i < TRACING_METHODS; i++) {
-            fputs(i ? "," : "", stdout);
-            print_tracing_json(&meshes[m].result[i]);
-        }
-        printf("]}");
-    }
-    puts("]}");
+    struct jwriter w = json_dense();
+    jopen_object(&w, NULL);
+    jput_text(&w, "version", RELUME_VERSION);
+    jput_text(&w, "processor", processor);
+    jput_integer(&w, "positions", MIRROR_POSITIONS);
+    jput_integer(&w, "rays", REFLECTED_RAYS);
+    jopen_array(&w, "mirror");
+    for (int i = 0; i < MIRROR_METHODS; i++)
+        put_mirror(&w, &mirrors[i]);
+    jclose(&w);
+    jopen_array(&w, "meshes");
+    for (int m = 0; m < n; m++)
+        put_mesh(&w, &meshes[m]);
+    jend(&w);
 }
 
 // ---------------------------------------------------------------- the command

@@ -37,7 +37,7 @@ static bool at_end(struct script *s)
     return !*s->at;
 }
 
-static relume_status wrong(struct script *s, const char *expected)
+static relume_status refuse_line(struct script *s, const char *expected)
 {
     skip_blanks(s);
     return say(s->host.log, RELUME_EFORMAT, "%s: line %d, column %d; expected %s; found '%s'",
@@ -143,10 +143,10 @@ static relume_status play_size(struct script *s)
     double n[2];
     const char *at = s->at;
     if (!take_numbers(s, n, 2))
-        return wrong(s, "size W H");
+        return refuse_line(s, "size W H");
     if (n[0] < 1 || n[1] < 1 || n[0] > 65536 || n[1] > 65536) {
         s->at = at;
-        return wrong(s, "a width and a height from 1 to 65536");
+        return refuse_line(s, "a width and a height from 1 to 65536");
     }
     send(s, (struct app_event){.kind = APP_SIZE, .width = (int)n[0], .height = (int)n[1]});
     return RELUME_OK;
@@ -159,7 +159,7 @@ static relume_status play_drag(struct script *s)
     relume_status status = RELUME_OK;
     if (!take_button(s, &button) || !take_numbers(s, n, 4) ||
         (!at_end(s) && (!take_numbers(s, n + 4, 1) || n[4] < 0 || n[4] > 3600)))
-        return wrong(s, "drag left|right x0 y0 x1 y1 [SECONDS]");
+        return refuse_line(s, "drag left|right x0 y0 x1 y1 [SECONDS]");
     const int moves = n[4] > 0 ? (int)fmax(8, 25 * n[4]) : 1;  // as a film has pictures
     send(s, (struct app_event){.kind = APP_MOVE, .x = n[0], .y = n[1]});
     send(s, (struct app_event){.kind = APP_PRESS, .button = button, .x = n[0], .y = n[1]});
@@ -179,7 +179,7 @@ static relume_status play_click(struct script *s)
 {
     double n[2];
     if (!take_numbers(s, n, 2))
-        return wrong(s, "click x y");
+        return refuse_line(s, "click x y");
     send(s, (struct app_event){.kind = APP_MOVE, .x = n[0], .y = n[1]});
     send(s, (struct app_event){.kind = APP_PRESS, .x = n[0], .y = n[1]});
     send(s, (struct app_event){.kind = APP_RELEASE, .x = n[0], .y = n[1]});
@@ -191,7 +191,7 @@ static relume_status play_press(struct script *s)
     double n[2];
     enum app_button button;
     if (!take_button(s, &button) || !take_numbers(s, n, 2))
-        return wrong(s, "press left|right x y");
+        return refuse_line(s, "press left|right x y");
     send(s, (struct app_event){.kind = APP_MOVE, .x = n[0], .y = n[1]});
     send(s, (struct app_event){.kind = APP_PRESS, .button = button, .x = n[0], .y = n[1]});
     return RELUME_OK;
@@ -202,7 +202,7 @@ static relume_status play_release(struct script *s)
     double n[2];
     enum app_button button;
     if (!take_button(s, &button) || !take_numbers(s, n, 2))
-        return wrong(s, "release left|right x y");
+        return refuse_line(s, "release left|right x y");
     send(s, (struct app_event){.kind = APP_RELEASE, .button = button, .x = n[0], .y = n[1]});
     return RELUME_OK;
 }
@@ -211,7 +211,7 @@ static relume_status play_move(struct script *s)
 {
     double n[2];
     if (!take_numbers(s, n, 2))
-        return wrong(s, "move x y");
+        return refuse_line(s, "move x y");
     send(s, (struct app_event){.kind = APP_MOVE, .x = n[0], .y = n[1]});
     return RELUME_OK;
 }
@@ -220,7 +220,7 @@ static relume_status play_wheel(struct script *s)
 {
     double n[3] = {0, 0.5 * s->host.app->width, 0.5 * s->host.app->height};
     if (!take_numbers(s, n, 1) || (!at_end(s) && !take_numbers(s, n + 1, 2)))
-        return wrong(s, "wheel STEPS [x y]");
+        return refuse_line(s, "wheel STEPS [x y]");
     send(s, (struct app_event){.kind = APP_WHEEL, .wheel = n[0], .x = n[1], .y = n[2]});
     return RELUME_OK;
 }
@@ -235,8 +235,9 @@ static relume_status play_key(struct script *s)
 {
     int key;
     if (!take_key(s, &key))
-        return wrong(s, "key K: one letter or sign, esc, tab, enter, left, right, up, down, ..., "
-                        "ctrl+ a letter");
+        return refuse_line(
+            s, "key K: one letter or sign, esc, tab, enter, left, right, up, down, ..., "
+               "ctrl+ a letter");
     press_key(s, key);
     return RELUME_OK;
 }
@@ -245,7 +246,7 @@ static relume_status play_hold(struct script *s)
 {
     int key;
     if (!take_key(s, &key))
-        return wrong(s, "hold K");
+        return refuse_line(s, "hold K");
     send(s, (struct app_event){.kind = APP_KEY_DOWN, .key = key});
     return RELUME_OK;
 }
@@ -254,7 +255,7 @@ static relume_status play_let(struct script *s)
 {
     int key;
     if (!take_key(s, &key))
-        return wrong(s, "let K");
+        return refuse_line(s, "let K");
     send(s, (struct app_event){.kind = APP_KEY_UP, .key = key});
     return RELUME_OK;
 }
@@ -264,7 +265,7 @@ static relume_status play_type(struct script *s)
     char copy[LINE];
     const char *text = take_rest(s, copy);
     if (!text)
-        return wrong(s, "type TEXT");
+        return refuse_line(s, "type TEXT");
     for (; *text; text++)
         send(s, (struct app_event){.kind = APP_TEXT, .key = (unsigned char)*text});
     return RELUME_OK;
@@ -298,7 +299,7 @@ static relume_status set_light(struct script *s, bool replace)
     char copy[LINE];
     const char *spec = take_rest(s, copy);
     if (!spec)
-        return wrong(s, "a light, as in \"dir 0 0 1\"");
+        return refuse_line(s, "a light, as in \"dir 0 0 1\"");
     return blame_script(s, s->host.light(s->host.user, spec, replace, &log));
 }
 
@@ -318,7 +319,7 @@ static relume_status with_path(struct script *s, relume_status (*act)(void *, co
     char copy[LINE];
     const char *path = take_rest(s, copy);
     s->at += strlen(s->at);
-    return path ? act(s->host.user, path) : wrong(s, expected);
+    return path ? act(s->host.user, path) : refuse_line(s, expected);
 }
 
 static relume_status with_file(struct script *s,
@@ -329,7 +330,7 @@ static relume_status with_file(struct script *s,
     const struct relume_log log = {.message = say_place, .user = s};
     char copy[LINE];
     const char *path = take_rest(s, copy);
-    return path ? blame_script(s, act(s->host.user, path, &log)) : wrong(s, expected);
+    return path ? blame_script(s, act(s->host.user, path, &log)) : refuse_line(s, expected);
 }
 
 static relume_status play_rig(struct script *s)
@@ -360,7 +361,7 @@ static relume_status play_glare(struct script *s)
     char copy[LINE];
     const char *words = take_rest(s, copy), *expected = "glare on|off|...";
     const relume_status status = s->host.glare(s->host.user, words ? words : "", &expected);
-    return status ? wrong(s, expected) : RELUME_OK;
+    return status ? refuse_line(s, expected) : RELUME_OK;
 }
 
 static relume_status play_frame(struct script *s)
@@ -384,14 +385,15 @@ static relume_status play_set(struct script *s)
     char copy[LINE];
     const char *words = take_rest(s, copy), *expected;
     return adjust_say(&s->host.app->now, words ? words : "", &expected) ? RELUME_OK
-                                                                        : wrong(s, expected);
+                                                                        : refuse_line(s, expected);
 }
 
 static relume_status play_transport(struct script *s)
 {
     char copy[LINE], expected[WAY_WORDS];
     const char *words = take_rest(s, copy);
-    return way_say(s->host.app, words ? words : "", expected) ? RELUME_OK : wrong(s, expected);
+    return way_say(s->host.app, words ? words : "", expected) ? RELUME_OK
+                                                              : refuse_line(s, expected);
 }
 
 static relume_status play_pass(struct script *s)
@@ -402,8 +404,8 @@ static relume_status play_pass(struct script *s)
     if (!name || relume_pass_parse(&s->host.app->now.pass, name) ||
         (int)s->host.app->now.pass >= app_passes(s->host.app)) {
         s->host.app->now.pass = was;
-        return wrong(s, "pass colour, normals, specular, diffuse-gain, unsharp, luminance, "
-                        "false-colour, or difference beside --capture; of maps colour alone");
+        return refuse_line(s, "pass colour, normals, specular, diffuse-gain, unsharp, luminance, "
+                              "false-colour, or difference beside --capture; of maps colour alone");
     }
     return RELUME_OK;
 }
@@ -419,7 +421,7 @@ static relume_status play_dock(struct script *s)
             press_key(s, APP_KEY_TAB);  // whoever hears of it makes the panel at once
             return RELUME_OK;
         }
-    return wrong(s, "dock over|left|right");
+    return refuse_line(s, "dock over|left|right");
 }
 
 static relume_status play_quit(struct script *s)
@@ -434,7 +436,7 @@ static relume_status play_wait(struct script *s)
     const char *at = s->at;
     if (!at_end(s) && (!take_numbers(s, &seconds, 1) || seconds < 0 || seconds > 3600)) {
         s->at = at;
-        return wrong(s, "wait [SECONDS], at most 3600");
+        return refuse_line(s, "wait [SECONDS], at most 3600");
     }
     return s->host.wait(s->host.user, seconds);
 }
@@ -485,9 +487,10 @@ static relume_status play_line(struct script *s)
         if (!take_word(s, words[i].name))
             continue;
         const relume_status status = words[i].play(s);
-        return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
+        return status || words[i].whole || at_end(s) ? status
+                                                     : refuse_line(s, "the end of the line");
     }
-    return wrong(
+    return refuse_line(
         s,
         "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
         "add, rig, open, edit, reflection, transport, glare, dock, hint, set, pass, wait, frame, "

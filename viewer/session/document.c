@@ -1,5 +1,6 @@
 // document.c - the table of kinds of documents, and what all of them share
 #include "session/document.h"
+#include "cli/program/output_name.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -33,7 +34,7 @@ void document_set_path(struct document *d, const char *path)
 {
     const char *slash = strrchr(path, '/');
     snprintf(d->path, sizeof d->path, "%s", path);
-    snprintf(d->name, sizeof d->name, "%s", slash ? slash + 1 : path);
+    snprintf(d->name, sizeof d->name, "%s", path_name(path));
     snprintf(d->folder, sizeof d->folder, "%.*s", slash && slash > path ? (int)(slash - path) : 1,
              slash ? path : ".");
 }

@@ -2,6 +2,7 @@
 #include "session/session.h"
 
 #include "app/handles.h"
+#include "cli/program/output_name.h"
 
 #include <relume/relight/tone.h>
 
@@ -39,8 +40,7 @@ static void count_histogram(float histogram[256][3], const struct gl_renderer *r
 
 static const char *file_name(const char *path)
 {
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    return slash ? slash + 1 : path;
+    return path ? path_name(path) : NULL;
 }
 
 static relume_status inspect_pixel(struct session *s, bool *shown)

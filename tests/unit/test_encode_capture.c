@@ -158,7 +158,7 @@ static void test_steps_that_are_too_coarse(void **state)
     for (int i = 0; i < LIGHTS; i++)
         for (int y = 0; y < SIDE; y++)
             for (int x = 0; x < SIDE; x++)
-                pictures[i][y][x] = x == y ? 1000.0f : 0.01f * (float)(x + i);
+                pictures[i][y][x] = x == 5 && y == 5 ? 1000.0f : 0.01f * (float)(1 + x + i);
     CHECK_OK(relume_capture_create(
         &bright, &(const struct relume_manifest){.lights = LIGHTS, .directions = lights},
         &(const struct relume_pictures){

@@ -349,7 +349,7 @@ static relume_status add_environments(struct gl_relighter *r, struct relit_view 
     if (!gl_relighter_has_kind(r, gl_relighter_is_environment))
         return RELUME_OK;
     if (v->moving.shadows)
-        return suns_relight(r, v);
+        return bright_sources_relight(r, v);
     return v->codes.domain == RELUME_DOMAIN_DISPLAY ? linear_copy_relight(r, v) : RELUME_OK;
 }
 
@@ -408,7 +408,7 @@ void gl_relighter_destroy(struct gl_relighter *r)
         release(r, &r->view[i]);
     relume_relighter_destroy(&r->library);
     linear_copy_destroy(r);
-    suns_destroy(r);
+    bright_sources_destroy(r);
     passes_destroy(r);
     nearby_destroy(&r->near);
     moving_destroy(&r->moving);

@@ -58,10 +58,11 @@ struct gl_relighter {
     struct gl_relighter *linear;  // the linear copy, under the environments; NULL: not made yet
     struct linear_source linear_source;
     GLuint vertices;
-    GLuint weights;         // texture [layers][3]
-    GLuint table;           // array texture [books] of relit code vectors
-    struct target suns[2];  // pictures of an environment, before and after its sun is exchanged
-    struct target coded;    // display domain: sum of one light, still coded
+    GLuint weights;              // texture [layers][3]
+    GLuint table;                // array texture [books] of relit code vectors
+    struct target exchanged[2];  // pictures of an environment before and after the exchange of a
+                                 // bright source
+    struct target coded;         // display domain: sum of one light, still coded
     struct relit_view *view;
     int views;
     struct relume_light *light;

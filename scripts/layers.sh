@@ -35,7 +35,7 @@ cli/meshes:cli cli/program:*
 viewer/common::base core/vec
 viewer/app:common cli/program:*
 viewer/gl:common cli/program:base image
-viewer/relit:common cli/program app gl:*
+viewer/relit:common cli/program app gl core/base:*
 viewer/glare:common cli/program app gl:base image relight/eye relight/psf relight/glare
 viewer/transport:common cli/program app gl:*
 viewer/draw:common cli/program app gl relit glare transport:*

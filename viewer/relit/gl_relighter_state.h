@@ -2,6 +2,7 @@
 #ifndef VIEWER_GL_RELIGHTER_STATE_H
 #define VIEWER_GL_RELIGHTER_STATE_H
 
+#include "core/base/budget.h"
 #include "gl/program.h"
 #include "gl/target.h"
 #include "relit/loader.h"
@@ -17,8 +18,7 @@ struct relit_view {
                     // a layer for each codebook
     int arrays;
     int layers;                     // of all arrays together
-    size_t bytes, kept;             // of all it has, and of that by `library`
-    uint64_t used;                  // the frame that last asked for it
+    size_t kept;                    // bytes of `library` for it
     bool fresh;                     // `relit` shows the present lights
     struct relume_rect at;          // what is here of the view; width 0: all of it
     struct relume_codes_part part;  // then, where the library relights it
@@ -67,9 +67,8 @@ struct gl_relighter {
     int views;
     struct relume_light *light;
     int lights;
-    size_t budget, bytes;  // of graphics memory for codes and relit views; the budget, a gigabyte
-                           // to begin with, may be set at any time
-    uint64_t frame;
+    struct budget memory;  // of graphics memory for codes and relit views, a round for each frame;
+                           // `most`, a gigabyte to begin with, may be set at any time
 };
 
 #endif

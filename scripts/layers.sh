@@ -35,7 +35,7 @@ cli/meshes:cli cli/program:*
 viewer/common::base core/vec
 viewer/app:common cli/program:*
 viewer/gl:common cli/program:base image
-viewer/relit:common cli/program app gl:*
+viewer/relit:common cli/program app gl core/base:*
 viewer/glare:common cli/program app gl:base image relight/eye relight/psf relight/glare
 viewer/transport:common cli/program app gl:*
 viewer/draw:common cli/program app gl relit glare transport:*
@@ -158,7 +158,7 @@ arm_neon:src/core/kernel/kernels_neon.c"
 # Files are opened by base alone, which notes what is read (inputs.h) and replaces nothing else
 # (outfile.h, outdir.h). Elsewhere: what base has noted before, what no output could replace, the
 # rows that a sweep appends, and the marks of a team, which are new.
-opens="src/image/image/png.c src/image/image/picture.c src/shape/mesh/mesh_other.c src/exchange/formats/open.c src/relight/eye/subject.c
+opens="src/image/image/png.c src/image/image/picture.c src/shape/mesh/mesh_other.c src/relight/eye/subject.c
 src/capture/acquire/report_picture.c src/cli/main.c src/cli/commands/capture_times.c src/cli/rays.c src/cli/commands/sweep_resume.c
 src/format/team/folder.c viewer/app/script.c viewer/session/settings.c"
 found=$(grep -rlE '(^|[^a-z_>.:])(fopen|open|openat|creat|rename|mkstemp|mkostemp|mkdtemp|tmpfile)\(' src viewer --include='*.c' --include='*.cpp' |

@@ -3,6 +3,7 @@
 //
 // A view's model is eight numbers a pixel (src/site/publish/moving.h), its stage what rays meet: its depth.
 import { Failure, loadBytes } from './load.js';
+import { Recent } from './recent.js';
 import { decodePicture, loadPicture, partsOf } from './tiles.js';
 import { pixelsOf } from './views.js';
 import { patchesOf } from './lights.js';
@@ -117,8 +118,8 @@ export class Moving {
     constructor(device, scene, basis, told) {
         Object.assign(this, { device, scene, basis, told });
         this.gloss = scene.moves === 'highlights';
-        this.views = new Map();    // name -> { state, ... }; the order is that of use
-        this.reached = new Map();  // captured lights on tiles, in the order of use
+        this.views = new Recent();    // name -> { state, ... }
+        this.reached = new Recent();  // captured lights on tiles
         this.reachedBytes = 0;
         this.scratch = new Map();
         this.between = basis.pictures(this.gloss ? scene.basis : { interpolant: 'delaunay' });
@@ -144,7 +145,7 @@ export class Moving {
 
     // Whether a view's model is there, which loads by and by; whether it is, or does not come.
     isReady(name) {
-        const known = this.views.get(name);
+        const known = this.views.use(name);
         if (!known)
             this.load(name);
         return !!known && known.state === 'ready';
@@ -214,15 +215,10 @@ export class Moving {
     // Views that have not been in use for long leave.
     forget() {
         let bytes = [...this.views.values()].reduce((sum, v) => sum + (v.bytes || 0), 0);
-        for (const [name, view] of [...this.views]) {
-            if (bytes <= MOST_STAGE_BYTES || this.views.size <= MOST_STAGES)
-                return;
-            if (view.state === 'ready') {
-                bytes -= view.bytes || 0;
-                this.dropView(view);
-                this.views.delete(name);
-            }
-        }
+        this.views.trim(() => bytes > MOST_STAGE_BYTES && this.views.size > MOST_STAGES, (view) => {
+            bytes -= view.bytes || 0;
+            this.dropView(view);
+        }, (view) => view.state === 'ready');
     }
 
     dropView(view) {
@@ -259,25 +255,21 @@ export class Moving {
     // Where a captured light reaches a tile, which is kept.
     reachedBy(captured, tile, view) {
         const key = `${tile.key} ${captured.light}`, bytes = (tile.width + 2) * (tile.height + 2);
-        let target = this.reached.get(key);
+        let target = this.reached.use(key);
         if (!target) {
             target = this.device.target(tile.width + 2, tile.height + 2, this.device.gl.R8);
             this.trace(target, tile, view, captured.direction);
             this.reachedBytes += bytes;
+            this.reached.set(key, target);
         }
-        this.reached.delete(key);
-        this.reached.set(key, target);
         return target.texture;
     }
 
     forgetReached() {
-        for (const [key, target] of this.reached) {
-            if (this.reachedBytes <= MOST_REACHED_BYTES)
-                return;
+        this.reached.trim(() => this.reachedBytes > MOST_REACHED_BYTES, (target) => {
             this.reachedBytes -= target.width * target.height;
             this.device.drop(target);
-            this.reached.delete(key);
-        }
+        });
     }
 
     // What of a tile and its view all shaders take that add to a picture of one light, which draw(target) makes.

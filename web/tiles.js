@@ -1,6 +1,7 @@
 // tiles.js - tiles of a view: loaded when wanted, decoded by the browser, relit when lights change,
 // forgotten when others need the room
 import { Failure, loadBytes } from './load.js';
+import { Recent } from './recent.js';
 
 const MOST_BYTES = 512 << 20;  // of textures
 const MOST_LOADING = 8;
@@ -39,7 +40,7 @@ export async function loadPicture(scene, view, mask) {
 export class Tiles {
     constructor(device, scene, { changed, failed }) {
         Object.assign(this, { device, scene, changed, failed });
-        this.tiles = new Map();
+        this.tiles = new Recent();
         this.queue = [];
         this.loading = 0;
         this.bytes = 0;
@@ -54,7 +55,7 @@ export class Tiles {
     // A tile; it is loaded by and by unless it is there. What is asked for first comes first.
     get(view, level, x, y) {
         const key = `${view}/${level}_${x}_${y}`;
-        let tile = this.tiles.get(key);
+        let tile = this.tiles.use(key);
         if (!tile) {
             const { width, height } = this.scene.levels[level], size = this.scene.tile;
             tile = { key, view, level, x, y, width: Math.min(size, width - x * size), height: Math.min(size, height - y * size),
@@ -159,13 +160,8 @@ export class Tiles {
         if (this.bytes <= MOST_BYTES)
             return;
         const last = this.scene.levels.length - 1;
-        const old = [...this.tiles.values()].filter((t) => t.state === 'ready' && t.used < this.clock && t.level < last)
-            .sort((a, b) => a.used - b.used);
-        for (const tile of old) {
-            if (this.bytes <= 0.8 * MOST_BYTES)
-                break;
-            this.drop(tile);
-        }
+        this.tiles.trim(() => this.bytes > 0.8 * MOST_BYTES, (tile) => this.drop(tile),
+                        (t) => t.state === 'ready' && t.used < this.clock && t.level < last);
     }
 
     drop(tile) {

@@ -1,5 +1,6 @@
 // views.js - whole views as layers of a texture, where several are looked at together, and their
 // disparities
+import { Recent } from './recent.js';
 import { loadPicture } from './tiles.js';
 
 const MOST_LAYERS = 24;
@@ -45,7 +46,7 @@ export class Views {
     constructor(device, scene, painter) {
         Object.assign(this, { device, scene, painter });
         this.layers = Math.min(scene.views.length, MOST_LAYERS);
-        this.slots = new Map();  // view -> its layer; the order is that of use
+        this.slots = new Recent();  // view -> its layer
         this.free = Array.from({ length: this.layers }, (_, i) => i);
         this.depths = new Map();
         this.range = [Infinity, -Infinity];
@@ -80,20 +81,15 @@ export class Views {
     }
 
     slot(index) {
-        let slot = this.slots.get(index);
+        let slot = this.slots.use(index);
         if (slot === undefined) {
-            if (!this.free.length) {
-                const [oldest] = this.slots.keys();
-                this.free.push(this.slots.get(oldest));
-                this.slots.delete(oldest);
-            }
+            this.slots.trim(() => !this.free.length, (layer) => this.free.push(layer));
             slot = this.free.pop();
+            this.slots.set(index, slot);
             const depth = this.depths.get(index);
             if (depth && depth.data)
                 this.uploadDepth(slot, depth);
         }
-        this.slots.delete(index);
-        this.slots.set(index, slot);
         return slot;
     }
 

@@ -31,18 +31,26 @@ struct relume_import_params {
 RELUME_RESULT relume_status relume_import(const char *path, const char *out,
                                           const struct relume_import_params *params);
 
-// What lies under a name, by its first bytes, its ending and what a folder holds.
+// Kinds of files and folders.
 enum relume_kind {
-    RELUME_KIND_RELUME = 0,  // a relume file, or nothing else that is known
+    RELUME_KIND_RELUME = 0,  // a relume file, or an .exr file that no other kind claims
     RELUME_KIND_FOREIGN,     // what relume_import reads
     RELUME_KIND_CAPTURE,     // a capture.json, its folder, a .lp file or a folder with one
     RELUME_KIND_PICTURE,     // a picture or photograph
-    RELUME_KIND_UNKNOWN,     // nothing there, or a folder of something else
-    RELUME_KIND_MATERIAL,    // a BTF, a model of one (a g-BRDF also as .exr) or a surface: btf.h
-    RELUME_KIND_MODEL,       // a 3D model, by its ending: mesh.h
-    RELUME_KIND_BAKED,       // an object with its light: bake.h
+    RELUME_KIND_UNKNOWN,     // nothing there, or anything else
+    RELUME_KIND_MATERIAL,    // a BTF: a folder with btf.json, or a .btf file (btf.h)
+    RELUME_KIND_MODEL,       // a 3D model, by its ending (mesh.h)
+    RELUME_KIND_BAKED,       // an object with its light (bake.h)
+    RELUME_KIND_SCENE,       // a scene file (tableau.h)
+    RELUME_KIND_OBJECTS,     // a description of objects (object.h), or any other .json file
+    RELUME_KIND_MAPS,        // a folder of maps, with maps.json (maps.h)
+    RELUME_KIND_FITTED,      // a model of a BTF: a folder with model.json, or a g-BRDF (.exr)
+    RELUME_KIND_SURFACE,     // a surface of a material: a folder with surface.json (surface.h)
 };
-// By its first bytes and its name, without reading more.
+// Returns the kind of the file or folder `path`: by its first bytes or by the files in it, and by
+// the ending of its name if these do not decide. Reads a whole .json file only if the member
+// "format" is not in its first 4096 bytes.
+// Thread-safety: safe.
 RELUME_API enum relume_kind relume_kind_of(const char *path);
 // For sentences; constant.
 RELUME_API const char *relume_kind_name(enum relume_kind kind);

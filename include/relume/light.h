@@ -171,8 +171,8 @@ relume_environment_create(relume_environment **out, const struct relume_image *m
 // The same from a file that relume_image_load reads. Also an input status.
 RELUME_RESULT relume_status relume_environment_load(relume_environment **out, const char *path,
                                                     const struct relume_log *log);
-// One that has nothing but a directional `lamp`: what an environment shows of a sun in it. Its map
-// is empty, its fingerprint 0. RELUME_ENOMEM.
+// One that has nothing but a directional `lamp`: what an environment shows of one bright source.
+// Its map is empty, its fingerprint 0. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_environment_of_lamp(relume_environment **out,
                                                        const struct relume_light *lamp);
 RELUME_API void relume_environment_destroy(relume_environment **environment);

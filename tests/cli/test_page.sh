@@ -16,6 +16,17 @@ if [ "$node" ]; then
     below 'lights that stand for an environment' "$(field environment)" 1e-6
     # one inverse is Eigen's, the other plain
     below 'the core beside the library' "$(field library)" 1e-6
+    cp "$TOP/web/recent.js" recent.mjs
+    cat >recent_test.mjs <<'END'
+import { Recent } from './recent.mjs';
+const kept = new Recent([['a', 1], ['b', 2], ['c', 3], ['d', 4]]), left = [];
+kept.use('a');
+kept.trim(() => kept.size > 2, (value) => left.push(value), (value) => value !== 2);
+console.log([...kept.keys()].join(), left.join(), kept.use('c'), kept.get('b'));
+kept.trim(() => false, () => { throw new Error('nothing is too much'); });
+END
+    node recent_test.mjs >recent.txt 2>&1
+    check 'the least recently used leaves first, unless it must stay' grep -qx 'b,a 3,4 undefined 2' recent.txt
 else
     skip 'the core of pages' 'no node; make deps-web installs it'
 fi

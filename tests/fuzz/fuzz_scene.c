@@ -3,6 +3,7 @@
 #include "fuzz.h"
 
 #include <math.h>
+#include <relume/exchange.h>
 
 static const char *const words[] = {
     "format",   "version",  "relume-scene", "captures",    "objects",    "lights",
@@ -49,7 +50,7 @@ static bool one(struct fuzz *f, struct bytes b)
     relume_tableau *t;
     snprintf(path, sizeof path, "%s/input.json", f->folder);
     fuzz_store(path, b);
-    (void)relume_tableau_is(path);
+    (void)relume_kind_of(path);
     const relume_status status = relume_tableau_open(&t, path, relume_tableau_params(.threads = 1));
     if (!status)
         look(t);

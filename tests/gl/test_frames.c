@@ -162,7 +162,7 @@ static void open_slab_by(struct slab_test *t, int way)
     if (way == WHOLE)
         return;
     gl_renderer_use_parts(&t->renderer, &parts, &info);
-    t->renderer.relighter.budget = 1;
+    t->renderer.relighter.memory.most = 1;
     t->renderer.relighter.by_library = way == PARTS_BY_LIBRARY;
 }
 
@@ -267,8 +267,9 @@ static void check_slab_frames_by_depth(int way)
     for (int i = 0; i < CAMERAS; i++) {
         struct relume_image depth;
         assert_int_equal(make_depth(&depth, &t, i), RELUME_OK);
-        assert_int_equal(relume_slab_disparity(&disparity[i], t.renderer.views.grid, t.uv[i], &depth),
-                         RELUME_OK);
+        assert_int_equal(
+            relume_slab_disparity(&disparity[i], t.renderer.views.grid, t.uv[i], &depth),
+            RELUME_OK);
         relume_image_destroy(&depth);
     }
     for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
@@ -326,8 +327,9 @@ static void other_ways_to_see_a_slab_are_the_library_s(void **state)
                      ways[i].interpolation, ways[i].aperture, ways[i].focus, eyes[e].x, eyes[e].y,
                      eyes[e].z);
             assert_int_equal(relume_image_create(&want, 68, 51, 3), RELUME_OK);
-            assert_int_equal(relume_slab_frame(&want, t.renderer.views.grid, eyes[e], t.views, &ways[i]),
-                             RELUME_OK);
+            assert_int_equal(
+                relume_slab_frame(&want, t.renderer.views.grid, eyes[e], t.views, &ways[i]),
+                RELUME_OK);
             const struct relume_camera camera = {
                 .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 68, .height = 51};
             OWNED_APP app = make_app(&t.about, &camera);
@@ -364,7 +366,8 @@ static void reduced_slab_frames_are_the_library_s(void **state)
                     relume_slab_frame(&want, t.renderer.views.grid, eyes[e], t.views, &ways[w]),
                     RELUME_OK);
                 assert_int_equal(
-                    relume_slab_frame(&one, t.renderer.views.grid, eyes[e], t.views, &single), RELUME_OK);
+                    relume_slab_frame(&one, t.renderer.views.grid, eyes[e], t.views, &single),
+                    RELUME_OK);
                 const struct relume_camera camera = {.framing = RELUME_FRAME_EYE,
                                                      .eye = eyes[e],
                                                      .width = sizes[k][0],

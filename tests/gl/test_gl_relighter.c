@@ -199,11 +199,11 @@ static void old_views_leave_a_full_memory(void **state)
     const struct code_source source = {fixture_fetch, NULL, &f, NULL, NULL};
     struct gl_relighter r;
     assert_int_equal(gl_relighter_create(&r, &fixture_gl, &source, 3, &fixture_log), RELUME_OK);
-    r.budget = 8 * 8 * (7 * 4 + 16) * 3 / 2;
+    r.memory.most = 8 * 8 * (7 * 4 + 16) * 3 / 2;
     for (int frame = 0; frame < 6; frame++) {
         assert_int_equal(gl_relighter_begin(&r, lights, LIGHTS), RELUME_OK);
         assert_true(compare_view(&r, &f, frame % 3, LIGHTS) < linear_bound);
-        assert_true(r.bytes <= r.budget);
+        assert_true(r.memory.bytes <= r.memory.most);
     }
     // One frame that needs them all gets them all.
     assert_int_equal(gl_relighter_begin(&r, lights, LIGHTS), RELUME_OK);

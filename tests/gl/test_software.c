@@ -165,13 +165,13 @@ static void codes_are_given_back(void **state)
     struct gl_relighter r;
     begin(&r, &fixture_gl, &l, 3);
     r.by_library = true;
-    r.budget = 1;
+    r.memory.most = 1;
     make_lights(lights, 2);
     for (int i = 0; i < 6; i++) {
         expect_view(&r, &l, i % 3, lights, 2, BOUND, "in turn");
         assert_int_equal(l.lent, 1);
         // two groups, their sum and the surface, three floats each; the target, four; the codes
-        assert_int_equal(r.bytes, W * H * (4 * 12 + 16 + 4 * ((FIXTURE_PLANES + 3) / 4)));
+        assert_int_equal(r.memory.bytes, W * H * (4 * 12 + 16 + 4 * ((FIXTURE_PLANES + 3) / 4)));
     }
     gl_relighter_destroy(&r);
     free_lender(&l);

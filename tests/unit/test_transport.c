@@ -1,9 +1,9 @@
 // Light between captured scenes and objects: against a scene that is rendered with the object in
 // it, and closed forms: furnaces, form factors, draws, smoothing.
+#include "core/math/distribution.h"
 #include "capture_fixture.h"
 #include "in_folder.h"
 #include "made_room.h"
-#include "world/transport/bright.h"
 #include "world/transport/transport.h"
 
 #include <sys/stat.h>
@@ -538,27 +538,27 @@ static void far_panoramas_light_objects(void **state)
 
 // ---------------------------------------------------------------- parts
 
-static void bright_numbers_are_drawn_by_their_light(void **state)
+static void numbers_are_drawn_by_their_weight(void **state)
 {
     (void)state;
     static const double light[] = {0.0, 1.0, 0.0, 3.0, 4.0, 0.0};
     enum { COUNT = 6, DRAWS = 800 };
     int drawn[COUNT] = {0};
-    struct bright b = {0};
+    struct distribution b = {0};
     double *copy = malloc(sizeof light);
     memcpy(copy, light, sizeof light);
     size_t number;
-    assert_false(bright_draw(&number, &b, 0.5));
-    bright_take(&b, copy, COUNT);
+    assert_false(distribution_draw(&number, &b, 0.5));
+    distribution_make(&b, copy, COUNT);
     for (int i = 0; i < DRAWS; i++) {
-        assert_true(bright_draw(&number, &b, (i + 0.5) / DRAWS));
+        assert_true(distribution_draw(&number, &b, (i + 0.5) / DRAWS));
         drawn[number]++;
     }
     for (size_t i = 0; i < COUNT; i++) {
         assert_int_equal(drawn[i], (int)(light[i] * DRAWS / 8.0));
-        CHECK_NEAR(bright_chance(&b, i), light[i] / 8.0, 1e-15);
+        CHECK_NEAR(distribution_chance(&b, i), light[i] / 8.0, 1e-15);
     }
-    bright_forget(&b);
+    distribution_free(&b);
 }
 
 // Two planes that meet in an edge: noise is gone on both, and the step between them stays. At
@@ -716,7 +716,7 @@ int main(void)
         cmocka_unit_test(flipped_meshes_look_the_same),
         cmocka_unit_test(plane_mirrors_are_mirrored_eyes),
         cmocka_unit_test(far_panoramas_light_objects),
-        cmocka_unit_test(bright_numbers_are_drawn_by_their_light),
+        cmocka_unit_test(numbers_are_drawn_by_their_weight),
         cmocka_unit_test(smoothing_stops_at_edges),
         cmocka_unit_test(further_cameras_see_what_the_eye_does_not),
         cmocka_unit_test(threads_agree),

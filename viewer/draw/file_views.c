@@ -56,7 +56,7 @@ relume_status file_views_use_depth(struct file_views *v, const struct gl *gl,
     if (!slabs)
         return RELUME_OK;
     const relume_status status = depths_create(&v->depths, gl, slab, slabs, source);
-    v->depths.budget = budget;
+    v->depths.memory.most = budget;
     return status;
 }
 

@@ -46,10 +46,10 @@ void gl_renderer_use_slabs(struct gl_renderer *r, const relume_slab_set *slabs,
 
 relume_status gl_renderer_use_depth(struct gl_renderer *r, const struct depth_source *source)
 {
-    const size_t budget = r->relighter.budget / 4;
+    const size_t budget = r->relighter.memory.most / 4;
     const relume_status status = file_views_use_depth(&r->views, r->gl, source, budget);
     if (r->views.depths.views)
-        r->relighter.budget -= budget;
+        r->relighter.memory.most -= budget;
     return status;
 }
 

@@ -19,8 +19,8 @@ relume_status tile_layer_create(struct tile_layer *l, const struct code_source *
         l->map = map;
     l->relighter.by_library = view->by_library;
     l->relighter.threads = view->threads;
-    view->budget /= 2;
-    l->relighter.budget = view->budget;
+    view->memory.most /= 2;
+    l->relighter.memory.most = view->memory.most;
     return status;
 }
 
@@ -72,7 +72,8 @@ static struct tiles_seen choose_level(const struct tile_layer *l, const struct f
     while (level < l->map->levels && ldexp(each, -level - 1) >= 1.0)
         level++;
     struct tiles_seen seen = find_seen(l, q, level);
-    while (level < l->map->levels && (size_t)count(&seen) * l->tile_bytes > l->relighter.budget)
+    while (level < l->map->levels &&
+           (size_t)count(&seen) * l->tile_bytes > l->relighter.memory.most)
         seen = find_seen(l, q, ++level);
     return seen;
 }

@@ -39,7 +39,7 @@ bool view_parts_suit(const struct view_parts *p, const struct file_views *v,
     return relighter->parts.part && p->size[0] && v->grid &&
            q->camera.framing == RELUME_FRAME_EYE && q->pass == RELUME_PASS_COLOUR &&
            !file_views_take_lens(q) &&
-           (size_t)file_views_needed(v) * p->view_bytes > relighter->budget;
+           (size_t)file_views_needed(v) * p->view_bytes > relighter->memory.most;
 }
 
 relume_status view_parts_relight(struct view_parts *p, struct file_views *v,

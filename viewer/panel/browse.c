@@ -32,7 +32,8 @@ bool browse_opens_folder(const char *path)
 {
     const enum relume_kind kind = relume_kind_of(path);
     return kind == RELUME_KIND_FOREIGN || kind == RELUME_KIND_CAPTURE ||
-           kind == RELUME_KIND_MATERIAL;
+           kind == RELUME_KIND_MATERIAL || kind == RELUME_KIND_FITTED ||
+           kind == RELUME_KIND_SURFACE;
 }
 
 bool browse_path(char path[PATH_MAX], const struct browser *b, const char *name)

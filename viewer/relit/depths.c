@@ -26,12 +26,11 @@ relume_status depths_create(struct depths *d, const struct gl *gl, const relume_
     d->texture = calloc(views, sizeof *d->texture);
     d->range = calloc(views, sizeof *d->range);
     d->uv = calloc(views, sizeof *d->uv);
-    d->bytes = calloc(views, sizeof *d->bytes);
     d->ranged = calloc(views, sizeof *d->ranged);
     d->at = calloc(views, sizeof *d->at);
     d->cut = calloc(views, sizeof *d->cut);
-    if (!d->slab || !d->texture || !d->range || !d->uv || !d->bytes || !d->ranged || !d->at ||
-        !d->cut) {
+    if (!d->slab || !d->texture || !d->range || !d->uv || !d->ranged || !d->at || !d->cut ||
+        !budget_create(&d->memory, (int)views, 0)) {
         depths_destroy(d);
         return RELUME_ENOMEM;
     }
@@ -44,18 +43,18 @@ static void leave(struct depths *d, int view)
 {
     d->gl->DeleteTextures(1, &d->texture[view]);
     d->texture[view] = 0;
-    d->bytes[view] = 0;
+    budget_forget(&d->memory, view);
 }
 
 void depths_destroy(struct depths *d)
 {
-    for (int i = 0; d->texture && i < d->views; i++)
-        leave(d, i);
+    if (d->texture)
+        d->gl->DeleteTextures(d->views, d->texture);
+    budget_destroy(&d->memory);
     free(d->slab);
     free(d->texture);
     free(d->range);
     free(d->uv);
-    free(d->bytes);
     free(d->ranged);
     free(d->at);
     free(d->cut);
@@ -74,7 +73,7 @@ static void upload(struct depths *d, int view, const struct relume_image *dispar
                    disparity->data + (size_t)at->top * (size_t)disparity->width + at->left);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     texture_settings(gl, GL_TEXTURE_2D);
-    d->bytes[view] = (size_t)at->width * (size_t)at->height * sizeof(float);
+    budget_set(&d->memory, view, (uint64_t)at->width * (uint64_t)at->height * sizeof(float));
     d->at[view] = *at;
 }
 
@@ -98,17 +97,11 @@ static relume_status load(struct depths *d, int view, const struct relume_rect *
     return status;
 }
 
-static void make_room(struct depths *d, const bool *needed)
+static void make_room(struct depths *d)
 {
-    size_t all = 0;
-    for (int i = 0; i < d->views; i++)
-        all += d->bytes[i];
-    for (int i = 0; all > d->budget && i < d->views; i++) {
-        if (needed[i])
-            continue;
-        all -= d->bytes[i];
-        leave(d, i);
-    }
+    int oldest;
+    while ((oldest = budget_excess(&d->memory, 0)) >= 0)
+        leave(d, oldest);
 }
 
 static bool same(const struct relume_rect *a, const struct relume_rect *b)
@@ -121,6 +114,7 @@ static relume_status use_views(struct depths *d, const bool *needed, const struc
                                double range[2])
 {
     relume_status status = RELUME_OK;
+    d->memory.round++;
     range[0] = (double)INFINITY;
     range[1] = -(double)INFINITY;
     for (int i = 0; !status && i < d->views; i++) {
@@ -132,11 +126,12 @@ static relume_status use_views(struct depths *d, const bool *needed, const struc
             leave(d, i);
         if (!d->texture[i] && (!part || at->width || !d->ranged[i]))
             status = load(d, i, part && !at->width ? &none : at);
+        budget_use(&d->memory, i);
         d->cut[i] = part != NULL;
         range[0] = fmin(range[0], d->range[i][0]);
         range[1] = fmax(range[1], d->range[i][1]);
     }
-    make_room(d, needed);
+    make_room(d);
     return status;
 }
 

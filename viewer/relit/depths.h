@@ -2,6 +2,7 @@
 #ifndef VIEWER_DEPTHS_H
 #define VIEWER_DEPTHS_H
 
+#include "core/base/budget.h"
 #include "gl/gl.h"
 
 #include <relume/relight/view.h>
@@ -20,8 +21,7 @@ struct depths {
     GLuint *texture;         // [views], one channel of float; 0: not uploaded
     double (*range)[2];      // [views]; from above to below: all background
     double (*uv)[2];         // [views]
-    size_t *bytes;           // [views]
-    size_t budget;           // for all of them; to be set after depths_create
+    struct budget memory;    // of the textures; `most` is to be set after depths_create
     bool *ranged;            // [views]: the range is known
     struct relume_rect *at;  // [views]: what the texture holds of the view, ...
     bool *cut;               // ... if it was asked for a part
@@ -35,7 +35,7 @@ relume_status depths_create(struct depths *depths, const struct gl *gl,
 void depths_destroy(struct depths *depths);
 
 // Upload what needed[views] marks and is not there; `range` becomes that of all of these. Others
-// leave the graphics memory once all take more than the budget.
+// leave the graphics memory, the least recently used first, once all take more than the budget.
 relume_status depths_use(struct depths *depths, const bool *needed, double range[2]);
 // Know the ranges of needed[views] without uploading them.
 relume_status depths_find_ranges(struct depths *depths, const bool *needed);

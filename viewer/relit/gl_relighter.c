@@ -25,12 +25,23 @@ static void stop_lending(struct gl_relighter *r, struct relit_view *v)
     relume_codes_part_destroy(&v->part);
 }
 
+static int number_of(const struct gl_relighter *r, const struct relit_view *v)
+{
+    return (int)(v - r->view);
+}
+
+static void count_more(struct gl_relighter *r, const struct relit_view *v, size_t bytes)
+{
+    const int view = number_of(r, v);
+    budget_set(&r->memory, view, r->memory.item[view].bytes + bytes);
+}
+
 static void release(struct gl_relighter *r, struct relit_view *v)
 {
     if (v->array)
         r->gl->DeleteTextures(v->arrays, v->array);
     target_destroy(&v->relit, r->gl);
-    r->bytes -= v->bytes;
+    budget_forget(&r->memory, number_of(r, v));
     free(v->array);
     free(v->scale);
     nearby_view_destroy(&v->near, r->gl);
@@ -44,15 +55,9 @@ static void release(struct gl_relighter *r, struct relit_view *v)
 // Views that this frame does not use leave, the longest unused first, until `bytes` more fit.
 static void make_room(struct gl_relighter *r, size_t bytes)
 {
-    while (r->bytes + bytes > r->budget) {
-        struct relit_view *oldest = NULL;
-        for (struct relit_view *v = r->view; v < r->view + r->views; v++)
-            if (v->present && v->used < r->frame && (!oldest || v->used < oldest->used))
-                oldest = v;
-        if (!oldest)
-            return;
-        release(r, oldest);
-    }
+    int oldest;
+    while ((oldest = budget_excess(&r->memory, bytes)) >= 0)
+        release(r, &r->view[oldest]);
 }
 
 static relume_status keep(struct gl_relighter *r, int view, const struct relume_codes *codes)
@@ -61,8 +66,7 @@ static relume_status keep(struct gl_relighter *r, int view, const struct relume_
     const size_t bytes = gl_relighter_view_bytes(codes);
     make_room(r, bytes);
     v->present = true;
-    v->bytes = bytes;
-    r->bytes += bytes;
+    budget_set(&r->memory, view, bytes);
     relume_status status = target_create(&v->relit, r->gl, codes->width, codes->height, r->log);
     if (!status && r->by_library)
         v->lent = codes;
@@ -211,8 +215,7 @@ static relume_status relight_by_library(struct gl_relighter *r, struct relit_vie
         return status;
     target_write(into, r->gl, image);
     const size_t kept = bytes_of_library(r, v);
-    r->bytes += kept - v->kept;
-    v->bytes += kept - v->kept;
+    count_more(r, v, kept - v->kept);
     v->kept = kept;
     return RELUME_OK;
 }
@@ -339,9 +342,7 @@ static relume_status need_moving(struct gl_relighter *r, struct relit_view *v)
 
 static void count_moving(struct gl_relighter *r, struct relit_view *v, size_t before)
 {
-    const size_t more = v->moving.bytes - before;
-    r->bytes += more;
-    v->bytes += more;
+    count_more(r, v, v->moving.bytes - before);
 }
 
 static relume_status add_environments(struct gl_relighter *r, struct relit_view *v)
@@ -349,7 +350,7 @@ static relume_status add_environments(struct gl_relighter *r, struct relit_view 
     if (!gl_relighter_has_kind(r, gl_relighter_is_environment))
         return RELUME_OK;
     if (v->moving.shadows)
-        return suns_relight(r, v);
+        return bright_sources_relight(r, v);
     return v->codes.domain == RELUME_DOMAIN_DISPLAY ? linear_copy_relight(r, v) : RELUME_OK;
 }
 
@@ -387,11 +388,11 @@ relume_status gl_relighter_create(struct gl_relighter *r, const struct gl *gl,
                                   const struct code_source *source, int views,
                                   const struct relume_log *log)
 {
-    *r = (struct gl_relighter){
-        .gl = gl, .log = log, .source = *source, .views = views, .budget = (size_t)1 << 30};
+    *r = (struct gl_relighter){.gl = gl, .log = log, .source = *source, .views = views};
     moving_create(&r->moving, gl, log);
     r->view = calloc((size_t)views, sizeof *r->view);
-    relume_status status = r->view ? passes_create(r) : RELUME_ENOMEM;
+    const bool good = budget_create(&r->memory, views, (uint64_t)1 << 30) && r->view;
+    relume_status status = good ? passes_create(r) : RELUME_ENOMEM;
     if (!status)
         status = nearby_create(&r->near, gl, log);
     if (status)
@@ -404,14 +405,15 @@ void gl_relighter_destroy(struct gl_relighter *r)
     if (!r->gl)
         return;
     loader_destroy(&r->loader);
-    for (int i = 0; r->view && i < r->views; i++)
+    for (int i = 0; r->view && r->memory.item && i < r->views; i++)
         release(r, &r->view[i]);
     relume_relighter_destroy(&r->library);
     linear_copy_destroy(r);
-    suns_destroy(r);
+    bright_sources_destroy(r);
     passes_destroy(r);
     nearby_destroy(&r->near);
     moving_destroy(&r->moving);
+    budget_destroy(&r->memory);
     free(r->view);
     free(r->light);
     *r = (struct gl_relighter){0};
@@ -429,7 +431,7 @@ static bool same_lights(const struct gl_relighter *r, const struct relume_light 
 
 static relume_status begin_frame(struct gl_relighter *r)
 {
-    r->frame++;
+    r->memory.round++;
     r->pending = false;
     if (!r->loader)
         return RELUME_OK;
@@ -470,7 +472,7 @@ void gl_relighter_forget(struct gl_relighter *r)
 static relume_status show_view(const struct target **out, struct gl_relighter *r,
                                struct relit_view *v)
 {
-    v->used = r->frame;
+    budget_use(&r->memory, number_of(r, v));
     const relume_status status = v->fresh ? RELUME_OK : relight(r, v);
     if (!status)
         *out = &v->relit;

@@ -62,7 +62,7 @@ relume_status linear_copy_relight(struct gl_relighter *r, struct relit_view *vie
 void linear_copy_destroy(struct gl_relighter *r);
 
 // The environments, where the view has shadows or highlights that move.
-relume_status suns_relight(struct gl_relighter *r, struct relit_view *view);
-void suns_destroy(struct gl_relighter *r);
+relume_status bright_sources_relight(struct gl_relighter *r, struct relit_view *view);
+void bright_sources_destroy(struct gl_relighter *r);
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef VIEWER_GL_RELIGHTER_STATE_H
 #define VIEWER_GL_RELIGHTER_STATE_H
 
+#include "core/base/budget.h"
 #include "gl/program.h"
 #include "gl/target.h"
 #include "relit/loader.h"
@@ -17,8 +18,7 @@ struct relit_view {
                     // a layer for each codebook
     int arrays;
     int layers;                     // of all arrays together
-    size_t bytes, kept;             // of all it has, and of that by `library`
-    uint64_t used;                  // the frame that last asked for it
+    size_t kept;                    // bytes of `library` for it
     bool fresh;                     // `relit` shows the present lights
     struct relume_rect at;          // what is here of the view; width 0: all of it
     struct relume_codes_part part;  // then, where the library relights it
@@ -58,17 +58,17 @@ struct gl_relighter {
     struct gl_relighter *linear;  // the linear copy, under the environments; NULL: not made yet
     struct linear_source linear_source;
     GLuint vertices;
-    GLuint weights;         // texture [layers][3]
-    GLuint table;           // array texture [books] of relit code vectors
-    struct target suns[2];  // pictures of an environment, before and after its sun is exchanged
-    struct target coded;    // display domain: sum of one light, still coded
+    GLuint weights;              // texture [layers][3]
+    GLuint table;                // array texture [books] of relit code vectors
+    struct target exchanged[2];  // pictures of an environment before and after the exchange of a
+                                 // bright source
+    struct target coded;         // display domain: sum of one light, still coded
     struct relit_view *view;
     int views;
     struct relume_light *light;
     int lights;
-    size_t budget, bytes;  // of graphics memory for codes and relit views; the budget, a gigabyte
-                           // to begin with, may be set at any time
-    uint64_t frame;
+    struct budget memory;  // of graphics memory for codes and relit views, a round for each frame;
+                           // `most`, a gigabyte to begin with, may be set at any time
 };
 
 #endif

@@ -51,8 +51,8 @@ struct moving_picture {
     struct relume_vec3 direction;    // of relume_coder_clamp
     float rgb[3];                    // of the light, its share in it
     int left, top;                   // of the picture in the view
-    const struct target *whole;      // or NULL: the light is the sun of an environment, this is the
-                                     // picture of that, and in it the sun is exchanged
+    const struct target *whole;  // or NULL: the light is a bright source of an environment, whose
+                                 // picture this is, and the source is exchanged in it
 };
 
 #endif

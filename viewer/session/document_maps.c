@@ -6,11 +6,11 @@
 #include "app/light_list.h"
 #include "cli/program/say.h"
 
+#include <relume/exchange.h>
 #include <relume/material/edit.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 // What a document of this kind owns.
 struct edited_maps {
@@ -25,10 +25,8 @@ static struct edited_maps *maps_of(const struct document *d)
 
 static bool is_maps(const char *path, const struct object_set *objects)
 {
-    char name[APP_SPEC + 16];
     (void)objects;
-    snprintf(name, sizeof name, "%s/maps.json", path ? path : "");
-    return path && !access(name, R_OK);
+    return path && relume_kind_of(path) == RELUME_KIND_MAPS;
 }
 
 // ---------------------------------------------------------------- lights

@@ -185,7 +185,7 @@ static relume_status create_renderer(struct session *s)
 
 static void apply_settings(struct gl_renderer *r, const struct session_settings *settings)
 {
-    r->relighter.budget = settings->vram_bytes;
+    r->relighter.memory.most = settings->vram_bytes;
     r->relighter.threads = settings->threads;
     r->relighter.by_library = session_by_library(settings->relight, r->gl);
     r->glare.subject = settings->subject;

@@ -6,13 +6,14 @@
 #include "cli/program/say.h"
 #include "common/vec.h"
 
+#include <relume/exchange.h>
 #include <relume/world/tableau.h>
 #include <stdio.h>
 
 static bool is_scene(const char *path, const struct object_set *objects)
 {
     (void)objects;
-    return path && relume_tableau_is(path);
+    return path && relume_kind_of(path) == RELUME_KIND_SCENE;
 }
 
 // What is asked for and a scene has not.

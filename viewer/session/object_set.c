@@ -52,16 +52,15 @@ relume_status object_set_open(struct object_set *set, const struct object_option
 
 bool object_file_is_material(const char *path)
 {
-    return relume_kind_of(path) == RELUME_KIND_MATERIAL;
+    const enum relume_kind kind = relume_kind_of(path);
+    return kind == RELUME_KIND_MATERIAL || kind == RELUME_KIND_FITTED ||
+           kind == RELUME_KIND_SURFACE;
 }
 
 bool object_file_is_description(const char *path)
 {
-    const char *dot = strrchr(path, '.');
     const enum relume_kind kind = relume_kind_of(path);
-    return kind == RELUME_KIND_MODEL || kind == RELUME_KIND_BAKED ||
-           (dot && !strcmp(dot, ".json") && kind != RELUME_KIND_CAPTURE &&
-            kind != RELUME_KIND_FOREIGN);
+    return kind == RELUME_KIND_MODEL || kind == RELUME_KIND_BAKED || kind == RELUME_KIND_OBJECTS;
 }
 
 relume_status object_set_replace(struct object_set *set, const char *path, int threads,

@@ -7,6 +7,7 @@
 #include "cli/program/options.h"
 #include "cli/program/say.h"
 
+#include <relume/exchange.h>
 #include <relume/relight/tone.h>
 #include <relume/world/tableau.h>
 #include <relume/world/transport.h>
@@ -283,7 +284,7 @@ void options_release(struct options *o)
 static relume_status choose_objects(struct options *o, const struct relume_log *log)
 {
     struct object_options *w = &o->objects;
-    const bool scene = o->file && relume_tableau_is(o->file);
+    const bool scene = o->file && relume_kind_of(o->file) == RELUME_KIND_SCENE;
     if (scene && (w->description || w->mesh || w->materials || w->reflections))
         return say(log, RELUME_EINVAL,
                    "%s: a scene file has objects of its own; leave out --objects, --mesh, "
@@ -316,8 +317,8 @@ static relume_status choose_way(struct options *o, const struct command_line *li
                                 const struct relume_log *log)
 {
     const bool bounces = option_given(line, &o->bounces);
-    const bool in_scene =
-        o->file && (o->objects.description || o->objects.mesh || relume_tableau_is(o->file));
+    const bool in_scene = o->file && (o->objects.description || o->objects.mesh ||
+                                      relume_kind_of(o->file) == RELUME_KIND_SCENE);
     if ((o->transport || bounces || o->samples) && !in_scene)
         return say(log, RELUME_EINVAL,
                    "--transport, --bounces and --samples work only with objects in a scene; open a "
@@ -359,7 +360,8 @@ static relume_status choose_camera(struct options *o, const struct command_line 
     look->stereographic = o->projection != PERSPECTIVE;
     look->tilt_deg = o->projection == PLANET && !tilt ? -90.0 : look->tilt_deg;
     look->zoom = o->projection == PLANET && !zoom ? 0.5 : look->zoom;
-    const bool scene = line->input[0] && !view && !looks && relume_tableau_is(line->input[0]);
+    const bool scene =
+        line->input[0] && !view && !looks && relume_kind_of(line->input[0]) == RELUME_KIND_SCENE;
     if (relume_look_at_given(&camera->look_at) && !eye && !scene)
         return say(log, RELUME_EINVAL, "--look-at, --up and --fov need --eye, or a scene file");
     return RELUME_OK;

@@ -119,26 +119,28 @@ RELUME_RESULT relume_status relume_shadows_add(struct relume_image *picture, int
                                                const struct relume_light *light, int threads);
 
 enum { RELUME_SHADOW_LAMPS = 64 };
-// The suns and bright windows of an environment, whose shadows have edges: of RELUME_SHADOW_LAMPS
-// lamps those that are more than an even share, and not beyond the captured lights of the coder.
-// `out[RELUME_SHADOW_LAMPS]`, the first *count of them directional. RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_suns(struct relume_light *out, int *count,
-                                                const struct relume_light *environment,
-                                                const relume_coder *coder);
+// Finds the bright sources of an environment map, such as the sun or windows, whose shadows have
+// edges. They are those of RELUME_SHADOW_LAMPS lights (relume_environment_sample) that have more
+// than an even share of the luminance and lie within the captured lights of the coder. The first
+// *count of `out[RELUME_SHADOW_LAMPS]` are directional lights. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_shadows_bright_sources(struct relume_light *out, int *count,
+                                                          const struct relume_light *environment,
+                                                          const relume_coder *coder);
 // The same as relume_shadows_add for one of them: the picture is what an environment that has
-// nothing but this sun shows (relume_environment_weights), whatever the domain of the codes. So
-// what the sun takes off in a pixel is at most what it brings there.
-RELUME_RESULT relume_status relume_shadows_add_sun(struct relume_image *picture, int left, int top,
-                                                   relume_shadows *shadows,
-                                                   const relume_coder *coder,
-                                                   const struct relume_light *sun, int threads);
+// nothing but this source shows (relume_environment_weights), whatever the domain of the codes. So
+// what the source takes off in a pixel is at most what it brings there.
+RELUME_RESULT relume_status relume_shadows_add_bright_source(struct relume_image *picture, int left,
+                                                             int top, relume_shadows *shadows,
+                                                             const relume_coder *coder,
+                                                             const struct relume_light *source,
+                                                             int threads);
 
 // ---- for programs that trace and add by means of their own, as shaders do
 
 // The captured lights around a direction, by which the sums above go: `light` and `weight` have
 // room for all lights of the coder, the first *count are in use; at most 4 of traced shadows, none
 // where the direction is a captured light's. `direction` is unit, as relume_coder_clamp gives it;
-// `summed`: for the sun of an environment. RELUME_ENOMEM.
+// `summed`: for a bright source of an environment. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_shadows_around(int *light, float *weight, int *count,
                                                   relume_shadows *shadows,
                                                   const relume_coder *coder,

@@ -79,8 +79,6 @@ RELUME_RESULT relume_status relume_baked_open(relume_baked **out, const char *pa
                                               const struct relume_limits *limits,
                                               const struct relume_log *log);
 
-// Whether a file seems to be one, by its header.
-RELUME_API bool relume_baked_is_file(const char *path, const struct relume_limits *limits);
 // The least and the largest coordinates of its surface.
 RELUME_API void relume_baked_box(float box[2][3], const relume_baked *baked);
 

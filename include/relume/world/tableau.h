@@ -40,8 +40,6 @@ struct relume_tableau_params {
 #define relume_tableau_params(...)                                                                 \
     (&(const struct relume_tableau_params){RELUME_SIZED(relume_tableau_params), __VA_ARGS__})
 
-// Whether the file says that it is a scene file. What cannot be read is none.
-RELUME_API bool relume_tableau_is(const char *path);
 // Open a scene file and all that it names. An input status with a sentence, also for a scene within
 // a scene; errors of relume_open and relume_objects_open.
 RELUME_RESULT relume_status relume_tableau_open(relume_tableau **out, const char *path,

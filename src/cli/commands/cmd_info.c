@@ -298,9 +298,10 @@ static relume_status run(const struct args *args)
 {
     const struct info_options *o = (const void *)args;
     const char *path = o->args.input[0];
-    if (relume_tableau_is(path))
+    const enum relume_kind kind = relume_kind_of(path);
+    if (kind == RELUME_KIND_SCENE)
         return tell_scene(o);
-    if (relume_baked_is_file(path, &o->args.limits))
+    if (kind == RELUME_KIND_BAKED)
         return tell_baked(o);
     struct relume_pack_part part;
     if (is_part(&part, path)) {
@@ -317,7 +318,6 @@ static relume_status run(const struct args *args)
     const struct relume_pack_info *info = relume_pack_info(pack);
     char display[32];
     relume_transfer_text(info->display, display, sizeof display);
-    const enum relume_kind kind = relume_kind_of(path);
     (o->json ? print_json : print_text)(info, relume_coder_info(info->coder), display, kind,
                                         bytes_of(path, kind, info));
     relume_pack_destroy(&pack);

@@ -472,9 +472,9 @@ static relume_status run(const struct args *args)
 {
     const struct notes_options *o = (const void *)args;
     const relume_status status = check(o);
-    return status                                       ? status
-           : relume_baked_is_file(args->input[0], NULL) ? on_object(o)
-                                                        : on_picture(o);
+    return status                                                ? status
+           : relume_kind_of(args->input[0]) == RELUME_KIND_BAKED ? on_object(o)
+                                                                 : on_picture(o);
 }
 
 const struct command command_notes = {

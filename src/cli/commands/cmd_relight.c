@@ -597,7 +597,7 @@ static relume_status run(const struct args *args)
     relume_rig *rig = NULL;
     const struct relume_light *lights;
     int count;
-    if (relume_tableau_is(args->input[0]))
+    if (relume_kind_of(args->input[0]) == RELUME_KIND_SCENE)
         return run_scene(o);
     if (o->alpha && !relume_image_saves_alpha(o->output))
         return usage_error("--alpha: expected an output that ends in .png or .exr; found '%s'",

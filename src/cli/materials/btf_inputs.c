@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <relume/exchange.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -22,15 +23,12 @@ bool btf_is_model_file(const char *path)
 
 bool btf_is_model(const char *path)
 {
-    char file[4096];
-    return btf_is_model_file(path) ||
-           (snprintf(file, sizeof file, "%s/model.json", path) < (int)sizeof file && exists(file));
+    return btf_is_model_file(path) || relume_kind_of(path) == RELUME_KIND_FITTED;
 }
 
 bool btf_is_surface(const char *path)
 {
-    char file[4096];
-    return snprintf(file, sizeof file, "%s/surface.json", path) < (int)sizeof file && exists(file);
+    return relume_kind_of(path) == RELUME_KIND_SURFACE;
 }
 
 static void list_materials(const char *names[16])

@@ -9,20 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
-// Not a g-BRDF, which is an .exr file, too.
-static bool is_baked(const char *path)
-{
-    relume_baked *baked = NULL;
-    const bool is = btf_is_model_file(path) && !relume_baked_open(&baked, path, NULL, NULL);
-    relume_baked_destroy(&baked);
-    return is;
-}
-
 bool btf_is_objects(const struct btf_options *o)
 {
     const char *name = o->args.input[0], *dot = strrchr(name, '.');
-    return o->mesh || (dot && !strcmp(dot, ".json")) || relume_kind_of(name) == RELUME_KIND_MODEL ||
-           is_baked(name);
+    const bool json = dot && !strcmp(dot, ".json");  // of another kind: its reader says so
+    const enum relume_kind kind = relume_kind_of(name);
+    return o->mesh || json || kind == RELUME_KIND_MODEL || kind == RELUME_KIND_BAKED;
 }
 
 relume_status objects_open(relume_objects **out, const char *path, const char *reflections,

@@ -82,9 +82,10 @@ static relume_status attempt(struct maker *m, struct web_folder *w, double wante
     if (!status)
         status = encode_whole(m, w);
     if (!status)
-        status = web_write(w, path, m->quality, m->e->log);
-    if (!status && m->e->tiles)
-        status = tiles_write(w, m->step, path, m->e->params->threads, m->e->log);
+        status = web_write_info(w, path, m->quality, m->e->log);
+    if (!status)
+        status = m->e->tiles ? tiles_write(w, m->step, path, m->e->params->threads, m->e->log)
+                             : web_write_planes(w, path, m->e->log);
     if (!status)
         status = measure_folder(m, path, report);
     report->planes = web_planes(w);

@@ -7,7 +7,6 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/scratch.h"
-#include "core/base/tree.h"
 #include "exchange/formats/kind.h"
 #include "exchange/formats/still.h"
 #include "image/image/picture.h"
@@ -20,104 +19,6 @@
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
-
-// ---------------------------------------------------------------- what it is
-
-static bool holds(const char *folder, const char *name, const struct relume_log *log)
-{
-    char *path = mem_format("%s/%s", folder, name);
-    const bool found = path && input_exists(path, log);
-    mem_free(path);
-    return found;
-}
-
-static enum relume_kind kind_of_folder(const char *path, const struct relume_log *log)
-{
-    if (holds(path, "info.json", log))
-        return RELUME_KIND_FOREIGN;
-    if (holds(path, "btf.json", log) || holds(path, "model.json", log) ||
-        holds(path, "surface.json", log))
-        return RELUME_KIND_MATERIAL;
-    if (holds(path, "capture.json", log) || relume_capture_is_olat(path, log))
-        return RELUME_KIND_CAPTURE;
-    char *lp = tree_only(path, ".lp");
-    if (!lp)
-        lp = tree_only_below(path, ".lp");
-    mem_free(lp);
-    return lp ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
-}
-
-enum { HEAD = 4096 };
-static const char exr_magic[] = "\x76\x2f\x31\x01", gbrdf[] = "gbrdfVersion",
-                  baked[] = "bakedVersion";
-
-static bool is_among(const char *path, const char *const *endings)
-{
-    while (*endings && !path_ends(path, *endings))
-        endings++;
-    return *endings != NULL;
-}
-
-static enum relume_kind kind_of_json(const char *head, size_t n, const char *path)
-{
-    if (memmem(head, n, "relume-capture", strlen("relume-capture")))
-        return RELUME_KIND_CAPTURE;
-    return path_ends(path, "info.json") || memmem(head, n, "colorspace", strlen("colorspace"))
-               ? RELUME_KIND_FOREIGN
-               : RELUME_KIND_UNKNOWN;
-}
-
-enum relume_kind exchange_kind_of(const char *path, const struct relume_log *log)
-{
-    static const char *const foreign[] = {".ptm", ".lptm", ".rti", ".hsh", NULL};
-    static const char *const models[] = {".obj", ".ply", ".gltf", ".glb", ".fbx",
-                                         ".dae", ".stl", ".3ds",  ".off", NULL};
-    static const char *const photographs[] = {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", NULL};
-    char head[HEAD];
-    const enum input_kind kind = input_kind(path, log);
-    if (kind == INPUT_NONE)
-        return RELUME_KIND_UNKNOWN;
-    if (kind == INPUT_FOLDER)
-        return kind_of_folder(path, log);
-    if (is_among(path, foreign))
-        return RELUME_KIND_FOREIGN;
-    if (path_ends(path, ".lp"))
-        return RELUME_KIND_CAPTURE;
-    if (path_ends(path, ".btf"))
-        return RELUME_KIND_MATERIAL;
-    if (is_among(path, models))
-        return RELUME_KIND_MODEL;
-    FILE *f = input_open(path, log);
-    const size_t n = f ? fread(head, 1, HEAD, f) : 0;
-    if (f)
-        fclose(f);
-    if (path_ends(path, ".json"))
-        return kind_of_json(head, n, path);
-    if (n > 4 && !memcmp(head, exr_magic, 4) && memmem(head, n, gbrdf, sizeof gbrdf))
-        return RELUME_KIND_MATERIAL;
-    if (n > 4 && !memcmp(head, exr_magic, 4) && memmem(head, n, baked, sizeof baked))
-        return RELUME_KIND_BAKED;
-    if (n > 4 && !memcmp(head, exr_magic, 4))
-        return picture_head_is_relume(head, n)     ? RELUME_KIND_RELUME
-               : relume_capture_is_olat(path, log) ? RELUME_KIND_CAPTURE
-                                                   : RELUME_KIND_PICTURE;
-    if (relume_image_can_save(path) || is_among(path, photographs))
-        return path_ends(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
-    return RELUME_KIND_UNKNOWN;
-}
-
-enum relume_kind relume_kind_of(const char *path)
-{
-    return exchange_kind_of(path, NULL);
-}
-
-const char *relume_kind_name(enum relume_kind kind)
-{
-    static const char *const names[] = {"relume file", "RTI of another format", "capture",
-                                        "picture",     "nothing known",         "measured material",
-                                        "3D model",    "baked object"};
-    return names[kind];
-}
 
 // ---------------------------------------------------------------- what it becomes
 
@@ -151,15 +52,12 @@ static relume_status picture(const char *path, const char *out, const struct rel
     return still_write(path, out, p);
 }
 
-static bool is_scene(const char *path, const struct relume_log *log)
+static bool is_web_rti(const char *folder, const struct relume_log *log)
 {
-    static const char word[] = "\"relume-scene\"";
-    char head[HEAD];
-    FILE *f = path_ends(path, ".json") ? input_open(path, log) : NULL;
-    const size_t n = f ? fread(head, 1, sizeof head, f) : 0;
-    if (f)
-        fclose(f);
-    return memmem(head, n, word, strlen(word));
+    char *path = mem_format("%s/info.xml", folder);
+    const bool is = path && input_exists(path, log);
+    mem_free(path);
+    return is;
 }
 
 static relume_status unknown(const char *path, const struct relume_open_params *p)
@@ -168,17 +66,12 @@ static relume_status unknown(const char *path, const struct relume_open_params *
     const char *q = relume_name_quotes(path);
     if (kind == INPUT_NONE)
         return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
-    if (kind != INPUT_FOLDER && is_scene(path, p->log))
-        return log_fail(p->log, RELUME_EFORMAT,
-                        "%s: a scene file, which 'relume relight' and 'relume info' open; expected "
-                        "one of the captures that it names",
-                        path);
     if (kind != INPUT_FOLDER)
         return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
                         path);
-    if (holds(path, "info.xml", p->log))
+    if (is_web_rti(path, p->log))
         return log_fail(p->log, RELUME_EUNSUPPORTED,
                         "%s: tiles of WebRTI (info.xml), which relume does not read; expected the "
                         ".ptm or .rti that they were made from",
@@ -190,45 +83,55 @@ static relume_status unknown(const char *path, const struct relume_open_params *
         path, q, path, q);
 }
 
-// What cannot be relit, and what to do with it.
-static relume_status elsewhere(enum relume_kind kind, const char *path,
-                               const struct relume_log *log)
+// Says why a kind cannot be relit, and what to do with it.
+static relume_status refuse(enum relume_kind kind, const char *path,
+                            const struct relume_open_params *p)
 {
     const char *q = relume_name_quotes(path);
     switch (kind) {
     case RELUME_KIND_MATERIAL:
-        return log_fail(log, RELUME_EFORMAT,
+    case RELUME_KIND_FITTED:
+    case RELUME_KIND_SURFACE:
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: this is a measured material; work with it by 'relume btf', or see it: "
                         "relume-view %s%s%s",
                         path, q, path, q);
     case RELUME_KIND_MODEL:
-        return log_fail(log, RELUME_EFORMAT,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: this is a 3D model; see it: relume-view %s%s%s, or make what pages "
                         "show of it: relume bake %s%s%s -o OUT.exr",
                         path, q, path, q, q, path, q);
-    default:
-        return log_fail(log, RELUME_EFORMAT,
+    case RELUME_KIND_BAKED:
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: this is a baked object; put it into a scene with --objects, see it: "
                         "relume-view %s%s%s, or draw it: relume btf render %s%s%s -o OUT.png",
                         path, q, path, q, q, path, q);
+    case RELUME_KIND_SCENE:
+        return log_fail(p->log, RELUME_EFORMAT,
+                        "%s: a scene file, which 'relume relight' and 'relume info' open; expected "
+                        "one of the captures that it names",
+                        path);
+    default: return unknown(path, p);
     }
+}
+
+static bool can_convert(enum relume_kind kind)
+{
+    return kind == RELUME_KIND_FOREIGN || kind == RELUME_KIND_CAPTURE ||
+           kind == RELUME_KIND_PICTURE;
 }
 
 static relume_status convert(enum relume_kind kind, const char *path, const char *out,
                              const struct relume_open_params *p)
 {
     switch (kind) {
-    case RELUME_KIND_MATERIAL:
-    case RELUME_KIND_MODEL:
-    case RELUME_KIND_BAKED: return elsewhere(kind, path, p->log);
     case RELUME_KIND_FOREIGN:
         return relume_import(path, out,
                              relume_import_params(.log = p->log, .limits = p->limits,
                                                   .threads = p->threads,
                                                   .compression = RELUME_COMPRESS_NONE));
     case RELUME_KIND_CAPTURE: return encode(path, out, p);
-    case RELUME_KIND_PICTURE: return picture(path, out, p);
-    default: return unknown(path, p);
+    default: return picture(path, out, p);
     }
 }
 
@@ -261,12 +164,10 @@ relume_status relume_open(relume_pack **out, const char *path,
     path = infile_name(path);
     p.log = one_input(&one, path, p.reader, log);
     const enum relume_kind kind = exchange_kind_of(path, p.log);
-    if (kind == RELUME_KIND_UNKNOWN)
-        return unknown(path, &p);
-    return kind == RELUME_KIND_RELUME
-               ? relume_pack_open(out, path,
-                                  relume_pack_params(.log = log, .limits = p.limits,
-                                                     .threads = p.threads, .reader = p.reader,
-                                                     .keep_going = p.keep_going))
-               : open_converted(out, kind, path, &p, log);
+    if (kind == RELUME_KIND_RELUME)
+        return relume_pack_open(out, path,
+                                relume_pack_params(.log = log, .limits = p.limits,
+                                                   .threads = p.threads, .reader = p.reader,
+                                                   .keep_going = p.keep_going));
+    return can_convert(kind) ? open_converted(out, kind, path, &p, log) : refuse(kind, path, &p);
 }

@@ -4,64 +4,46 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
-#include "core/base/thread.h"
 #include "core/math/scalar.h"
+#include "exchange/formats/tile_pyramid.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 // Tiles of 256 pixels with their overlap, whole blocks, or a little less.
 enum { MOST_TILE = 254, LEAST_TILE = 240, OVERLAP = 1 };
 
-// One level of one sheet.
-struct level {
-    struct sheet sheet;        // all of it
-    float *own[SHEET_PLANES];  // NULL for the finest, which is the planes' own
+// A sheet on its way into DeepZoom tiles.
+struct sheet_tiles {
+    struct sheet sheet;  // all of it, at full size
     double step;
-    int side;  // of a tile without its overlap
-    const char *folder;
-    int columns, rows;
-    relume_status *status;  // [columns x rows]
-    struct sheet_result *tile;
+    const char *folder;  // of the levels
+    int finest;          // number of the level of full size in names
+    const struct relume_log *log;
 };
 
-static relume_status cut(const struct level *l, int column, int row, struct sheet *tile,
-                         float **room)
+static relume_status encode_tile(void *user, const struct tile *tile, struct tile_file *files)
 {
-    const struct sheet *s = &l->sheet;
-    const int x = larger_of(column * l->side - OVERLAP, 0),
-              y = larger_of(row * l->side - OVERLAP, 0);
-    *tile = *s;
-    tile->width = smaller_of((column + 1) * l->side + OVERLAP, s->width) - x;
-    tile->height = smaller_of((row + 1) * l->side + OVERLAP, s->height) - y;
-    const size_t width = (size_t)tile->width, pixels = width * (size_t)tile->height;
-    *room = mem_array(pixels * (size_t)s->planes, sizeof **room);
-    if (!*room)
+    const struct sheet_tiles *t = user;
+    const size_t pixels = (size_t)tile->at.width * (size_t)tile->at.height;
+    struct sheet sheet = t->sheet;
+    struct sheet_result result;
+    float *values = mem_array(pixels * (size_t)sheet.planes, sizeof *values);
+    if (!values)
         return RELUME_ENOMEM;
-    for (int p = 0; p < s->planes; p++) {
-        float *to = *room + (size_t)p * pixels;
-        tile->plane[p] = to;
-        for (int i = 0; i < tile->height; i++)
-            memcpy(to + (size_t)i * width,
-                   s->plane[p] + (size_t)(y + i) * (size_t)s->width + (size_t)x,
-                   width * sizeof *to);
+    sheet.width = tile->at.width;
+    sheet.height = tile->at.height;
+    for (int p = 0; p < sheet.planes; p++) {
+        sheet.plane[p] = values + (size_t)p * pixels;
+        tile_copy(values + (size_t)p * pixels, tile, p);
     }
-    return RELUME_OK;
-}
-
-static void encode_tile(void *context, size_t item, int worker)
-{
-    (void)worker;
-    const struct level *l = context;
-    struct sheet tile;
-    float *room = NULL;
-    l->status[item] = cut(l, (int)item % l->columns, (int)item / l->columns, &tile, &room);
-    if (!l->status[item])
-        l->status[item] = sheet_encode(&l->tile[item], &tile, l->step);
-    mem_free(room);
+    const relume_status status = sheet_encode(&result, &sheet, t->step);
+    if (!status)
+        files[0] = (struct tile_file){result.bytes, result.size};
+    mem_free(values);
+    return status;
 }
 
 static relume_status make_folder(const char *path, const struct relume_log *log)
@@ -71,51 +53,22 @@ static relume_status make_folder(const char *path, const struct relume_log *log)
                : RELUME_OK;
 }
 
-static relume_status write_tiles(const struct level *l, const struct relume_log *log)
+static relume_status save_tile(void *user, const struct tile *tile, int number,
+                               const struct tile_file *file)
 {
-    relume_status status = make_folder(l->folder, log);
-    for (int i = 0; !status && i < l->columns * l->rows; i++) {
-        char *name = mem_format("%s/%d_%d.jpg", l->folder, i % l->columns, i / l->columns);
-        status = name ? outfile_save(name, l->tile[i].bytes, l->tile[i].size, log) : RELUME_ENOMEM;
-        mem_free(name);
-    }
-    return status;
-}
-
-static relume_status write_level(struct level *l, int threads, const struct relume_log *log)
-{
-    l->columns = (l->sheet.width + l->side - 1) / l->side;
-    l->rows = (l->sheet.height + l->side - 1) / l->side;
-    const size_t n = (size_t)l->columns * (size_t)l->rows;
-    l->status = mem_zeroed(n, sizeof *l->status);
-    l->tile = mem_zeroed(n, sizeof *l->tile);
-    relume_status status = l->status && l->tile ? RELUME_OK : RELUME_ENOMEM;
+    (void)number;
+    const struct sheet_tiles *t = user;
+    char *folder = mem_format("%s/%d", t->folder, t->finest - tile->level->number);
+    char *name = mem_format("%s/%d_%d.jpg", folder, tile->column, tile->row);
+    const bool is_first = !tile->column && !tile->row;
+    relume_status status = folder && name ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && is_first)
+        status = make_folder(folder, t->log);
     if (!status)
-        thread_for(threads, n, encode_tile, l);
-    for (size_t i = 0; !status && i < n; i++)
-        status = l->status[i];
-    if (!status)
-        status = write_tiles(l, log);
-    for (size_t i = 0; l->tile && i < n; i++)
-        mem_free(l->tile[i].bytes);
-    mem_free(l->tile);
-    mem_free(l->status);
+        status = outfile_save(name, file->bytes, file->size, t->log);
+    mem_free(folder);
+    mem_free(name);
     return status;
-}
-
-static relume_status go_up(struct level *l)
-{
-    for (int p = 0; p < l->sheet.planes; p++) {
-        float *half = plane_halved(l->sheet.plane[p], l->sheet.width, l->sheet.height);
-        if (!half)
-            return RELUME_ENOMEM;
-        mem_free(l->own[p]);
-        l->own[p] = half;
-        l->sheet.plane[p] = half;
-    }
-    l->sheet.width = (l->sheet.width + 1) / 2;
-    l->sheet.height = (l->sheet.height + 1) / 2;
-    return RELUME_OK;
 }
 
 static relume_status write_dzi(const char *path, const struct sheet *s, int side,
@@ -172,31 +125,31 @@ static int tile_side(int width, int height)
 static relume_status write_sheet(const struct web_folder *w, int index, double step,
                                  const char *path, int threads, const struct relume_log *log)
 {
-    struct level l = {.sheet = web_sheet(w, index), .step = step};
-    const int longer = larger_of(l.sheet.width, l.sheet.height);
+    struct sheet_tiles t = {.sheet = web_sheet(w, index), .step = step, .log = log};
+    const int side = tile_side(t.sheet.width, t.sheet.height);
     char *dzi = mem_format("%s/plane_%d.dzi", path, index);
     char *files = mem_format("%s/plane_%d_files", path, index);
-    char *jpeg = mem_format("%s/plane_%d.jpg", path, index);
-    l.side = tile_side(l.sheet.width, l.sheet.height);
-    relume_status status =
-        dzi && files && jpeg ? write_dzi(dzi, &l.sheet, l.side, log) : RELUME_ENOMEM;
+    t.folder = files;
+    t.finest = finest_level(larger_of(t.sheet.width, t.sheet.height), side);
+    relume_status status = dzi && files ? write_dzi(dzi, &t.sheet, side, log) : RELUME_ENOMEM;
     if (!status)
         status = make_folder(files, log);
-    for (int level = finest_level(longer, l.side); !status && level >= 0; level--) {
-        char *folder = mem_format("%s/%d", files, level);
-        l.folder = folder;
-        status = folder ? write_level(&l, threads, log) : RELUME_ENOMEM;
-        mem_free(folder);
-        if (!status && level > 0)
-            status = go_up(&l);
-    }
-    if (!status && unlink(jpeg))
-        status = log_fail(log, RELUME_EIO, "%s: cannot be removed; %s", jpeg, strerror(errno));
-    for (int p = 0; p < SHEET_PLANES; p++)
-        mem_free(l.own[p]);
+    if (!status)
+        status = tile_pyramid_write(&(struct tile_pyramid){
+            .plane = t.sheet.plane,
+            .planes = t.sheet.planes,
+            .width = t.sheet.width,
+            .height = t.sheet.height,
+            .levels = t.finest + 1,
+            .side = side,
+            .overlap = OVERLAP,
+            .threads = threads,
+            .user = &t,
+            .encode = encode_tile,
+            .save = save_tile,
+        });
     mem_free(dzi);
     mem_free(files);
-    mem_free(jpeg);
     return status;
 }
 

@@ -5,8 +5,8 @@
 #include "exchange/formats/web.h"
 #include "image/image/jpeg.h"
 
-// Replace plane_N.jpg in the folder `path` by plane_N.dzi and plane_N_files/LEVEL/COLUMN_ROW.jpg.
-// The coefficients of a level are means of the level below.
+// Writes plane_N.dzi and plane_N_files/LEVEL/COLUMN_ROW.jpg of each kept sheet into the folder
+// `path`. The coefficients of a level are means of the level below. RELUME_EIO, RELUME_ENOMEM.
 relume_status tiles_write(const struct web_folder *w, double step, const char *path, int threads,
                           const struct relume_log *log);
 

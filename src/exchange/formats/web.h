@@ -37,9 +37,12 @@ int web_useful_chroma(const struct web_folder *w, double step);
 // Nineteen of twenty blocks show less.
 relume_status web_visible_error(const struct web_folder *w, double *levels);
 void web_folder_free(struct web_folder *w);
-// info.json and the JPEGs into the folder `path`. RELUME_EIO.
-relume_status web_write(const struct web_folder *w, const char *path, int quality,
-                        const struct relume_log *log);
+// Writes info.json into the folder `path`. RELUME_EIO, RELUME_ENOMEM.
+relume_status web_write_info(const struct web_folder *folder, const char *path, int quality,
+                             const struct relume_log *log);
+// Writes the JPEG of each kept sheet into the folder `path`. RELUME_EIO, RELUME_ENOMEM.
+relume_status web_write_planes(const struct web_folder *w, const char *path,
+                               const struct relume_log *log);
 // Sheet `index` as it is encoded.
 struct sheet web_sheet(const struct web_folder *w, int index);
 int web_planes(const struct web_folder *w);

@@ -315,8 +315,8 @@ static void put_materials(struct jwriter *w, const struct web_folder *folder, bo
     jclose(w);
 }
 
-static relume_status write_info(const struct web_folder *folder, const char *path, int quality,
-                                const struct relume_log *log)
+relume_status web_write_info(const struct web_folder *folder, const char *path, int quality,
+                             const struct relume_log *log)
 {
     const bool joint = folder->plan->form == FOREIGN_JOINT;
     struct jwriter w = {0};
@@ -337,10 +337,10 @@ static relume_status write_info(const struct web_folder *folder, const char *pat
     return jsave_in(&w, path, "info.json", log);
 }
 
-relume_status web_write(const struct web_folder *w, const char *path, int quality,
-                        const struct relume_log *log)
+relume_status web_write_planes(const struct web_folder *w, const char *path,
+                               const struct relume_log *log)
 {
-    relume_status status = write_info(w, path, quality, log);
+    relume_status status = RELUME_OK;
     for (int i = 0; !status && i < w->kept; i++) {
         char *name = mem_format("%s/plane_%d.jpg", path, i);
         status =

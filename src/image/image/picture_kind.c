@@ -196,7 +196,7 @@ static bool is_tga(const struct picture_look *l, const char *path)
                     picture_has_extension(path, ".tpic"));
 }
 
-static bool is_raw_name(const char *path)
+bool picture_is_raw_name(const char *path)
 {
     static const char *const names[] = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw",
                                         ".orf", ".raf", ".rw2", ".pef", ".srw", ".erf", ".3fr"};
@@ -222,7 +222,7 @@ static const struct picture_kind *by_magic(const struct picture_look *l)
 const struct picture_kind *picture_kind_of(const struct picture_look *l, const char *path)
 {
     const struct picture_kind *kind = by_magic(l);
-    if (kind && !strcmp(kind->reader ? kind->reader : "", "tiff") && is_raw_name(path))
+    if (kind && !strcmp(kind->reader ? kind->reader : "", "tiff") && picture_is_raw_name(path))
         return &raw;
     if (kind)
         return kind;
@@ -234,7 +234,7 @@ const struct picture_kind *picture_kind_of(const struct picture_look *l, const c
         return &bmp;
     if (is_tga(l, path))
         return &tga;
-    return is_raw_name(path) ? &raw : &unknown;
+    return picture_is_raw_name(path) ? &raw : &unknown;
 }
 
 bool picture_kind_is_likely(const struct picture_kind *kind, uint64_t file_bytes,

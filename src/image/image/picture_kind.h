@@ -25,6 +25,8 @@ struct picture_kind {
 
 // Whether a name ends in ".png", in any case.
 bool picture_has_extension(const char *path, const char *extension);
+// Whether a name ends as those of cameras' raw photographs do: ".dng", ".nef", ...
+bool picture_is_raw_name(const char *path);
 
 // Never NULL; `path` counts where first bytes say too little: TGA, and RAW that looks like TIFF.
 const struct picture_kind *picture_kind_of(const struct picture_look *look, const char *path);

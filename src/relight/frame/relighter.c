@@ -185,44 +185,45 @@ static relume_status relight_each(struct relume_image *out, relume_relighter *r,
     return status;
 }
 
-// What the picture of an environment has of one of its suns, exchanged for what that sun shows with
-// shadows or highlights that wander. `sun` is room.
-static relume_status exchange_sun(struct relume_image *out, struct relume_image *sun,
-                                  const struct relume_relight_params *p,
-                                  const struct relume_relit *relit, const struct relume_light *lamp,
-                                  int threads)
+// Replaces one bright source in the picture of an environment by the same source with moving
+// shadows or highlights. `shown` is scratch memory.
+static relume_status exchange_bright_source(struct relume_image *out, struct relume_image *shown,
+                                            const struct relume_relight_params *p,
+                                            const struct relume_relit *relit,
+                                            const struct relume_light *source, int threads)
 {
     const size_t n = 3 * (size_t)out->width * (size_t)out->height;
     struct relume_light alone = {.kind = RELUME_LIGHT_ENVIRONMENT, .rgb = {1.0f, 1.0f, 1.0f}};
     relume_environment *environment;
-    relume_status status = relume_environment_of_lamp(&environment, lamp);
+    relume_status status = relume_environment_of_lamp(&environment, source);
     alone.environment = environment;
     if (!status)
-        status = relume_relight(sun, relit->codes, &alone, 1, p);
+        status = relume_relight(shown, relit->codes, &alone, 1, p);
     for (size_t i = 0; !status && i < n; i++)
-        out->data[i] -= sun->data[i];
+        out->data[i] -= shown->data[i];
     if (!status)
-        status = relume_shadows_add_sun(sun, relit->left, relit->top, relit->shadows,
-                                        relit->codes->coder, lamp, threads);
+        status = relume_shadows_add_bright_source(shown, relit->left, relit->top, relit->shadows,
+                                                  relit->codes->coder, source, threads);
     for (size_t i = 0; !status && i < n; i++)
-        out->data[i] = fmaxf(out->data[i] + sun->data[i], 0.0f);
+        out->data[i] = fmaxf(out->data[i] + shown->data[i], 0.0f);
     relume_environment_destroy(&environment);
     return status;
 }
 
-static relume_status exchange_suns(struct relume_image *out, const relume_relighter *r,
-                                   const struct relume_relight_params *p,
-                                   const struct relume_relit *relit)
+static relume_status exchange_bright_sources(struct relume_image *out, const relume_relighter *r,
+                                             const struct relume_relight_params *p,
+                                             const struct relume_relit *relit)
 {
-    struct relume_light sun[RELUME_SHADOW_LAMPS];
+    struct relume_light source[RELUME_SHADOW_LAMPS];
     struct relume_relight_params quiet = *p;
-    struct relume_image room = {0};
+    struct relume_image shown = {0};
     int count;
-    relume_status status = relume_shadows_suns(sun, &count, relit->lights, relit->codes->coder);
+    relume_status status =
+        relume_shadows_bright_sources(source, &count, relit->lights, relit->codes->coder);
     quiet.log = NULL;
     for (int i = 0; !status && i < count; i++)
-        status = exchange_sun(out, &room, &quiet, relit, &sun[i], r->params.threads);
-    relume_image_destroy(&room);
+        status = exchange_bright_source(out, &shown, &quiet, relit, &source[i], r->params.threads);
+    relume_image_destroy(&shown);
     return status;
 }
 
@@ -238,7 +239,7 @@ relume_status relume_relighter_relight(struct relume_image *out, relume_relighte
     if (status || !relit->shadows || !relit->count)
         return status;
     return relit->lights[0].kind == RELUME_LIGHT_ENVIRONMENT
-               ? exchange_suns(out, r, &p, relit)
+               ? exchange_bright_sources(out, r, &p, relit)
                : relume_shadows_add(out, relit->left, relit->top, relit->shadows, relit->codes,
                                     relit->lights, r->params.threads);
 }

@@ -33,9 +33,9 @@ static uint64_t view_bytes(const relume_renderer *r, int view)
 
 uint64_t relume_renderer_bytes(const relume_renderer *r)
 {
-    uint64_t bytes = r->bytes;
+    uint64_t bytes = r->memory.bytes;
     for (int i = 0; i < r->changes; i++)
-        bytes += view_bytes(r, r->changed[i]) - r->kept[r->changed[i]].bytes;
+        bytes += view_bytes(r, r->changed[i]) - r->memory.item[r->changed[i]].bytes;
     return bytes;
 }
 
@@ -50,17 +50,16 @@ static void change(relume_renderer *r, int view)
 
 static void settle(relume_renderer *r)
 {
-    r->bytes = relume_renderer_bytes(r);
     while (r->changes) {
         const int view = r->changed[--r->changes];
-        r->kept[view].bytes = view_bytes(r, view);
+        budget_set(&r->memory, view, view_bytes(r, view));
         r->kept[view].changed = false;
     }
 }
 
 void renderer_use(relume_renderer *r, int view)
 {
-    r->kept[view].used = r->frame;
+    budget_use(&r->memory, view);
     change(r, view);
 }
 
@@ -91,7 +90,8 @@ static void forget(relume_renderer *r, int view)
     relume_shadows_destroy(&k->shadows);
     mem_free(k->texel);
     drop_codes(r, view);
-    *k = (struct kept){.bytes = k->bytes, .changed = true};
+    *k = (struct kept){.changed = true};
+    budget_forget(&r->memory, view);
 }
 
 void relume_renderer_forget(relume_renderer *r)
@@ -102,14 +102,14 @@ void relume_renderer_forget(relume_renderer *r)
 
 uint64_t renderer_memory(const relume_renderer *r)
 {
-    return r->params.memory ? r->params.memory : DEFAULT_MEMORY;
+    return r->memory.most;
 }
 
 void renderer_save_memory(relume_renderer *r, int view)
 {
     settle(r);
-    for (int i = 0; i < r->info->views && r->bytes > renderer_memory(r); i++) {
-        if (i == view || !r->kept[i].used)
+    for (int i = 0; i < r->info->views && r->memory.bytes > r->memory.most; i++) {
+        if (i == view || !r->memory.item[i].used)
             continue;
         change(r, i);
         drop_codes(r, i);
@@ -117,18 +117,13 @@ void renderer_save_memory(relume_renderer *r, int view)
     }
 }
 
-// Leave out the oldest until the rest fits. What the last frame used stays for the next one.
+// Forgets the least recently used views until the rest fits. Views of the last frame stay for the
+// next one.
 static void trim(relume_renderer *r)
 {
+    int oldest;
     settle(r);
-    while (r->bytes > renderer_memory(r)) {
-        int oldest = -1;
-        for (int i = 0; i < r->info->views; i++)
-            if (r->kept[i].used && r->kept[i].used < r->frame &&
-                (oldest < 0 || r->kept[i].used < r->kept[oldest].used))
-                oldest = i;
-        if (oldest < 0)
-            return;
+    while ((oldest = budget_excess(&r->memory, 0)) >= 0) {
         forget(r, oldest);
         settle(r);
     }
@@ -138,7 +133,7 @@ void renderer_begin(relume_renderer *r, enum shown shown)
 {
     const struct relume_frame_params *p = &r->params;
     trim(r);
-    r->frame++;
+    r->memory.round++;
     r->shown = shown;
     r->view = (struct relume_view_params){.threads = p->threads,
                                           .interpolation = p->interpolation,
@@ -165,6 +160,11 @@ void renderer_note(relume_renderer *r, enum note note, const char *format, ...)
 
 // ---------------------------------------------------------------- life
 
+static void set_memory(relume_renderer *r)
+{
+    r->memory.most = r->params.memory ? r->params.memory : DEFAULT_MEMORY;
+}
+
 static bool create_arrays(relume_renderer *r)
 {
     const size_t views = (size_t)r->info->views;
@@ -177,8 +177,8 @@ static bool create_arrays(relume_renderer *r)
     r->changed = mem_zeroed(views, sizeof *r->changed);
     for (int i = 0; i < SHOWN; i++)
         r->image[i] = mem_zeroed(views, sizeof *r->image[i]);
-    return r->kept && r->disparity && r->range && r->needed && r->changed &&
-           r->image[SHOWN_LIGHT] && r->image[SHOWN_PLACES];
+    return budget_create(&r->memory, r->info->views, 0) && r->kept && r->disparity && r->range &&
+           r->needed && r->changed && r->image[SHOWN_LIGHT] && r->image[SHOWN_PLACES];
 }
 
 relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
@@ -192,6 +192,7 @@ relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
     r->params = PARAMS_WORK(relume_frame_params, params);
     r->lighting = 1;
     relume_status status = create_arrays(r) ? RELUME_OK : RELUME_ENOMEM;
+    set_memory(r);
     if (!status)  // last: who is there has the arrays
         status = relume_relighter_create(&r->relighter, r->info->views,
                                          relume_relighter_params(.cpu_off = r->params.cpu_off,
@@ -218,6 +219,7 @@ void relume_renderer_destroy(relume_renderer **renderer)
     relume_slab_set_destroy(&r->slabs);
     for (int i = 0; i < SHOWN; i++)
         mem_free(r->image[i]);
+    budget_destroy(&r->memory);
     mem_free(r->kept);
     mem_free(r->disparity);
     mem_free(r->range);
@@ -242,6 +244,7 @@ void relume_renderer_set(relume_renderer *r, const struct relume_frame_params *p
     r->params.threads = old.threads;
     r->params.cpu_off = old.cpu_off;
     r->params.once = old.once;
+    set_memory(r);
     const bool moved = r->params.assume_depth != old.assume_depth;
     for (int i = 0; moved && i < r->info->views; i++)
         forget_places(r, i);

@@ -2,6 +2,7 @@
 #ifndef FRAME_RENDERER_H
 #define FRAME_RENDERER_H
 
+#include "core/base/budget.h"
 #include "core/math/vec.h"
 
 #include <relume/relight/relighter.h>
@@ -16,15 +17,13 @@ enum shown { SHOWN_LIGHT, SHOWN_PLACES, SHOWN };
 
 // Of one view.
 struct kept {
-    uint64_t used;                // the frame that last needed it
     uint64_t lit;                 // the lighting that its picture shows; 0: none
     uint64_t partly;              // the lighting that it shows at some texels; 0: none
     uint32_t *texel;              // [texels]: the lighting that each shows
     struct relume_image surface;  // for near lights; empty: not asked for
     relume_shadows *shadows;      // NULL: not asked for
     uint64_t code_bytes;          // that the pack holds for it
-    uint64_t bytes;               // of all, as the renderer's sum has it
-    bool changed;                 // the sum must be put right
+    bool changed;                 // its bytes must be counted again
 };
 
 struct relume_renderer {
@@ -35,15 +34,14 @@ struct relume_renderer {
     struct relume_light *lights;
     int light_count;
     uint64_t lighting;  // counts: lights, or what else pictures depend on, have changed
-    uint64_t frame;     // counts
     bool said;          // what there is to say of these lights
     bool is_part;       // others are seen beside it: black does not mean that something is missing
     char note[NOTES][200];
     enum shown shown;
     relume_relighter *relighter;
     struct kept *kept;                  // [views]
-    uint64_t bytes;                     // of them all, but for what has changed:
-    int *changed, changes;              // [views]
+    struct budget memory;               // of the views, a round for each frame, except ...
+    int *changed, changes;              // ... [views]: those whose bytes have changed
     struct relume_image *image[SHOWN];  // [views]
     struct relume_image *disparity;     // [views]
     double (*range)[2];                 // [views]: of whole disparities; NaN: not known yet

@@ -241,8 +241,9 @@ static void fill_lights(const struct relume_weight_grid *g)
     }
 }
 
-// Interpolants that extrapolate have weights below 0: under a sun among black pixels a sum of such
-// would be a hole. Environments are summed over flat triangles then, whose weights are shares.
+// Interpolants that extrapolate have weights below 0: under a bright source among black pixels a
+// sum of such would be a hole. Environments are summed over flat triangles then, whose weights are
+// shares.
 static relume_status make_sums(struct relume_weight_grid **out, const relume_coder *coder)
 {
     struct relume_coder_triangles around;

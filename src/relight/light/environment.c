@@ -352,11 +352,11 @@ static int find_above(const double *sum, int at, int last, double want)
     return at;
 }
 
-// Cells that shine more than a light's share of the others, such as a small sun, are a light each:
+// Cells that shine more than a light's share of the others are bright sources, a light each:
 // so many are *out, and sum[] is the running sum of the others. What is drawn of them would all
 // come from one direction, and leave few lights for the sky.
-static int take_bright_cells(struct relume_light *out, int n, const struct relume_light *light,
-                             double *sum)
+static int take_bright_sources(struct relume_light *out, int n, const struct relume_light *light,
+                               double *sum)
 {
     const relume_environment *e = light->environment;
     int taken = 0;
@@ -434,7 +434,7 @@ relume_status relume_environment_sample(struct relume_light *out, int n,
     double *sum = mem_array((size_t)e->count, sizeof *sum);
     if (!sum)
         return RELUME_ENOMEM;
-    const int taken = take_bright_cells(out, n, environment, sum);
+    const int taken = take_bright_sources(out, n, environment, sum);
     if (sum[e->count - 1] > 0.0)
         draw(out + taken, n - taken, environment, sum, seed);
     match_totals(out, n, environment);

@@ -444,22 +444,23 @@ static float luminance_of(const struct relume_light *light)
 
 // Those beyond the captured lights fade: a sum has other shares of them than a light alone
 // (relume_environment_weights).
-relume_status relume_shadows_suns(struct relume_light *lamp, int *suns,
-                                  const struct relume_light *environment, const relume_coder *coder)
+relume_status relume_shadows_bright_sources(struct relume_light *lamp, int *count,
+                                            const struct relume_light *environment,
+                                            const relume_coder *coder)
 {
     vec3 from;
     const struct relume_coder_info *info = relume_coder_info(coder);
     const relume_status status =
         relume_environment_sample(lamp, RELUME_SHADOW_LAMPS, environment, 0);
     float total = 0.0f;
-    *suns = 0;
+    *count = 0;
     for (int i = 0; !status && i < RELUME_SHADOW_LAMPS; i++)
         total += luminance_of(&lamp[i]);
     for (int i = 0; !status && i < RELUME_SHADOW_LAMPS; i++)
         if (luminance_of(&lamp[i]) > MORE * total / RELUME_SHADOW_LAMPS &&
             !(info->hemispherical && pole_from_world(lamp[i].direction, info->pole_y).z < 0.0) &&
             relume_coder_clamp(&from, coder, vec3_unit(lamp[i].direction)) == 1.0)
-            lamp[(*suns)++] = lamp[i];
+            lamp[(*count)++] = lamp[i];
     return status;
 }
 
@@ -539,9 +540,9 @@ relume_status relume_shadows_add(struct relume_image *picture, int left, int top
                threads);
 }
 
-relume_status relume_shadows_add_sun(struct relume_image *picture, int left, int top,
-                                     relume_shadows *shadows, const relume_coder *coder,
-                                     const struct relume_light *sun, int threads)
+relume_status relume_shadows_add_bright_source(struct relume_image *picture, int left, int top,
+                                               relume_shadows *shadows, const relume_coder *coder,
+                                               const struct relume_light *source, int threads)
 {
-    return add(picture, left, top, shadows, coder, NULL, true, sun, threads);
+    return add(picture, left, top, shadows, coder, NULL, true, source, threads);
 }

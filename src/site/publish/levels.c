@@ -1,10 +1,9 @@
 // levels.c - the planes of a view as a pyramid of tiles
 #include "site/publish/levels.h"
 
-#include "core/base/log.h"
 #include "core/base/memory.h"
-#include "core/base/thread.h"
 #include "core/math/scalar.h"
+#include "exchange/formats/tile_pyramid.h"
 #include "image/image/jpeg.h"
 #include "site/publish/avif.h"
 #include "site/publish/guide.h"
@@ -23,18 +22,28 @@ int levels_count(int width, int height, int views)
     return n;
 }
 
-// A level on its way: planes as they lie in memory, and its tiles.
-struct level {
+// Files of a tile.
+enum { FILE_JPEG, FILE_AVIF };
+
+// A pyramid being written, or level 0 being tried.
+struct levels_writer {
     const struct levels *how;
-    int width, height, columns, rows;
-    const float *plane[PUBLISH_MOST_PLANES];
+    const struct site *site;  // NULL: nothing is saved
+    const char *folder;
     const struct relume_log *log;
-    bool kept;                // it goes into the site
-    uint8_t **bytes, **avif;  // [tiles]
-    size_t *size, *avif_size;
-    relume_status *status;
-    uint8_t *codes;
+    uint8_t *codes;          // of level 0, or NULL
+    uint64_t *bytes, *avif;  // [levels]; avif is NULL without a site
 };
+
+static size_t pixels_of(const struct tile *tile)
+{
+    return (size_t)tile->at.width * (size_t)tile->at.height;
+}
+
+static int sheets_of(const struct levels_writer *w)
+{
+    return (w->how->planes + SHEET_PLANES - 1) / SHEET_PLANES;
+}
 
 static void put_word(uint8_t *to, size_t v)
 {
@@ -43,39 +52,37 @@ static void put_word(uint8_t *to, size_t v)
 }
 
 // One sheet of a tile; its planes are copied into `room`.
-static struct sheet cut(const struct level *l, const struct relume_rect *at, int first, float *room)
+static struct sheet cut(const struct levels_writer *w, const struct tile *tile, int first,
+                        float *room)
 {
-    struct sheet s = {.width = at->width,
-                      .height = at->height,
-                      .planes = smaller_of(l->how->planes - first, SHEET_PLANES),
-                      .own = l->how->guided};
-    const size_t width = (size_t)at->width, pixels = width * (size_t)at->height;
+    struct sheet s = {.width = tile->at.width,
+                      .height = tile->at.height,
+                      .planes = smaller_of(w->how->planes - first, SHEET_PLANES),
+                      .own = w->how->guided};
     for (int p = 0; p < s.planes; p++) {
-        float *to = room + (size_t)p * pixels;
-        for (int y = 0; y < at->height; y++)
-            memcpy(to + (size_t)y * width,
-                   l->plane[first + p] + (size_t)(at->top + y) * (size_t)l->width +
-                       (size_t)at->left,
-                   width * sizeof *to);
+        float *to = room + (size_t)p * pixels_of(tile);
+        tile_copy(to, tile, first + p);
         s.plane[p] = to;
-        s.minimum[p] = l->how->minimum[first + p];
-        s.maximum[p] = l->how->maximum[first + p];
+        s.minimum[p] = w->how->minimum[first + p];
+        s.maximum[p] = w->how->maximum[first + p];
         s.weight[p] = 1.0;
     }
     return s;
 }
 
-static relume_status keep_codes(const struct level *l, const struct relume_rect *at, int first,
+static relume_status keep_codes(const struct levels_writer *w, const struct tile *tile, int first,
                                 const struct sheet_result *sheet)
 {
     struct jpeg_codes decoded = {0};
-    const size_t pixels = (size_t)l->width * (size_t)l->height, width = (size_t)at->width;
+    const struct relume_rect *at = &tile->at;
+    const size_t stride = (size_t)tile->level->width, width = (size_t)at->width;
+    const size_t pixels = stride * (size_t)tile->level->height;
     const relume_status status =
         jpeg_decode(&decoded, sheet->bytes, sheet->size, "tile", NULL, NULL);
-    for (int p = 0; !status && p < smaller_of(l->how->planes - first, SHEET_PLANES); p++)
+    for (int p = 0; !status && p < smaller_of(w->how->planes - first, SHEET_PLANES); p++)
         for (int y = 0; y < at->height; y++)
-            memcpy(l->codes + (size_t)(first + p) * pixels +
-                       (size_t)(at->top + y) * (size_t)l->width + (size_t)at->left,
+            memcpy(w->codes + (size_t)(first + p) * pixels + (size_t)(at->top + y) * stride +
+                       (size_t)at->left,
                    decoded.data + ((size_t)p * (size_t)at->height + (size_t)y) * width, width);
     jpeg_codes_free(&decoded);
     return status;
@@ -139,11 +146,6 @@ static relume_status follow_guide(const struct sheet *s, float *room, float *gai
     return status;
 }
 
-static bool has_avif(const struct level *l)
-{
-    return l->kept && l->how->layers != RELUME_PUBLISH_JPEG;
-}
-
 // JPEG stays where AVIF is larger.
 static relume_status keep_smaller(struct sheet_result *avif, const struct sheet_result *jpeg)
 {
@@ -156,30 +158,31 @@ static relume_status keep_smaller(struct sheet_result *avif, const struct sheet_
 }
 
 // The sheets of a tile again, as AVIF. The guide of the later ones is what that makes of the first.
-static relume_status encode_avif(const struct level *l, size_t item, const struct relume_rect *at,
-                                 const struct sheet_result *jpeg, float *room)
+static relume_status encode_avif(struct tile_file *out, const struct levels_writer *w,
+                                 const struct tile *tile, const struct sheet_result *jpeg,
+                                 float *room)
 {
-    const int sheets = (l->how->planes + SHEET_PLANES - 1) / SHEET_PLANES;
-    const size_t n = (size_t)at->width * (size_t)at->height;
+    const int sheets = sheets_of(w);
+    const size_t n = pixels_of(tile);
     struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
     uint8_t *codes = mem_array(SHEET_PLANES * n, 1);
     float *gain = room + SHEET_PLANES * n;
     int quantiser = FIRST_QUANTISER;
     relume_status status = result && codes ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < sheets; i++) {
-        const struct sheet s = cut(l, at, SHEET_PLANES * i, room);
-        if (l->how->guided)
-            status = follow_guide(&s, room, gain, i == 0, l->how->step);
+        const struct sheet s = cut(w, tile, SHEET_PLANES * i, room);
+        if (w->how->guided)
+            status = follow_guide(&s, room, gain, i == 0, w->how->step);
         if (!status)
-            status = avif_encode(&result[i], codes, &s, &jpeg[i], &quantiser, l->log);
+            status = avif_encode(&result[i], codes, &s, &jpeg[i], &quantiser, w->log);
         const bool taken = !status && result[i].size < jpeg[i].size;
-        for (size_t k = 0; taken && l->how->guided && i == 0 && k < n; k++)
+        for (size_t k = 0; taken && w->how->guided && i == 0 && k < n; k++)
             gain[k] = guide_gain((float)((codes[k] / 255.0 - jpeg->bias[0]) * jpeg->scale[0]));
         if (!status)
             status = keep_smaller(&result[i], &jpeg[i]);
     }
     if (!status)
-        status = levels_join(result, sheets, &l->avif[item], &l->avif_size[item]);
+        status = levels_join(result, sheets, &out->bytes, &out->size);
     for (int i = 0; result && i < sheets; i++)
         mem_free(result[i].bytes);
     mem_free(result);
@@ -187,138 +190,97 @@ static relume_status encode_avif(const struct level *l, size_t item, const struc
     return status;
 }
 
-static void encode_tile(void *context, size_t item, int worker)
+static relume_status encode_jpeg(struct sheet_result *result, const struct levels_writer *w,
+                                 const struct tile *tile, float *room)
 {
-    (void)worker;
-    const struct level *l = context;
-    const int x = (int)item % l->columns * LEVELS_TILE, y = (int)item / l->columns * LEVELS_TILE;
-    const struct relume_rect at = {x, y, smaller_of(LEVELS_TILE, l->width - x),
-                                   smaller_of(LEVELS_TILE, l->height - y)};
-    const int sheets = (l->how->planes + SHEET_PLANES - 1) / SHEET_PLANES;
-    struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
-    const size_t n = (size_t)at.width * (size_t)at.height;
-    float *room = mem_array((SHEET_PLANES + 1) * n, sizeof *room);
-    relume_status status = result && room ? RELUME_OK : RELUME_ENOMEM;
-    for (int i = 0; !status && i < sheets; i++) {
-        const struct sheet s = cut(l, &at, SHEET_PLANES * i, room);
-        if (l->how->guided)
-            status = follow_guide(&s, room, room + SHEET_PLANES * n, i == 0, l->how->step);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < sheets_of(w); i++) {
+        const struct sheet s = cut(w, tile, SHEET_PLANES * i, room);
+        if (w->how->guided)
+            status =
+                follow_guide(&s, room, room + SHEET_PLANES * pixels_of(tile), i == 0, w->how->step);
         if (!status)
-            status = sheet_encode(&result[i], &s, l->how->step);
-        if (!status && l->codes)
-            status = keep_codes(l, &at, SHEET_PLANES * i, &result[i]);
-        if (!status && !item)
-            say_scales(l->how, SHEET_PLANES * i, &result[i]);
+            status = sheet_encode(&result[i], &s, w->how->step);
+        if (!status && w->codes && !tile->level->number)
+            status = keep_codes(w, tile, SHEET_PLANES * i, &result[i]);
+        if (!status && !tile->column && !tile->row)
+            say_scales(w->how, SHEET_PLANES * i, &result[i]);
     }
-    if (!status)
-        status = levels_join(result, sheets, &l->bytes[item], &l->size[item]);
-    if (!status && has_avif(l))
-        status = encode_avif(l, item, &at, result, room);
+    return status;
+}
+
+static relume_status encode_tile(void *user, const struct tile *tile, struct tile_file *files)
+{
+    const struct levels_writer *w = user;
+    const int sheets = sheets_of(w);
+    struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
+    float *room = mem_array((SHEET_PLANES + 1) * pixels_of(tile), sizeof *room);
+    const bool has_jpeg = !w->site || w->how->layers != RELUME_PUBLISH_AVIF;
+    const bool has_avif = w->site && w->how->layers != RELUME_PUBLISH_JPEG;
+    relume_status status = result && room ? encode_jpeg(result, w, tile, room) : RELUME_ENOMEM;
+    if (!status && has_jpeg)
+        status = levels_join(result, sheets, &files[FILE_JPEG].bytes, &files[FILE_JPEG].size);
+    if (!status && has_avif)
+        status = encode_avif(&files[FILE_AVIF], w, tile, result, room);
     for (int i = 0; result && i < sheets; i++)
         mem_free(result[i].bytes);
     mem_free(result);
     mem_free(room);
-    l->status[item] = status;
-}
-
-static relume_status save_tiles(const struct site *site, const char *folder, int number,
-                                const struct level *l, const char *ending, bool avif,
-                                uint64_t *bytes)
-{
-    relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < l->columns * l->rows; i++) {
-        const size_t size = avif ? l->avif_size[i] : l->size[i];
-        *bytes += size;
-        if (!site)
-            continue;
-        char *name =
-            mem_format("%s/%d_%d_%d%s", folder, number, i % l->columns, i / l->columns, ending);
-        status = name ? site_save_data(site, name, avif ? l->avif[i] : l->bytes[i], size)
-                      : RELUME_ENOMEM;
-        mem_free(name);
-    }
     return status;
 }
 
-static relume_status write_level(const struct site *site, const char *folder, int number,
-                                 struct level *l, uint64_t *bytes, uint64_t *avif)
+static relume_status save_tile(void *user, const struct tile *tile, int number,
+                               const struct tile_file *file)
 {
-    l->columns = (l->width + LEVELS_TILE - 1) / LEVELS_TILE;
-    l->rows = (l->height + LEVELS_TILE - 1) / LEVELS_TILE;
-    const size_t n = (size_t)l->columns * (size_t)l->rows;
-    l->bytes = mem_zeroed(n, sizeof *l->bytes);
-    l->avif = mem_zeroed(n, sizeof *l->avif);
-    l->size = mem_zeroed(n, sizeof *l->size);
-    l->avif_size = mem_zeroed(n, sizeof *l->avif_size);
-    l->status = mem_zeroed(n, sizeof *l->status);
-    relume_status status =
-        l->bytes && l->avif && l->size && l->avif_size && l->status ? RELUME_OK : RELUME_ENOMEM;
-    if (!status)
-        thread_for(l->how->threads, n, encode_tile, l);
-    for (size_t i = 0; !status && i < n; i++)
-        status = l->status[i];
-    if (!status && (!site || l->how->layers != RELUME_PUBLISH_AVIF))
-        status = save_tiles(site, folder, number, l, ".bin", false, bytes);
-    if (!status && has_avif(l))
-        status = save_tiles(site, folder, number, l, ".avif.bin", true, avif);
-    for (size_t i = 0; l->bytes && l->avif && i < n; i++) {
-        mem_free(l->bytes[i]);
-        mem_free(l->avif[i]);
-    }
-    mem_free(l->bytes);
-    mem_free(l->avif);
-    mem_free(l->size);
-    mem_free(l->avif_size);
-    mem_free(l->status);
+    const struct levels_writer *w = user;
+    const int level = tile->level->number;
+    (number == FILE_AVIF ? w->avif : w->bytes)[level] += file->size;
+    if (!w->site)
+        return RELUME_OK;
+    char *name = mem_format("%s/%d_%d_%d%s", w->folder, level, tile->column, tile->row,
+                            number == FILE_AVIF ? ".avif.bin" : ".bin");
+    const relume_status status =
+        name ? site_save_data(w->site, name, file->bytes, file->size) : RELUME_ENOMEM;
+    mem_free(name);
     return status;
 }
 
-// The next level, in memory of its own, which takes the place of the last one's.
-static relume_status go_up(struct level *l, float **own)
+static relume_status write_pyramid(struct levels_writer *w, const struct planes *p, int levels)
 {
-    for (int p = 0; p < l->how->planes; p++) {
-        float *half = plane_halved(l->plane[p], l->width, l->height);
-        if (!half)
-            return RELUME_ENOMEM;
-        mem_free(own[p]);
-        l->plane[p] = own[p] = half;
-    }
-    l->width = (l->width + 1) / 2;
-    l->height = (l->height + 1) / 2;
-    return RELUME_OK;
+    const float *plane[PUBLISH_MOST_PLANES];
+    for (int i = 0; i < w->how->planes; i++)
+        plane[i] = planes_at(p, i);
+    return tile_pyramid_write(&(struct tile_pyramid){
+        .plane = plane,
+        .planes = w->how->planes,
+        .width = p->width,
+        .height = p->height,
+        .levels = levels,
+        .side = LEVELS_TILE,
+        .threads = w->how->threads,
+        .user = w,
+        .encode = encode_tile,
+        .save = save_tile,
+    });
 }
 
 relume_status levels_write(const struct site *site, const char *name, const struct planes *p,
                            const struct levels *how, uint64_t *bytes, uint64_t *avif,
                            uint8_t *codes)
 {
-    struct level l = {.how = how,
-                      .width = p->width,
-                      .height = p->height,
-                      .kept = true,
-                      .log = site->log,
-                      .codes = codes};
-    float **own = mem_zeroed((size_t)how->planes, sizeof *own);
-    for (int i = 0; i < how->planes; i++)
-        l.plane[i] = planes_at(p, i);
-    relume_status status = own ? RELUME_OK : RELUME_ENOMEM;
-    for (int i = 0; !status && i < how->count; i++) {
-        status = write_level(site, name, i, &l, &bytes[i], &avif[i]);
-        l.codes = NULL;
-        if (!status && i + 1 < how->count)
-            status = go_up(&l, own);
-    }
-    for (int i = 0; own && i < how->planes; i++)
-        mem_free(own[i]);
-    mem_free(own);
-    return status;
+    struct levels_writer w = {.how = how,
+                              .site = site,
+                              .folder = name,
+                              .log = site->log,
+                              .codes = codes,
+                              .bytes = bytes,
+                              .avif = avif};
+    return write_pyramid(&w, p, how->count);
 }
 
 relume_status levels_try(const struct planes *p, const struct levels *how, uint64_t *bytes,
                          uint8_t *codes)
 {
-    struct level l = {.how = how, .width = p->width, .height = p->height, .codes = codes};
-    for (int i = 0; i < how->planes; i++)
-        l.plane[i] = planes_at(p, i);
-    return write_level(NULL, NULL, 0, &l, bytes, NULL);
+    struct levels_writer w = {.how = how, .bytes = bytes, .codes = codes};
+    return write_pyramid(&w, p, 1);
 }

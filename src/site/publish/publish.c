@@ -157,7 +157,7 @@ static relume_status publish_file(struct work *w, int i, const struct site *site
         .site = &here, .name = w->names[i], .details = page->details, .report = &report};
     memcpy(report.name, w->names[i], sizeof report.name);
     const char *site_title = details_of_site(w->metadata, w->params).title;
-    page->object = relume_baked_is_file(w->files[i], w->params->limits);
+    page->object = relume_kind_of(w->files[i]) == RELUME_KIND_BAKED;
     relume_status status = page->object ? object_write(&here, page, w->files[i], &report)
                                         : open_file(&s.pack, w->files[i], w->params);
     if (!status && page->object) {

@@ -492,14 +492,3 @@ relume_status relume_baked_open(relume_baked **out, const char *path,
     *out = b;
     return status;
 }
-
-bool relume_baked_is_file(const char *path, const struct relume_limits *limits)
-{
-    const struct relume_limits all = limits_or_default(limits);
-    exr_file *file = NULL;
-    int version;
-    const bool is =
-        !exr_open(&file, path, NULL, &all, NULL) && exr_get_int(file, 0, "bakedVersion", &version);
-    exr_close(&file);
-    return is;
-}

@@ -4,6 +4,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "core/base/tree.h"
 #include "shape/mesh/mesh_read.h"
 #include "world/object/object.h"
 
@@ -336,9 +337,10 @@ relume_status relume_objects_open(relume_objects **out, const char *path,
     const struct relume_objects_params own = PARAMS_WORK(relume_objects_params, params);
     jvalue *root = NULL;
     *out = NULL;
-    if (objects_named_exr(path))
+    const enum relume_kind kind = relume_kind_of(path);
+    if (kind == RELUME_KIND_BAKED || path_ends(path, ".exr"))
         return open_baked(out, path, &own);
-    if (relume_kind_of(path) == RELUME_KIND_MODEL)
+    if (kind == RELUME_KIND_MODEL)
         return relume_objects_of_mesh(out, path, NULL, 0, 0.0, &own);
     relume_status status = jvalue_load(&root, path, own.log);
     if (!status)

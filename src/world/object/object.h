@@ -54,9 +54,6 @@ struct relume_objects {
 uint32_t objects_vertex(relume_objects *o, struct relume_vec3 place, struct relume_vec3 normal,
                         struct relume_vec3 texture, const uint8_t *colour);
 
-// Whether a file is one by its name.
-bool objects_named_exr(const char *path);
-
 static inline vec3 objects_middle(const relume_objects *o)
 {
     return vec3_scale(vec3_add(o->info.min, o->info.max), 0.5);

@@ -2,14 +2,14 @@
 #include "core/base/params.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "core/base/tree.h"
 #include "world/object/levels.h"
 #include "world/object/object.h"
 #include "world/object/skin.h"
 #include "world/transport/dipole.h"
 
+#include <relume/exchange.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
 
 enum { MOST_MATERIALS = 1024 };
 
@@ -90,21 +90,6 @@ relume_status relume_objects_choose(relume_objects *objects, int part, int mater
 }
 
 // ---------------------------------------------------------------- materials
-
-static bool holds(const char *folder, const char *name)
-{
-    char *file = mem_format("%s/%s", folder, name);
-    struct stat s;
-    const bool is = file && !stat(file, &s);
-    mem_free(file);
-    return is;
-}
-
-bool objects_named_exr(const char *path)
-{
-    const size_t n = strlen(path);
-    return n > 4 && !strcasecmp(path + n - 4, ".exr");
-}
 
 // The last word of a path.
 static char *name_of(const char *folder)
@@ -200,10 +185,10 @@ static relume_status open_material(struct relume_object_material *m, const char 
     *m = (struct relume_object_material){.name = name_of(folder), .model = "measured"};
     if (!m->name)
         return RELUME_ENOMEM;
-    if (holds(folder, "surface.json"))
-        return open_surface(m, folder, &p);
-    return objects_named_exr(folder) || holds(folder, "model.json") ? open_model(m, folder, &p)
-                                                                    : open_measured(m, folder, &p);
+    const enum relume_kind kind = relume_kind_of(folder);
+    return kind == RELUME_KIND_SURFACE                               ? open_surface(m, folder, &p)
+           : kind == RELUME_KIND_FITTED || path_ends(folder, ".exr") ? open_model(m, folder, &p)
+                                                                     : open_measured(m, folder, &p);
 }
 
 relume_status objects_need_material(relume_objects *o, const char *name,

@@ -7,6 +7,7 @@
 #include "core/base/params.h"
 #include "shape/mesh/mesh_file.h"
 
+#include <relume/exchange.h>
 #include <string.h>
 
 enum { VERSION = 1, MOST_CAPTURES = 64, MOST_LIGHTS = 4096 };
@@ -44,18 +45,6 @@ const struct relume_tableau_info *relume_tableau_info(const relume_tableau *tabl
 relume_rig *relume_tableau_rig(relume_tableau *tableau)
 {
     return tableau->rig;
-}
-
-bool relume_tableau_is(const char *path)
-{
-    const size_t n = strlen(path);
-    jvalue *root = NULL;
-    if (n < 5 || strcmp(path + n - 5, ".json") || jvalue_load(&root, path, NULL))
-        return false;
-    const char *format = jvalue_text(jvalue_member(root, "format"));
-    const bool is = format && !strcmp(format, FORMAT);
-    jvalue_free(&root);
-    return is;
 }
 
 // ---------------------------------------------------------------- the file
@@ -118,7 +107,7 @@ static relume_status read_capture(relume_tableau *t, int number)
     e->name = name_of(entry, file);
     char *path = path_beside(t->path, file);
     relume_status status = e->name && path ? jvalue_check_known(entry, known, log) : RELUME_ENOMEM;
-    if (!status && relume_tableau_is(path))
+    if (!status && relume_kind_of(path) == RELUME_KIND_SCENE)
         status = log_fail(log, RELUME_EFORMAT,
                           "'%s' is a scene file itself; name what is in it here instead", file);
     if (!status)

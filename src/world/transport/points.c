@@ -6,8 +6,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "core/math/distribution.h"
 #include "core/math/random.h"
-#include "world/transport/bright.h"
 
 // The digits of i in a base, mirrored at the point.
 static double mirrored(size_t i, size_t base)
@@ -18,11 +18,12 @@ static double mirrored(size_t i, size_t base)
     return sum;
 }
 
-static void put(struct point *p, const struct mesh *mesh, const struct bright *areas, size_t i)
+static void put(struct point *p, const struct mesh *mesh, const struct distribution *areas,
+                size_t i)
 {
     vec3 corner[3];
     size_t triangle = 0;
-    (void)bright_draw(&triangle, areas, mirrored(i, 2));
+    (void)distribution_draw(&triangle, areas, mirrored(i, 2));
     mesh_corners(corner, mesh, triangle);
     const double r = sqrt(mirrored(i + 1, 3)), s = mirrored(i + 1, 5);  // (Turk 1990)
     const double u = r * (1.0 - s), v = r * s;
@@ -35,7 +36,7 @@ static void put(struct point *p, const struct mesh *mesh, const struct bright *a
 
 static relume_status spread(struct points *out, const struct mesh *mesh, size_t count)
 {
-    struct bright areas = {0};
+    struct distribution areas = {0};
     double *area = mem_array(mesh->triangle_count, sizeof *area), all = 0.0;
     *out = (struct points){0};
     if (!area)
@@ -47,7 +48,7 @@ static relume_status spread(struct points *out, const struct mesh *mesh, size_t 
         area[i] = isfinite(twice) ? 0.5 * twice : 0.0;
         all += area[i];
     }
-    bright_take(&areas, area, mesh->triangle_count);
+    distribution_make(&areas, area, mesh->triangle_count);
     if (all > 0.0 && count > 0)
         out->at = mem_zeroed(count, sizeof *out->at);
     relume_status status = all > 0.0 && count > 0 && !out->at ? RELUME_ENOMEM : RELUME_OK;
@@ -56,7 +57,7 @@ static relume_status spread(struct points *out, const struct mesh *mesh, size_t 
         put(&out->at[i], mesh, &areas, i);
         out->at[i].area = all / (double)count;
     }
-    bright_forget(&areas);
+    distribution_free(&areas);
     return status;
 }
 

@@ -2,8 +2,8 @@
 #include "world/transport/scenery.h"
 
 #include "core/base/memory.h"
+#include "core/math/distribution.h"
 #include "shape/mesh/places.h"
-#include "world/transport/bright.h"
 
 #include <relume/relight/view.h>
 #include <string.h>
@@ -25,8 +25,8 @@ struct scenery {
     int across, down;  // vertices
     struct mesh mesh;
     tracer *tracer;
-    float (*sent)[3];      // [vertices]
-    struct bright bright;  // triangles, and behind them vertices of the background
+    float (*sent)[3];             // [vertices]
+    struct distribution senders;  // triangles, and behind them vertices of the background
     struct relume_image far, relit;
 };
 
@@ -40,7 +40,7 @@ void scenery_destroy(struct scenery **c)
     mesh_free(&old->mesh);
     relume_image_destroy(&old->far);
     relume_image_destroy(&old->relit);
-    bright_forget(&old->bright);
+    distribution_free(&old->senders);
     mem_free(old->sent);
     mem_free(old);
 }
@@ -233,7 +233,7 @@ static void mean_of_block(float rgb[3], const struct scenery *c, const struct re
         rgb[k] = (float)fmax(sum[k] / (c->block * c->block), 0.0);
 }
 
-// ---------------------------------------------------------------- what is bright
+// ---------------------------------------------------------------- senders of light
 
 static size_t background_count(const struct scenery *c)
 {
@@ -288,7 +288,7 @@ static bool is_background(const struct scenery *c, size_t block)
     return c->far.data[3 * (y * (size_t)c->width + x)] > 0.0f;
 }
 
-static relume_status find_bright(struct scenery *c, vec3 middle)
+static relume_status find_senders(struct scenery *c, vec3 middle)
 {
     const size_t triangles = c->mesh.triangle_count, blocks = background_count(c);
     double *light = mem_array(triangles + blocks, sizeof *light);
@@ -298,7 +298,7 @@ static relume_status find_bright(struct scenery *c, vec3 middle)
         light[i] = light_of(c, i, middle);
     for (size_t i = 0; i < blocks; i++)
         light[triangles + i] = is_background(c, i) ? luminous(c->sent[i]) * block_angle(c, i) : 0.0;
-    bright_take(&c->bright, light, triangles + blocks);
+    distribution_make(&c->senders, light, triangles + blocks);
     return RELUME_OK;
 }
 
@@ -306,7 +306,7 @@ bool scenery_draw(vec3 *towards, size_t *source, const struct scenery *c, vec3 o
                   const double random[3])
 {
     vec3 corner[3];
-    if (!bright_draw(source, &c->bright, random[0]))
+    if (!distribution_draw(source, &c->senders, random[0]))
         return false;
     if (*source >= c->mesh.triangle_count) {
         *towards = block_direction(c, *source - c->mesh.triangle_count, random[1], random[2]);
@@ -326,7 +326,7 @@ double scenery_density(const struct scenery *c, const struct scenery_hit *hit, v
     vec3 corner[3];
     if (hit->source >= c->mesh.triangle_count + background_count(c))
         return 0.0;
-    const double chance = bright_chance(&c->bright, hit->source);
+    const double chance = distribution_chance(&c->senders, hit->source);
     if (hit->source >= c->mesh.triangle_count)
         return chance / fmax(block_angle(c, hit->source - c->mesh.triangle_count), 1e-12);
     mesh_corners(corner, &c->mesh, hit->source);
@@ -348,7 +348,7 @@ relume_status scenery_light(struct scenery *c, const struct relume_image *relit,
     for (int row = 0; row < c->down; row++)
         for (int column = 0; column < c->across; column++)
             mean_of_block(c->sent[vertex_of(c, column, row)], c, &c->relit, column, row);
-    return find_bright(c, middle);
+    return find_senders(c, middle);
 }
 
 static void far_value(float rgb[3], const struct scenery *c, vec3 direction)

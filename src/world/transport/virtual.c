@@ -7,8 +7,8 @@
 #include "world/transport/virtual.h"
 
 #include "core/base/memory.h"
+#include "core/math/distribution.h"
 #include "core/math/random.h"
-#include "world/transport/bright.h"
 
 static double luminous(const float rgb[3])
 {
@@ -31,7 +31,7 @@ static struct triangle_of triangle_of(const struct mesh *mesh, size_t i)
 
 // What arrives of each triangle, and behind them of each piece of the background, somewhere about
 // the objects.
-static relume_status find_bright(struct bright *out, const struct world *w)
+static relume_status find_senders(struct distribution *out, const struct world *w)
 {
     const struct mesh *mesh = scenery_mesh(w->scenery);
     const struct bounds b = mesh_bounds(w->mesh);
@@ -54,7 +54,7 @@ static relume_status find_bright(struct bright *out, const struct world *w)
     }
     for (size_t i = 0; i < triangles + pieces; i++)
         light[i] = isfinite(light[i]) ? light[i] : 0.0;
-    bright_take(out, light, triangles + pieces);
+    distribution_make(out, light, triangles + pieces);
     return RELUME_OK;
 }
 
@@ -96,23 +96,23 @@ relume_status virtual_of_scene(struct virtual_light *out, size_t *found, const s
                                size_t count)
 {
     const size_t triangles = scenery_mesh(w->scenery)->triangle_count;
-    struct bright bright = {0};
-    const relume_status status = find_bright(&bright, w);
+    struct distribution senders = {0};
+    const relume_status status = find_senders(&senders, w);
     *found = 0;
     for (size_t i = 0; i < count && !status; i++) {
         struct random r = random_stream(4, i, 0);
         const double u = random_next(&r), inside[2] = {random_next(&r), random_next(&r)};
         size_t source;
-        if (!bright_draw(&source, &bright, ((double)i + u) / (double)count))
+        if (!distribution_draw(&source, &senders, ((double)i + u) / (double)count))
             break;
-        const double share = per(bright_chance(&bright, source), count);
+        const double share = per(distribution_chance(&senders, source), count);
         if (source >= triangles)
             put_far(&out[i], w, source - triangles, share, inside[0], inside[1]);
         else
             put_near(&out[i], w, source, share, inside, i);
         *found = i + 1;
     }
-    bright_forget(&bright);
+    distribution_free(&senders);
     return status;
 }
 
@@ -152,7 +152,7 @@ relume_status virtual_senders(struct sender **out, size_t *found, const struct w
 relume_status virtual_of_senders(struct virtual_light *out, size_t *number, size_t *found,
                                  const struct sender *senders, size_t n, size_t count)
 {
-    struct bright bright = {0};
+    struct distribution light_sent = {0};
     double *light = mem_array(n, sizeof *light);
     *found = 0;
     if (!light)
@@ -161,19 +161,20 @@ relume_status virtual_of_senders(struct virtual_light *out, size_t *number, size
         const double sent = luminous(senders[i].sent);
         light[i] = isfinite(sent) && sent > 0.0 ? sent * senders[i].point.area : 0.0;
     }
-    bright_take(&bright, light, n);
+    distribution_make(&light_sent, light, n);
     for (size_t i = 0; i < count; i++) {
         struct random r = random_stream(5, i, 0);
-        if (!bright_draw(&number[i], &bright, ((double)i + random_next(&r)) / (double)count))
+        if (!distribution_draw(&number[i], &light_sent,
+                               ((double)i + random_next(&r)) / (double)count))
             break;
         const struct sender *s = &senders[number[i]];
-        out[i] = (struct virtual_light){.place = s->site.start,
-                                        .normal = s->point.normal,
-                                        .size = s->point.area *
-                                                per(bright_chance(&bright, number[i]), count)};
+        out[i] = (struct virtual_light){
+            .place = s->site.start,
+            .normal = s->point.normal,
+            .size = s->point.area * per(distribution_chance(&light_sent, number[i]), count)};
         *found = i + 1;
     }
-    bright_forget(&bright);
+    distribution_free(&light_sent);
     return RELUME_OK;
 }
 

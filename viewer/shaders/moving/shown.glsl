@@ -9,8 +9,8 @@ uniform vec3 times;        // ... and this
 uniform Transfer display;  // what the codes are interpolated in
 uniform vec3 rgb;          // the light, linear
 uniform ivec2 origin;      // of the picture in the view
-uniform bool exchanges;    // the light is the sun of an environment ...
-uniform sampler2D whole;   // ... whose picture this is; twin: exchange_sun of src/relight/frame/relighter.c
+uniform bool exchanges;    // the light is a bright source of an environment ...
+uniform sampler2D whole;   // ... whose picture this is; twin: exchange_bright_source of src/relight/frame/relighter.c
 out vec4 color;
 
 vec3 encoded(vec3 v)

@@ -2,7 +2,7 @@
 #ifndef ENCODE_CODED_ROWS_H
 #define ENCODE_CODED_ROWS_H
 
-#include "encode/encode/groups.h"
+#include "encode/parts/groups.h"
 #include "encode/encode/material.h"
 
 // What was added up of the rows of a view.

@@ -2,7 +2,7 @@
 #ifndef ENCODE_RATE_H
 #define ENCODE_RATE_H
 
-#include "encode/encode/groups.h"
+#include "encode/parts/groups.h"
 #include "format/lossy/lossy.h"
 
 #include <relume/capture.h>

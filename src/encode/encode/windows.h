@@ -1,6 +1,6 @@
-// look.h - components and pictures compared by windows of a view
-#ifndef ENCODE_LOOK_H
-#define ENCODE_LOOK_H
+// windows.h - components and pictures compared by windows of a view
+#ifndef ENCODE_WINDOWS_H
+#define ENCODE_WINDOWS_H
 
 #include "encode/encode/rate.h"
 

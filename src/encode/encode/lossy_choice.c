@@ -1,8 +1,9 @@
-// decide.c - principal components, or the pictures themselves: what takes fewer bytes with loss
+// lossy_choice.c - principal components, or the pictures themselves: what takes fewer bytes with
+// loss
 #include <relume/encode/pack_encode.h>
 
 #include "core/base/params.h"
-#include "encode/encode/look.h"
+#include "encode/encode/windows.h"
 #include "encode/encode/rate.h"
 #include "format/team/gather.h"
 

@@ -1,5 +1,5 @@
-// look.c - windows of a view, coded as components and as pictures
-#include "encode/encode/look.h"
+// windows.c - windows of a view, coded as components and as pictures
+#include "encode/encode/windows.h"
 
 #include "core/base/memory.h"
 #include "core/math/scalar.h"

@@ -1,4 +1,4 @@
-// decide.c - what encode chooses by itself: domain, number of coefficients, storage
+// coder_choice.c - what encode chooses by itself: domain, number of coefficients, storage
 //
 // All is judged on samples of the capture as `relume eval` judges pictures: display values,
 // clipped, PSNR of each light, their mean. The usual choice stays where it reaches the quality that

@@ -1,8 +1,8 @@
-// test_look.c - components and pictures, compared by lights that are left out
+// test_windows.c - components and pictures, compared by lights that are left out
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "encode/encode/look.h"
+#include "encode/encode/windows.h"
 #include "in_folder.h"
 
 enum { LIGHTS = 24, SIDE = 48 };

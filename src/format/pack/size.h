@@ -2,7 +2,7 @@
 #ifndef PACK_SIZE_H
 #define PACK_SIZE_H
 
-#include <relume/pack.h>
+#include <relume/format/pack_write.h>
 
 // Bytes of the file that relume_pack_write would write of the same. Words and depth are measured
 // without being written; only what is compressed (preview, masks, reduced levels) is packed for it.

@@ -8,6 +8,9 @@
 //
 // Searches by it: the quantiser of planes (encode/encode/rate.c), the step and the quality of web
 // folders (exchange/formats/web_step.c), the quantiser of an AVIF sheet (site/publish/avif.c).
+//
+// The search for a visible difference (encode/encode/jnd_search.c) is another: its two sides may
+// cross, since that difference does not always fall with the quality, and it keeps the best file.
 #ifndef MATH_TARGET_SEARCH_H
 #define MATH_TARGET_SEARCH_H
 

@@ -5,6 +5,8 @@
 #include "core/base/thread.h"
 #include "image/image/exr.h"
 
+#include <sys/stat.h>
+
 static char folder[64], path[96];
 
 static int setup(void **state)
@@ -96,6 +98,11 @@ static void round_trip(enum exr_codec codec, enum exr_sample sample, int width, 
                                      .context = &b};
     exr_file *file;
     CHECK_OK(exr_write(path, NULL, parts, 2, true, threads, NULL));
+    uint64_t expected;
+    struct stat written;
+    CHECK_OK(exr_size(&expected, parts, 2, threads, NULL));
+    assert_int_equal(stat(path, &written), 0);
+    assert_int_equal(expected, written.st_size);
     CHECK_OK(exr_open(&file, path, NULL, NULL, NULL));
     assert_int_equal(exr_part_count(file), 2);
     for (int i = 0; i < 2; i++) {

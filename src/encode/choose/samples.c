@@ -5,100 +5,130 @@
 #include "core/base/thread.h"
 #include "core/math/random.h"
 #include "encode/choose/samples.h"
-#include "format/coder/coefficients.h"
+#include "encode/choose/sampling.h"
 #include "image/image/image.h"
 
-#include <relume/format/team.h>
 #include <string.h>
 
 enum { DEFAULT_PIXELS = 65536, LEAST_PIXELS = 4096, ONE_LIGHT = 1 << 20 };
 
-// Of all pixels those that are looked at, by number over all views, ascending.
-struct chosen {
-    size_t *pixel;
-    size_t count;
-};
-
-struct sampler {
-    struct relume_samples *out;
-    struct chosen chosen;  // in the share that is read
-    size_t next;
-    relume_table *table;  // of the view in progress
-    size_t *place;        // [count]: where pixels lie in a band
-    size_t taken;         // of them
-};
-
-// What all members know.
-struct sampling {
-    const relume_capture *capture;
-    struct relume_encode_params p;
-    struct relume_transfer display;
-    struct chosen chosen;
+// A view that is read.
+struct view_reader {
+    struct sampling *g;
+    const float *mask;  // or NULL: all of it counts
+    relume_table *table;
+    size_t first;   // the number of its first pixel
+    size_t *place;  // [next]: where pixels lie in a band
+    size_t taken;   // of them
 };
 
 // One pixel from each of `count` equal runs, at a place that no pattern of the image can follow.
-static void choose(const struct chosen *c, size_t pixels)
+static void choose_pixels(size_t *pixel, size_t count, size_t pixels)
 {
-    struct random random = random_stream(1, pixels, c->count);
-    for (size_t i = 0; i < c->count; i++) {
-        const double at = ((double)i + random_next(&random)) * (double)pixels / (double)c->count;
-        c->pixel[i] = at < (double)pixels ? (size_t)at : pixels - 1;
+    struct random random = random_stream(1, pixels, count);
+    for (size_t i = 0; i < count; i++) {
+        const double at = ((double)i + random_next(&random)) * (double)pixels / (double)count;
+        pixel[i] = at < (double)pixels ? (size_t)at : pixels - 1;
     }
 }
 
-static void take_light(void *context, size_t item, int worker)
+static void copy_light(void *context, size_t item, int worker)
 {
     (void)worker;
-    const struct sampler *s = context;
-    for (size_t k = 0; k < s->taken; k++)
-        relume_table_planes(s->table, (int)item, s->place[k], 1,
-                            s->out->data + (item * s->chosen.count + s->out->pixels + k) * 3, 1);
+    const struct view_reader *r = context;
+    float *row = sampling_row(r->g, item) + 3 * r->g->shared;
+    for (size_t k = 0; k < r->taken; k++)
+        relume_table_planes(r->table, (int)item, r->place[k], 1, row + 3 * k, 1);
 }
 
-// Take the chosen pixels of a band whose first pixel has the number `first`.
-static void take(struct sampler *s, const struct relume_image *mask, size_t n, size_t first,
-                 size_t view_first, int threads)
+// The chosen pixels of a band whose first pixel has the number `first`.
+static void copy_band(struct view_reader *r, size_t n, size_t first)
 {
-    s->taken = 0;
-    for (; s->next < s->chosen.count && s->chosen.pixel[s->next] < first + n; s->next++) {
-        const size_t x = s->chosen.pixel[s->next] - first;
-        if (!mask->data || mask->data[first - view_first + x] > 0.5f)
-            s->place[s->taken++] = x;
+    struct sampling *g = r->g;
+    r->taken = 0;
+    for (; g->next < g->end && g->pixel[g->next] < first + n; g->next++) {
+        const size_t x = g->pixel[g->next] - first;
+        if (!r->mask || r->mask[first - r->first + x] > 0.5f)
+            r->place[r->taken++] = x;
     }
-    thread_for(threads, s->taken ? (size_t)s->out->lights : 0, take_light, s);
-    s->out->pixels += s->taken;
+    thread_for(g->p.threads, r->taken ? (size_t)g->out->lights : 0, copy_light, r);
+    g->shared += r->taken;
 }
 
-static relume_status sample_view(struct sampler *s, const struct sampling *g, int view, int row,
-                                 int end)
+static relume_status sample_view(struct sampling *g, int view, size_t *place)
 {
     const struct relume_encode_params *p = &g->p;
     const size_t width = (size_t)relume_capture_width(g->capture);
     const int height = relume_capture_height(g->capture);
-    const size_t view_first = (size_t)view * width * (size_t)height;
+    const int views = relume_capture_manifest(g->capture)->views;
+    const int end = g->share.rows ? g->share.row + g->share.rows : height;
+    struct view_reader r = {.g = g, .first = (size_t)view * width * (size_t)height, .place = place};
     struct relume_image mask;
     relume_status status = relume_capture_mask(&mask, g->capture, view, p->log);
+    r.mask = status ? NULL : mask.data;
     if (!status)
         status = relume_table_open(
-            &s->table, g->capture, view,
+            &r.table, g->capture, view,
             relume_table_params(.log = p->log, .display = g->display, .threads = p->threads));
     if (!status)
-        status = relume_table_skip(s->table, row);
-    for (; !status && row < end; row += BAND_ROWS) {
+        status = relume_table_skip(r.table, g->share.row);
+    for (int row = g->share.row; !status && row < end; row += BAND_ROWS) {
         const int rows = end - row < BAND_ROWS ? end - row : BAND_ROWS;
-        status = relume_table_fetch(s->table, rows);
+        status = relume_table_fetch(r.table, rows);
         if (status)
             break;
-        take(s, &mask, (size_t)rows * width, view_first + (size_t)row * width, view_first,
-             p->threads);
+        copy_band(&r, (size_t)rows * width, r.first + (size_t)row * width);
         image_forget(&mask, row, rows);
-        const int views = relume_capture_manifest(g->capture)->views;
         if (!log_progress(p->log, "sampling", (view + (row + rows) / (double)height) / views))
             status = RELUME_ECANCEL;
     }
-    relume_table_destroy(&s->table);
+    relume_table_destroy(&r.table);
     relume_image_destroy(&mask);
     return status;
+}
+
+// ---------------------------------------------------------------- shares
+
+// Which of the chosen pixels lie in the share.
+static relume_status begin_share(void *context, int member)
+{
+    struct sampling *g = context;
+    const size_t width = (size_t)relume_capture_width(g->capture);
+    const size_t height = (size_t)relume_capture_height(g->capture);
+    struct encode_share *share = &g->share;
+    *share = (struct encode_share){.views = relume_capture_manifest(g->capture)->views};
+    const relume_status status =
+        g->p.team ? encode_share_find(share, member + 1, g->p.team->members, g->capture, g->p.log)
+                  : RELUME_OK;
+    if (status)
+        return status;
+    const size_t rows = share->rows ? (size_t)share->rows : height;
+    const size_t first = ((size_t)share->first * height + (size_t)share->row) * width;
+    const size_t end = first + ((size_t)(share->views - 1) * height + rows) * width;
+    for (g->next = 0; g->next < g->count && g->pixel[g->next] < first;)
+        g->next++;
+    for (g->end = g->count; g->end > g->next && g->pixel[g->end - 1] >= end;)
+        g->end--;
+    g->shared = 0;
+    return RELUME_OK;
+}
+
+static relume_status sample_share(void *context)
+{
+    struct sampling *g = context;
+    size_t *place = mem_array(g->end - g->next, sizeof *place);
+    relume_status status = place ? RELUME_OK : RELUME_ENOMEM;
+    for (int v = 0; !status && v < g->share.views; v++)
+        status = sample_view(g, g->share.first + v, place);
+    mem_free(place);
+    return status;
+}
+
+static relume_status add_share(void *context)
+{
+    struct sampling *g = context;
+    g->out->pixels += g->shared;
+    return RELUME_OK;
 }
 
 // Masked pixels left gaps at the end of every light's row.
@@ -109,107 +139,18 @@ static void close_gaps(struct relume_samples *s, size_t count)
                 s->pixels * 3 * sizeof *s->data);
 }
 
-// Those of the chosen pixels that lie in a share of the work.
-static relume_status sample_share(struct relume_samples *out, const struct sampling *g,
-                                  const struct encode_share *share)
+static relume_status sample_pixels(struct sampling *g)
 {
-    const size_t width = (size_t)relume_capture_width(g->capture);
-    const size_t height = (size_t)relume_capture_height(g->capture);
-    const size_t rows = (size_t)(share->rows ? share->rows : relume_capture_height(g->capture));
-    const size_t first = ((size_t)share->first * height + (size_t)share->row) * width;
-    const size_t end = first + ((size_t)(share->views - 1) * height + rows) * width;
-    size_t from = 0, to = g->chosen.count;
-    while (from < to && g->chosen.pixel[from] < first)
-        from++;
-    while (to > from && g->chosen.pixel[to - 1] >= end)
-        to--;
-    *out = (struct relume_samples){.lights = relume_capture_manifest(g->capture)->lights};
-    struct sampler s = {.out = out, .chosen = {g->chosen.pixel + from, to - from}};
-    s.place = mem_array(s.chosen.count, sizeof *s.place);
-    out->data = mem_array((size_t)out->lights * s.chosen.count * 3, sizeof *out->data);
-    relume_status status = s.place && out->data ? RELUME_OK : RELUME_ENOMEM;
-    for (int v = share->first; !status && v < share->first + share->views; v++)
-        status = sample_view(&s, g, v, share->row, share->row + (int)rows);
-    mem_free(s.place);
+    static const struct team_work work = {begin_share, sample_share, add_share};
+    struct relume_samples *out = g->out;
+    out->data = mem_array((size_t)out->lights * g->count, 3 * sizeof *out->data);
+    const relume_status status =
+        out->data ? team_share(g->p.team, "samples", &work, g, &sampling_bytes, g, g->p.log)
+                  : RELUME_ENOMEM;
     if (status)
         relume_samples_destroy(out);
     else
-        close_gaps(out, s.chosen.count);
-    return status;
-}
-
-// ---------------------------------------------------------------- of a team
-
-// A piece is the number of pixels, and then the samples of its share.
-static relume_status make_piece(void *context, int member, struct relume_buffer *piece)
-{
-    const struct sampling *g = context;
-    struct encode_share share;
-    struct relume_samples own = {0};
-    relume_status status =
-        encode_share_find(&share, member + 1, g->p.team->members, g->capture, g->p.log);
-    if (!status)
-        status = sample_share(&own, g, &share);
-    if (status)
-        return status;
-    const uint64_t pixels = own.pixels;
-    const size_t bytes = own.pixels * (size_t)own.lights * 3 * sizeof *own.data;
-    if ((piece->data = mem_array(sizeof pixels + bytes, 1))) {
-        piece->size = sizeof pixels + bytes;
-        memcpy(piece->data, &pixels, sizeof pixels);
-        memcpy(piece->data + sizeof pixels, own.data, bytes);
-    }
-    relume_samples_destroy(&own);
-    return piece->data ? RELUME_OK : RELUME_ENOMEM;
-}
-
-// The pixels of a piece; more than there can be where it is none.
-static size_t piece_pixels(const struct relume_buffer *piece, size_t lights)
-{
-    uint64_t pixels = 0;
-    if (piece->size >= sizeof pixels)
-        memcpy(&pixels, piece->data, sizeof pixels);
-    return piece->size >= sizeof pixels && pixels <= piece->size &&
-                   piece->size == sizeof pixels + pixels * lights * 3 * sizeof(float)
-               ? (size_t)pixels
-               : SIZE_MAX;
-}
-
-static relume_status join_pieces(struct relume_samples *out, const struct sampling *g,
-                                 const struct relume_buffer *piece)
-{
-    const size_t lights = (size_t)relume_capture_manifest(g->capture)->lights;
-    size_t all = 0, before = 0;
-    for (int i = 0; i < g->p.team->members; i++) {
-        const size_t pixels = piece_pixels(&piece[i], lights);
-        if (pixels > g->chosen.count - all)
-            return log_fail(g->p.log, RELUME_EDAMAGED,
-                            "the samples of part %d are not of this capture; run it again", i + 1);
-        all += pixels;
-    }
-    *out = (struct relume_samples){.lights = (int)lights, .pixels = all};
-    out->data = mem_array(lights * all * 3, sizeof *out->data);
-    for (int i = 0; out->data && i < g->p.team->members; i++) {
-        const size_t pixels = piece_pixels(&piece[i], lights), row = pixels * 3 * sizeof(float);
-        for (size_t l = 0; l < lights; l++)
-            memcpy(out->data + (l * all + before) * 3, piece[i].data + sizeof(uint64_t) + l * row,
-                   row);
-        before += pixels;
-    }
-    return out->data ? RELUME_OK : RELUME_ENOMEM;
-}
-
-static relume_status sample_together(struct relume_samples *out, struct sampling *g)
-{
-    const struct relume_team *team = g->p.team;
-    struct relume_buffer *piece = mem_zeroed((size_t)team->members, sizeof *piece);
-    relume_status status =
-        piece ? team->share(team->user, "samples", make_piece, g, piece) : RELUME_ENOMEM;
-    if (!status)
-        status = join_pieces(out, g, piece);
-    for (int i = 0; piece && i < team->members; i++)
-        relume_buffer_destroy(&piece[i]);
-    mem_free(piece);
+        close_gaps(out, g->count);
     return status;
 }
 
@@ -223,18 +164,17 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
     struct sampling g = {.capture = capture,
                          .p = PARAMS_WORK(relume_encode_params, params),
                          .display = {.curve = RELUME_CURVE_LINEAR},
-                         .chosen = {.count = want < all ? want : all}};
+                         .count = want < all ? want : all,
+                         .out = out};
     *out = (struct relume_samples){.lights = m->lights};
     if (relume_encode_domain(capture, g.p.domain) == RELUME_DOMAIN_DISPLAY)
         g.display = relume_encode_curve(capture, g.p.display);
-    g.chosen.pixel = mem_array(g.chosen.count, sizeof *g.chosen.pixel);
-    if (!g.chosen.pixel)
+    g.pixel = mem_array(g.count, sizeof *g.pixel);
+    if (!g.pixel)
         return RELUME_ENOMEM;
-    choose(&g.chosen, all);
-    const relume_status status =
-        g.p.team ? sample_together(out, &g)
-                 : sample_share(out, &g, &(const struct encode_share){.views = m->views});
-    mem_free(g.chosen.pixel);
+    choose_pixels(g.pixel, g.count, all);
+    const relume_status status = sample_pixels(&g);
+    mem_free(g.pixel);
     return status;
 }
 
@@ -252,27 +192,4 @@ size_t samples_enough(int lights)
     return most < LEAST_PIXELS     ? LEAST_PIXELS
            : most < DEFAULT_PIXELS ? (size_t)most
                                    : DEFAULT_PIXELS;
-}
-
-relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
-                                 const relume_capture *capture,
-                                 const struct relume_coder_params *coder,
-                                 const struct relume_encode_params *encode)
-{
-    const struct relume_manifest *m = relume_capture_manifest(capture);
-    struct relume_coder_params p = PARAMS_WORK(relume_coder_params, coder);
-    struct relume_samples samples = {0};
-    p.hemispherical = relume_capture_hemispherical(capture);
-    p.pole_y = relume_capture_pole_y(capture);
-    p.threads = encode ? encode->threads : 0;
-    relume_status status = RELUME_OK;
-    *out = NULL;
-    if (basis->learned || p.choose) {
-        status = relume_samples_read(&samples, capture, samples_enough(m->lights), encode);
-        p.samples = &samples;
-    }
-    if (!status)
-        status = relume_coder_create(out, basis, m->directions, m->lights, &p);
-    relume_samples_destroy(&samples);
-    return status;
 }

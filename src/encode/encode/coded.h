@@ -4,6 +4,12 @@
 
 #include "encode/encode/material.h"
 
+// Returns true for lossy planes.
+static inline bool encode_is_coded(const struct relume_pack_encode_params *p)
+{
+    return p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0;
+}
+
 // Writes `path`, or by the writer of m->p, with what has its steps by m->p->psnr_db or
 // bytes_per_pixel. Of a part these are the tiles of its share; what all parts must know
 // is shared with the team, each part making what its own views say; without a team all is made

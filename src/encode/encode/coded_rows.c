@@ -5,7 +5,6 @@
 #include "encode/encode/coded_rows.h"
 
 #include "core/base/memory.h"
-#include "format/team/gather.h"
 
 #include <float.h>
 #include <math.h>
@@ -35,7 +34,7 @@ relume_status coded_rows_create(struct coded_rows *out, struct material *m,
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         out->total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    return RELUME_OK;
+    return row_counts_create(&out->counts, m->capture, m->coder, groups->view);
 }
 
 void coded_rows_destroy(struct coded_rows *r)
@@ -44,6 +43,8 @@ void coded_rows_destroy(struct coded_rows *r)
     mem_free(r->sum);
     mem_free(r->shone);
     mem_free(r->total);
+    relume_coefficients_destroy(&r->empty);
+    row_counts_destroy(&r->counts);
 }
 
 // ---------------------------------------------------------------- rows of tiles
@@ -116,102 +117,75 @@ relume_status coded_rows_load_view(struct coded_rows *r, int view)
 
 // ---------------------------------------------------------------- ranges and reports
 
-// Calls `body` for the views of which a member counts rows of tiles, from `first` on.
-static relume_status each_counted(struct coded_rows *r, int member,
-                                  relume_status (*body)(void *user, const struct lossy_cut *cut,
-                                                        int view, int first, int end),
-                                  void *user)
+// Which rows of tiles of a group a member counts.
+static struct rows counted(const struct coded_rows *r, int group, int member)
 {
-    const struct view_groups *g = r->groups;
-    const struct group_share share = groups_share(g, member, r->team ? r->team->members : 1);
-    relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < g->count; i++) {
-        const struct group_share tiles = groups_tiles(g, i, share);
-        const int first = upwards(tiles.first, &g->cut[i]), end = upwards(tiles.end, &g->cut[i]);
-        for (int k = g->begin[i]; !status && first < end && k < g->begin[i + 1]; k++)
-            status = body(user, &g->cut[i], g->view[k], first, end);
-    }
-    return status;
+    const struct lossy_cut *cut = &r->groups->cut[group];
+    const struct group_share tiles =
+        groups_tiles(r->groups, group, groups_share(r->groups, member, team_members(r->team)));
+    const int first = upwards(tiles.first, cut);
+    return (struct rows){first, upwards(tiles.end, cut) - first};
 }
 
-// Of the counted rows of a view; a byte for each light and the error of each row follow.
-struct put_sums {
-    double root;
-    uint64_t measured, lit, pixels, black, clipped, always_clipped, repaired;
-};
-
-struct putting {
-    struct coded_rows *r;
-    struct relume_buffer *out;
-    struct range *total;
-};
-
-static relume_status put_view(void *user, const struct lossy_cut *cut, int view, int first, int end)
-{
-    const struct putting *p = user;
-    struct coded_rows *r = p->r;
-    const relume_status status = encode_rows(r, cut, view, first, end);
-    if (status)
-        return status;
-    const relume_coefficients *c = r->m->coefficients[view];
-    const struct relume_encode_census *s = &c->report.census;
-    const struct put_sums sums = {
-        c->some.root_sum, c->some.error_count, c->some.lit_count, s->pixels,
-        s->black,         s->clipped,          s->always_clipped, s->repaired};
-    const size_t lights = (size_t)relume_coder_info(c->info.coder)->lights;
-    const size_t planes = (size_t)c->info.planes;
-    const struct rows rows = covered(r, cut, first, end);
-    const struct relume_writer w = relume_buffer_writer(p->out);
-    const size_t bands = ((size_t)rows.count + BAND_ROWS - 1) / BAND_ROWS;
-    const struct range *band = c->band + (size_t)rows.first / BAND_ROWS * planes;
-    for (size_t i = 0; i < bands * planes; i++)
-        p->total[i % planes] = range_join(p->total[i % planes], band[i]);
-    return w.write(w.user, &sums, sizeof sums, p->out->size) &&
-                   w.write(w.user, c->some.lit, lights, p->out->size) &&
-                   w.write(w.user, c->some.error + rows.first,
-                           (size_t)rows.count * sizeof *c->some.error, p->out->size)
-               ? RELUME_OK
-               : RELUME_ENOMEM;
-}
-
-static relume_status make_ranges(void *context, int member, struct relume_buffer *out)
+static relume_status begin_share(void *context, int member)
 {
     struct coded_rows *r = context;
-    const size_t planes = (size_t)relume_coder_info(r->m->coder)->planes;
-    struct putting p = {r, out, mem_array(planes, sizeof *p.total)};
-    const struct relume_writer w = relume_buffer_writer(out);
-    if (!p.total)
-        return RELUME_ENOMEM;
-    for (size_t i = 0; i < planes; i++)
-        p.total[i] = (struct range){FLT_MAX, -FLT_MAX};
-    relume_status status = each_counted(r, member, put_view, &p);
-    if (!status && !w.write(w.user, p.total, planes * sizeof *p.total, out->size))
-        status = RELUME_ENOMEM;
-    mem_free(p.total);
+    const struct view_groups *g = r->groups;
+    struct row_counts *c = &r->counts;
+    memset(c->view, 0, (size_t)c->views * sizeof *c->view);
+    memset(c->lit, 0, (size_t)c->views * (size_t)c->lights * sizeof *c->lit);
+    for (int p = 0; p < c->planes; p++)
+        c->range[p] = (struct range){FLT_MAX, -FLT_MAX};
+    for (int i = 0; i < g->count; i++) {
+        const struct rows tiles = counted(r, i, member);
+        const struct rows rows = covered(r, &g->cut[i], tiles.first, tiles.first + tiles.count);
+        for (int k = g->begin[i]; tiles.count > 0 && k < g->begin[i + 1]; k++)
+            r->counts.view[g->view[k]] =
+                (struct view_counts){.row = rows.first, .rows = rows.count};
+    }
+    return RELUME_OK;
+}
+
+// Copies the sums of a view's rows, which were encoded last.
+static void count_view(struct coded_rows *r, int view)
+{
+    const relume_coefficients *c = r->m->coefficients[view];
+    const struct relume_encode_census *s = &c->report.census;
+    struct row_counts *to = &r->counts;
+    struct view_counts *v = &to->view[view];
+    const size_t lights = (size_t)to->lights, planes = (size_t)to->planes, at = (size_t)view;
+    const size_t bands = ((size_t)v->rows + BAND_ROWS - 1) / BAND_ROWS;
+    const struct range *band = c->band + (size_t)v->row / BAND_ROWS * planes;
+    v->sums =
+        (struct row_sums){c->some.root_sum, c->some.error_count, c->some.lit_count, s->pixels,
+                          s->black,         s->clipped,          s->always_clipped, s->repaired};
+    memcpy(to->lit + at * lights, c->some.lit, lights * sizeof *to->lit);
+    memcpy(to->error + at * (size_t)to->height + v->row, c->some.error + v->row,
+           (size_t)v->rows * sizeof *to->error);
+    for (size_t i = 0; i < bands * planes; i++)
+        to->range[i % planes] = range_join(to->range[i % planes], band[i]);
+}
+
+static relume_status count_share(void *context)
+{
+    struct coded_rows *r = context;
+    const struct view_groups *g = r->groups;
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < g->count; i++)
+        for (int k = g->begin[i]; !status && k < g->begin[i + 1]; k++) {
+            const struct view_counts *v = &r->counts.view[g->view[k]];
+            const int first = v->row / g->cut[i].side;
+            if (!v->rows)
+                continue;
+            status = encode_rows(r, &g->cut[i], g->view[k], first,
+                                 first + (v->rows + g->cut[i].side - 1) / g->cut[i].side);
+            if (!status)
+                count_view(r, g->view[k]);
+        }
     return status;
 }
 
-struct taking {
-    struct coded_rows *r;
-    const struct relume_buffer *piece;
-    size_t at;
-};
-
-static bool take(struct taking *t, void *to, size_t size)
-{
-    if (size > t->piece->size - t->at)
-        return false;
-    memcpy(to, t->piece->data + t->at, size);
-    t->at += size;
-    return true;
-}
-
-static bool is_count(uint64_t n)
-{
-    return n < (uint64_t)1 << 53;
-}
-
-static bool add_sums(struct rows_sum *to, const struct put_sums *s)
+static void add_sums(struct rows_total *to, const struct row_sums *s)
 {
     to->root += s->root;
     to->measured += (size_t)s->measured;
@@ -221,58 +195,31 @@ static bool add_sums(struct rows_sum *to, const struct put_sums *s)
     to->census.clipped += (size_t)s->clipped;
     to->census.always_clipped += (size_t)s->always_clipped;
     to->census.repaired += (size_t)s->repaired;
-    return s->root >= 0.0 && s->root < DBL_MAX && is_count(s->measured) && is_count(s->lit) &&
-           is_count(s->pixels) && is_count(s->black) && is_count(s->clipped) &&
-           is_count(s->always_clipped) && is_count(s->repaired);
 }
 
-static relume_status take_view(void *user, const struct lossy_cut *cut, int view, int first,
-                               int end)
-{
-    struct taking *t = user;
-    struct rows_sum *to = &t->r->sum[view];
-    const size_t lights = (size_t)relume_capture_manifest(t->r->m->capture)->lights;
-    bool *shone = t->r->shone + (size_t)view * lights;
-    struct put_sums sums;
-    if (!take(t, &sums, sizeof sums) || !add_sums(to, &sums))
-        return RELUME_EDAMAGED;
-    for (size_t i = 0; i < lights; i++) {
-        unsigned char lit;
-        if (!take(t, &lit, 1) || lit > 1)
-            return RELUME_EDAMAGED;
-        shone[i] |= lit != 0;
-    }
-    for (int y = covered(t->r, cut, first, end).count; y > 0; y--) {
-        double error;
-        if (!take(t, &error, sizeof error) || !(error >= 0.0 && error < DBL_MAX))
-            return RELUME_EDAMAGED;
-        to->error += error;
-    }
-    return RELUME_OK;
-}
-
-static relume_status take_ranges(void *context, int member, const struct relume_buffer *piece)
+static relume_status add_share(void *context)
 {
     struct coded_rows *r = context;
-    struct taking t = {r, piece, 0};
-    relume_status status = each_counted(r, member, take_view, &t);
-    for (int p = 0; !status && p < relume_coder_info(r->m->coder)->planes; p++) {
-        struct range range;
-        if (!take(&t, &range, sizeof range) || !(range.min >= -FLT_MAX && range.max <= FLT_MAX))
-            status = RELUME_EDAMAGED;
-        else
-            r->total[p] = range_join(r->total[p], range);
-    }
-    return status || t.at == piece->size ? status : RELUME_EDAMAGED;
+    const struct row_counts *c = &r->counts;
+    for (int i = 0; i < c->views; i++)
+        add_sums(&r->sum[i], &c->view[i].sums);
+    for (size_t i = 0; i < (size_t)c->views * (size_t)c->lights; i++)
+        r->shone[i] |= c->lit[i];
+    for (int p = 0; p < c->planes; p++)
+        r->total[p] = range_join(r->total[p], c->range[p]);
+    return RELUME_OK;
 }
 
 static struct relume_encode_report report_of(const struct coded_rows *r, int view)
 {
-    const struct rows_sum *s = &r->sum[view];
-    const int lights = relume_capture_manifest(r->m->capture)->lights;
+    const struct rows_total *s = &r->sum[view];
+    const int lights = r->counts.lights, height = r->counts.height;
     const double root = s->lit ? s->root / (double)s->lit : 0.0;
+    double error = 0.0;
+    for (int y = 0; y < height; y++)
+        error += r->counts.error[(size_t)view * (size_t)height + (size_t)y];
     struct relume_encode_report report = {
-        .fit_rms = s->measured ? sqrt(s->error / (double)s->measured) : 0.0,
+        .fit_rms = s->measured ? sqrt(error / (double)s->measured) : 0.0,
         .typical = root * root,
         .census = s->census,
     };
@@ -281,16 +228,31 @@ static struct relume_encode_report report_of(const struct coded_rows *r, int vie
     return report;
 }
 
+static relume_status set_header_view(struct coded_rows *r)
+{
+    struct material *m = r->m;
+    relume_status status = RELUME_OK;
+    if (!m->coefficients[0]) {
+        status = coefficients_create(&r->empty, m->coder, relume_capture_width(m->capture),
+                                     relume_capture_height(m->capture), m->encode);
+        if (!status)
+            coefficients_choose_steps(r->empty, r->total, r->masked, m->encode->step);
+        m->view[0].coefficients = r->empty;
+    }
+    return status;
+}
+
 relume_status coded_rows_find_steps(struct coded_rows *r)
 {
     struct material *m = r->m;
+    static const struct team_work work = {begin_share, count_share, add_share};
     const relume_status status =
-        team_gather(r->team, "ranges", make_ranges, take_ranges, r, m->p->log);
+        team_share(r->team, "ranges", &work, r, &row_counts_bytes, &r->counts, m->p->log);
     for (int i = 0; !status && i < m->views; i++) {
         m->report[i] = report_of(r, i);
         if (m->coefficients[i])
             coefficients_choose_steps(m->coefficients[i], r->total, r->masked, m->encode->step);
     }
     r->settled = !status;
-    return status;
+    return status ? status : set_header_view(r);
 }

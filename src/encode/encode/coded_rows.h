@@ -2,12 +2,13 @@
 #ifndef ENCODE_CODED_ROWS_H
 #define ENCODE_CODED_ROWS_H
 
-#include "encode/encode/groups.h"
+#include "encode/parts/groups.h"
+#include "encode/parts/row_counts.h"
 #include "encode/encode/material.h"
 
 // What was added up of the rows of a view.
-struct rows_sum {
-    double error, root;
+struct rows_total {
+    double root;
     size_t measured, lit;
     struct relume_encode_census census;  // without black images
 };
@@ -20,8 +21,10 @@ struct coded_rows {
     bool masked, settled;            // steps are known
     int most;                        // rows of tiles in a view
     bool *there;                     // [views][most]: rows of tiles that are encoded
-    struct rows_sum *sum;            // [views]
+    struct row_counts counts;        // of a share
+    struct rows_total *sum;          // [views], of all shares
     bool *shone;                     // [views][lights]: a sample is above 0
+    relume_coefficients *empty;      // with the steps of all views, for the header; or NULL
 };
 
 // To be destroyed also on failure. RELUME_ENOMEM.
@@ -34,7 +37,8 @@ void coded_rows_destroy(struct coded_rows *r);
 relume_status coded_rows_load(struct coded_rows *r, int group, struct group_share tiles);
 relume_status coded_rows_load_view(struct coded_rows *r, int view);
 // The steps, and the report of each view in m->report: each member of the team encodes the rows of
-// tiles of its share. Errors as above, and those of sharing.
+// tiles of its share. The first view has coefficients then, perhaps without any rows: a header says
+// by it what the planes are like. Errors as above, and of sharing.
 relume_status coded_rows_find_steps(struct coded_rows *r);
 
 #endif

@@ -7,15 +7,11 @@
 #include "encode/encode/coded.h"
 #include "encode/encode/material.h"
 #include "encode/encode/pyramid.h"
-#include "format/team/gather.h"
+#include "format/codebook/drawing.h"
+#include "format/team/array.h"
 
 #include <math.h>
 #include <string.h>
-
-static bool is_coded(const struct relume_pack_encode_params *p)
-{
-    return p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0;
-}
 
 // Indices into the books of view `set`.
 static relume_status assign_view(struct material *m, int i, int set,
@@ -136,7 +132,7 @@ static relume_status find_share(struct encode_share *out, const relume_capture *
     *out = (struct encode_share){.views = views};
     if (p->parts && (p->part < 1 || p->part > p->parts || (p->books && p->share && !p->team)))
         return RELUME_EINVAL;
-    if (!p->parts || is_coded(p))
+    if (!p->parts || encode_is_coded(p))
         return RELUME_OK;
     const relume_status status = encode_share_find(out, p->part, p->parts, capture, p->log);
     if (status)
@@ -172,49 +168,68 @@ static struct range *bands_at(const relume_coefficients *c, int row)
     return c->band + (size_t)(row / BAND_ROWS) * (size_t)c->info.planes;
 }
 
-// Which rows a part has; bytes of their bands.
-static size_t bands_of(const struct material *m, int member, struct encode_share *share)
+// The bands of the rows of a part, one part at a time.
+struct part_bands {
+    struct material *m;
+    struct encode_share share;
+    int part;                // 1 .. parts
+    struct range *band;      // [most rows of a part / BAND_ROWS][planes]
+    struct team_array sent;  // `band` of the part
+};
+
+static relume_status begin_part(void *context, int member)
 {
+    struct part_bands *b = context;
+    const struct material *m = b->m;
     const size_t planes = (size_t)relume_coder_info(m->coder)->planes;
-    encode_share_of(share, member + 1, m->p->parts, m->views, relume_capture_height(m->capture));
-    return (size_t)(share->rows + BAND_ROWS - 1) / BAND_ROWS * planes * sizeof(struct range);
+    b->part = member + 1;
+    encode_share_of(&b->share, b->part, m->p->parts, m->views, relume_capture_height(m->capture));
+    b->sent.size = (size_t)(b->share.rows + BAND_ROWS - 1) / BAND_ROWS * planes * sizeof *b->band;
+    return RELUME_OK;
 }
 
 // Rows that are not encoded here, since their part has not come yet or writes nothing so far, are
 // encoded for them.
-static relume_status make_ranges(void *context, int member, struct relume_buffer *out)
+static relume_status find_bands(void *context)
 {
-    const struct material *m = context;
-    const struct relume_writer writer = relume_buffer_writer(out);
-    const relume_coefficients *own = member == m->p->part - 1 ? m->coefficients[m->first] : NULL;
+    struct part_bands *b = context;
+    const struct material *m = b->m;
+    const struct encode_share *s = &b->share;
+    const relume_coefficients *own = b->part == m->p->part ? m->coefficients[m->first] : NULL;
     relume_coefficients *made = NULL;
-    struct encode_share share = {0};
-    const size_t size = bands_of(m, member, &share);
     relume_status status = RELUME_OK;
     if (!own)
-        status = encode_some_rows(&made, m->coder, m->capture, share.first, share.row, share.rows,
-                                  m->encode);
-    if (!status && !writer.write(writer.user, bands_at(own ? own : made, share.row), size, 0))
-        status = RELUME_ENOMEM;
+        status =
+            encode_some_rows(&made, m->coder, m->capture, s->first, s->row, s->rows, m->encode);
+    if (!status)
+        memcpy(b->band, bands_at(own ? own : made, s->row), b->sent.size);
     relume_coefficients_destroy(&made);
     return status;
 }
 
-static relume_status take_ranges(void *context, int member, const struct relume_buffer *piece)
+// Keeps the bands of the view that the own rows belong to.
+static relume_status add_bands(void *context)
 {
-    const struct material *m = context;
-    struct encode_share share = {0};
-    const size_t size = bands_of(m, member, &share);
-    if (piece->size != size)
-        return RELUME_EDAMAGED;
-    if (share.first == m->first && m->coefficients[m->first])
-        memcpy(bands_at(m->coefficients[m->first], share.row), piece->data, size);
+    const struct part_bands *b = context;
+    const struct material *m = b->m;
+    relume_coefficients *own = m->coefficients[m->first];
+    if (own && b->share.first == m->first)
+        memcpy(bands_at(own, b->share.row), b->band, b->sent.size);
     return RELUME_OK;
 }
 
 static relume_status share_ranges(struct material *m)
 {
-    return team_gather(m->p->team, "ranges", make_ranges, take_ranges, m, m->p->log);
+    struct part_bands b = {.m = m};
+    static const struct team_work work = {begin_part, find_bands, add_bands};
+    const size_t planes = (size_t)relume_coder_info(m->coder)->planes;
+    const size_t bands = ((size_t)relume_capture_height(m->capture) + BAND_ROWS - 1) / BAND_ROWS;
+    b.sent.items = b.band = mem_array(bands * planes, sizeof *b.band);
+    const relume_status status =
+        b.band ? team_share(m->p->team, "ranges", &work, &b, &team_array_bytes, &b.sent, m->p->log)
+               : RELUME_ENOMEM;
+    mem_free(b.band);
+    return status;
 }
 
 static relume_status settle_rows(struct material *m)
@@ -296,8 +311,8 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     struct relume_encode_params encode = {
         .log = p.log,
         .domain = relume_encode_domain(capture, p.domain),
-        .storage = is_coded(&p) ? RELUME_STORE_12 : p.storage,
-        .step = is_coded(&p) ? RELUME_STEP_COMMON : p.step,
+        .storage = encode_is_coded(&p) ? RELUME_STORE_12 : p.storage,
+        .step = encode_is_coded(&p) ? RELUME_STEP_COMMON : p.step,
         .threads = p.threads,
         .scratch = p.writer ? NULL : path,
         .display = p.display,
@@ -309,11 +324,11 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     struct encode_share share;
     struct part_log part;
     relume_status status = find_share(&share, capture, &p);
-    if (!status && p.parts && !is_coded(&p))
+    if (!status && p.parts && !encode_is_coded(&p))
         encode.log = log_part(&part, p.log, &share, capture);
     if (!status)
         status = material_create(&m, &share);
-    if (!status && is_coded(&p)) {
+    if (!status && encode_is_coded(&p)) {
         status = encode_coded(&m, path, &total);
     } else if (!status) {
         status = encode_views(&m);

@@ -3,7 +3,7 @@
 
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "encode/encode/reduce.h"
+#include "encode/encode/reduction.h"
 
 #include <string.h>
 

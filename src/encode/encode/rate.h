@@ -2,11 +2,9 @@
 #ifndef ENCODE_RATE_H
 #define ENCODE_RATE_H
 
-#include "encode/encode/groups.h"
-#include "format/lossy/lossy.h"
+#include "encode/encode/trial.h"
 
 #include <relume/capture.h>
-#include <relume/format/team.h>
 
 // Where the search begins, which is about what a usual quality takes.
 enum { RATE_FIRST_GUESS = 30 * AV1_STEPS };
@@ -19,14 +17,6 @@ struct rate_result {
     double psnr_db;  // as the target's
     double bytes;    // likewise
     struct av1_effort effort;
-};
-
-// The tiles of groups are shared by members, who tell each other what they try (groups_share).
-struct rate_team {
-    const struct relume_team *team;
-    // The coefficients of some tiles of a group are needed that may be missing so far.
-    relume_status (*load)(void *user, int group, struct group_share tiles);
-    void *user;
 };
 
 // words[views] of the coefficients of all views by `coder`, of the coarsest quantiser that reaches

@@ -2,6 +2,7 @@
 #include "encode/encode/request.h"
 
 #include "core/base/params.h"
+#include "encode/encode/coded.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,7 +12,7 @@ static const double MIN_SHADOW_BYTES = 1.0, MIN_HIGHLIGHT_BYTES = 0.5;
 
 bool request_is_lossy(const struct encode_request *r)
 {
-    return r->pack.psnr_db > 0.0 || r->pack.bytes_per_pixel > 0.0;
+    return encode_is_coded(&r->pack);
 }
 
 bool request_is_table(const struct encode_request *r)

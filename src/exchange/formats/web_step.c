@@ -3,6 +3,7 @@
 
 #include "core/base/log.h"
 #include "core/math/scalar.h"
+#include "core/math/target_search.h"
 
 #include <math.h>
 
@@ -22,99 +23,122 @@ double web_step_of_quality(int quality)
     return FIRST_STEP * exp2((FIRST_QUALITY - quality) / 10.0);
 }
 
-// What a step gives: the logarithm of the bytes per pixel, or with `psnr` the expected decibels.
-// Both fall with the step, nearly along lines.
-static relume_status try_step(const struct web_trials *t, double log_step, bool psnr, double *value)
+// Trials of steps, by their logarithms. What a step gives falls with it, nearly along a line; the
+// search wants what rises, and gets it with the other sign.
+struct step_trials {
+    const struct web_trials *t;
+    bool psnr;  // the expected decibels; else the logarithm of the bytes per pixel
+    double target, near;
+    int done;
+};
+
+static relume_status try_step(void *context, double log_step, double *value)
 {
+    struct step_trials *s = context;
+    const struct web_trials *t = s->t;
     struct web_folder w = {.plan = t->plan, .planes = t->planes};
     const relume_status status = web_encode(&w, exp(log_step), t->all, t->threads);
     const double pixels = (double)t->planes->width * t->planes->height;
-    *value = psnr ? decibels(w.error / 3.0) : log((double)w.bytes / pixels);
+    *value = -(s->psnr ? decibels(w.error / 3.0) : log((double)w.bytes / pixels));
     web_folder_free(&w);
+    if (!status && !log_progress(t->log, "trials", (double)s->done++ / TRIALS))
+        return RELUME_ECANCEL;
     return status;
 }
 
-struct bracket {
-    double low, high;              // logarithms of steps
-    double low_value, high_value;  // NaN while not tried
-};
-
-// The secant's step, or the middle where an end is not known or the secant hugs an end.
-static double next_step(const struct bracket *b, double target)
+// Near the target, on the side that is wanted.
+static bool is_near(void *context, const struct target_bracket *b)
 {
-    const double share = (b->low_value - target) / (b->low_value - b->high_value);
+    const struct step_trials *s = context;
+    return fabs(b->value - s->target) < s->near && (b->value < s->target) == s->psnr;
+}
+
+// The secant's step, or the middle where the secant hugs an end; outwards while an end is not
+// known.
+static double next_step(void *context, const struct target_bracket *b)
+{
+    const struct step_trials *s = context;
+    if (isnan(b->low_value))
+        return fmax(b->at - 1.4, (b->low + b->at) / 2.0);
+    if (isnan(b->high_value))
+        return fmin(b->at + 1.4, (b->high + b->at) / 2.0);
+    const double share = (b->low_value - s->target) / (b->low_value - b->high_value);
     return b->low + (b->high - b->low) * (share > 0.02 && share < 0.98 ? share : 0.5);
 }
 
 // The step at which the value comes down to `target`: the largest that is still above (psnr), the
 // smallest that is not (bytes).
-static relume_status search(double *step, const struct web_trials *t, bool psnr, double target)
+static relume_status find_step(double *step, const struct web_trials *t, bool psnr, double target)
 {
-    struct bracket b = {log(WEB_LEAST_STEP), log(WEB_MOST_STEP), (double)NAN, (double)NAN};
-    const double near = (psnr ? 0.003 : 0.002) * (t->rough ? 30.0 : 1.0);
-    double at = log(FIRST_STEP);
-    for (int i = 0; i < TRIALS && b.high - b.low > 0.004; i++) {
-        double value;
-        const relume_status status = try_step(t, at, psnr, &value);
-        if (status)
-            return status;
-        if (!log_progress(t->log, "trials", (double)i / TRIALS))
-            return RELUME_ECANCEL;
-        if (value > target) {
-            b.low = at;
-            b.low_value = value;
-        } else {
-            b.high = at;
-            b.high_value = value;
-        }
-        if (fabs(value - target) < near && (value > target) == psnr)
-            break;
-        at = isnan(b.low_value)    ? fmax(at - 1.4, (b.low + at) / 2.0)
-             : isnan(b.high_value) ? fmin(at + 1.4, (b.high + at) / 2.0)
-                                   : next_step(&b, target);
-    }
-    *step = exp(psnr ? b.low : b.high);
-    return RELUME_OK;
+    struct step_trials s = {
+        .t = t, .psnr = psnr, .target = -target, .near = (psnr ? 0.003 : 0.002)};
+    struct target_bracket b = {
+        .low = log(WEB_LEAST_STEP), .high = log(WEB_MOST_STEP), .at = log(FIRST_STEP)};
+    s.near *= t->rough ? 30.0 : 1.0;
+    const relume_status status =
+        target_search(&b, &(const struct target_search){.target = s.target,
+                                                        .narrow = 0.004,
+                                                        .most_trials = TRIALS,
+                                                        .measure = try_step,
+                                                        .is_close = is_near,
+                                                        .guess = next_step,
+                                                        .context = &s});
+    if (!status)
+        *step = exp(psnr ? b.low : b.high);
+    return status;
 }
 
 relume_status web_step_of_psnr(double *step, const struct web_trials *t, double psnr_db)
 {
-    return search(step, t, true, psnr_db);
+    return find_step(step, t, true, psnr_db);
 }
 
 relume_status web_step_of_bytes(double *step, const struct web_trials *t, double bytes_per_pixel)
 {
-    return search(step, t, false, log(bytes_per_pixel));
+    return find_step(step, t, false, log(bytes_per_pixel));
 }
 
-static relume_status try_quality(const struct web_trials *t, int quality, double *levels)
+struct quality_trials {
+    const struct web_trials *t;
+    const struct target_bracket *b;
+};
+
+// Measures the visible error, which falls with the quality.
+static relume_status try_quality(void *context, double quality, double *unseen)
 {
+    const struct quality_trials *q = context;
+    const struct web_trials *t = q->t;
     struct web_folder w = {.plan = t->plan, .planes = t->planes, .blocks = true};
-    relume_status status = web_encode(&w, web_step_of_quality(quality), t->all, t->threads);
+    double levels = 0.0;
+    relume_status status = web_encode(&w, web_step_of_quality((int)quality), t->all, t->threads);
     if (!status)
-        status = web_visible_error(&w, levels);
+        status = web_visible_error(&w, &levels);
     web_folder_free(&w);
-    return status;
+    *unseen = -levels;
+    const double left = (q->b->high - q->b->low - 1.0) / (MOST_QUALITY - LEAST_QUALITY + 1);
+    return status || log_progress(t->log, "trials", 1.0 - left) ? status : RELUME_ECANCEL;
+}
+
+static double middle_quality(void *context, const struct target_bracket *b)
+{
+    (void)context;
+    return ceil((b->low + b->high) / 2.0);
 }
 
 relume_status web_step_unseen(double *step, int *quality, const struct web_trials *t)
 {
-    int low = LEAST_QUALITY, high = MOST_QUALITY;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        double levels = 0.0;
-        const relume_status status = try_quality(t, middle, &levels);
-        if (status)
-            return status;
-        if (!log_progress(t->log, "trials",
-                          1.0 - (double)(high - low) / (MOST_QUALITY - LEAST_QUALITY + 1)))
-            return RELUME_ECANCEL;
-        if (levels <= SEEN_LEVELS)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    *quality = low;
-    *step = web_step_of_quality(low);
+    struct target_bracket b = {.low = LEAST_QUALITY - 1, .high = MOST_QUALITY};
+    struct quality_trials trials = {t, &b};
+    b.at = middle_quality(NULL, &b);
+    const relume_status status =
+        target_search(&b, &(const struct target_search){.target = -SEEN_LEVELS,
+                                                        .narrow = 1.0,
+                                                        .measure = try_quality,
+                                                        .guess = middle_quality,
+                                                        .context = &trials});
+    if (status)
+        return status;
+    *quality = (int)b.high;
+    *step = web_step_of_quality(*quality);
     return RELUME_OK;
 }

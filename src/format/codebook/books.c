@@ -9,10 +9,10 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 #include "core/math/random.h"
+#include "format/codebook/drawing.h"
 #include "format/coder/basis.h"
 #include "format/coder/coefficients.h"
 
-#include <relume/format/team.h>
 #include <math.h>
 #include <string.h>
 
@@ -58,21 +58,10 @@ static bool alloc_sample(struct sample *s)
     return s->residual && s->part && s->index;
 }
 
-// What is drawn from, and from which of the views here.
-struct drawing {
-    const relume_coefficients *const *views;
-    int count;
-    size_t pixels, wanted;
-    uint64_t seed;
-    const struct books_team *by;  // or NULL
-    const struct relume_coefficients_info *info;
-    const struct relume_log *log;
-};
-
 // One view's rows, of which those pixels are taken that the random numbers say, if `c` holds it.
-static relume_status draw_view(const struct drawing *d, const relume_coefficients *c,
+static relume_status draw_view(struct drawing *d, const relume_coefficients *c,
                                struct random *random, size_t *left, size_t *wanted, float *row,
-                               void *waiting, float **to)
+                               void *waiting)
 {
     const size_t width = (size_t)d->info->width, planes = (size_t)d->info->planes;
     relume_status status = RELUME_OK;
@@ -83,18 +72,28 @@ static relume_status draw_view(const struct drawing *d, const relume_coefficient
             if ((double)*left * random_next(random) >= (double)*wanted)
                 continue;
             for (size_t p = 0; c && p < planes; p++)
-                *(*to)++ = row[p * width + x];
+                d->to[d->at + d->drawn++] = row[p * width + x];
             --*wanted;
         }
     }
     return status;
 }
 
-// Of `wanted` pixels of all views, each choice equally likely (Knuth, algorithm 3.4.2 S), those in
-// the views of a share, in their order: to[..][planes], of which *end then is the end.
-static relume_status draw_share(const struct drawing *d, const struct encode_share *share,
-                                float *to, float **end)
+static relume_status begin_share(void *context, int member)
 {
+    struct drawing *d = context;
+    const int members = d->by ? d->by->team->members : 1;
+    d->drawn = 0;
+    return encode_share_of(&d->share, member + 1, members, d->count, BAND_ROWS) ? RELUME_OK
+                                                                                : RELUME_EINVAL;
+}
+
+// Of the wanted pixels of all views, each choice equally likely (Knuth, algorithm 3.4.2 S), those
+// in the views of a share, in their order.
+static relume_status draw_share(void *context)
+{
+    struct drawing *d = context;
+    const struct encode_share *share = &d->share;
     const size_t row_floats = (size_t)d->info->width * (size_t)d->info->planes;
     float *row = mem_array(row_floats, sizeof *row);
     void *waiting = mem_array(row_floats, sizeof *row);
@@ -108,69 +107,31 @@ static relume_status draw_share(const struct drawing *d, const struct encode_sha
             status = d->by->encode(d->by->user, v, &made);
         if (!status)
             status = draw_view(d, ours ? (made ? made : d->views[v]) : NULL, &random, &left,
-                               &wanted, row, waiting, &to);
+                               &wanted, row, waiting);
         relume_coefficients_destroy(&made);
     }
-    *end = to;
     mem_free(row);
     mem_free(waiting);
     return status;
 }
 
-static relume_status draw_piece(void *context, int member, struct relume_buffer *piece)
+static relume_status add_share(void *context)
 {
-    const struct drawing *d = context;
-    const size_t most = d->wanted * (size_t)d->info->planes;
-    struct encode_share share;
-    float *to = mem_array(most, sizeof *to), *end = to;
-    relume_status status = to ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && !encode_share_of(&share, member + 1, d->by->team->members, d->count, BAND_ROWS))
-        status = RELUME_EINVAL;
-    if (!status)
-        status = draw_share(d, &share, to, &end);
-    if (!status && !(piece->data = mem_array((size_t)(end - to) + 1, sizeof *to)))
-        status = RELUME_ENOMEM;
-    if (!status) {
-        piece->size =
-            (size_t)(end - to + 1) * sizeof *to;  // a number more, so that it is never empty
-        memset(piece->data, 0, sizeof *to);
-        memcpy(piece->data + sizeof *to, to, piece->size - sizeof *to);
-    }
-    mem_free(to);
+    struct drawing *d = context;
+    d->at += d->drawn;
+    return RELUME_OK;
+}
+
+static relume_status draw_sample(struct drawing *d)
+{
+    static const struct team_work work = {begin_share, draw_share, add_share};
+    const relume_status status =
+        team_share(d->by ? d->by->team : NULL, "vectors", &work, d, &drawing_bytes, d, d->log);
+    if (!status && d->at != drawing_floats(d))
+        return log_fail(d->log, RELUME_EDAMAGED,
+                        "what parts have drawn for the codebooks is not of this capture; remove it "
+                        "and run them again");
     return status;
-}
-
-static relume_status draw_together(struct sample *s, struct drawing *d)
-{
-    const struct relume_team *team = d->by->team;
-    struct relume_buffer *piece = mem_zeroed((size_t)team->members, sizeof *piece);
-    const size_t all = s->n * s->planes * sizeof(float);
-    size_t at = 0;
-    relume_status status =
-        piece ? team->share(team->user, "vectors", draw_piece, d, piece) : RELUME_ENOMEM;
-    for (int i = 0; piece && i < team->members; i++) {
-        const size_t bytes = piece[i].size - sizeof(float);
-        const bool fits =
-            !status && piece[i].size >= sizeof(float) && at <= all && bytes <= all - at;
-        if (fits)
-            memcpy((char *)s->residual + at, piece[i].data + sizeof(float), bytes);
-        at = fits ? at + bytes : SIZE_MAX;
-        relume_buffer_destroy(&piece[i]);
-    }
-    mem_free(piece);
-    return status || at == all
-               ? status
-               : log_fail(d->log, RELUME_EDAMAGED,
-                          "what parts have drawn for the codebooks is not of this capture; remove "
-                          "it and run them again");
-}
-
-static relume_status draw_sample(struct sample *s, struct drawing *d)
-{
-    float *end;
-    return d->by
-               ? draw_together(s, d)
-               : draw_share(d, &(const struct encode_share){.views = d->count}, s->residual, &end);
 }
 
 // ---------------------------------------------------------------- learning
@@ -403,7 +364,15 @@ relume_status books_train(relume_books **out, const relume_coefficients *const *
                        .planes = (size_t)coder->planes};
     status = alloc_sample(&s) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = draw_sample(&s, &(struct drawing){views, n, pixels, s.n, p.seed, by, info, p.log});
+        status = draw_sample(&(struct drawing){.views = views,
+                                               .count = n,
+                                               .pixels = pixels,
+                                               .wanted = s.n,
+                                               .seed = p.seed,
+                                               .by = by,
+                                               .info = info,
+                                               .log = p.log,
+                                               .to = s.residual});
     for (int i = 0; !status && i < books->info.books; i++)
         status = learn_book(books, i, &s, &p);
     mem_free(s.residual);

@@ -32,13 +32,9 @@ struct relume_books {
     } own[RELUME_MOST_BOOKS];
 };
 
-// Books of all views by a team: `views` holds those of this member's share of the work, others are
-// NULL, and `encode` makes what is missed of them. The rest is as relume_books_train.
-struct books_team {
-    const struct relume_team *team;
-    relume_status (*encode)(void *user, int view, relume_coefficients **out);
-    void *user;
-};
+// As relume_books_train. `by` (drawing.h) or NULL: views that are NULL are encoded by it, and the
+// drawing of pixels is shared.
+struct books_team;
 relume_status books_train(relume_books **out, const relume_coefficients *const *views, int n,
                           const struct relume_books_params *params, const struct books_team *by);
 

@@ -1,8 +1,8 @@
 // codebook.c - the generalised Lloyd algorithm (Linde, Buzo, Gray 1980)
 //
-// Threads share out the search and the means, each of which depends on one vector or one cell
-// alone: sums run in the order of the data, whatever the threads. Distances are compared in double
-// precision (nearest.c), so that books do not depend on the CPU either.
+// Threads share out the search (code_search.c) and the means, each of which depends on one vector
+// or one cell alone: sums run in the order of the data, whatever the threads. Distances are
+// compared in double precision (nearest.c), so that books do not depend on the CPU either.
 #include "format/codebook/codebook.h"
 
 #include "core/base/log.h"
@@ -10,144 +10,15 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 #include "core/math/random.h"
-#include "format/team/gather.h"
+#include "format/codebook/code_search.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
 
-enum { CHUNK = 3072, DEFAULT_CODES = 256, DEFAULT_ROUNDS = 64, LAST_ROUNDS = 6 };
+enum { DEFAULT_CODES = 256, DEFAULT_ROUNDS = 64, LAST_ROUNDS = 6 };
 static const double DEFAULT_GAIN = 1e-4;
 
 // ---------------------------------------------------------------- assignment
-
-struct search {
-    const struct nearest *nearest;
-    const float *vectors, *codes;
-    size_t n;
-    uint16_t *index;
-    double *distance;
-    float *apart;
-    const double *drift, *furthest;  // NULL: every vector is looked at
-    float *scratch;                  // [workers][...]
-    atomic_bool changed;
-    size_t begin;  // the chunk with which the items begin
-    int threads;
-    const struct relume_team *team;  // or NULL
-    bool any_changed;                // of any member
-    const struct relume_log *log;
-};
-
-// Whether vector i keeps its code: no other has come near enough (Hamerly 2010). The margin is far
-// above the rounding of double precision.
-static bool keeps_code(struct search *s, size_t i)
-{
-    const size_t dim = (size_t)s->nearest->dim, code = s->index[i];
-    const double drift = s->furthest[s->drift[code] == s->furthest[0]];
-    const double apart = 0.999999 * ((double)s->apart[i] - drift);
-    s->apart[i] = apart > 0.0 ? (float)apart : 0.0f;
-    s->distance[i] = squared_distance(s->vectors + i * dim, s->codes + code * dim, dim);
-    return sqrt(s->distance[i]) * (1.0 + 1e-6) < (double)s->apart[i];
-}
-
-static void search_chunk(void *context, size_t item, int worker)
-{
-    struct search *s = context;
-    const size_t first = (s->begin + item) * CHUNK;
-    const size_t last = first + CHUNK < s->n ? first + CHUNK : s->n;
-    uint16_t before[CHUNK];
-    uint32_t which[CHUNK];
-    size_t count = 0;
-    memcpy(before, s->index + first, (last - first) * sizeof *before);
-    for (size_t i = first; i < last; i++)
-        if (!s->drift || !keeps_code(s, i))
-            which[count++] = (uint32_t)i;
-    nearest_find(s->nearest, s->vectors, which, count, s->index, s->distance, s->apart,
-                 s->scratch + (size_t)worker * nearest_scratch(s->nearest));
-    if (memcmp(before, s->index + first, (last - first) * sizeof *before))
-        atomic_store(&s->changed, true);
-}
-
-// The chunks of a member of the team, or all of them.
-static void search_share(struct search *s, int member, size_t *first, size_t *end)
-{
-    const size_t chunks = (s->n + CHUNK - 1) / CHUNK;
-    const size_t members = s->team ? (size_t)s->team->members : 1;
-    s->begin = chunks * (size_t)member / members;
-    *end = chunks * ((size_t)member + 1) / members * CHUNK;
-    *end = *end < s->n ? *end : s->n;
-    *first = s->begin * CHUNK < *end ? s->begin * CHUNK : *end;
-}
-
-// A piece: whether any changed, and then what was found of each vector.
-enum { FOUND = sizeof(uint16_t) + sizeof(double) + sizeof(float) };
-
-static relume_status search_piece(void *context, int member, struct relume_buffer *piece)
-{
-    struct search *s = context;
-    size_t first, end;
-    search_share(s, member, &first, &end);
-    atomic_store(&s->changed, false);
-    thread_for(s->threads, (end - first + CHUNK - 1) / CHUNK, search_chunk, s);
-    const size_t n = end - first;
-    if (!(piece->data = mem_array(1 + n * FOUND, 1)))
-        return RELUME_ENOMEM;
-    unsigned char *to = piece->data;
-    piece->size = 1 + n * FOUND;
-    *to++ = atomic_load(&s->changed);
-    memcpy(to, s->index + first, n * sizeof *s->index);
-    memcpy(to += n * sizeof *s->index, s->distance + first, n * sizeof *s->distance);
-    memcpy(to + n * sizeof *s->distance, s->apart + first, n * sizeof *s->apart);
-    return RELUME_OK;
-}
-
-static relume_status take_found(void *context, int member, const struct relume_buffer *piece)
-{
-    struct search *s = context;
-    size_t first, end;
-    search_share(s, member, &first, &end);
-    const size_t n = end - first;
-    const unsigned char *from = piece->data;
-    if (piece->size != 1 + n * FOUND)
-        return RELUME_EDAMAGED;
-    s->any_changed |= *from++ != 0;
-    memcpy(s->index + first, from, n * sizeof *s->index);
-    memcpy(s->distance + first, from += n * sizeof *s->index, n * sizeof *s->distance);
-    memcpy(s->apart + first, from + n * sizeof *s->distance, n * sizeof *s->apart);
-    return RELUME_OK;
-}
-
-static relume_status search_together(struct search *s)
-{
-    s->any_changed = false;
-    const relume_status status =
-        team_gather(s->team, "search", search_piece, take_found, s, s->log);
-    atomic_store(&s->changed, s->any_changed);
-    return status;
-}
-
-static relume_status search(struct search *s, int codes, int dim, int threads, unsigned cpu_off)
-{
-    struct nearest nearest;
-    relume_status status = nearest_create(&nearest, codes, dim, cpu_off);
-    if (status)
-        return status;
-    nearest_set(&nearest, s->codes);
-    s->nearest = &nearest;
-    s->scratch =
-        mem_array((size_t)thread_count(threads) * nearest_scratch(&nearest), sizeof(float));
-    s->threads = threads;
-    if (!s->scratch)
-        status = RELUME_ENOMEM;
-    else if (s->team)
-        status = search_together(s);
-    else
-        thread_for(threads, (s->n + CHUNK - 1) / CHUNK, search_chunk, s);
-    mem_free(s->scratch);
-    nearest_destroy(&nearest);
-    s->nearest = NULL;
-    return status;
-}
 
 // Count, then place: the cells in one array, each in the order of the data.
 static void sort_into_cells(struct training *t)
@@ -166,7 +37,7 @@ static void sort_into_cells(struct training *t)
 
 relume_status training_assign(struct training *t)
 {
-    struct search s = {
+    struct code_search s = {
         .vectors = t->vectors,
         .codes = t->code,
         .n = t->n,
@@ -176,13 +47,13 @@ relume_status training_assign(struct training *t)
         .drift = t->bounded ? t->drift : NULL,
         .furthest = t->furthest,
         .team = t->team,
-        .log = t->log,
     };
-    const relume_status status = search(&s, t->codes, t->dim, t->threads, t->cpu_off);
+    const relume_status status =
+        code_search_find(&s, t->codes, t->dim, t->threads, t->cpu_off, t->log);
     if (status)
         return status;
     t->bounded = true;
-    t->changed = atomic_load(&s.changed);
+    t->changed = s.any_changed;
     sort_into_cells(t);
     t->total = 0.0;
     for (int c = 0; c < t->codes; c++) {
@@ -481,13 +352,14 @@ relume_status relume_codebook_assign(const relume_codebook *book, const float *v
         return log_fail(p.log, RELUME_EINVAL,
                         "vector %zu holds %g; expected finite numbers in every vector",
                         where / (size_t)book->info.dim, (double)vectors[where]);
-    struct search s = {.vectors = vectors, .codes = book->vectors, .n = n, .index = index};
+    struct code_search s = {.vectors = vectors, .codes = book->vectors, .n = n, .index = index};
     s.distance = mem_array(n, sizeof *s.distance);
     s.apart = mem_array(n, sizeof *s.apart);
     memset(index, 0, n * sizeof *index);
     const relume_status status =
-        s.distance && s.apart ? search(&s, book->info.codes, book->info.dim, p.threads, p.cpu_off)
-                              : RELUME_ENOMEM;
+        s.distance && s.apart
+            ? code_search_find(&s, book->info.codes, book->info.dim, p.threads, p.cpu_off, p.log)
+            : RELUME_ENOMEM;
     double sum = 0.0;
     for (size_t i = 0; !status && i < n; i++)
         sum += s.distance[i];

@@ -4,6 +4,7 @@
 #include "core/base/names.h"
 #include "core/base/params.h"
 #include "format/pack/format.h"
+#include "format/pack/size.h"
 
 enum { MOST_ATTRIBUTES = 48 };
 
@@ -147,27 +148,46 @@ static bool is_crowded(const struct writer *w)
     return false;
 }
 
+// The parts of a file; `w` is to be freed also on failure.
+static relume_status make_parts(struct writer *w, const struct relume_pack_contents *contents,
+                                const struct relume_pack_params *p)
+{
+    const size_t most_parts =
+        1 + (4 + RELUME_MOST_BOOKS + 2 * RELUME_MOST_LEVELS) * (size_t)contents->views;
+    *w = (struct writer){
+        .contents = contents,
+        .coder = relume_coder_info(contents->coder),
+        .codec = codecs[p->compression],
+    };
+    w->parts = arena_array(&w->arena, most_parts, sizeof *w->parts);
+    w->channels = channel_names(w);
+    w->failed |= !w->parts || !w->channels;
+    const relume_status status = w->failed ? RELUME_ENOMEM : add_parts(w, p);
+    return !status && (w->failed || is_crowded(w)) ? RELUME_ENOMEM : status;
+}
+
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,
                                 const struct relume_pack_params *params)
 {
     const struct relume_pack_params p = PARAMS_WORK(relume_pack_params, params);
-    struct writer w = {
-        .contents = contents,
-        .coder = relume_coder_info(contents->coder),
-        .codec = codecs[p.compression],
-    };
-    const size_t most_parts =
-        1 + (4 + RELUME_MOST_BOOKS + 2 * RELUME_MOST_LEVELS) * (size_t)contents->views;
+    struct writer w;
     if (!path && !p.writer)
         return RELUME_EINVAL;
-    w.parts = arena_array(&w.arena, most_parts, sizeof *w.parts);
-    w.channels = channel_names(&w);
-    w.failed |= !w.parts || !w.channels;
-    relume_status status = w.failed ? RELUME_ENOMEM : add_parts(&w, &p);
+    relume_status status = make_parts(&w, contents, &p);
     if (!status)
-        status = w.failed || is_crowded(&w)
-                     ? RELUME_ENOMEM
-                     : exr_write(path, p.writer, w.parts, w.count, true, p.threads, p.log);
+        status = exr_write(path, p.writer, w.parts, w.count, true, p.threads, p.log);
+    arena_free(&w.arena);
+    return status;
+}
+
+relume_status pack_size(uint64_t *bytes, const struct relume_pack_contents *contents,
+                        const struct relume_pack_params *params)
+{
+    const struct relume_pack_params p = PARAMS_WORK(relume_pack_params, params);
+    struct writer w;
+    relume_status status = make_parts(&w, contents, &p);
+    if (!status)
+        status = exr_size(bytes, w.parts, w.count, p.threads, p.log);
     arena_free(&w.arena);
     return status;
 }

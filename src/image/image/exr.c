@@ -82,8 +82,8 @@ static struct lead lead_of(const exr_chunk_info_t *chunk, int part, size_t size)
     return (struct lead){{part, chunk->start_y, (int32_t)size}, 3};
 }
 
-// Bytes of that of a row of check sums.
-enum { SUMS_LEAD = 12 };
+// Bytes of that of rows, check sums among them, and of a tile.
+enum { ROWS_LEAD = 12, TILE_LEAD = 24 };
 
 static uint32_t sum_of(const struct lead *lead, const void *packed, size_t size)
 {
@@ -522,7 +522,7 @@ static uint32_t sum_of_head(const struct writing *w)
 {
     const struct exr_sums *s = &w->sums;
     const size_t end = s->first[s->parts], blocks = end - 1 + (size_t)s->height;
-    const size_t row = SUMS_LEAD + (size_t)s->width * sizeof *s->word;
+    const size_t row = ROWS_LEAD + (size_t)s->width * sizeof *s->word;
     uint32_t sum = exr_sum(0, w->head.data, w->head.size);
     uint64_t at = w->head.size + blocks * sizeof at;
     for (size_t i = 0; i < blocks; i++) {
@@ -556,6 +556,32 @@ static exr_result_t write_headers(struct writing *w, const struct exr_part *part
     return r;
 }
 
+// The headers of all parts; `path` is what messages call the file.
+static relume_status begin_file(struct writing *w, const char *path, const struct exr_part *parts,
+                                int count, bool sums, const struct relume_log *log)
+{
+    exr_context_initializer_t init = initial(w);
+    init.write_fn = write_stream;
+    path = infile_name(path);
+    const relume_status status = sums ? prepare_sums(w, parts, count) : RELUME_OK;
+    exr_result_t r = status ? 0 : exr_start_write(&w->exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
+    if (!status && !r)
+        r = write_headers(w, parts, count);
+    return !r                           ? status
+           : w->io                      ? w->io
+           : r == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM
+                                        : log_fail(log, RELUME_EIO, "%s: header refused; %s", path,
+                                                   exr_get_default_error_message(r));
+}
+
+static bool end_file(struct writing *w)
+{
+    exr_sums_destroy(&w->sums);
+    relume_buffer_destroy(&w->head);
+    mem_free(w->bytes);
+    return !w->exr || !exr_finish(&w->exr);
+}
+
 relume_status exr_write(const char *path, const struct relume_writer *writer,
                         const struct exr_part *parts, int count, bool sums, int threads,
                         const struct relume_log *log)
@@ -565,20 +591,7 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
     relume_status status = outfile_open(&w.file, path, writer, log);
     if (status)
         return status;
-
-    exr_context_initializer_t init = initial(&w);
-    init.write_fn = write_stream;
-    path = infile_name(path);
-    if (sums)
-        status = prepare_sums(&w, parts, count);
-    exr_result_t r = status ? 0 : exr_start_write(&w.exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
-    if (!status && !r)
-        r = write_headers(&w, parts, count);
-    if (r)
-        status = w.io                         ? w.io
-                 : r == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM
-                                              : log_fail(log, RELUME_EIO, "%s: header refused; %s",
-                                                         path, exr_get_default_error_message(r));
+    status = begin_file(&w, path, parts, count, sums, log);
     for (int i = 0; !status && i < count; i++) {
         status = write_part(&w, &parts[i], i, threads, log);
         if (!status && !log_progress(log, "writing", (i + 1.0) / count))
@@ -586,14 +599,86 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
     }
     if (!status && sums)
         status = write_sums(&w, log);
-    exr_sums_destroy(&w.sums);
-    relume_buffer_destroy(&w.head);
-    mem_free(w.bytes);
-    if (w.exr && exr_finish(&w.exr) && !status)
+    if (!end_file(&w) && !status)
         status = w.io ? w.io : RELUME_EIO;
     if (!status)
         return outfile_commit(&w.file);
     outfile_abort(&w.file);
+    return status;
+}
+
+// ---------------------------------------------------------------- size
+
+static bool count_bytes(void *user, const void *bytes, size_t size, uint64_t offset)
+{
+    uint64_t *end = user;
+    (void)bytes;
+    *end = offset + size > *end ? offset + size : *end;
+    return true;
+}
+
+// What is not blocks of the parts: headers, tables, sums.
+static relume_status frame_size(uint64_t *bytes, const struct exr_part *parts, int count,
+                                const struct relume_log *log)
+{
+    uint64_t end = 0;
+    const struct relume_writer counting = {count_bytes, NULL, &end};
+    struct writing w = {.lock = PTHREAD_MUTEX_INITIALIZER, .turn = PTHREAD_COND_INITIALIZER};
+    relume_status status = outfile_open(&w.file, NULL, &counting, log);
+    if (status)
+        return status;
+    status = begin_file(&w, NULL, parts, count, true, log);
+    if (!status) {
+        const size_t rows = (size_t)w.sums.height, blocks = w.sums.first[count] - 1 + rows;
+        *bytes = w.head.size + blocks * sizeof *bytes +
+                 rows * (ROWS_LEAD + (size_t)w.sums.width * sizeof *w.sums.word);
+    }
+    (void)end_file(&w);
+    outfile_abort(&w.file);
+    return status;
+}
+
+static bool is_plain(const struct exr_part *part)
+{
+    return part->codec == EXR_CODEC_NONE && !part->from && !part->sources;
+}
+
+static uint64_t plain_size(const struct exr_part *part)
+{
+    return (uint64_t)blocks_of(part) * (part->tile ? TILE_LEAD : ROWS_LEAD) +
+           (uint64_t)part->width * (uint64_t)part->height * (uint64_t)part->channels *
+               exr_sample_bytes(part->sample);
+}
+
+// Blocks of compressed parts, whose size nothing but packing them says.
+static relume_status packed_size(uint64_t *bytes, const struct exr_part *parts, int count,
+                                 int threads, const struct relume_log *log)
+{
+    uint64_t frame = 0, end = 0;
+    const struct relume_writer counting = {count_bytes, NULL, &end};
+    relume_status status = count ? frame_size(&frame, parts, count, log) : RELUME_OK;
+    if (!status && count)
+        status = exr_write(NULL, &counting, parts, count, true, threads, log);
+    *bytes = end - frame;
+    return status;
+}
+
+relume_status exr_size(uint64_t *bytes, const struct exr_part *parts, int count, int threads,
+                       const struct relume_log *log)
+{
+    struct exr_part *packed = mem_array((size_t)count, sizeof *packed);
+    uint64_t plain = 0, frame = 0, blocks = 0;
+    int n = 0;
+    for (int i = 0; packed && i < count; i++)
+        if (is_plain(&parts[i]))
+            plain += plain_size(&parts[i]);
+        else
+            packed[n++] = parts[i];
+    relume_status status = packed ? frame_size(&frame, parts, count, log) : RELUME_ENOMEM;
+    if (!status)
+        status = packed_size(&blocks, packed, n, threads, log);
+    *bytes = frame + plain + blocks;
+    mem_free(packed);
     return status;
 }
 
@@ -800,7 +885,7 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
     }
     if (whole && exr_has_sums(file)) {
         const struct exr_part_info sums = exr_part_info(file, part);
-        const uint64_t row = SUMS_LEAD + 4 * (uint64_t)sums.width;
+        const uint64_t row = ROWS_LEAD + 4 * (uint64_t)sums.width;
         whole = (uint64_t)sums.height * row <= size - end;
     }
     return whole ? RELUME_OK

@@ -66,6 +66,11 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
                         const struct exr_part *parts, int count, bool sums, int threads,
                         const struct relume_log *log);
 
+// Bytes of the file that exr_write would make of the parts with check sums. Parts that nothing
+// compresses are not asked for rows. Errors as above.
+relume_status exr_size(uint64_t *bytes, const struct exr_part *parts, int count, int threads,
+                       const struct relume_log *log);
+
 // The file `path`, or what `from` reads (infile.h). An input status with a sentence when it is not
 // a readable EXR of scanlines, or of tiles without reduced levels, within the limits.
 relume_status exr_open(exr_file **out, const char *path, const struct relume_reader *from,

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/math/scalar.h"
+#include "core/math/target_search.h"
 #include "format/lossy/av1.h"
 #include "image/image/jpeg.h"
 
@@ -125,7 +126,7 @@ static void put_boxes(struct boxes *b, int width, int height, size_t size)
 // ---------------------------------------------------------------- the picture
 
 // A picture on its way, or the middle of one.
-struct work {
+struct sheet_picture {
     int width, height, planes;
     size_t n;
     const double *scale;  // of the sheet's coding
@@ -137,7 +138,7 @@ struct work {
 
 static const size_t component[SHEET_PLANES] = {2, 0, 1};
 
-static relume_status allocate(struct work *w, int width, int height)
+static relume_status create_picture(struct sheet_picture *w, int width, int height)
 {
     w->width = width;
     w->height = height;
@@ -148,14 +149,15 @@ static relume_status allocate(struct work *w, int width, int height)
     return w->wanted && w->samples && w->decoded ? RELUME_OK : RELUME_ENOMEM;
 }
 
-static void release(struct work *w)
+static void destroy_picture(struct sheet_picture *w)
 {
     mem_free(w->wanted);
     mem_free(w->samples);
     mem_free(w->decoded);
 }
 
-static void fill(struct work *w, const struct sheet *sheet, const struct sheet_result *jpeg)
+static void fill_picture(struct sheet_picture *w, const struct sheet *sheet,
+                         const struct sheet_result *jpeg)
 {
     for (int p = 0; p < SHEET_PLANES; p++) {
         const double unit = 255.0 / jpeg->scale[p], zero = 255.0 * jpeg->bias[p];
@@ -170,7 +172,8 @@ static void fill(struct work *w, const struct sheet *sheet, const struct sheet_r
 }
 
 // The middle of a picture, and of what its JPEG shows of it.
-static void cut_middle(struct work *to, uint8_t *codes, const struct work *from, const uint8_t *all)
+static void cut_middle(struct sheet_picture *to, uint8_t *codes, const struct sheet_picture *from,
+                       const uint8_t *all)
 {
     const size_t left = (size_t)(from->width - to->width) / 2;
     const size_t top = (size_t)(from->height - to->height) / 2, width = (size_t)to->width;
@@ -190,7 +193,7 @@ static uint8_t code_of(uint16_t sample)
 }
 
 // Squared error of the planes in their own units; a browser makes 8 bits of 12.
-static double error_of(const struct work *w, const uint8_t *codes)
+static double error_of(const struct sheet_picture *w, const uint8_t *codes)
 {
     double sum = 0.0;
     for (size_t p = 0; p < (size_t)w->planes; p++) {
@@ -204,7 +207,8 @@ static double error_of(const struct work *w, const uint8_t *codes)
     return sum;
 }
 
-static relume_status encode(struct work *w, int step, struct av1_bytes *bytes, uint8_t *codes)
+static relume_status encode(struct sheet_picture *w, int step, struct av1_bytes *bytes,
+                            uint8_t *codes)
 {
     const struct av1_shape shape = {w->width, w->height, SHEET_PLANES, 1};
     const struct av1_effort effort = {step * AV1_STEPS, SPEED};
@@ -220,30 +224,52 @@ static relume_status encode(struct work *w, int step, struct av1_bytes *bytes, u
     return status;
 }
 
-// The coarsest step whose error is at most `allowed`, near a guess.
-static relume_status search(struct work *w, double allowed, int *step, uint8_t *codes)
+// Trials of one picture.
+struct step_trials {
+    struct sheet_picture *picture;
+    struct av1_bytes bytes;
+    uint8_t *codes;  // what its JPEG shows, and then what the last trial does
+};
+
+static relume_status try_step(void *context, double step, double *error)
 {
-    int good = LEAST - 1, bad = MOST + 1, at = *step;
-    struct av1_bytes bytes = {0};
-    relume_status status = RELUME_OK;
-    for (int stride = 2; !status && bad - good > 1; stride *= 2) {
-        status = encode(w, at, &bytes, codes);
-        if (error_of(w, codes) <= allowed)
-            good = at;
-        else
-            bad = at;
-        const bool both = good >= LEAST && bad <= MOST;
-        at = both ? (good + bad) / 2 : good >= LEAST ? good + stride : bad - stride;
-        at = at < LEAST ? LEAST : at > MOST ? MOST : at;
-        if (bad == LEAST)
-            break;
-    }
-    *step = good < LEAST ? LEAST : good;
-    mem_free(bytes.byte);
+    struct step_trials *t = context;
+    const relume_status status = encode(t->picture, (int)step, &t->bytes, t->codes);
+    *error = error_of(t->picture, t->codes);
     return status;
 }
 
-static relume_status join(struct sheet_result *out, const struct work *w,
+// The middle, or outwards by ever longer strides while an end is not known.
+static double next_step(void *context, const struct target_bracket *b)
+{
+    const double stride = ldexp(1.0, b->trials);
+    const bool has_low = b->low >= LEAST, has_high = b->high <= MOST;
+    const double at = has_low && has_high ? floor((b->low + b->high) / 2.0)
+                      : has_low           ? b->low + stride
+                                          : b->high - stride;
+    (void)context;
+    return fmin(fmax(at, LEAST), MOST);
+}
+
+// The coarsest step whose error is at most `allowed`, near a guess.
+static relume_status search_step(struct sheet_picture *picture, double allowed, int *step,
+                                 uint8_t *codes)
+{
+    struct step_trials trials = {.picture = picture, .codes = codes};
+    struct target_bracket b = {.low = LEAST - 1, .high = MOST + 1, .at = *step};
+    const relume_status status =
+        target_search(&b, &(const struct target_search){.target = allowed,
+                                                        .may_equal = true,
+                                                        .narrow = 1.0,
+                                                        .measure = try_step,
+                                                        .guess = next_step,
+                                                        .context = &trials});
+    *step = b.low < LEAST ? LEAST : (int)b.low;
+    mem_free(trials.bytes.byte);
+    return status;
+}
+
+static relume_status join(struct sheet_result *out, const struct sheet_picture *w,
                           const struct av1_bytes *bytes)
 {
     struct boxes boxes = {.size = 0};
@@ -258,12 +284,13 @@ static relume_status join(struct sheet_result *out, const struct work *w,
 }
 
 // By the middle of the picture: of all of it trials would take minutes.
-static relume_status find_step(int *step, const struct work *w, const struct sheet_result *jpeg)
+static relume_status find_step(int *step, const struct sheet_picture *w,
+                               const struct sheet_result *jpeg)
 {
-    struct work trial = *w;
+    struct sheet_picture trial = *w;
     struct jpeg_codes before = {0};
     relume_status status =
-        allocate(&trial, smaller_of(w->width, TRIAL_SIDE), smaller_of(w->height, TRIAL_SIDE));
+        create_picture(&trial, smaller_of(w->width, TRIAL_SIDE), smaller_of(w->height, TRIAL_SIDE));
     uint8_t *codes = mem_array(SHEET_PLANES * trial.n, 1);
     if (!status && !codes)
         status = RELUME_ENOMEM;
@@ -271,11 +298,11 @@ static relume_status find_step(int *step, const struct work *w, const struct she
         status = jpeg_decode(&before, jpeg->bytes, jpeg->size, "tile", NULL, NULL);
     if (!status) {
         cut_middle(&trial, codes, w, before.data);
-        status = search(&trial, error_of(&trial, codes), step, codes);
+        status = search_step(&trial, error_of(&trial, codes), step, codes);
     }
     jpeg_codes_free(&before);
     mem_free(codes);
-    release(&trial);
+    destroy_picture(&trial);
     return status;
 }
 
@@ -283,12 +310,12 @@ relume_status avif_encode(struct sheet_result *out, uint8_t *codes, const struct
                           const struct sheet_result *jpeg, int *quantiser,
                           const struct relume_log *log)
 {
-    struct work w = {.planes = sheet->planes, .scale = jpeg->scale, .log = log};
+    struct sheet_picture w = {.planes = sheet->planes, .scale = jpeg->scale, .log = log};
     struct av1_bytes bytes = {0};
     *out = (struct sheet_result){0};
-    relume_status status = allocate(&w, sheet->width, sheet->height);
+    relume_status status = create_picture(&w, sheet->width, sheet->height);
     if (!status) {
-        fill(&w, sheet, jpeg);
+        fill_picture(&w, sheet, jpeg);
         status = find_step(quantiser, &w, jpeg);
     }
     if (!status)
@@ -296,6 +323,6 @@ relume_status avif_encode(struct sheet_result *out, uint8_t *codes, const struct
     if (!status)
         status = join(out, &w, &bytes);
     mem_free(bytes.byte);
-    release(&w);
+    destroy_picture(&w);
     return status;
 }

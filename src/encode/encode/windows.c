@@ -1,5 +1,5 @@
-// look.c - windows of a view, coded as components and as pictures
-#include "encode/encode/look.h"
+// windows.c - windows of a view, coded as components and as pictures
+#include "encode/encode/windows.h"
 
 #include "core/base/memory.h"
 #include "core/math/scalar.h"
@@ -21,7 +21,7 @@ static const int step[STEPS] = {20 * AV1_STEPS, 40 * AV1_STEPS};
 static const double LEAST_SLOPE = 2.0, MOST_SLOPE = 8.0;
 
 // A window as a coder's codes before and after loss.
-struct look {
+struct coded_window {
     relume_coefficients *coefficients;
     struct captured captured;
     uint16_t *before, *after;  // [planes][height][width]
@@ -36,7 +36,7 @@ struct points {
 // Rows of a window by which foretelling is judged: one of so many.
 enum { EACH_ROW = 8 };
 
-static void look_away(struct look *l)
+static void close_window(struct coded_window *l)
 {
     relume_coefficients_destroy(&l->coefficients);
     captured_destroy(&l->captured);
@@ -55,9 +55,9 @@ static int windows_along(int length, int window)
     return length > ONE_WINDOW * window ? 2 : 1;
 }
 
-static relume_status look_at(struct look *l, const relume_coder *coder,
-                             const relume_capture *capture, const struct relume_rect *at,
-                             const struct relume_encode_params *encode)
+static relume_status open_window(struct coded_window *l, const relume_coder *coder,
+                                 const relume_capture *capture, const struct relume_rect *at,
+                                 const struct relume_encode_params *encode)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const size_t size = (size_t)coder->info.planes * (size_t)at->width * (size_t)at->height;
@@ -73,7 +73,7 @@ static relume_status look_at(struct look *l, const relume_coder *coder,
 }
 
 // A row of a window, a channel of it under all lights: shown[light][x], display values.
-static void show(float *shown, float *planes, const struct look *l, const uint16_t *codes,
+static void show(float *shown, float *planes, const struct coded_window *l, const uint16_t *codes,
                  const struct relume_rect *at, int row, int channel)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(l->coefficients);
@@ -85,19 +85,20 @@ static void show(float *shown, float *planes, const struct look *l, const uint16
 }
 
 // The mean squared difference of what `l` shows after loss from the pictures before.
-static relume_status judge(double *square, const struct look *l, const struct look *pictures,
-                           const struct relume_rect *at)
+static relume_status judge(double *square, const struct coded_window *l,
+                           const struct coded_window *pictures, const struct relume_rect *at)
 {
     const size_t n = (size_t)l->captured.lights * (size_t)at->width;
     const int most = relume_coefficients_info(pictures->coefficients)->planes,
               own = relume_coefficients_info(l->coefficients)->planes;
-    float *work = mem_array((size_t)(own > most ? own : most), (size_t)at->width * sizeof *work);
+    float *planes =
+        mem_array((size_t)(own > most ? own : most), (size_t)at->width * sizeof *planes);
     float *want = mem_array(n, sizeof *want), *got = mem_array(n, sizeof *got);
-    const bool good = work && want && got;
+    const bool good = planes && want && got;
     double sum = 0.0;
     for (int i = 0; good && i < 3 * at->height; i++) {
-        show(want, work, pictures, pictures->before, at, i / 3, i % 3);
-        show(got, work, l, l->after, at, i / 3, i % 3);
+        show(want, planes, pictures, pictures->before, at, i / 3, i % 3);
+        show(got, planes, l, l->after, at, i / 3, i % 3);
         for (size_t k = 0; k < n; k++) {
             const double d = (double)fminf(fmaxf(want[k], 0.0f), 1.0f) -
                              (double)fminf(fmaxf(got[k], 0.0f), 1.0f);
@@ -105,7 +106,7 @@ static relume_status judge(double *square, const struct look *l, const struct lo
         }
     }
     *square = sum / (3.0 * (double)n * at->height);
-    mem_free(work);
+    mem_free(planes);
     mem_free(want);
     mem_free(got);
     return good ? RELUME_OK : RELUME_ENOMEM;
@@ -134,26 +135,26 @@ static double foretell(const float *want, const float *got, float *missed, const
 }
 
 // The mean squared error of that, by some rows; `b` is the predictor of the lights.
-static relume_status judge_left_out(double *square, const struct look *l,
-                                    const struct look *pictures, const struct relume_rect *at,
-                                    const double *b)
+static relume_status judge_left_out(double *square, const struct coded_window *l,
+                                    const struct coded_window *pictures,
+                                    const struct relume_rect *at, const double *b)
 {
     const size_t width = (size_t)at->width, n = (size_t)l->captured.lights * width;
     const int most = relume_coefficients_info(pictures->coefficients)->planes,
               own = relume_coefficients_info(l->coefficients)->planes;
-    float *work = mem_array((size_t)(own > most ? own : most) + 1, width * sizeof *work);
+    float *planes = mem_array((size_t)(own > most ? own : most) + 1, width * sizeof *planes);
     float *want = mem_array(n, sizeof *want), *got = mem_array(n, sizeof *got);
-    const bool good = work && want && got;
+    const bool good = planes && want && got;
     double sum = 0.0;
     int rows = 0;
     for (int row = EACH_ROW / 2 % at->height; good && row < at->height; row += EACH_ROW, rows++)
         for (int c = 0; c < 3; c++) {
-            show(want, work, pictures, pictures->before, at, row, c);
-            show(got, work, l, l->after, at, row, c);
-            sum += foretell(want, got, work, b, l->captured.lights, width);
+            show(want, planes, pictures, pictures->before, at, row, c);
+            show(got, planes, l, l->after, at, row, c);
+            sum += foretell(want, got, planes, b, l->captured.lights, width);
         }
     *square = good ? sum / (3.0 * (double)n * rows) : 0.0;
-    mem_free(work);
+    mem_free(planes);
     mem_free(want);
     mem_free(got);
     return good ? RELUME_OK : RELUME_ENOMEM;
@@ -165,26 +166,26 @@ static relume_status add_window(struct points points[2], const relume_coder *con
                                 const double *b, const struct relume_encode_params *encode)
 {
     const struct av1_effort effort = {step[s], AV1_FAST};
-    struct look look[2] = {{0}, {0}};
-    relume_status status = look_at(&look[1], coder[1], capture, at, encode);
+    struct coded_window window[2] = {{0}, {0}};
+    relume_status status = open_window(&window[1], coder[1], capture, at, encode);
     if (!status)
-        status = look_at(&look[0], coder[0], capture, at, encode);
+        status = open_window(&window[0], coder[0], capture, at, encode);
     for (int i = 1; !status && i >= 0;
          i--) {  // the pictures first, which the other is compared with
         size_t bytes;
         double square = 0.0, left_out = 0.0;
-        status = lossy_try(look[i].before, look[i].after, &bytes, look[i].coefficients, at, &effort,
-                           encode->threads, encode->log);
+        status = lossy_try(window[i].before, window[i].after, &bytes, window[i].coefficients, at,
+                           &effort, encode->threads, encode->log);
         if (!status)
-            status = judge(&square, &look[i], &look[1], at);
+            status = judge(&square, &window[i], &window[1], at);
         if (!status && b)
-            status = judge_left_out(&left_out, &look[i], &look[1], at, b);
+            status = judge_left_out(&left_out, &window[i], &window[1], at, b);
         points[i].bytes[s] += (double)bytes;
         points[i].square[s] += square;
         points[i].left_out[s] += left_out;
     }
-    look_away(&look[0]);
-    look_away(&look[1]);
+    close_window(&window[0]);
+    close_window(&window[1]);
     return status;
 }
 
@@ -287,10 +288,10 @@ static double *predictor_of(const relume_coder *pictures)
     return b;
 }
 
-relume_status look_compare(double merit[2], double left_out[2], const relume_coder *const coder[2],
-                           const relume_capture *capture, const struct rate_target *target,
-                           const double header[2], double clearly,
-                           const struct relume_encode_params *encode)
+relume_status windows_compare(double merit[2], double left_out[2],
+                              const relume_coder *const coder[2], const relume_capture *capture,
+                              const struct rate_target *target, const double header[2],
+                              double clearly, const struct relume_encode_params *encode)
 {
     const struct windows w = windows_of(coder[1], capture);
     struct points points[2] = {{{0.0}, {0.0}, {0.0}}, {{0.0}, {0.0}, {0.0}}};

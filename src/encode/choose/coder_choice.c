@@ -1,4 +1,4 @@
-// decide.c - what encode chooses by itself: domain, number of coefficients, storage
+// coder_choice.c - what encode chooses by itself: domain, number of coefficients, storage
 //
 // All is judged on samples of the capture as `relume eval` judges pictures: display values,
 // clipped, PSNR of each light, their mean. The usual choice stays where it reaches the quality that
@@ -43,7 +43,7 @@ static const double MOST_DB = 60.0;     // of one light: exact black must not hi
 static const double FREE_STORE = 0.05;  // of the basis's squared error: 0.2 dB
 static const double LOSSLESS = 3.2e-6;  // squared error, 55 dB: less than a step of 8 bits
 
-struct job {
+struct choice {
     const relume_capture *capture;
     const struct relume_manifest *manifest;
     struct relume_coder_params params;
@@ -69,7 +69,7 @@ static double decibel(double mse)
 }
 
 struct judging {
-    const struct job *job;
+    const struct choice *choice;
     struct captured captured;
     float *planes;           // [planes][pixels]
     double (*error)[STEPS];  // [lights]
@@ -77,36 +77,36 @@ struct judging {
     double *left_out;  // [lights]
 };
 
-// Display values of `n` values of the job's domain, clipped.
-static void to_display(const struct job *job, const float *v, size_t n, float *out)
+// Display values of `n` values of the choice's domain, clipped.
+static void to_display(const struct choice *choice, const float *v, size_t n, float *out)
 {
-    if (job->domain == RELUME_DOMAIN_LINEAR)
-        encoder_apply(job->display, v, out, (int)n);
-    else if (job->recode)
-        encoder_apply(job->recode, v, out, (int)n);
+    if (choice->domain == RELUME_DOMAIN_LINEAR)
+        encoder_apply(choice->display, v, out, (int)n);
+    else if (choice->recode)
+        encoder_apply(choice->recode, v, out, (int)n);
     else
         memcpy(out, v, n * sizeof *out);
     for (size_t i = 0; i < n; i++)
         out[i] = encoder_clip(out[i]);
 }
 
-static double squared_error(const struct job *job, const float *a, const float *b, size_t n)
+static double squared_error(const struct choice *choice, const float *a, const float *b, size_t n)
 {
     float x[JUDGED], y[JUDGED];
     double sum = 0.0;
-    to_display(job, a, n, x);
-    to_display(job, b, n, y);
+    to_display(choice, a, n, x);
+    to_display(choice, b, n, y);
     for (size_t i = 0; i < n; i++)
         sum += ((double)x[i] - (double)y[i]) * ((double)x[i] - (double)y[i]);
     return sum / (double)n;
 }
 
 // A channel of the samples under a light.
-static void wanted(const struct job *job, size_t light, size_t channel, float *out)
+static void wanted(const struct choice *choice, size_t light, size_t channel, float *out)
 {
-    const size_t n = job->some.pixels;
+    const size_t n = choice->some.pixels;
     for (size_t x = 0; x < n; x++)
-        out[x] = job->some.data[(light * n + x) * 3 + channel];
+        out[x] = choice->some.data[(light * n + x) * 3 + channel];
 }
 
 // One light, by the first k components for every k of `counts`.
@@ -114,14 +114,14 @@ static void judge_light(void *context, size_t light, int worker)
 {
     (void)worker;
     struct judging *j = context;
-    const struct relume_coder_info *info = &j->job->coder->info;
-    const size_t n = j->job->some.pixels, k = (size_t)info->coefficients;
+    const struct relume_coder_info *info = &j->choice->coder->info;
+    const size_t n = j->choice->some.pixels, k = (size_t)info->coefficients;
     float sum[JUDGED], want[JUDGED];
     for (size_t c = 0; c < 3; c++) {
         const size_t row = c * (size_t)info->lights + light;
         const float *basis = j->captured.basis + row * k;
         int step = 0;
-        wanted(j->job, light, c, want);
+        wanted(j->choice, light, c, want);
         for (size_t x = 0; x < n; x++)
             sum[x] = j->captured.constant[row];
         for (size_t i = 0; i < k; i++) {
@@ -132,37 +132,39 @@ static void judge_light(void *context, size_t light, int worker)
                 step++;
             const bool last = i + 1 == k;
             if (step < STEPS && ((size_t)counts[step] == i + 1 || last))
-                j->error[light][step] += squared_error(j->job, sum, want, n) / 3.0;
+                j->error[light][step] += squared_error(j->choice, sum, want, n) / 3.0;
         }
     }
 }
 
-static relume_status find_planes(const struct job *job, const relume_coder *coder, float **out)
+static relume_status find_planes(const struct choice *choice, const relume_coder *coder,
+                                 float **out)
 {
-    const size_t n = job->some.pixels;
+    const size_t n = choice->some.pixels;
     *out = mem_array((size_t)coder->info.planes * n, sizeof **out);
-    return *out ? relume_coder_apply(coder, job->some.data, 3 * n, n, *out, n) : RELUME_ENOMEM;
+    return *out ? relume_coder_apply(coder, choice->some.data, 3 * n, n, *out, n) : RELUME_ENOMEM;
 }
 
-// How well the coder reproduces the captured lights: job->psnr, and job->own with all its
+// How well the coder reproduces the captured lights: choice->psnr, and choice->own with all its
 // coefficients.
-static relume_status judge(struct job *job)
+static relume_status judge(struct choice *choice)
 {
-    const size_t lights = (size_t)job->manifest->lights;
-    struct judging j = {.job = job, .error = mem_zeroed(lights, sizeof *j.error)};
+    const size_t lights = (size_t)choice->manifest->lights;
+    struct judging j = {.choice = choice, .error = mem_zeroed(lights, sizeof *j.error)};
     relume_status status = j.error ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = find_planes(job, job->coder, &j.planes);
+        status = find_planes(choice, choice->coder, &j.planes);
     if (!status)
-        status = captured_create(&j.captured, job->coder, job->manifest->directions, (int)lights);
+        status =
+            captured_create(&j.captured, choice->coder, choice->manifest->directions, (int)lights);
     if (!status)
-        thread_for(job->encode.threads, lights, judge_light, &j);
+        thread_for(choice->encode.threads, lights, judge_light, &j);
     for (int s = 0; !status && s < STEPS; s++) {
-        job->psnr[s] = 0.0;
+        choice->psnr[s] = 0.0;
         for (size_t i = 0; i < lights; i++)
-            job->psnr[s] += decibel(j.error[i][s]) / (double)lights;
-        job->own = job->psnr[s];
-        if (counts[s] >= job->coder->info.coefficients)
+            choice->psnr[s] += decibel(j.error[i][s]) / (double)lights;
+        choice->own = choice->psnr[s];
+        if (counts[s] >= choice->coder->info.coefficients)
             break;
     }
     captured_destroy(&j.captured);
@@ -176,34 +178,35 @@ static void leave_out(void *context, size_t light, int worker)
 {
     (void)worker;
     struct judging *j = context;
-    const size_t n = j->job->some.pixels, lights = (size_t)j->job->manifest->lights;
+    const size_t n = j->choice->some.pixels, lights = (size_t)j->choice->manifest->lights;
     const double *b = j->predictor + light * lights;
     float sum[JUDGED], want[JUDGED];
     for (size_t c = 0; c < 3; c++) {
-        wanted(j->job, light, c, want);
+        wanted(j->choice, light, c, want);
         memcpy(sum, want, n * sizeof *sum);
         for (size_t i = 0; i < lights; i++) {
             const float w = (float)(b[i] / b[light]);
             for (size_t x = 0; x < n; x++)
-                sum[x] -= w * j->job->some.data[(i * n + x) * 3 + c];
+                sum[x] -= w * j->choice->some.data[(i * n + x) * 3 + c];
         }
-        j->left_out[light] += squared_error(j->job, sum, want, n) / 3.0;
+        j->left_out[light] += squared_error(j->choice, sum, want, n) / 3.0;
     }
 }
 
-static relume_status judge_unseen(struct job *job)
+static relume_status judge_unseen(struct choice *choice)
 {
-    const size_t lights = (size_t)job->manifest->lights;
+    const size_t lights = (size_t)choice->manifest->lights;
     double *b = mem_array(lights * lights, sizeof *b);
-    struct judging j = {.job = job, .left_out = mem_zeroed(lights, sizeof(double)), .predictor = b};
+    struct judging j = {
+        .choice = choice, .left_out = mem_zeroed(lights, sizeof(double)), .predictor = b};
     const bool good = b && j.left_out;
-    job->unseen = 0.0;
-    const struct relume_interpolant *between = job->coder->info.interpolant;
+    choice->unseen = 0.0;
+    const struct relume_interpolant *between = choice->coder->info.interpolant;
     if (good && lights > 3 && between->predictor) {
-        between->predictor(job->coder->interpolant, b);
-        thread_for(job->encode.threads, lights, leave_out, &j);
+        between->predictor(choice->coder->interpolant, b);
+        thread_for(choice->encode.threads, lights, leave_out, &j);
         for (size_t i = 0; i < lights; i++)
-            job->unseen += decibel(j.left_out[i]) / (double)lights;
+            choice->unseen += decibel(j.left_out[i]) / (double)lights;
     }
     mem_free(b);
     mem_free(j.left_out);
@@ -212,49 +215,52 @@ static relume_status judge_unseen(struct job *job)
 
 // ---------------------------------------------------------------- domain and coefficients
 
-static relume_status make_coder(struct job *job, int count)
+static relume_status make_coder(struct choice *choice, int count)
 {
-    struct relume_coder_params p = job->params;
-    p.samples = &job->all;
+    struct relume_coder_params p = choice->params;
+    p.samples = &choice->all;
     p.coefficients = count;
-    relume_coder_destroy(&job->coder);
-    relume_status status = relume_coder_create(
-        &job->coder, &relume_basis_pca, job->manifest->directions, job->manifest->lights, &p);
+    relume_coder_destroy(&choice->coder);
+    relume_status status =
+        relume_coder_create(&choice->coder, &relume_basis_pca, choice->manifest->directions,
+                            choice->manifest->lights, &p);
     if (!status)
-        status = judge(job);
-    return status ? status : judge_unseen(job);
+        status = judge(choice);
+    return status ? status : judge_unseen(choice);
 }
 
 // From now on with the interpolant's parameters as they were chosen.
-static void keep_parameters(struct job *job)
+static void keep_parameters(struct choice *choice)
 {
-    job->params.log = NULL;  // has heard about the lights
-    if (job->params.choose) {
-        job->params.choose = false;
-        job->params.interpolant = job->coder->info.interpolant;
-        memcpy(job->params.parameter, job->coder->info.parameter, sizeof job->params.parameter);
+    choice->params.log = NULL;  // has heard about the lights
+    if (choice->params.choose) {
+        choice->params.choose = false;
+        choice->params.interpolant = choice->coder->info.interpolant;
+        memcpy(choice->params.parameter, choice->coder->info.parameter,
+               sizeof choice->params.parameter);
     }
 }
 
-static relume_status take_some(struct job *job)
+static relume_status take_some(struct choice *choice)
 {
-    const size_t n = job->all.pixels < JUDGED ? job->all.pixels : JUDGED;
-    const size_t lights = (size_t)job->all.lights;
-    job->some = (struct relume_samples){.lights = (int)lights,
-                                        .pixels = n,
-                                        .data = mem_array(lights * n, 3 * sizeof *job->some.data)};
-    if (!job->some.data)
+    const size_t n = choice->all.pixels < JUDGED ? choice->all.pixels : JUDGED;
+    const size_t lights = (size_t)choice->all.lights;
+    choice->some =
+        (struct relume_samples){.lights = (int)lights,
+                                .pixels = n,
+                                .data = mem_array(lights * n, 3 * sizeof *choice->some.data)};
+    if (!choice->some.data)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < lights; i++)
         for (size_t x = 0; x < n; x++)
-            memcpy(job->some.data + (i * n + x) * 3,
-                   job->all.data + (i * job->all.pixels + x * job->all.pixels / n) * 3,
-                   3 * sizeof *job->some.data);
+            memcpy(choice->some.data + (i * n + x) * 3,
+                   choice->all.data + (i * choice->all.pixels + x * choice->all.pixels / n) * 3,
+                   3 * sizeof *choice->some.data);
     return RELUME_OK;
 }
 
 struct conversion {
-    const struct job *job;
+    const struct choice *choice;
     float *data;
     size_t n;
     bool back;
@@ -267,102 +273,103 @@ static void convert_light(void *context, size_t light, int worker)
     float *v = c->data + light * c->n;
     if (c->back)
         for (size_t i = 0; i < c->n; i++)
-            v[i] = relume_transfer_decode(c->job->curve, v[i]);
+            v[i] = relume_transfer_decode(c->choice->curve, v[i]);
     else
-        encoder_apply(c->job->display, v, v, (int)c->n);
+        encoder_apply(c->choice->display, v, v, (int)c->n);
 }
 
-static void move_samples(struct job *job, enum relume_domain domain)
+static void move_samples(struct choice *choice, enum relume_domain domain)
 {
     const bool back = domain == RELUME_DOMAIN_LINEAR;
-    const size_t lights = (size_t)job->all.lights;
-    struct conversion all = {job, job->all.data, 3 * job->all.pixels, back};
-    struct conversion some = {job, job->some.data, 3 * job->some.pixels, back};
-    thread_for(job->encode.threads, lights, convert_light, &all);
-    thread_for(job->encode.threads, lights, convert_light, &some);
-    job->domain = domain;
+    const size_t lights = (size_t)choice->all.lights;
+    struct conversion all = {choice, choice->all.data, 3 * choice->all.pixels, back};
+    struct conversion some = {choice, choice->some.data, 3 * choice->some.pixels, back};
+    thread_for(choice->encode.threads, lights, convert_light, &all);
+    thread_for(choice->encode.threads, lights, convert_light, &some);
+    choice->domain = domain;
 }
 
 // The display domain, where it is better by half a decibel and predicts about as well, or predicts
 // clearly better where the quality is reached in both.
-static relume_status try_display(struct job *job)
+static relume_status try_display(struct choice *choice)
 {
-    const double own = job->own, unseen = job->unseen;
-    const bool reached = own >= job->quality;
-    relume_coder *linear = job->coder;
-    const struct relume_coder_params params = job->params;
-    job->coder = NULL;
-    job->params.log = NULL;
-    move_samples(job, RELUME_DOMAIN_DISPLAY);
-    const relume_status status = make_coder(job, linear->info.coefficients);
-    const bool better = reached ? job->own >= job->quality && job->unseen > unseen + CLEARLY
-                                : job->own > own + 0.5 && job->unseen > unseen - 0.2;
+    const double own = choice->own, unseen = choice->unseen;
+    const bool reached = own >= choice->quality;
+    relume_coder *linear = choice->coder;
+    const struct relume_coder_params params = choice->params;
+    choice->coder = NULL;
+    choice->params.log = NULL;
+    move_samples(choice, RELUME_DOMAIN_DISPLAY);
+    const relume_status status = make_coder(choice, linear->info.coefficients);
+    const bool better = reached
+                            ? choice->own >= choice->quality && choice->unseen > unseen + CLEARLY
+                            : choice->own > own + 0.5 && choice->unseen > unseen - 0.2;
     if (!status && better) {
         relume_coder_destroy(&linear);
         return RELUME_OK;
     }
-    relume_coder_destroy(&job->coder);
-    move_samples(job, RELUME_DOMAIN_LINEAR);
-    job->coder = linear;
-    job->params = params;
-    job->own = own;
-    job->unseen = unseen;
+    relume_coder_destroy(&choice->coder);
+    move_samples(choice, RELUME_DOMAIN_LINEAR);
+    choice->coder = linear;
+    choice->params = params;
+    choice->own = own;
+    choice->unseen = unseen;
     return status;
 }
 
 // The least number of `counts` that reaches the quality, or nearly what the most of them reach.
-static int enough(const struct job *job, int least)
+static int enough(const struct choice *choice, int least)
 {
-    const double want = fmin(job->quality, job->own - 0.2);
-    const int most = job->coder->info.coefficients;
+    const double want = fmin(choice->quality, choice->own - 0.2);
+    const int most = choice->coder->info.coefficients;
     for (int s = 0; s < STEPS && counts[s] < most; s++)
-        if (counts[s] >= least && job->psnr[s] >= want)
+        if (counts[s] >= least && choice->psnr[s] >= want)
             return counts[s];
     return most;
 }
 
-static relume_status make_longer(struct job *job, int most)
+static relume_status make_longer(struct choice *choice, int most)
 {
-    keep_parameters(job);
-    relume_status status = make_coder(job, most);
-    const double own = job->own, nugget = job->params.parameter[2];
-    if (status || own >= job->quality || nugget <= 0.0)
+    keep_parameters(choice);
+    relume_status status = make_coder(choice, most);
+    const double own = choice->own, nugget = choice->params.parameter[2];
+    if (status || own >= choice->quality || nugget <= 0.0)
         return status;
-    job->params.parameter[2] = 0.0;
-    status = make_coder(job, most);
-    if (status || (job->own > own + 1.0 && job->unseen > job->usual_unseen - 0.2))
+    choice->params.parameter[2] = 0.0;
+    status = make_coder(choice, most);
+    if (status || (choice->own > own + 1.0 && choice->unseen > choice->usual_unseen - 0.2))
         return status;
-    job->params.parameter[2] = nugget;
-    return make_coder(job, most);
+    choice->params.parameter[2] = nugget;
+    return make_coder(choice, most);
 }
 
-static relume_status choose_coder(struct job *job, bool asked)
+static relume_status choose_coder(struct choice *choice, bool asked)
 {
-    const int fixed = job->params.coefficients, lights = job->manifest->lights;
+    const int fixed = choice->params.coefficients, lights = choice->manifest->lights;
     const int limit = asked ? MOST_ASKED : MOST;
     const int most = 3 * lights < limit ? 3 * lights : limit;
     const int usual = 3 * lights < USUAL ? 3 * lights : USUAL;
-    relume_status status = make_coder(job, fixed ? fixed : usual);
-    job->usual_unseen = job->unseen;
-    const bool may = job->encode.domain == RELUME_DOMAIN_AUTO &&
-                     job->domain == RELUME_DOMAIN_LINEAR && lights <= MOST_LIGHTS;
-    if (!status && may && (job->own < job->quality || job->unseen < job->quality))
-        status = try_display(job);
+    relume_status status = make_coder(choice, fixed ? fixed : usual);
+    choice->usual_unseen = choice->unseen;
+    const bool may = choice->encode.domain == RELUME_DOMAIN_AUTO &&
+                     choice->domain == RELUME_DOMAIN_LINEAR && lights <= MOST_LIGHTS;
+    if (!status && may && (choice->own < choice->quality || choice->unseen < choice->quality))
+        status = try_display(choice);
     if (status || fixed || most <= usual || lights > MOST_LIGHTS)
         return status;
-    if (job->own < job->quality)
-        status = make_longer(job, most);
-    const int count = status ? 0 : enough(job, asked ? 1 : usual);
-    if (status || count == job->coder->info.coefficients)
+    if (choice->own < choice->quality)
+        status = make_longer(choice, most);
+    const int count = status ? 0 : enough(choice, asked ? 1 : usual);
+    if (status || count == choice->coder->info.coefficients)
         return status;
-    keep_parameters(job);
-    return make_coder(job, count);
+    keep_parameters(choice);
+    return make_coder(choice, count);
 }
 
 // ---------------------------------------------------------------- storage
 
 struct storing {
-    const struct job *job;
+    const struct choice *choice;
     const relume_coder *coder;
     struct captured captured;
     float *before, *after;  // [planes][pixels]
@@ -376,7 +383,7 @@ struct storing {
 static relume_status find_ranges(struct storing *s)
 {
     enum { RUN = 4096 };
-    const struct relume_samples *all = &s->job->all;
+    const struct relume_samples *all = &s->choice->all;
     const size_t planes = (size_t)s->coder->info.planes;
     float *values = mem_array(planes * RUN, sizeof *values);
     relume_status status = values && s->range ? RELUME_OK : RELUME_ENOMEM;
@@ -397,7 +404,7 @@ static relume_status find_ranges(struct storing *s)
 // The samples in place of a view: one band, whose ranges are those of all samples.
 static void quantise(const struct storing *s, enum relume_storage storage)
 {
-    const size_t n = s->job->some.pixels, planes = (size_t)s->coder->info.planes;
+    const size_t n = s->choice->some.pixels, planes = (size_t)s->coder->info.planes;
     relume_coefficients c = {
         .info = {.coder = s->coder, .planes = (int)planes, .storage = storage},
         .scale = s->step,
@@ -413,7 +420,7 @@ static void quantise(const struct storing *s, enum relume_storage storage)
 // packing makes of them is smaller, but about alike for any planes of one scene.
 static double bits_of(const struct storing *s, enum relume_storage storage)
 {
-    const size_t n = s->job->some.pixels, planes = (size_t)s->coder->info.planes;
+    const size_t n = s->choice->some.pixels, planes = (size_t)s->coder->info.planes;
     const int top = relume_storage_top(storage);
     double bits = 0.0;
     quantise(s, storage);
@@ -434,7 +441,7 @@ static void predict(const struct storing *s, int light, int channel, const float
                     float *out)
 {
     const struct relume_coder_info *info = &s->coder->info;
-    const size_t n = s->job->some.pixels, k = (size_t)info->coefficients;
+    const size_t n = s->choice->some.pixels, k = (size_t)info->coefficients;
     const size_t row = (size_t)(channel * info->lights + light);
     for (size_t x = 0; x < n; x++)
         out[x] = s->captured.constant[row];
@@ -447,10 +454,10 @@ static void predict(const struct storing *s, int light, int channel, const float
 }
 
 // As it looks at another exposure: linear light is multiplied.
-static void expose(const struct job *job, float gain, size_t n, float *v)
+static void expose(const struct choice *choice, float gain, size_t n, float *v)
 {
-    const struct relume_transfer t = job->curve;
-    const bool coded = job->domain == RELUME_DOMAIN_DISPLAY;
+    const struct relume_transfer t = choice->curve;
+    const bool coded = choice->domain == RELUME_DOMAIN_DISPLAY;
     for (size_t i = 0; gain != 1.0f && i < n; i++)
         v[i] =
             coded ? relume_transfer_encode(t, gain * relume_transfer_decode(t, v[i])) : gain * v[i];
@@ -459,9 +466,9 @@ static void expose(const struct job *job, float gain, size_t n, float *v)
 // Whether what storing adds is not seen at any exposure.
 static bool is_enough(const struct storing *s, enum relume_storage storage)
 {
-    const struct job *job = s->job;
-    const size_t n = job->some.pixels;
-    const int lights = job->manifest->lights, step = (lights + FEW_LIGHTS - 1) / FEW_LIGHTS;
+    const struct choice *choice = s->choice;
+    const size_t n = choice->some.pixels;
+    const int lights = choice->manifest->lights, step = (lights + FEW_LIGHTS - 1) / FEW_LIGHTS;
     float before[JUDGED], after[JUDGED], want[JUDGED];
     quantise(s, storage);
     for (int g = 0; g < s->gains; g++) {
@@ -471,12 +478,12 @@ static bool is_enough(const struct storing *s, enum relume_storage storage)
             for (int c = 0; c < 3; c++, count++) {
                 predict(s, i, c, s->before, before);
                 predict(s, i, c, s->after, after);
-                wanted(job, (size_t)i, (size_t)c, want);
-                expose(job, s->gain[g], n, before);
-                expose(job, s->gain[g], n, after);
-                expose(job, s->gain[g], n, want);
-                fit += squared_error(job, before, want, n);
-                store += squared_error(job, before, after, n);
+                wanted(choice, (size_t)i, (size_t)c, want);
+                expose(choice, s->gain[g], n, before);
+                expose(choice, s->gain[g], n, after);
+                expose(choice, s->gain[g], n, want);
+                fit += squared_error(choice, before, want, n);
+                store += squared_error(choice, before, after, n);
             }
         if (store / count > fmax(LOSSLESS, FREE_STORE * fit / count))
             return false;
@@ -486,40 +493,40 @@ static bool is_enough(const struct storing *s, enum relume_storage storage)
 
 // High dynamic range: linear light far above white, or one picture of linear light, which nobody
 // exposed for the screen.
-static bool is_hdr(const struct job *job)
+static bool is_hdr(const struct choice *choice)
 {
     static const float FAR_ABOVE_WHITE = 8.0f;
     float most = 0.0f;
-    const size_t n = (size_t)job->all.lights * job->all.pixels * 3;
-    if (job->manifest->transfer.curve != RELUME_CURVE_LINEAR)
+    const size_t n = (size_t)choice->all.lights * choice->all.pixels * 3;
+    if (choice->manifest->transfer.curve != RELUME_CURVE_LINEAR)
         return false;
     for (size_t i = 0; i < n; i++)
-        most = fmaxf(most, job->all.data[i]);
-    if (job->domain == RELUME_DOMAIN_DISPLAY)
-        most = relume_transfer_decode(job->curve, most);
-    return job->all.lights == 1 || most > FAR_ABOVE_WHITE;
+        most = fmaxf(most, choice->all.data[i]);
+    if (choice->domain == RELUME_DOMAIN_DISPLAY)
+        most = relume_transfer_decode(choice->curve, most);
+    return choice->all.lights == 1 || most > FAR_ABOVE_WHITE;
 }
 
 // 0 EV as the numbers are; of many lights, 2 EV up. Of one light 4 EV up, and likewise with the
 // typical value at middle grey, and 8 EV down from there.
 static void choose_exposures(struct storing *s, bool hdr)
 {
-    const struct job *job = s->job;
+    const struct choice *choice = s->choice;
     double roots = 0.0;
     size_t lit = 0;
     s->gain[0] = 1.0f;
     s->gains = 1;
-    for (size_t i = 0; i < (size_t)job->some.lights * job->some.pixels * 3; i++)
-        if (job->some.data[i] > 0.0f) {
-            const float v = job->some.data[i];
-            roots += sqrt((double)(job->domain == RELUME_DOMAIN_DISPLAY
-                                       ? relume_transfer_decode(job->curve, v)
+    for (size_t i = 0; i < (size_t)choice->some.lights * choice->some.pixels * 3; i++)
+        if (choice->some.data[i] > 0.0f) {
+            const float v = choice->some.data[i];
+            roots += sqrt((double)(choice->domain == RELUME_DOMAIN_DISPLAY
+                                       ? relume_transfer_decode(choice->curve, v)
                                        : v));
             lit++;
         }
     if (!hdr || !lit)
         return;
-    if (job->some.lights > 1) {
+    if (choice->some.lights > 1) {
         s->gain[1] = 4.0f;
         s->gains = 2;
         return;
@@ -533,27 +540,27 @@ static void choose_exposures(struct storing *s, bool hdr)
 // Codes of whole numbers are even steps, and how bright the brightest pixel is no sample knows: for
 // high dynamic range in linear light it is halves, or floats where these have not range enough.
 // `*bits` are those of a pixel's codes, or 0 where they are no whole numbers.
-static relume_status choose_storage(struct job *job, enum relume_storage *out, double *bits)
+static relume_status choose_storage(struct choice *choice, enum relume_storage *out, double *bits)
 {
     static const enum relume_storage even[] = {RELUME_STORE_8, RELUME_STORE_10, RELUME_STORE_12,
                                                RELUME_STORE_16, RELUME_STORE_HALF};
-    const size_t n = job->some.pixels, planes = (size_t)job->coder->info.planes;
-    const bool hdr = is_hdr(job);
-    struct storing s = {.job = job, .coder = job->coder};
+    const size_t n = choice->some.pixels, planes = (size_t)choice->coder->info.planes;
+    const bool hdr = is_hdr(choice);
+    struct storing s = {.choice = choice, .coder = choice->coder};
     s.after = mem_array(planes * n, sizeof *s.after);
     s.range = mem_array(planes, sizeof *s.range);
     s.step = mem_array(2 * planes, sizeof *s.step);
     s.count = mem_array(UINT16_MAX + 1, sizeof *s.count);
     relume_status status = s.after && s.step && s.count ? find_ranges(&s) : RELUME_ENOMEM;
     if (!status)
-        status = find_planes(job, job->coder, &s.before);
+        status = find_planes(choice, choice->coder, &s.before);
     if (!status)
-        status = captured_create(&s.captured, job->coder, job->manifest->directions,
-                                 job->manifest->lights);
+        status = captured_create(&s.captured, choice->coder, choice->manifest->directions,
+                                 choice->manifest->lights);
     if (!status && !*out) {
         choose_exposures(&s, hdr);
         *out = RELUME_STORE_FLOAT;
-        for (size_t i = hdr && job->domain == RELUME_DOMAIN_LINEAR ? 4 : 0;
+        for (size_t i = hdr && choice->domain == RELUME_DOMAIN_LINEAR ? 4 : 0;
              i < 5 && *out == RELUME_STORE_FLOAT; i++)
             if (is_enough(&s, even[i]))
                 *out = even[i];
@@ -571,60 +578,63 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out, d
 // ---------------------------------------------------------------- all of it
 
 // One light needs no components: its picture is what there is to store.
-static relume_status keep_picture(struct job *job)
+static relume_status keep_picture(struct choice *choice)
 {
-    job->params.choose = false;
-    job->params.interpolant = NULL;
-    relume_status status = relume_coder_create(&job->coder, &relume_basis_table,
-                                               job->manifest->directions, 1, &job->params);
-    return status ? status : judge(job);
+    choice->params.choose = false;
+    choice->params.interpolant = NULL;
+    relume_status status = relume_coder_create(&choice->coder, &relume_basis_table,
+                                               choice->manifest->directions, 1, &choice->params);
+    return status ? status : judge(choice);
 }
 
 // More components than usual are a matter of hard shadows; of many lights a look is enough.
-static bool may_be_pictures(const struct job *job)
+static bool may_be_pictures(const struct choice *choice)
 {
-    return !job->params.coefficients && job->manifest->lights > 1 &&
-           job->coder->info.coefficients > USUAL && job->manifest->lights <= MOST_LIGHTS;
+    return !choice->params.coefficients && choice->manifest->lights > 1 &&
+           choice->coder->info.coefficients > USUAL && choice->manifest->lights <= MOST_LIGHTS;
 }
 
-static relume_status make_pictures(struct job *job, enum relume_storage *storage, double *bits)
+static relume_status make_pictures(struct choice *choice, enum relume_storage *storage,
+                                   double *bits)
 {
-    struct relume_coder_params p = job->params;
+    struct relume_coder_params p = choice->params;
     p.coefficients = 0;
     p.parameter[2] = 0.0;  // nothing smooths between them
-    *storage = job->encode.storage;
-    relume_coder_destroy(&job->coder);
-    relume_status status = relume_coder_create(
-        &job->coder, &relume_basis_table, job->manifest->directions, job->manifest->lights, &p);
+    *storage = choice->encode.storage;
+    relume_coder_destroy(&choice->coder);
+    relume_status status =
+        relume_coder_create(&choice->coder, &relume_basis_table, choice->manifest->directions,
+                            choice->manifest->lights, &p);
     if (!status)
-        status = judge(job);
+        status = judge(choice);
     if (!status)
-        status = judge_unseen(job);
-    return status ? status : choose_storage(job, storage, bits);
+        status = judge_unseen(choice);
+    return status ? status : choose_storage(choice, storage, bits);
 }
 
 // The pictures, where they take fewer bytes than the components that reproduce them worse; those of
 // linear light as such, since light is lost where the display coding of lit and of dark is mixed.
-static relume_status consider_pictures(struct job *job, enum relume_storage *storage, double bits)
+static relume_status consider_pictures(struct choice *choice, enum relume_storage *storage,
+                                       double bits)
 {
-    relume_coder *components = job->coder;
+    relume_coder *components = choice->coder;
     enum relume_storage other;
-    const double own = job->own, unseen = job->unseen;
+    const double own = choice->own, unseen = choice->unseen;
     double theirs = 0.0;
-    job->coder = NULL;
-    relume_status status = make_pictures(job, &other, &theirs);
-    if (!status && (theirs <= 0.0 || theirs >= bits || job->own < own ||
-                    job->unseen < job->usual_unseen - 0.2)) {
-        relume_coder_destroy(&job->coder);
-        job->coder = components;
-        job->own = own;
-        job->unseen = unseen;
+    choice->coder = NULL;
+    relume_status status = make_pictures(choice, &other, &theirs);
+    if (!status && (theirs <= 0.0 || theirs >= bits || choice->own < own ||
+                    choice->unseen < choice->usual_unseen - 0.2)) {
+        relume_coder_destroy(&choice->coder);
+        choice->coder = components;
+        choice->own = own;
+        choice->unseen = unseen;
         return RELUME_OK;
     }
     relume_coder_destroy(&components);
-    if (!status && job->domain != relume_encode_domain(job->capture, job->encode.domain)) {
-        move_samples(job, RELUME_DOMAIN_LINEAR);
-        status = make_pictures(job, &other, &theirs);
+    if (!status && choice->domain != relume_encode_domain(choice->capture, choice->encode.domain)) {
+        move_samples(choice, RELUME_DOMAIN_LINEAR);
+        status = make_pictures(choice, &other, &theirs);
     }
     *storage = other;
     return status;
@@ -635,57 +645,57 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
                                   const struct relume_coder_params *coder,
                                   const struct relume_encode_params *encode)
 {
-    struct job job = {
+    struct choice choice = {
         .capture = capture,
         .manifest = relume_capture_manifest(capture),
         .params = coder ? *coder : (struct relume_coder_params){.choose = true},
         .encode = PARAMS_WORK(relume_encode_params, encode),
         .quality = quality_db > 0.0 ? quality_db : RELUME_USUAL_DB,
-        .display = mem_array(1, sizeof *job.display),
+        .display = mem_array(1, sizeof *choice.display),
     };
     *out = NULL;
-    job.params.hemispherical = relume_capture_hemispherical(capture);
-    job.params.pole_y = relume_capture_pole_y(capture);
-    job.params.threads = job.encode.threads;
-    job.domain = relume_encode_domain(capture, job.encode.domain);
-    job.curve = relume_encode_curve(capture, job.encode.display);
-    relume_status status = job.display ? RELUME_OK : RELUME_ENOMEM;
+    choice.params.hemispherical = relume_capture_hemispherical(capture);
+    choice.params.pole_y = relume_capture_pole_y(capture);
+    choice.params.threads = choice.encode.threads;
+    choice.domain = relume_encode_domain(capture, choice.encode.domain);
+    choice.curve = relume_encode_curve(capture, choice.encode.display);
+    relume_status status = choice.display ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        encoder_init(job.display, relume_encode_display(capture));
-    if (!status && job.curve.curve == RELUME_CURVE_LOG) {
-        job.recode = mem_array(1, sizeof *job.recode);
-        status = job.recode ? RELUME_OK : RELUME_ENOMEM;
+        encoder_init(choice.display, relume_encode_display(capture));
+    if (!status && choice.curve.curve == RELUME_CURVE_LOG) {
+        choice.recode = mem_array(1, sizeof *choice.recode);
+        status = choice.recode ? RELUME_OK : RELUME_ENOMEM;
         if (!status)
-            encoder_init_from(job.recode, job.curve, job.display->transfer);
+            encoder_init_from(choice.recode, choice.curve, choice.display->transfer);
     }
     if (!status)
-        status =
-            relume_samples_read(&job.all, capture, samples_enough(job.manifest->lights), encode);
-    if (!status && !job.all.pixels)
-        status = log_fail(job.params.log, RELUME_EUNFIT,
+        status = relume_samples_read(&choice.all, capture, samples_enough(choice.manifest->lights),
+                                     encode);
+    if (!status && !choice.all.pixels)
+        status = log_fail(choice.params.log, RELUME_EUNFIT,
                           "the masks are black everywhere; expected white where the object is");
     if (!status)
-        status = take_some(&job);
-    if (!status && job.manifest->lights == 1 && !job.params.coefficients)
-        status = keep_picture(&job);
+        status = take_some(&choice);
+    if (!status && choice.manifest->lights == 1 && !choice.params.coefficients)
+        status = keep_picture(&choice);
     else if (!status)
-        status = choose_coder(&job, quality_db > 0.0);
-    enum relume_storage storage = job.encode.storage;
+        status = choose_coder(&choice, quality_db > 0.0);
+    enum relume_storage storage = choice.encode.storage;
     double bits = 0.0;
     if (!status)
-        status = choose_storage(&job, &storage, &bits);
-    if (!status && bits > 0.0 && may_be_pictures(&job))
-        status = consider_pictures(&job, &storage, bits);
+        status = choose_storage(&choice, &storage, &bits);
+    if (!status && bits > 0.0 && may_be_pictures(&choice))
+        status = consider_pictures(&choice, &storage, bits);
     if (decision)
-        *decision = (struct relume_decision){job.domain, storage, job.own, job.unseen};
+        *decision = (struct relume_decision){choice.domain, storage, choice.own, choice.unseen};
     if (!status) {
-        *out = job.coder;
-        job.coder = NULL;
+        *out = choice.coder;
+        choice.coder = NULL;
     }
-    relume_samples_destroy(&job.all);
-    relume_samples_destroy(&job.some);
-    relume_coder_destroy(&job.coder);
-    mem_free(job.display);
-    mem_free(job.recode);
+    relume_samples_destroy(&choice.all);
+    relume_samples_destroy(&choice.some);
+    relume_coder_destroy(&choice.coder);
+    mem_free(choice.display);
+    mem_free(choice.recode);
     return status;
 }

@@ -1,6 +1,6 @@
-// reduce.h - the coefficients of a view at half its size
-#ifndef ENCODE_REDUCE_H
-#define ENCODE_REDUCE_H
+// reduction.h - the coefficients of a view at half its size
+#ifndef ENCODE_REDUCTION_H
+#define ENCODE_REDUCTION_H
 
 #include <relume/format/coder.h>
 

@@ -1,4 +1,4 @@
-// test_between.c - what lies between pictures: by what foretells lights left out better
+// test_interpolant_choice.c - what lies between pictures: by what foretells lights left out better
 #include "test.h"
 
 #include "capture_fixture.h"

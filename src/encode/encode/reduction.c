@@ -1,10 +1,10 @@
-// reduce.c - the coefficients of a view at half its size
+// reduction.c - the coefficients of a view at half its size
 //
 // In linear light the mean of 2 x 2 pixels has the mean of their coefficients. In the display
 // domain it has not, since means are of light: there the pixels are decoded under every captured
 // light and made linear, and what their mean light, coded again, has beyond the mean of their codes
 // joins the mean of their coefficients by least squares over the lights.
-#include "encode/encode/reduce.h"
+#include "encode/encode/reduction.h"
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

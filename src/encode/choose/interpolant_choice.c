@@ -1,5 +1,5 @@
-// between.c - what lies between pictures that are kept themselves: flat triangles of their lights,
-// or the kernel
+// interpolant_choice.c - what lies between pictures that are kept themselves: flat triangles of
+// their lights, or the kernel
 //
 // Some lights are left out, one at a time, and foretold by all others, as a file foretells
 // those that were never captured.

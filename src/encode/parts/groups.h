@@ -1,6 +1,6 @@
 // groups.h - which views are coded together, and who codes which of their tiles
-#ifndef ENCODE_GROUPS_H
-#define ENCODE_GROUPS_H
+#ifndef PARTS_GROUPS_H
+#define PARTS_GROUPS_H
 
 #include "format/lossy/lossy.h"
 

@@ -1,8 +1,8 @@
-// test_look.c - components and pictures, compared by lights that are left out
+// test_windows.c - components and pictures, compared by lights that are left out
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "encode/encode/look.h"
+#include "encode/encode/windows.h"
 #include "in_folder.h"
 
 enum { LIGHTS = 24, SIDE = 48 };
@@ -41,7 +41,7 @@ static void compare(double left_out[2], double clearly)
     CHECK_OK(relume_coder_learn(&coder[0], &relume_basis_pca, capture, &how, &encode));
     how.coefficients = 0;
     CHECK_OK(relume_coder_learn(&coder[1], &relume_basis_table, capture, &how, &encode));
-    CHECK_OK(look_compare(merit, left_out, (const relume_coder *const *)coder, capture, &target,
+    CHECK_OK(windows_compare(merit, left_out, (const relume_coder *const *)coder, capture, &target,
                           header, clearly, &encode));
     assert_true(isfinite(merit[0]) && isfinite(merit[1]));
     relume_coder_destroy(&coder[0]);

@@ -1,6 +1,6 @@
-// look.h - components and pictures compared by windows of a view
-#ifndef ENCODE_LOOK_H
-#define ENCODE_LOOK_H
+// windows.h - components and pictures compared by windows of a view
+#ifndef ENCODE_WINDOWS_H
+#define ENCODE_WINDOWS_H
 
 #include "encode/encode/rate.h"
 
@@ -11,9 +11,9 @@
 // shown then that all others foretell, by what coding left of these; 0 where one is clearly better,
 // or the interpolant does not say it. header[2]: bytes beside the planes. An input status,
 // RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM.
-relume_status look_compare(double merit[2], double left_out[2], const relume_coder *const coder[2],
-                           const relume_capture *capture, const struct rate_target *target,
-                           const double header[2], double clearly,
-                           const struct relume_encode_params *encode);
+relume_status windows_compare(double merit[2], double left_out[2],
+                              const relume_coder *const coder[2], const relume_capture *capture,
+                              const struct rate_target *target, const double header[2],
+                              double clearly, const struct relume_encode_params *encode);
 
 #endif

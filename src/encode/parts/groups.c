@@ -1,6 +1,6 @@
 // groups.c - the cameras of a slab are halved until as many stand together as are wanted; the tiles
 // of all groups are shared evenly
-#include "encode/encode/groups.h"
+#include "encode/parts/groups.h"
 
 #include "core/base/memory.h"
 

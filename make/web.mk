@@ -11,20 +11,22 @@ WEB_JS   := $(filter-out $(WEB_OBJECT) $(WEB_MORE),$(wildcard web/*.js))
 # ... of which pages of objects have these, and nothing else
 WEB_SHARED := $(addprefix web/,ball.js compare.js controls.js gl.js lights.js load.js marks.js noteindex.js notepanel.js notes.js overlay.js pins.js pointer.js profilegraph.js shaders.js stage.js \
               state.js wasm.js)
+# ... and formulas that the viewer has, too
+WEB_SHADERS := $(wildcard viewer/shaders/shared/*.glsl)
 WEB_CORE := $(wildcard web/core/relume-core.wasm)
 WEB_OPEN := $(wildcard web/open/relume-open.wasm web/open/licences.txt)
 WEB_CSS  := $(wildcard web/*.css)
 
 # The web viewer is modules in the tree, one classic script in a site, and bytes in the library.
-$B/web/relume.js: scripts/join-web.sh $(WEB_JS) $(WEB_MORE)
+$B/web/relume.js: scripts/join-web.sh $(WEB_JS) $(WEB_MORE) $(WEB_SHADERS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q)scripts/join-web.sh --more $(WEB_MORE) -- $(WEB_JS) > $@
-$B/web/relume-more.js: scripts/join-web.sh $(WEB_MORE)
+$B/web/relume-more.js: scripts/join-web.sh $(WEB_MORE) $(WEB_SHADERS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q)scripts/join-web.sh --part $(WEB_MORE) > $@
-$B/web/relume-object.js: scripts/join-web.sh $(WEB_OBJECT) $(WEB_SHARED)
+$B/web/relume-object.js: scripts/join-web.sh $(WEB_OBJECT) $(WEB_SHARED) $(WEB_SHADERS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
 	$(Q)scripts/join-web.sh $(WEB_OBJECT) $(WEB_SHARED) > $@

@@ -3,7 +3,8 @@
 # join-web.sh [--more FILE.js...] -- FILE.js... > relume.js
 # Modules import by name alone (`import { a, b } from './x.js';`, on one line or several) and mark
 # what they give with `export` before function, const, let, class or async; nothing else. Each comes
-# behind those that it imports. Lines that are comments stay behind.
+# behind those that it imports. Lines that are comments stay behind. Shaders that a module imports
+# (`import NAME from '../PATH.glsl';`) come first, as strings, each once.
 # Files behind --more are of another script, which loads later (join-web.sh --part FILE.js... > relume-more.js): what they
 # import of the first one it hands over as window.relume.shared, and what they give is handed back.
 set -eu
@@ -23,6 +24,17 @@ from_others() {
         *) echo "$line" | sed 's/.*{ *//; s/ *}.*//; s/ *, */\n/g' ;;
         esac
     done | grep . | sort -u | tr '\n' ',' | sed 's/,$//; s/,/, /g'
+}
+
+# the shaders that files import, as strings without comments
+shaders() {
+    cat "$@" | sed -n "s/^import \([A-Z_]*\) from '\(.*\.glsl\)';$/\1 \2/p" | sort -u |
+        while read -r name path; do
+            [ -e "$folder/$path" ] || { echo "join-web.sh: no $folder/$path" >&2; exit 1; }
+            echo "const $name = \`"
+            sed 's/^ *//; s/^\/\/.*//; s/  \/\/ .*//; /^$/d' "$folder/$path"
+            echo '`;'
+        done
 }
 
 part=no more=
@@ -51,8 +63,10 @@ else
 fi
 echo "'use strict';"
 [ $part = no ] || echo "const { $(from_others "$@") } = shared;"
+shaders "$@"
 for name in $order; do
     awk '
+        /^import [A-Z_]+ from/ { next }
         /^import *\{/ { inside = 1 }
         inside { if (/from *\047/) inside = 0; next }
         /^ *\/\// { next }

@@ -32,7 +32,7 @@ function modelOf(pictures, { scale, offset }, gloss) {
     return out;
 }
 
-// How rays lie in a view's coordinates: twin of set_up of src/relight/shadow/stage.c.
+// How rays lie in a view's coordinates. Twin: set_up of src/relight/shadow/stage.c.
 function raysOf(scene, view) {
     const { width, height, projection, window: w, slab, panorama } = scene;
     const through = (min, max, u, v, distance, rays, eye) => {
@@ -60,7 +60,7 @@ function rayThrough(stage) {
     return (x, y) => [at(x, 0), at(y, 1), rays === EYE ? axis : 0];
 }
 
-// How far the surface is, what is around it: twin of stage_create.
+// How far the surface is, what is around it. Twin: stage_create.
 function surfaceOf(stage, { width, height, data }, view, cameraZ) {
     const flat = stage.rays === PARALLEL, far = new Float32Array(width * height), ray = rayThrough(stage);
     let nearest = Infinity;
@@ -196,7 +196,7 @@ export class Moving {
             const { span, front, columns, rows } = spansOf(far, width, height, stage.rays >= CYLINDER), surface = new Float32Array(2 * n);
             for (let i = 0; i < n; i++)
                 surface.set([far[i], Math.min(model[NUMBERS * i], BACKGROUND)], 2 * i);
-            Object.assign(stage, { low, high, far, sides: [stage.axis, stage.pixel, leastSide] });
+            Object.assign(stage, { low, high, far, leastSide });
             own.surface = this.texture(width, height, gl.RG32F, surface);
             own.span = this.texture(width + 1, height + 1, gl.RG32F, span);
             own.front = this.texture(columns, rows, gl.R32F, front);
@@ -229,7 +229,7 @@ export class Moving {
     stageOf(view) {
         const { stage, own } = view;
         return { surface: { texture: own.surface }, span: { texture: own.span }, front: { texture: own.front },
-                 window: [...stage.scale, ...stage.shift], sides: stage.sides, low: stage.low, high: stage.high };
+                 window: [...stage.scale, ...stage.shift], axis: stage.axis, pixel_side: stage.pixel, least_side: stage.leastSide, low: stage.low, high: stage.high };
     }
 
     placeOf(tile) {
@@ -278,7 +278,7 @@ export class Moving {
         this.device.begin(relit);
         draw(relit);
         return { relit: { texture: relit.texture }, colours: { texture: view.colours }, matte: { texture: view.matte }, origin, grain,
-                 level: tile.level, curve: { int: between === 'linear' ? 1 : curve }, gamma };
+                 level: tile.level, 'display.curve': { int: between === 'linear' ? 1 : curve }, 'display.gamma': gamma };
     }
 
     // Adds a light to `lit`: { direction, colour, around }.

@@ -1,13 +1,20 @@
 // near.js - lamps that stand near: each pixel sees them from a direction of its own; after
 // viewer/shaders/near.frag.glsl and src/relight/light/near_lights.c
+import FACES from '../viewer/shaders/shared/cube.glsl';
+import LIGHT from '../viewer/shaders/shared/light.glsl';
+import POLE from '../viewer/shaders/shared/pole.glsl';
+import TRIANGLE_SHARES from '../viewer/shaders/shared/triangles.glsl';
+import WEIGHT_GRID from '../viewer/shaders/shared/weight_grid.glsl';
 import { MOST_SIDE, patchSide, patchesOf } from './lights.js';
-import { DECODE, guideGain, HEAD } from './shaders.js';
+import { HEAD } from './shaders.js';
 import { loadPicture } from './tiles.js';
+import { DECODE, guideGain } from './tileshaders.js';
 
 const DOWN = 64;           // rows of the table from the pole to the horizon
 const MOST_DEPTH = 4096;   // pixels a side
 
-// Where the way through a pixel leads: twins of src/image/geometry/camera.c.
+// Where the way through a pixel leads, as src/image/geometry/camera.c says. The viewer has these
+// places from the library.
 const RAYS = {
     cylindrical: `
     if (disc > 0.0 && at.y >= size.y - disc) {
@@ -20,11 +27,8 @@ const RAYS = {
     float up = (0.5 - at.y / size.y) * PI;
     return vec3(cos(up) * sin(phi), sin(up), -cos(up) * cos(phi));`,
     cube: `
-    const vec3 AHEAD[6] = vec3[6](vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1));
-    const vec3 RIGHT[6] = vec3[6](vec3(0, 0, 1), vec3(0, 0, -1), vec3(1, 0, 0), vec3(1, 0, 0), vec3(-1, 0, 0), vec3(1, 0, 0));
-    const vec3 UP[6] = vec3[6](vec3(0, 1, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(0, 0, -1), vec3(0, 1, 0), vec3(0, 1, 0));
     int face = clamp(int(at.x / size.y), 0, 5);
-    return AHEAD[face] + (2.0 * (at.x / size.y - float(face)) - 1.0) * RIGHT[face] + (1.0 - 2.0 * at.y / size.y) * UP[face];`,
+    return cube_face_ray(face, vec2(2.0 * (at.x / size.y - float(face)) - 1.0, 1.0 - 2.0 * at.y / size.y));`,
 };
 const onPlane = `
     vec3 point = vec3(mix(window.x, window.z, at.x / size.x), mix(window.w, window.y, at.y / size.y), plane);
@@ -33,48 +37,37 @@ const onPlane = `
     return point - eye;`;
 
 // What a lamp sends to a point, and where light from a direction is taken from.
-export const ARRIVING = `
-uniform vec3 axis;
-uniform float halfAngle; // of a spot, radians; 0: a point
-uniform float fall, patch_, hemisphere, poleY;
+export const ARRIVING = `${LIGHT}${POLE}${WEIGHT_GRID}
+uniform vec3 lamp_axis;
+uniform float half_angle; // of a spot, radians; 0: a point
+uniform bool falls, is_patch;
 uniform sampler2D taken;  // by direction: where light from there is taken from, and the share that is shown
-const float PI = 3.14159265358979;
-vec3 pole_from(vec3 world) { return poleY > 0.5 ? vec3(-world.z, world.x, world.y) : world; }
 bool sends(out vec3 towards, out float sent, vec3 from, vec3 point)
 {
-    towards = from - point;
-    float away = length(towards);
-    if (away < 1e-6)
-        return false;
-    towards /= away;
-    sent = fall > 0.5 ? 1.0 / (away * away) : 1.0;
-    if (halfAngle > 0.0)
-        sent *= 1.0 - smoothstep(0.9 * halfAngle, halfAngle, atan(length(cross(towards, axis)), -dot(towards, axis)));
-    if (patch_ > 0.5)
-        sent = hemisphere > 0.5 && pole_from(towards).z < 0.0 ? 0.0 : sent * max(-dot(towards, axis), 0.0);
-    return true;
+    float away;
+    bool arrives = ray_to(towards, away, from, point);
+    sent = falls ? 1.0 / (away * away) : 1.0;
+    if (half_angle > 0.0)
+        sent *= spot_factor(-towards, lamp_axis, half_angle);
+    if (is_patch)
+        sent = is_captured(towards) ? sent * max(-dot(towards, lamp_axis), 0.0) : 0.0;
+    return arrives;
 }
-// Twin: relume_weight_grid_place.
-vec2 table_place(vec3 world)
+vec2 table_place(vec3 towards)
 {
-    vec3 d = pole_from(world);
-    vec2 whole = vec2(textureSize(taken, 0));
-    float rows = hemisphere > 0.5 ? whole.y : 0.5 * whole.y;
-    bool below = d.z < 0.0;
-    float theta = atan(length(d.xy), below && hemisphere > 0.5 ? 0.0 : abs(d.z));
-    float row = (rows - 1.0) * (1.0 - sqrt(max(1.0 - theta / (0.5 * PI), 0.0)));
-    float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * (whole.x - 1.0);
-    return (vec2(column, below && hemisphere < 0.5 ? whole.y - 1.0 - row : row) + 0.5) / whole;
+    ivec2 size = textureSize(taken, 0);
+    return (weight_grid_place(pole_from_world(towards), size) + 0.5) / vec2(size);
 }
 `;
 
-// The triangle of captured lights around a direction; after viewer/shaders/light/triangles.glsl.
-export const TRIANGLES = `
+// The triangle of captured lights around a direction, of all; the viewer goes from one to the next
+// (viewer/shaders/light/triangles.glsl).
+export const TRIANGLES = `${TRIANGLE_SHARES}
 uniform sampler2D triangles;  // rows of a corner each: of the inverse, and its light
 uniform int triangleCount;
-void triangles_find(out ivec3 node, out vec3 share, vec3 world)
+void triangles_find(out ivec3 node, out vec3 share, vec3 d)
 {
-    vec3 d = pole_from(world), corner = vec3(-1.0);
+    vec3 corner = vec3(-1.0);
     float best = -1e30;
     for (int t = 0; t < triangleCount && best < -1e-6; t++) {
         vec4 row[3] = vec4[3](texelFetch(triangles, ivec2(0, t), 0), texelFetch(triangles, ivec2(1, t), 0), texelFetch(triangles, ivec2(2, t), 0));
@@ -86,17 +79,13 @@ void triangles_find(out ivec3 node, out vec3 share, vec3 world)
             corner = vec3(row[0].w, row[1].w, row[2].w);
         }
     }
-    vec3 says = vec3(greaterThanEqual(corner, vec3(0.0)));
-    share = max(share, 0.0) * says;
-    float sum = share.x + share.y + share.z;
-    share = sum > 0.0 ? share / sum : says / max(says.x + says.y + says.z, 1.0);
-    node = ivec3(max(corner, 0.0));
+    triangle_shares(node, share, corner);
 }
 `;
 
 // One lamp on one tile. The table has, by direction, three planes a texel: layers of red, green and
-// blue for each layer of codes, then the constants, then, with a guide, what is added to the sum. `between`: it has them by captured light, between which
-// light is blended.
+// blue for each layer of codes, then the constants, then, with a guide, what is added to the sum.
+// `between`: it has them by captured light, between which light is blended.
 const nearShader = (layers, guide, projection, between) => `${HEAD}${DECODE}
 uniform sampler2DArray codes;
 uniform sampler2DArray table;
@@ -109,8 +98,7 @@ uniform vec3 from;       // the eye
 uniform float plane, parallel, disc;
 uniform vec3 lamp, colour;
 out vec4 light;
-${ARRIVING}
-
+${ARRIVING}${projection === 'cube' ? FACES : ''}
 vec3 ray_of(inout vec3 eye, vec2 at)
 {
     float phi = (2.0 * at.x / size.x - 1.0) * PI;${RAYS[projection] || onPlane}
@@ -142,7 +130,7 @@ vec3 value_at(vec2 at)
                       dot(code, texture(table, vec3(at, float(3 * j + 1))).rgb),
                       dot(code, texture(table, vec3(at, float(3 * j + 2))).rgb));
     }
-    return decode(texture(table, vec3(at, float(${3 * layers}))).rgb + gain * value);
+    return transfer_decode(display, texture(table, vec3(at, float(${3 * layers}))).rgb + gain * value);
 }
 
 void main()
@@ -156,13 +144,13 @@ void main()
     vec4 from = texture(taken, at);
     ${between ? `vec3 value = vec3(0.0), share;
     ivec3 node;
-    triangles_find(node, share, from.xyz);
+    triangles_find(node, share, pole_from_world(from.xyz));
     for (int i = 0; i < 3; i++)
         value += share[i] > 0.0 ? share[i] * value_at((vec2(node[i], 0) + 0.5) / vec2(textureSize(table, 0).xy)) : vec3(0.0);` : 'vec3 value = value_at(at);'}
     light = vec4(sent * from.a * colour * value, 1.0);
 }`;
 
-// Directions of a table's rows and columns; twin of node_direction of src/relight/light/directions.c.
+// Directions of a table's rows and columns. Twin: node_direction.
 function nodeDirection(row, column, columns, rows, poleY) {
     const below = row > DOWN, t = (below ? rows - 1 - row : row) / DOWN, theta = 0.5 * Math.PI * (2 * t - t * t);
     const phi = 2 * Math.PI * column / (columns - 1) - Math.PI, height = t === 1 ? 1e-12 : Math.cos(theta), r = Math.sin(theta);
@@ -239,8 +227,8 @@ export class NearLamps {
     // Uniforms of what a lamp sends.
     sent(lamp) {
         const { hemispherical, pole } = this.scene.basis;
-        return { taken: { texture: this.taken }, hemisphere: hemispherical ? 1 : 0, poleY: pole === 'y' ? 1 : 0, axis: lamp.axis || [0, 0, -1],
-                 halfAngle: lamp.half || 0, fall: lamp.nofall ? 0 : 1, patch_: lamp.kind === 'patch' ? 1 : 0 };
+        return { taken: { texture: this.taken }, hemisphere: hemispherical ? 1 : 0, pole_y: pole === 'y' ? 1 : 0, lamp_axis: lamp.axis || [0, 0, -1],
+                 half_angle: lamp.half || 0, falls: lamp.nofall ? 0 : 1, is_patch: lamp.kind === 'patch' ? 1 : 0 };
     }
 
     async loadDepth(view) {
@@ -304,7 +292,7 @@ export class NearLamps {
             ...this.seenBy(view), size: [scene.width, scene.height],
             tile: [tile.x * scene.tile * step, tile.y * scene.tile * step, step],
             inverse: view.depth ? [view.depth_min, view.depth_step] : [0, 0],
-            curve: { int: scene.curve }, gamma: scene.gamma, lamp: lamp.position, colour: lamp.rgb, ...this.sent(lamp), ...(this.between ? this.triangleSet() : {}),
+            'display.curve': { int: scene.curve }, 'display.gamma': scene.gamma, lamp: lamp.position, colour: lamp.rgb, ...this.sent(lamp), ...(this.between ? this.triangleSet() : {}),
         });
         program.draw([0, 0, 1, 1]);
     }

@@ -1,5 +1,6 @@
-// objectshaders.js - a baked object on the graphics card; twin of src/world/baked/lit.c
-import { HEAD, LUMINANCE, TONES } from './shaders.js';
+// objectshaders.js - a baked object on the graphics card
+import BAKED from '../viewer/shaders/shared/baked.glsl';
+import { HEAD, SCREEN } from './shaders.js';
 
 export const COLOURS_ACROSS = 1024;  // of the texture of colours
 
@@ -23,24 +24,38 @@ void main()
     gl_Position = vec4(dot(to, right) / window.x - window.z * z, window.w * z - dot(to, down) / window.y, depth, z);
 }`;
 
+// Arrays are textures here: WebGL 2 has no texture buffers, by which the viewer reads them.
 export const objectShader = (views) => `${HEAD}
 precision highp usampler2D;
 uniform usampler2D clusters;
 uniform sampler2DArray weights;  // four components a layer
 uniform sampler2DArray frames;   // normals, tangents
 uniform sampler2D colours;
-uniform int side, components;
+uniform int components;
 uniform vec3 eye;
 in vec3 where;
 in vec2 place;
 out vec4 colour;
 const int ACROSS = ${COLOURS_ACROSS};
+${views ? 'uniform int side' : 'const int side = 1'};
+int first;  // of the vectors of the texel that was found
+${BAKED}
+bool find_texel(ivec2 texel)
+{
+    uint cluster = texelFetch(clusters, texel, 0).r;
+    first = int(cluster) * (1 + components) * side * side;
+    return cluster != 65535u;
+}
+void texel_frame(out vec3 normal, out vec3 tangent, ivec2 texel)
+{
+    normal = normalize(texelFetch(frames, ivec3(texel, 0), 0).xyz);
+    tangent = normalize(texelFetch(frames, ivec3(texel, 1), 0).xyz);
+}
 vec3 colour_of(int vector)
 {
     return texelFetch(colours, ivec2(vector % ACROSS, vector / ACROSS), 0).rgb;
 }
-// A texel in one view of the map.
-vec3 add_view(ivec2 texel, int first, int view)
+vec3 show_view(ivec2 texel, int view)
 {
     vec3 sum = colour_of(first + view);
     vec4 four = vec4(0.0);
@@ -51,54 +66,9 @@ vec3 add_view(ivec2 texel, int first, int view)
     }
     return sum;
 }
-${views ? `
-vec2 view_place(vec3 v)
-{
-    const float LOWEST = 1e-3;
-    float across = length(v.xy), z = max(v.z, LOWEST);
-    vec2 flat_ = v.z < LOWEST && across > 0.0 ? v.xy / across : v.xy;
-    return (clamp(flat_ / (1.0 + z), -1.0, 1.0) + 1.0) * 0.5 * float(side - 1);
-}
-vec3 add_texel(ivec2 texel, int first, vec3 to)
-{
-    vec3 normal = texelFetch(frames, ivec3(texel, 0), 0).xyz, tangent = texelFetch(frames, ivec3(texel, 1), 0).xyz;
-    normal = normalize(normal);
-    tangent = normalize(tangent);
-    vec2 at = view_place(vec3(dot(to, tangent), dot(to, cross(normal, tangent)), dot(to, normal)));
-    ivec2 corner = min(ivec2(floor(at)), side - 2);
-    vec2 f = at - vec2(corner);
-    vec3 sum = vec3(0.0);
-    for (int k = 0; k < 4; k++) {
-        ivec2 step_ = ivec2(k % 2, k / 2);
-        float share = (k % 2 == 1 ? f.x : 1.0 - f.x) * (k / 2 == 1 ? f.y : 1.0 - f.y);
-        if (share > 0.0)
-            sum += share * add_view(texel, first, (corner.y + step_.y) * side + corner.x + step_.x);
-    }
-    return sum;
-}` : `
-vec3 add_texel(ivec2 texel, int first, vec3 to)
-{
-    return add_view(texel, first, 0);
-}`}
-// The four texels around the place, those of them that hold something.
 void main()
 {
-    ivec2 size = textureSize(clusters, 0);
-    vec2 at = clamp(place * vec2(size) - 0.5, vec2(0.0), vec2(size - 1));
-    ivec2 corner = ivec2(floor(at));
-    vec2 f = at - vec2(corner);
-    vec3 sum = vec3(0.0), to = normalize(eye - where);
-    float all = 0.0;
-    for (int k = 0; k < 4; k++) {
-        float share = (k % 2 == 1 ? f.x : 1.0 - f.x) * (k / 2 == 1 ? f.y : 1.0 - f.y);
-        ivec2 texel = min(corner + ivec2(k % 2, k / 2), size - 1);
-        uint cluster = texelFetch(clusters, texel, 0).r;
-        if (!(share > 0.0) || cluster == 65535u)
-            continue;
-        sum += share * add_texel(texel, int(cluster) * (1 + components) * side * side, to);
-        all += share;
-    }
-    colour = vec4(all > 0.0 ? max(sum / all, 0.0) : vec3(0.0), 1.0);
+    colour = vec4(baked_value(place, textureSize(clusters, 0), normalize(eye - where)), 1.0);
 }`;
 
 // The distance of a place along the look.
@@ -113,14 +83,13 @@ void main()
 }`;
 
 // Exposure, tone and the sRGB curve before black, as 'relume btf render' shows it.
-export const objectPresentShader = () => `${HEAD}${LUMINANCE}
+export const objectPresentShader = () => `${HEAD}${SCREEN}
 uniform sampler2D light;
 uniform float exposure;
 in vec2 place;
 out vec4 colour;
-${TONES}
 void main()
 {
     vec3 rgb = texture(light, vec2(place.x, 1.0 - place.y)).rgb;
-    colour = vec4(srgb(tone_apply(exposure * rgb)), 1.0);
+    colour = vec4(shown(exposure * rgb), 1.0);
 }`;

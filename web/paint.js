@@ -1,7 +1,7 @@
 // paint.js - tiles of a view into a frame or a texture, the coarse ones that are there under the fine
 // ones that are still to come
 import { loadPicture } from './tiles.js';
-import { maskShader, tileShader } from './shaders.js';
+import { maskShader, tileShader } from './tileshaders.js';
 
 // The level whose texels are as large as pixels, or smaller; `scale` is pixels a texel of level 0.
 export function levelFor(scene, scale) {

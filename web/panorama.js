@@ -1,7 +1,7 @@
 // panorama.js - looking around in a panorama; after src/relight/view/panorama.c
 import { RADIANS, unit } from './lights.js';
 import { levelFor } from './paint.js';
-import { panoramaShader } from './shaders.js';
+import { panoramaShader } from './viewshaders.js';
 
 
 const FACES = [  // of a cube: ahead, right, up
@@ -97,7 +97,7 @@ export class Panorama {
     }
 
     // A look's way through a place of the frame, null where the picture ends before; and the place of a direction;
-    // twins of the shader's.
+    // as the shader has them.
     toPicture([x, y], camera, width, height) {
         const a = (2 * x / width - 1) / camera.zoom, b = (height - 2 * y) / width / camera.zoom;
         const [pan, tilt] = [camera.pan * RADIANS, camera.tilt * RADIANS];
@@ -133,7 +133,7 @@ export class Panorama {
                            [0, 0, scene.width, scene.height]);
         const program = this.device.program(`panorama ${this.layout}`, () => panoramaShader(this.layout));
         this.device.begin(target);
-        program.set({ ...(this.discs ? { disc: this.discs * 2 ** -this.level } : {}), view: { texture: whole.texture }, frame: [target.width, target.height], planet: camera.planet ? 1 : 0,
+        program.set({ ...(this.discs ? { disc: this.discs * 2 ** -this.level } : {}), view: { texture: whole.texture }, look_size: [target.width, target.height], stereographic: camera.planet ? 1 : 0,
                       look: [camera.pan * RADIANS, camera.tilt * RADIANS, 1 / camera.zoom],
                       elevation: scene.panorama ? [scene.panorama.v_min || 0, scene.panorama.v_max || 0] : [0, 0] });
         program.draw();

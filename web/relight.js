@@ -1,5 +1,5 @@
 // relight.js - tiles under the present lights; after src/relight/light/relight.c
-import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader, strideOf } from './shaders.js';
+import { MOST_LIGHTS, MOST_SAMPLES, normalShader, relightShader, strideOf } from './tileshaders.js';
 import { isNear, spread } from './lights.js';
 
 const SIZES = [1, 2, 4, 8, MOST_LIGHTS];  // lights of a batch: few shaders
@@ -105,7 +105,7 @@ export class Relighter {
 
     draw(program, tile, batch) {
         program.set({ codes: { texture: tile.codes, array: true }, lights: { int: batch.count },
-                      curve: { int: this.scene.curve }, gamma: this.scene.gamma });
+                      'display.curve': { int: this.scene.curve }, 'display.gamma': this.scene.gamma });
         this.bind(program, batch);
         program.draw([0, 0, 1, 1]);
     }

@@ -1,5 +1,5 @@
 // slab.js - a light slab: looked at from any place before it; after src/relight/view/slab_frame.c
-import { lensShader, slabShader } from './shaders.js';
+import { lensShader, slabShader } from './viewshaders.js';
 import { Views } from './views.js';
 import { levelFor } from './paint.js';
 

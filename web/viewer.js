@@ -14,7 +14,8 @@ import { firstLight } from './lights.js';
 import { More, loadMore } from './more.js';
 import { readState, writeState } from './state.js';
 import { brightestExposure, measureRange, meterExposure } from './measure.js';
-import { PASSES, TONES_BY_NAME, presentShader } from './shaders.js';
+import { PASSES, TONES_BY_NAME } from './shaders.js';
+import { presentShader } from './tileshaders.js';
 
 const MOST_LAMPS = 8;  // that passes enhance
 const MEASURED = 128;  // pixels a side

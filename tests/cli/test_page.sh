@@ -1,6 +1,8 @@
 #!/bin/sh
 # Published pages: the core of the page beside the library, and pages in a browser, from a disk,
 # without network: what they show is what relume relight shows.
+#
+# Compares: shared/tone.glsl, web/near.js with directions.c, tone.c.
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/page.sh"
 
@@ -73,6 +75,8 @@ lone() { snap "$1" "light=dir,$(echo "$2" | tr ' ' ,)$3" "$4" --light "dir $2"; 
 } >orders.txt
 lone dome '0 0 1' '' ''
 lone dome '0.6 0.3 0.7' '&exposure=0.5&tone=filmic' '--exposure 0.5 --tone filmic'
+lone dome '0.6 0.3 0.7' '&exposure=1&tone=reinhard' '--exposure 1 --tone reinhard'
+lone dome '0.6 0.3 0.7' '&tone=gamma' '--tone gamma'
 lone dome '-0.5 0.7 0.3' '&pass=luminance' '--pass luminance'
 # what the state says comes back; what is absurd is left out and said
 ask "window.relume.setState('light=dir,0,3,4&light=dir,1,0,0,rgb,0.5,0.25,0&exposure=-1&tone=gamma&later=1,2') || window.relume.getState()"

@@ -1,5 +1,7 @@
 #!/bin/sh
 # Shadows and highlights that move, in pages and in files dropped onto them: what is shown is what relume relight shows.
+#
+# Compares: web/moving.js with stage.c.
 . "$(dirname "$0")/lib.sh"
 . "$TOP/tests/cli/page.sh"
 

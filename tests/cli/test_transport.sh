@@ -1,6 +1,14 @@
 #!/bin/sh
 # Light between captured scenes and objects from the command line: what the ways do to a slab, a
 # panorama and a panorama without depth; options; bad input.
+#
+# Compares: between/front.frag.glsl, between/gather.glsl, between/lamps.frag.glsl,
+# between/mesh.vert.glsl, between/scene.frag.glsl, between/shown.frag.glsl,
+# between/smooth.frag.glsl, transport/between.comp.glsl, transport/ism.comp.glsl,
+# transport/leaves.comp.glsl, transport/lights.comp.glsl, transport/maps.comp.glsl,
+# transport/micro.comp.glsl, transport/tree.glsl, transport/up.comp.glsl, transport/virtual.glsl
+# with between.c, cut.c, exchange.c, exchange_gather.c, exchange_lamps.c, hierarchy.c, hierarchy.h,
+# instant.c, maps.c, micro.c, scenery.c, screen.c, smooth.c, transport.c, virtual.c, virtual.h.
 . "$(dirname "$0")/lib.sh"
 
 awk -v n=24 -f "$TOP/scripts/ball.awk" >ball.obj

@@ -1,4 +1,6 @@
 // Several slabs in the viewer: frames against the library's, and the eye on its way around
+//
+// Compares: slab_depth_beside.glsl, slabs_ray.glsl with slab_depth.c, slabs.c, slabs_frame.c.
 #include "app/events.h"
 #include "common/vec.h"
 #include "fixture.h"

@@ -1,4 +1,7 @@
 // The GPU's relighting against the library's, for every storage and domain
+//
+// Compares: above_zero.glsl, shared/transfer.glsl, shared/transfer_encode.glsl with relight.c,
+// transfer.c.
 #include "fixture.h"
 
 static const struct relume_light lights[] = {

@@ -1,5 +1,7 @@
 // Mirrors on the GPU against the library: environments, edits with regions, strokes and a frozen
 // eye; panoramas of each layout.
+//
+// Compares: follow.glsl, mirror.glsl, reflection.glsl with mirror.c, rotation.c, turn.c.
 #include "fixture.h"
 
 #include "common/vec.h"

@@ -1,5 +1,9 @@
 // Shadows and highlights that move, by passes, against the library: lights near and far, and the
 // suns of environments, for every kind of rays
+//
+// Compares: moving/near.frag.glsl, moving/shadow.frag.glsl, moving/shown.glsl,
+// moving/trace.frag.glsl, shared/gloss.glsl, shared/moving.glsl, shared/near_shadow.glsl,
+// shared/stage.glsl with gloss.c, relighter.c, shadows.c, shadows.h, stage.c.
 #include "fixture.h"
 
 enum { W = 33, H = 21, PIXELS = W * H };

@@ -1,5 +1,9 @@
 // Near lights and environments on the GPU against the library, for every kind of coefficients; and
 // views that are read in the background
+//
+// Compares: light/captured.glsl, light/light.glsl, light/light_patches.glsl, light/triangles.glsl,
+// near.frag.glsl, shared/pole.glsl, shared/triangles.glsl, shared/weight_grid.glsl with cells.c,
+// coder.c, directions.c, gonio.c, light.c, near_lights.c, triangles.c, vec.h, zone.c.
 #include "fixture.h"
 #include "test.h"
 

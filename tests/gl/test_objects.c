@@ -1,5 +1,17 @@
 // Objects covered with measured materials: OpenGL against the ray traced reference, for every
 // model under every kind of light, and shadows.
+//
+// Compares: between/scene_normal.glsl, btf/btf.glsl, btf/bump.frag.glsl, btf/cast.frag.glsl,
+// btf/cmf.frag.glsl, btf/fields.glsl, btf/fmf.frag.glsl, btf/gbrdf.frag.glsl, btf/laf.frag.glsl,
+// btf/lafortune.glsl, btf/lit.frag.glsl, btf/lpca.frag.glsl, btf/measured.frag.glsl,
+// btf/painted.frag.glsl, btf/qmf.frag.glsl, btf/rfnl.frag.glsl, btf/rfnlc.frag.glsl,
+// btf/rfp.frag.glsl, btf/share.frag.glsl, btf/skin.glsl, btf/sky.frag.glsl, btf/slaf.frag.glsl,
+// btf/surface.frag.glsl, btf/upright.glsl, btf/vpca.frag.glsl, light_sample.glsl,
+// shared/baked.glsl, sky.glsl with ambient.c, bilinear.h, btf.c, direction_mesh.c, fields.c,
+// gbrdf.c, light_samples.c, lit.c, meso.c, model.c, model_bump.c, model_cmf.c, model_fmf.c,
+// model_laf.c, model_lit.c, model_lpca.c, model_painted.c, model_qmf.c, model_rfnl.c,
+// model_rfnlc.c, model_rfp.c, model_vpca.c, prefiltered_maps.c, render.c, scalar.h, scene.c,
+// skin.c, sky.c, surface.c, vec.h.
 #include "draw/objects_drawer.h"
 #include "fixture.h"
 #include "test.h"

@@ -1,5 +1,8 @@
 // The panel without a window: real clicks change the app, and it is drawn; passes and the inspector
 // against the library
+//
+// Compares: enhance.frag.glsl, shared/enhance.glsl, shared/luminance.glsl with enhance.c,
+// luminance.h.
 #include "fixture.h"
 
 #include "app/light_list.h"

@@ -206,7 +206,7 @@ static void use_panorama(const struct between *b, const GLint *at, const struct 
 {
     use_target(b, at[VIEW], 0, panorama);
     b->gl->Uniform2f(at[ELEVATION], (float)v->geometry->v_min, (float)v->geometry->v_max);
-    b->gl->Uniform1i(at[DISC], v->geometry->disc);
+    b->gl->Uniform1f(at[DISC], (float)v->geometry->disc);
 }
 
 static void find_mean(const struct between *b, const struct between_view *v,

@@ -38,6 +38,6 @@ void draw_panorama(const struct program *program, const struct gl *gl,
     gl->Uniform1i(at[STEREOGRAPHIC], look.stereographic);
     gl->Uniform2f(at[LOOK_SIZE], (float)area->width, (float)area->height);
     gl->Uniform1f(at[EXPOSURE], area->exposure);
-    gl->Uniform1i(at[DISC], geometry->disc);
+    gl->Uniform1f(at[DISC], (float)geometry->disc);
     draw_whole(gl, program, area);
 }

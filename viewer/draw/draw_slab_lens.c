@@ -3,7 +3,7 @@
 
 enum { VIEW = DRAW_OWN, PICTURE, ST, EYE, PLACE, STEPS, GRID, LENS, COUNT };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view", "picture", "st", "eye", "place", "steps", "grid", "lens",
+    "rectangle", "frame_size", "view", "picture", "st", "eye", "camera", "steps", "grid", "lens",
 };
 enum { SUM = DRAW_OWN, EXPOSURE, MEAN_COUNT };
 static const char *const mean_uniforms[] = {"rectangle", "frame_size", "sum", "exposure"};

@@ -261,7 +261,7 @@ static void draw_in_panorama(const struct mirrors *m, const struct mirror_surfac
     texture_use(gl, UNIT_VIEW, GL_TEXTURE_2D, panorama->view->texture);
     texture_use(gl, UNIT_PLACES, GL_TEXTURE_2D, panorama->places->texture);
     gl->Uniform2f(at[ELEVATION], (float)g->v_min, (float)g->v_max);
-    gl->Uniform1i(at[DISC], g->disc);
+    gl->Uniform1f(at[DISC], (float)g->disc);
     gl->Uniform1i(at[HAS_PLACES], true);
     gl_set_vec3(gl, at[CENTRE], g->center);
     gl->Uniform1f(at[TURN], 0.0f);

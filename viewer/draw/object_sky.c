@@ -1,5 +1,5 @@
 // object_sky.c - environments on objects: what the materials show of them in the open,
-// times the share that arrives. Twins: add_sky, share_of_sky.
+// times the share that arrives. Twins: add_sky and share_of_sky of world/object/render.c.
 #include "draw/objects_drawer_parts.h"
 
 enum {

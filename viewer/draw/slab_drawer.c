@@ -132,7 +132,7 @@ static relume_status add_around(struct slab_drawer *d, const struct slab_frame *
     return status;
 }
 
-// Twin of relume_slab_set_frame: the mean over the pinholes that show anything.
+// The mean over the pinholes that show anything. Twin: relume_slab_set_frame.
 static relume_status draw_around_lens(struct slab_drawer *d, const struct slab_frame *f,
                                       bool by_depth)
 {

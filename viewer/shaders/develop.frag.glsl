@@ -1,6 +1,7 @@
 #version 330 core
 // One light of a display-domain file: code values become linear light before lights are added.
 #include "transfer.glsl"
+#include "shared/luminance.glsl"
 #include "above_zero.glsl"
 uniform sampler2D coded;
 uniform Transfer display;
@@ -10,8 +11,6 @@ out vec4 color;
 
 void main()
 {
-    vec3 code = texelFetch(coded, ivec2(gl_FragCoord.xy), 0).rgb;
-    vec3 linear = vec3(transfer_decode(display, code.r), transfer_decode(display, code.g),
-                       transfer_decode(display, code.b));
+    vec3 linear = transfer_decode(display, texelFetch(coded, ivec2(gl_FragCoord.xy), 0).rgb);
     color = vec4(light * (guard ? above_zero(linear) : linear), 1.0);
 }

@@ -1,6 +1,8 @@
 #version 330 core
-// What a pass shows of a relit view; twin of src/relight/normals/enhance.c, function by function.
+// What a pass shows of a relit view. Twin: src/relight/normals/enhance.c.
 #include "transfer.glsl"
+#include "shared/luminance.glsl"
+#include "shared/enhance.glsl"
 uniform sampler2D view;
 uniform sampler2D normals;
 uniform sampler2D albedos;
@@ -24,11 +26,6 @@ const int LUMINANCE = 5;
 const int FALSE_COLOUR = 6;
 const int DIFFERENCE = 7;
 
-float luminance(vec3 rgb)
-{
-    return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
-}
-
 vec3 vector_at(sampler2D image, ivec2 at)
 {
     return texelFetch(image, at, 0).rgb;
@@ -49,9 +46,7 @@ vec3 show_normals(ivec2 at)
 {
     vec3 normal = vector_at(normals, at);
     vec3 code = normal == vec3(0.0) ? vec3(0.0) : 0.5 * normal + 0.5;
-    Transfer srgb = Transfer(CURVE_SRGB, 1.0);
-    return vec3(transfer_decode(srgb, code.r), transfer_decode(srgb, code.g),
-                transfer_decode(srgb, code.b));
+    return transfer_decode(Transfer(CURVE_SRGB, 1.0), code);
 }
 
 vec3 show_specular(ivec2 at, vec3 rgb)
@@ -59,13 +54,8 @@ vec3 show_specular(ivec2 at, vec3 rgb)
     vec3 normal = vector_at(normals, at);
     vec3 eye = towards_given ? vector_at(towards, at) : vec3(0.0, 0.0, 1.0);
     for (int i = 0; i < lights; i++) {
-        vec3 halfway = direction(i) + eye;
-        float size = length(halfway);
-        if (!(size > 1e-6))
-            continue;
-        float cosine = dot(normal, halfway) / size;
-        float lobe = cosine > 0.0 ? range.w * strength.y * pow(cosine, strength.z) : 0.0;
-        rgb += lobe * value(i);
+        float lobe = specular_lobe(normal, direction(i) + eye, strength.z);
+        rgb += range.w * strength.y * lobe * value(i);
     }
     return rgb;
 }
@@ -75,8 +65,7 @@ vec3 show_diffuse_gain(ivec2 at, vec3 rgb)
     vec3 light = vec3(0.0);
     for (int i = 0; i < lights; i++)
         light += value(i);
-    vec3 most = range.z * light * vector_at(albedos, at);
-    return max(range.w * (most + strength.x * (rgb - most)), vec3(0.0));
+    return diffuse_gain(rgb, range.z * light * vector_at(albedos, at), strength.x, range.w);
 }
 
 vec3 show_unsharp(ivec2 at, vec3 rgb)
@@ -86,18 +75,6 @@ vec3 show_unsharp(ivec2 at, vec3 rgb)
     for (int i = 0; i < lights; i++)
         change += strength.x * dot(detail, direction(i)) * value(i);
     return max(rgb + vector_at(albedos, at) * change, vec3(0.0));
-}
-
-vec3 show_false_colour(vec3 rgb)
-{
-    const vec3 steps[5] = vec3[5](vec3(0.00, 0.00, 0.10), vec3(0.15, 0.00, 0.35),
-                                  vec3(0.65, 0.02, 0.10), vec3(0.95, 0.30, 0.00),
-                                  vec3(1.00, 0.95, 0.30));
-    if (!(luminance(rgb) > 1e-6))
-        return vec3(0.0);
-    float x = clamp(4.0 * (luminance(rgb) - range.x) / (range.y - range.x), 0.0, 4.0);
-    int step = min(int(x), 3);
-    return mix(steps[step], steps[step + 1], x - float(step));
 }
 
 void main()
@@ -115,7 +92,7 @@ void main()
     else if (pass == LUMINANCE)
         rgb = vec3(luminance(rgb));
     else if (pass == FALSE_COLOUR)
-        rgb = show_false_colour(rgb);
+        rgb = false_colour(rgb, range.xy);
     else if (pass == DIFFERENCE)
         rgb = abs(rgb - vector_at(reference, at));
     color = vec4(rgb, 1.0);

@@ -46,5 +46,5 @@ void main()
         e = seen_along(at.xyz, e);
     e = vec3(cos(turn) * e.x - sin(turn) * e.z, e.y, sin(turn) * e.x + cos(turn) * e.z);
     float rest = pow(1.0 - clamp(-dot(normal, view_ray), 0.0, 1.0), 5.0);
-    color = vec4(tint * (reflectance + (1.0 - reflectance) * rest) * panorama_sample(e), 1.0);
+    color = vec4(tint * (reflectance + (1.0 - reflectance) * rest) * panorama_sample(e).rgb, 1.0);
 }

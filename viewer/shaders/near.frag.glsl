@@ -1,13 +1,14 @@
 #version 330 core
 // A light that stands near: the basis at every pixel's own direction towards it (Wong 1998, Eq. 7.7
-// with its sign corrected). Twins: relume_weight_grid_place, cells_find of src/relight/light/cells.c.
+// with its sign corrected).
 #include "transfer.glsl"
 #include "texels.glsl"
-#include "cube.glsl"
+#include "shared/cube.glsl"
 #include "light/light.glsl"
 #include "light/light_patches.glsl"
 #include "light/captured.glsl"
 #include "light/triangles.glsl"
+#include "shared/weight_grid.glsl"
 
 uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
 uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer
@@ -27,25 +28,13 @@ uniform bool coded;               // display domain
 uniform Transfer display;
 out vec4 color;
 
-// In nodes of the grid; `d` in the pole's frame.
-vec2 weight_grid_place(vec3 d)
-{
-    ivec2 size = ivec2(textureSize(grid, 0).x, grid_rows);
-    float down = float(hemisphere ? size.y - 1 : size.y / 2 - 1);
-    bool below = d.z < 0.0;
-    float height = below && hemisphere ? 0.0 : abs(d.z);
-    float theta = atan(length(d.xy), height);
-    float row = down * (1.0 - sqrt(max(1.0 - theta / (0.5 * PI), 0.0)));
-    float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * float(size.x - 1);
-    return vec2(column, below && !hemisphere ? float(size.y - 1) - row : row);
-}
-
 int tile_of(int cell)
 {
     return int(texelFetch(triangles, ivec2(cell >> 2 & 1023, cell >> 12), 0)[cell & 3]);
 }
 
-// In texels, within the smallest cell around a place in the grid.
+// In texels, within the smallest cell around a place in the grid. Twin: cells_find of
+// src/relight/light/cells.c.
 vec2 cells_find(vec2 place)
 {
     int columns = textureSize(grid, 0).x, across = columns / 3;
@@ -74,7 +63,8 @@ Place weight_place(vec3 direction)
     vec3 d = pole_from_world(direction);
     Place place = Place(vec2(0.0), ivec3(0), vec3(0.0));
     if (triangle_count == 0) {
-        place.at = cells_find(weight_grid_place(d)) / vec2(textureSize(grid, 0).xy);
+        vec2 size = vec2(textureSize(grid, 0).xy);
+        place.at = cells_find(weight_grid_place(d, ivec2(int(size.x), grid_rows))) / size;
         return place;
     }
     triangles_find(place.node, place.share, d);
@@ -154,8 +144,7 @@ vec3 reflectance(ivec2 at, vec3 towards)
                                      : dot_separate(at, place);
     if (!coded)
         return share * value;
-    return share * vec3(transfer_decode(display, value.r), transfer_decode(display, value.g),
-                        transfer_decode(display, value.b));
+    return share * transfer_decode(display, value);
 }
 
 void main()

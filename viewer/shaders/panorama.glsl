@@ -1,73 +1,15 @@
-// A look into a panorama; twin of src/relight/view/panorama.c, function by function. A projection's shader
-// includes this and says what its image shows in a direction: one shader for all would make software
-// renderers compute them all.
-uniform sampler2D view;
-uniform vec2 elevation;      // cylinder: v_min, v_max
-uniform vec3 look;           // pan and tilt in radians, 1 / zoom
-uniform bool stereographic;
-uniform vec2 look_size;      // pixels of the frame
-uniform float exposure;
+// A look into a panorama, whose rows run down in the viewer. Mirrors and what is between objects
+// and scene take samples alone.
+#include "shared/footprint.glsl"
+#include "shared/panorama.glsl"
 #ifndef BETWEEN
 out vec4 color;
 #endif
-
-const float PI = 3.14159265358979;
-
-vec3 panorama_sample(vec3 direction);
-// How many texels further a direction comes to lie that moves by `move`.
-float panorama_texels(vec3 d, vec3 move);
-
-vec3 look_ray(vec3 l, vec2 size, vec2 position)
-{
-    float a = (2.0 * position.x / size.x - 1.0) * l.z;
-    float b = (size.y - 2.0 * position.y) / size.x * l.z;
-    float depth = stereographic ? 0.5 * (1.0 - a * a - b * b) : 1.0;
-    float up = b * cos(l.y) + depth * sin(l.y);
-    float ahead = depth * cos(l.y) - b * sin(l.y);
-    return vec3(a * cos(l.x) + ahead * sin(l.x), up, a * sin(l.x) - ahead * cos(l.x));
-}
-
-// How a ray goes on over a pixel, to the right and down.
-void look_steps(out vec3 across, out vec3 down, vec3 l, vec2 size, vec2 position)
-{
-    float pixel = 2.0 / size.x * l.z;
-    vec2 ab = stereographic ? (position - 0.5 * size) * pixel * vec2(1.0, -1.0) : vec2(0.0);
-    vec3 right = vec3(cos(l.x), 0.0, sin(l.x));
-    vec3 up = vec3(-sin(l.y) * sin(l.x), cos(l.y), sin(l.y) * cos(l.x));
-    vec3 ahead = vec3(cos(l.y) * sin(l.x), sin(l.y), -cos(l.y) * cos(l.x));
-    across = pixel * (right - ab.x * ahead);
-    down = pixel * (ab.y * ahead - up);
-}
-
-vec3 fetch(int x, int y)
-{
-    return texelFetch(view, ivec2(x, y), 0).rgb;
-}
-
-int wrap_index(int i, int n)
-{
-    return i < 0 ? i + n : i >= n ? i - n : i;
-}
-
-float azimuth_column(vec3 d)
-{
-    return (atan(d.x, -d.z) + PI) / (2.0 * PI) * float(textureSize(view, 0).x);
-}
-
 #if !defined(MIRROR) && !defined(BETWEEN)
+uniform float exposure;
+
 void main()
 {
-    vec3 ray = look_ray(look, look_size, gl_FragCoord.xy);
-    vec3 to_right, below;
-    look_steps(to_right, below, look, look_size, gl_FragCoord.xy);
-    Footprint across = footprint_of(panorama_texels(ray, to_right));
-    Footprint down = footprint_of(panorama_texels(ray, below));
-    vec3 sum = vec3(0.0);
-    for (int j = 0; j < down.count; j++)
-        for (int i = 0; i < across.count; i++) {
-            vec2 within = vec2(footprint_place(across, i), footprint_place(down, j));
-            sum += panorama_sample(look_ray(look, look_size, gl_FragCoord.xy + within));
-        }
-    color = vec4(exposure * sum / float(across.count * down.count), 1.0);
+    color = vec4(exposure * panorama_mean(gl_FragCoord.xy).rgb, 1.0);
 }
 #endif

@@ -1,6 +1,7 @@
 #version 330 core
 // A view as a picture: bilinear when enlarged, the mean of what a pixel covers when reduced.
-#include "footprint_mean.glsl"
+#include "shared/footprint.glsl"
+#include "shared/footprint_mean.glsl"
 #include "texels.glsl"
 uniform sampler2D view;
 uniform vec4 picture;  // left, top, right, bottom of the whole view in the frame

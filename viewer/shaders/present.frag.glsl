@@ -1,8 +1,9 @@
 #version 330 core
 // The finished linear frame onto the screen: through a tone operator, coded as sRGB, first row at
 // the top.
-#include "tone.glsl"
 #include "transfer.glsl"
+#include "shared/luminance.glsl"
+#include "shared/tone.glsl"
 uniform sampler2D frame;
 uniform int tone;  // place in relume_tones
 uniform float white;
@@ -14,7 +15,5 @@ void main()
 {
     ivec2 at = ivec2(gl_FragCoord.x - left, frame_size.y - gl_FragCoord.y);
     vec3 linear = tone_apply(tone, texelFetch(frame, at, 0).rgb, white);
-    Transfer srgb = Transfer(CURVE_SRGB, 1.0);
-    color = vec4(transfer_encode(srgb, linear.r), transfer_encode(srgb, linear.g),
-                 transfer_encode(srgb, linear.b), 1.0);
+    color = vec4(srgb_encode(linear), 1.0);
 }

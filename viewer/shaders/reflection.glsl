@@ -1,5 +1,5 @@
-// Edited reflections: the rotation of a reflected direction at a place. Twins: src/world/reflect/rotation.c
-// and turn.c, function by function, in single precision.
+// Edited reflections: the rotation of a reflected direction at a point. Twins:
+// src/world/reflect/rotation.c, src/world/reflect/turn.c.
 uniform samplerBuffer edit;  // of each set of constraints two texels, then what they point to:
                              // centre, radius; border, strokes' points (-1: everywhere; from -2
                              // down: along field 0 and on), first, members; of a constraint its

@@ -1,5 +1,5 @@
 // One cell of a slab between four cameras: bilinear in (u, v) and in (s, t), Gortler's quadralinear
-// basis; twin of src/relight/view/slab.c. Beside the cells at the border it is what they see.
+// basis. Twin: src/relight/view/slab.c. Beside the cells at the border it is what they see.
 #include "texels.glsl"
 uniform sampler2D view00;  // low u, low v
 uniform sampler2D view10;  // high u, low v

@@ -1,26 +1,26 @@
-// A ray beside the grid by depth, after slab_depth.glsl and slabs_ray.glsl; twin of
+// A ray beside the grid by depth, after slab_depth.glsl and slabs_ray.glsl. Twin:
 // src/relight/view/slab_depth.c.
 const float MOST_SLOPE = 12.0;
 const float SHALLOW = 1.0 / 3.0;
 const float ENDLESS = -0.98;
 const float FAR = 1e30;  // no bound
 
-void clip(inout vec2 part, Camera c)
+void clip(inout vec2 part, int c)
 {
-    vec2 size = vec2(textureSize(view00, 0));
+    vec2 size = vec2(textureSize(view00, 0)), shift = camera[c].shift;
     for (int axis = 0; axis < 2; axis++) {
-        if (c.shift[axis] == 0.0)
+        if (shift[axis] == 0.0)
             continue;
-        float first = -texel[axis] / c.shift[axis];
-        float last = (size[axis] - texel[axis]) / c.shift[axis];
+        float first = -texel[axis] / shift[axis];
+        float last = (size[axis] - texel[axis]) / shift[axis];
         part = vec2(max(part.x, min(first, last)), min(part.y, max(first, last)));
     }
 }
 
-void stretch_one(inout vec2 all, Camera c, vec2 own)
+void stretch_one(inout vec2 all, int c, vec2 own)
 {
     clip(own, c);
-    if (c.weight > 0.0 && own.x <= own.y)
+    if (camera[c].weight > 0.0 && own.x <= own.y)
         all = vec2(min(all.x, own.x), max(all.y, own.y));
 }
 
@@ -28,22 +28,22 @@ void stretch_one(inout vec2 all, Camera c, vec2 own)
 bool stretch_of(out vec2 stretch, float least, float most, bool away)
 {
     vec2 all = vec2(FAR, -FAR), own = vec2(least, most);
-    stretch_one(all, camera00, own);
-    stretch_one(all, camera10, own);
-    stretch_one(all, camera01, own);
-    stretch_one(all, camera11, own);
+    stretch_one(all, 0, own);
+    stretch_one(all, 1, own);
+    stretch_one(all, 2, own);
+    stretch_one(all, 3, own);
     stretch = away ? all.yx : all;
     return all.x <= all.y;
 }
 
-bool is_clear(sampler2D disparity, Camera c, vec2 stretch)
+bool is_clear(int c, vec2 stretch)
 {
     int steps = count_steps(stretch.x, stretch.y);
-    if (c.weight <= 0.0)
+    if (camera[c].weight <= 0.0)
         return false;
     for (int k = 0; k <= steps; k++) {
         float q = stretch.x + float(k) * (stretch.y - stretch.x) / float(steps);
-        if (disparity_at(disparity, c, q) > q + SHALLOW * slope)
+        if (disparity_at(c, q) > q + SHALLOW * slope)
             return false;
     }
     return true;
@@ -51,18 +51,16 @@ bool is_clear(sampler2D disparity, Camera c, vec2 stretch)
 
 bool gather_clear(out Sum sum, vec2 stretch)
 {
-    bool clear = is_clear(disparity00, camera00, stretch) ||
-                 is_clear(disparity10, camera10, stretch) ||
-                 is_clear(disparity01, camera01, stretch) ||
-                 is_clear(disparity11, camera11, stretch);
+    bool clear = is_clear(0, stretch) || is_clear(1, stretch) || is_clear(2, stretch) ||
+                 is_clear(3, stretch);
     return clear &&
            (gather_all(sum, 0.0, BACKGROUND) || gather_all(sum, stretch.y, BACKGROUND));
 }
 
-void slow_down(inout Camera c, float most)
+void slow_down(int c, float most)
 {
-    c.speed = min(c.pace, most);
-    if (c.weight > 0.0 && c.pace > most)
+    camera[c].speed = min(camera[c].pace, most);
+    if (camera[c].weight > 0.0 && camera[c].pace > most)
         rounds = 0;
 }
 
@@ -71,10 +69,11 @@ void look_from_aside()
     vec2 across = (grid.zw - grid.xy) * vec2(textureSize(view00, 0)) / (st.zw - st.xy);
     float most = max(length(across), 1.0);
     slope = MOST_SLOPE / most;
-    slow_down(camera00, most);
-    slow_down(camera10, most);
-    slow_down(camera01, most);
-    slow_down(camera11, most);
+    rounds = 2;
+    slow_down(0, most);
+    slow_down(1, most);
+    slow_down(2, most);
+    slow_down(3, most);
 }
 
 float disparity_of_eye()
@@ -98,5 +97,5 @@ vec4 slab_depth_beside(Beside ray, vec2 extent)
     if (!found && !(stretch_of(stretch, ray.away ? ENDLESS : from_eye, nearest, ray.away) &&
                   gather_clear(sum, stretch)))
         return vec4(0.0);
-    return vec4(sum.rgb / sum.weight, sum.weight);
+    return vec4(sum.value.rgb / sum.weight, sum.weight);
 }

@@ -1,34 +1,21 @@
 #version 330 core
-// What one camera adds to a frame through an aperture, and its weight; twin of src/relight/view/slab_lens.c.
+// What one camera adds to a frame through an aperture, and its weight. Twin:
+// src/relight/view/slab_lens.c.
 #include "slab_window.glsl"
 #include "texels.glsl"
+#include "shared/slab_lens.glsl"
 uniform sampler2D view;
-uniform vec4 st;       // st_min, st_max
-uniform vec2 place;    // u, v of the camera
-uniform vec4 steps;    // to the next lines of the grid: u below, u above, v below, v above
-uniform vec4 grid;     // first and last lines of the cameras: low u, low v, high u, high v
-uniform vec2 lens;     // radius, disparity of the plane in focus
+uniform vec4 st;    // st_min, st_max
+uniform vec4 grid;  // first and last lines of the cameras: low u, low v, high u, high v
+uniform vec2 lens;  // radius, disparity of the plane in focus
 out vec4 color;
-
-float hat(float away, vec2 step)
-{
-    return max(1.0 - abs(away) / (away > 0.0 ? step.y : step.x), 0.0);
-}
-
-float slab_lens_weight(vec2 uv, float radius)
-{
-    vec2 away = uv - place;
-    float distance = length(away);
-    float left = distance > radius ? 1.0 - radius / distance : 0.0;
-    return hat(left * away.x, steps.xy) * hat(left * away.y, steps.zw);
-}
 
 // And the weight; rays beside the grid are those of its border.
 vec4 value_at(vec2 within)
 {
     vec2 at = window_place(within), uv = slab_uv(at, st);
     vec2 size = vec2(textureSize(view, 0));
-    vec2 shift = (uv - place) / (st.zw - st.xy) * size * vec2(1.0, -1.0);
+    vec2 shift = (uv - camera) / (st.zw - st.xy) * size * vec2(1.0, -1.0);
     vec2 position = at * size + lens.y * shift;
     bool seen = all(greaterThanEqual(position, vec2(0.0))) && all(lessThanEqual(position, size));
     float weight = seen ? slab_lens_weight(clamp(uv, grid.xy, grid.zw), lens.x) : 0.0;

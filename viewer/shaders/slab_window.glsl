@@ -1,16 +1,9 @@
-// A slab through a frame: where a place of the frame lies in the window, and its ray on the uv plane.
-#include "footprint_mean.glsl"
-uniform vec4 picture;  // left, top, right, bottom of the window in the frame
-uniform vec3 eye;      // x, y, and how far towards the st plane the uv plane lies
+// A slab through a frame, whose rows run down in the viewer.
+#include "shared/footprint.glsl"
+#include "shared/footprint_mean.glsl"
+#include "shared/slab_window.glsl"
 
-// In the window, 0 to 1.
-vec2 window_place(vec2 within)
+vec2 frame_position()
 {
-    return (gl_FragCoord.xy + within - picture.xy) / (picture.zw - picture.xy);
-}
-
-vec2 slab_uv(vec2 at, vec4 st)
-{
-    vec2 hit = vec2(mix(st.x, st.z, at.x), mix(st.w, st.y, at.y));
-    return eye.xy + eye.z * (hit - eye.xy);
+    return gl_FragCoord.xy;
 }

@@ -1,6 +1,7 @@
 // A pixel of one of several slabs: the mean of ray_value, which the shader defines, over it; places
 // are 0 to 1 in the picture. After view00, st and cell.
-#include "footprint_mean.glsl"
+#include "shared/footprint.glsl"
+#include "shared/footprint_mean.glsl"
 #include "slabs_ray.glsl"
 out vec4 color;
 vec4 ray_value(vec2 at);

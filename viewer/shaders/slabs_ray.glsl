@@ -1,5 +1,5 @@
-// The ray of a pixel in one of several slabs, and what that slab has to say of it; twin of
-// src/relight/view/slabs.c and slabs_frame.c.
+// The ray of a pixel in one of several slabs, and what that slab has to say of it. Twins:
+// src/relight/view/slabs.c, src/relight/view/slabs_frame.c.
 uniform vec4 picture;  // left, top, right, bottom of the picture in the frame
 uniform vec3 eye;      // all of them in the slab's own frame
 uniform vec3 corner;   // of the picture, and its sides, from the eye

@@ -1,4 +1,5 @@
-// card_points.c - trees of points in buffers of the graphics card. Twins: tree.glsl, leaves.comp
+// card_points.c - trees of points in buffers of the graphics card. Shaders read them by
+// transport/tree.glsl.
 #include "transport/card_points.h"
 
 #include "cli/program/say.h"

@@ -1,5 +1,5 @@
 // ism.h - light gathered from virtual lights with imperfect shadow maps, by compute passes. Twins:
-// world/transport/instant.c, virtual.c, maps.c
+// world/transport/instant.c, world/transport/virtual.c, world/transport/maps.c.
 //
 // It differs from these in this: virtual lights are leaves of the trees of points, drawn by how
 // bright these are from the root down; points of objects return light as their material does even

@@ -36,7 +36,7 @@ void micro_destroy(struct micro *m)
 
 // ---------------------------------------------------------------- pictures
 
-// The mean place of a pixel within the disc, and the part of it there. Twin: measure.
+// The mean position of a pixel within the disc, and the part of it there.
 static void put_pixel(float to[4], double x, double y, double size)
 {
     enum { FINE = 16 };

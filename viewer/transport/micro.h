@@ -1,5 +1,5 @@
 // micro.h - light gathered by small pictures of what surrounds each place, by compute passes.
-// Twin: transport/micro.c
+// Twin: world/transport/micro.c.
 //
 // It differs from that file in this: points of objects return light as their material does even
 // light, what is too near to be drawn is met as discs of points, holes show what is beside them,

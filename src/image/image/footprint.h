@@ -4,7 +4,7 @@
 // places have the variance of r texels side by side, (r^2 - 1) / 12: of a whole r that is the mean
 // of r texels. Below r = 2 the samples move together, until from 1.25 on the pixel's centre is all
 // that is looked at: a picture in about its own size costs nothing more, and at no size or zoom
-// does it jump from sharp to soft. Twin of viewer/shaders/footprint.glsl.
+// does it jump from sharp to soft. Shaders: viewer/shaders/shared/footprint.glsl.
 #ifndef IMAGE_FOOTPRINT_H
 #define IMAGE_FOOTPRINT_H
 

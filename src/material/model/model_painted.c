@@ -40,7 +40,7 @@ static struct texel texel_of(const relume_btf_fitted *m, size_t texel)
                           .alpha = value[3]};
 }
 
-// pi D V. Twin: microfacets (painted.frag.glsl).
+// pi D V.
 static double microfacets(double alpha, double nh, double nv, double nl)
 {
     const double square = alpha * alpha, d = nh * nh * (square - 1.0) + 1.0;
@@ -67,7 +67,7 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     }
 }
 
-// Of even light the microfacets send back F0 x + y. Twin: sent_back (painted.frag.glsl).
+// Of even light the microfacets send back F0 x + y.
 static void sent_back(double xy[2], double roughness, double nv)
 {
     const double r[4] = {1.0 - roughness, 0.0425 - 0.0275 * roughness, 1.04 - 0.572 * roughness,

@@ -1,4 +1,4 @@
-// enhance.c - passes over a relit view; viewer/shaders/enhance.frag.glsl has their twins
+// enhance.c - passes over a relit view; shaders: viewer/shaders/enhance.frag.glsl
 //
 // Malzbender, Gelb, Wolters, "Polynomial Texture Maps", 2001. Diffuse gain multiplies the second
 // derivatives of the reflectance by g and keeps where its maximum is and how large: there the

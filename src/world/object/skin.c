@@ -27,7 +27,7 @@ static double within(double x)
     return left < 1.0 ? left : 0.0;
 }
 
-// A channel between its texels, which repeat; (s, t) in repeats, t down. Twin: skin.glsl.
+// A channel between its texels, which repeat; (s, t) in repeats, t down.
 static float texel_at(const struct relume_image *level, double s, double t, int channel)
 {
     const double x = within(s) * level->width - 0.5, y = within(t) * level->height - 0.5;

@@ -1,5 +1,6 @@
 #version 330 core
-// What stands nearest in each pixel, and the scene behind it: places and normals. Twin: find_layers.
+// What stands nearest in each pixel, and the scene behind it: places and normals. Twin: find_layers
+// of src/world/object/exchange.c.
 #include "between/scene_normal.glsl"
 uniform sampler2D objects, normals;  // of objects, `grid` times finer
 uniform sampler2D back;              // depth of their backs; 0: not known

@@ -1,6 +1,6 @@
-// What arrives at each pixel from all directions: as the frame shows it near by, else as the captured
-// panorama sends it. Twin: screen.c, but that all directions are spread as the cosine. With MEAN: the
-// mean of the panorama over all directions.
+// What arrives at each pixel from all directions: as the frame shows it near by, else as the
+// captured panorama sends it. Twin: world/transport/screen.c. Here all directions are spread as the
+// cosine. With MEAN: the mean of the panorama over all directions.
 #include "follow.glsl"
 
 #ifdef MEAN
@@ -15,7 +15,7 @@ void main()
     for (int i = 0; i < DIRECTIONS; i++) {
         float z = 1.0 - (2.0 * float(i) + 1.0) / float(DIRECTIONS), r = sqrt(1.0 - z * z);
         float turn = golden * float(i);
-        sum += panorama_sample(vec3(r * cos(turn), z, r * sin(turn)));
+        sum += panorama_sample(vec3(r * cos(turn), z, r * sin(turn))).rgb;
     }
     color = vec4(sum / float(DIRECTIONS), 1.0);
 }
@@ -49,7 +49,7 @@ float random_at(uint key, uint number)
     return float(mixed(mixed(key) + number) >> 8) / 16777216.0;
 }
 
-// Twin: mirrored.
+// Twin: mirrored of world/transport/transport.c.
 float mirrored(uint i)
 {
     i = (i << 16) | (i >> 16);
@@ -60,7 +60,7 @@ float mirrored(uint i)
     return float(i) / 4294967296.0;
 }
 
-// Twin: spread.
+// Twin: spread of world/transport/transport.c.
 vec3 spread(vec3 normal, float u, float v)
 {
     float r = sqrt(u), up = sqrt(max(1.0 - u, 1e-6)), around = 2.0 * PI * v;
@@ -74,7 +74,7 @@ float depth_of(vec3 point)
     return eye.w > 0.0 ? distance(point, eye.xyz) : -dot(point, eye.xyz);
 }
 
-// Twin: part_blocked.
+// Twin: block of world/transport/screen.c.
 float part_blocked(vec4 seen, float back, vec3 site, vec3 tried)
 {
     const float BEGIN = 0.7;
@@ -84,7 +84,7 @@ float part_blocked(vec4 seen, float back, vec3 site, vec3 tried)
     return 1.0 - smoothstep(BEGIN, 1.0, distance(seen.xyz, site) / radius);
 }
 
-// Twin: from_pixel.
+// Twin: arrive_from of world/transport/screen.c.
 vec3 sent_by(vec3 colour, vec3 seen, vec3 normal, vec3 site)
 {
     return dot(site - seen, normal) > 0.0 ? max(colour, 0.0) : vec3(0.0);
@@ -116,7 +116,7 @@ void main()
         vec3 towards = spread(normal, fract((float(i) + 0.5) / float(samples) + a),
                               fract(mirrored(uint(i)) + b));
         vec3 tried = start + radius * (1.0 - random_at(key, uint(i) + 2u)) * towards;
-        vec3 open = directional ? max(panorama_sample(seen_along(start, towards)), 0.0) : even;
+        vec3 open = directional ? max(panorama_sample(seen_along(start, towards)).rgb, 0.0) : even;
         vec4 at = clip * vec4(tried, 1.0);
         vec2 xy = (0.5 * at.xy / at.w + 0.5) * vec2(size);
         vec3 bare = open, full = open;

@@ -1,8 +1,9 @@
 #version 330 core
 // What a light sample shows a white matte surface where the scene is: those let through by what is
-// captured, and all, without the objects and with them. Twin: lamps_at.
+// captured, and all, without the objects and with them. Twin:
+// exchange_lamps_at of src/world/object/exchange_lamps.c.
 #include "texels.glsl"
-#include "cube.glsl"
+#include "shared/cube.glsl"
 #include "light/light.glsl"
 #include "light_sample.glsl"
 #include "shadow.glsl"
@@ -20,7 +21,7 @@ layout(location = 3) out vec4 all_with;
 
 const float OFF = 0.005;  // of the distance from the eye: depth may be wrong by so much
 
-// Twin: reached.
+// Twin: scenery_reached.
 float let_through(vec3 point, vec3 normal)
 {
     if (captured_layers == 0)

@@ -1,6 +1,6 @@
 #version 330 core
 // The scene as it is with the objects: what it shows alone times what arrives with them over what
-// arrives without. Twin: quotient.
+// arrives without. Twin: exchange_quotient.
 uniform sampler2D scene, lone;
 uniform sampler2D let_without, let_with, all_without, all_with;  // lamps.frag
 uniform sampler2D without, with_objects;                         // gathered

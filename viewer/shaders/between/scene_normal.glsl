@@ -1,4 +1,4 @@
-// Which way a scene faces, by the places that its pixels show. Twin: scene.c.
+// Which way a scene faces, by the places that its pixels show. Twin: world/object/scene.c.
 uniform sampler2D scene;  // positions; alpha 0: nothing is there
 
 vec3 place_at(ivec2 pixel)

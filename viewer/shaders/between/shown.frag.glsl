@@ -1,5 +1,6 @@
 #version 330 core
-// What the frame shows under a light, for ways that go by it. Twin: show, dimmed.
+// What the frame shows under a light, for methods that go by it. Twins: exchange_dimmed and
+// src/world/object/exchange.c.
 uniform sampler2D front;                   // places; 2: objects
 uniform sampler2D objects, shaded;         // `grid` times finer
 uniform sampler2D lone;                    // the scene

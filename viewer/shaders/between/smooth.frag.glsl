@@ -1,6 +1,6 @@
 #version 330 core
-// A mean over the pixels that share a pattern of directions, of those that are the same surface. Twin:
-// smooth.c.
+// A mean over the pixels that share a pattern of directions, of those that are the same surface.
+// Twin: world/transport/smooth.c.
 uniform sampler2D first, second;  // what was gathered; alpha 0: nothing
 uniform sampler2D place, facing;
 uniform vec3 eye;

@@ -3,10 +3,10 @@
 // model_eval, or, where OWN_BLEND is defined, model_blend; where LOBES is, also model_lit; where
 // OWN_PLACES is, also model_at, which knows what lies between texels.
 //
-// Compiled twice: for light samples, and with SKY defined for an environment. Each level of detail is a
-// pass of its own, which adds its part of what lies between two levels.
+// Compiled twice: for light samples, and with SKY defined for an environment. Each level of detail
+// is a pass of its own, which adds its part of what lies between two levels.
 #include "texels.glsl"
-#include "cube.glsl"
+#include "shared/cube.glsl"
 #include "light/light.glsl"
 #include "light_sample.glsl"
 #include "shadow.glsl"
@@ -47,9 +47,9 @@ int cell_of(vec3 d)
     return at.y * CELLS + at.x;
 }
 
-// Twin: relume_direction_mesh_at. A cell lists the triangles that directions in it can point into, each as six
-// texels: for each corner the vector along which its weight grows and its number (-1: the nadir),
-// then where the corners are.
+// Twin: relume_direction_mesh_at. A cell lists the triangles that directions in it can point into,
+// each as six texels: for each corner the vector along which its weight grows and its number (-1:
+// the nadir), then where the corners are.
 Blend mesh_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)
 {
     ivec2 list = texelFetch(cells, cell_of(d)).xy;
@@ -96,7 +96,7 @@ vec3 model_blend(int texel, Blend v, Blend l);
 // At one texel, at a measured view (light) where the model is gridded over them.
 vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l);
 
-// Twin: model_blend.
+// Twin: model_blend of model.c.
 vec3 model_blend(int texel, Blend v, Blend l)
 {
     vec3 sum = vec3(0.0);
@@ -176,7 +176,7 @@ struct Points {
 
 const float SQUARE = 0.0625, MOST_RATIO = 7.0;
 
-// Twin: relume_btf_surface_filter, add_point.
+// Twins: relume_btf_surface_filter and add_point of src/material/surface/surface.c.
 Points points_of(vec2 texture_at, vec4 spread)
 {
     if (!bilinear)
@@ -211,7 +211,7 @@ vec3 mean_of(Points p, Blend v, Blend l, mat3 frame)
 uniform ivec2 some_lights;  // the pass sums over these: from, to
 #endif
 
-// Twin: add_sky, without shadows.
+// Without shadows. Twin: add_sky.
 vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 {
 #ifdef LOBES
@@ -229,7 +229,7 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 
 #else
 
-// Twin: add_sample.
+// Twin: add_sample of world/object/render.c.
 vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 {
     vec3 towards, arriving;
@@ -249,7 +249,7 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 
 #endif
 
-// Twin: objects_shade.
+// Twin: objects_shade of world/object/render.c.
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);

@@ -1,6 +1,7 @@
 #version 330 core
-// What one light sample alone shows of a scene, where no object keeps it off. Twin: share (into.c).
-#include "cube.glsl"
+// What one light sample alone shows of a scene, where no object keeps it off. Twin:
+// src/world/object/scene.c.
+#include "shared/cube.glsl"
 #include "shadow.glsl"
 #include "between/scene_normal.glsl"
 uniform sampler2D lone;

@@ -16,7 +16,7 @@ vec3 fields_eval(int entry, int view, vec3 l)
 }
 
 #ifdef SKY
-// Twin: fields_lit.
+// Twin: fields_lit of material/model/fields.c.
 vec3 fields_lit(int entry, int view, mat3 frame)
 {
     int slice = entry * counts.x + view;

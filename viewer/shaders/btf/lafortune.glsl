@@ -16,7 +16,7 @@ vec3 laf_eval(int texel, vec3 v, vec3 l)
 }
 
 #ifdef SKY
-// For one view a lobe is a cosine lobe of the light. Twin: lit (model_laf.c).
+// For one view a lobe is a cosine lobe of the light. Twin: lit of model_laf.c.
 vec3 laf_lit(int texel, vec3 v, mat3 frame)
 {
     vec3 rgb = texelFetch(array0, texel).rgb * sky_even(frame, true);

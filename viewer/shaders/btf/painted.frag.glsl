@@ -9,7 +9,7 @@ uniform samplerBuffer array1;  // F0 [texels]
 uniform samplerBuffer array2;  // normal; alpha [texels]
 const float DIELECTRIC = 0.04;
 
-// pi D V. Twin: microfacets (model_painted.c).
+// pi D V. Twin: microfacets of model_painted.c.
 float microfacets(float alpha, float nh, float nv, float nl)
 {
     float square = alpha * alpha, d = nh * nh * (square - 1.0) + 1.0;
@@ -33,7 +33,7 @@ vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)
 }
 
 #ifdef SKY
-// Of even light the microfacets send back F0 x + y. Twin: sent_back (model_painted.c).
+// Of even light the microfacets send back F0 x + y. Twin: sent_back of model_painted.c.
 vec2 sent_back(float roughness, float nv)
 {
     vec4 r = vec4(1.0 - roughness, 0.0425 - 0.0275 * roughness, 1.04 - 0.572 * roughness,
@@ -42,7 +42,7 @@ vec2 sent_back(float roughness, float nv)
     return vec2(-1.04, 1.04) * a + r.zw;
 }
 
-// Twin: lit (model_painted.c).
+// Twin: lit of model_painted.c.
 vec3 model_lit(int texel, int view, vec3 v, mat3 frame)
 {
     vec4 shape = texelFetch(array2, texel);

@@ -1,5 +1,5 @@
 #version 330 core
-// Full matrix factorisation in few bits. Twin: model_qmf.c, scalar.h.
+// Full matrix factorisation in few bits. Twins: model_qmf.c, material/model/scalar.h.
 #define OWN_BLEND
 const bool view_grid = true, light_grid = true;
 #include "btf/btf.glsl"

@@ -1,6 +1,7 @@
 #version 330 core
-// What a light sample of an environment sends to a surface, and what of it arrives. Twin: share_of_sky.
-#include "cube.glsl"
+// What a light sample of an environment sends to a surface, and what of it arrives. Twin:
+// share_of_sky of world/object/render.c.
+#include "shared/cube.glsl"
 #include "shadow.glsl"
 uniform sampler2D place, normal_s;
 uniform vec3 towards, rgb;

@@ -1,5 +1,5 @@
-// What is there of a surface, and what it sends of its own. Twin: skin.c, which blends layers; here
-// as many pixels of a pattern are there as there is of a surface.
+// What is there of a surface, and what it sends of its own. Twin: world/object/skin.c. That
+// file blends layers. Here as many pixels of a pattern are there as there is of a surface.
 uniform sampler2D skin;  // what it sends; opacity. OpenGL filters it
 uniform int cover;       // enum relume_object_cover
 uniform float cutoff;

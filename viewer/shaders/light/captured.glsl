@@ -1,21 +1,9 @@
 // Where light from a direction is taken from.
-uniform bool hemisphere, pole_y;
+#include "shared/pole.glsl"
 uniform bool zone_everywhere;  // struct relume_captured_region, in the world
 uniform vec3 zone_right, zone_up, zone_facing;
 uniform vec4 zone_axis;         // and the cosine within which all is inside
 uniform sampler2D zone_border;  // a row by azimuth
-
-// Twin: pole_from_world.
-vec3 pole_from_world(vec3 d)
-{
-    return pole_y ? vec3(-d.z, d.x, d.y) : d;
-}
-
-// Twin: that of src/relight/light/near_lights.c.
-bool is_captured(vec3 towards)
-{
-    return !hemisphere || pole_from_world(towards).z >= 0.0;
-}
 
 // Below the horizon of a hemispherical capture: at the horizon of the same azimuth.
 vec3 above_horizon(vec3 d)

@@ -1,5 +1,5 @@
-// What a light that stands near sends to a point. Twin: relume_light_at. After texels and cube.
-const float PI = 3.14159265358979;
+// What a light that stands near sends to a point. After texels and cube.
+#include "shared/light.glsl"
 
 // enum relume_light_kind
 const int DIRECTIONAL = 0, SPOT = 3, SLIDE = 4, AREA = 5, IES = 6, GONIO = 7;
@@ -15,26 +15,6 @@ uniform Light light;
 uniform sampler2D picture;  // slide: its picture; ies: intensities [vertical][horizontal];
                             // gonio: relume_gonio_map
 
-bool ray_to(out vec3 towards, out float distance, vec3 from, vec3 point)
-{
-    towards = from - point;
-    distance = length(towards);
-    towards /= distance;
-    return distance >= 1e-6;
-}
-
-// From the axis. Drivers are coarse at acos: Mesa is off by a ten thousandth.
-float off_axis(vec3 ray)
-{
-    return atan(length(cross(ray, light.axis)), dot(ray, light.axis));
-}
-
-vec3 spot_factor(vec3 ray)
-{
-    float angle = off_axis(ray);
-    return vec3(1.0 - smoothstep(0.9 * light.half_angle, light.half_angle, angle));
-}
-
 vec3 slide_factor(vec3 ray)
 {
     vec2 size = vec2(textureSize(picture, 0));
@@ -49,7 +29,7 @@ vec3 slide_factor(vec3 ray)
 vec3 ies_factor(vec3 ray)
 {
     vec2 cells = vec2(textureSize(picture, 0) - 1);
-    float vertical = off_axis(ray) / PI;
+    float vertical = off_axis(ray, light.axis) / PI;
     float horizontal = atan(dot(ray, light.up), dot(ray, light.right)) / (2.0 * PI);
     vec2 at = vec2(fract(horizontal), vertical) * cells + 0.5;
     return texels_bilinear(picture, at).rrr;
@@ -71,13 +51,14 @@ vec3 gonio_factor(vec3 ray)
     return gonio_value(vec3(dot(ray, light.right), dot(ray, light.up), -dot(ray, light.axis)));
 }
 
+// Twin: relume_light_at.
 bool light_at(out vec3 towards, out vec3 rgb, vec3 point)
 {
     float distance;
     bool arrives = ray_to(towards, distance, light.position, point);
     rgb = light.rgb * (light.nofall ? 1.0 : 1.0 / (distance * distance));
     if (light.kind == SPOT)
-        rgb *= spot_factor(-towards);
+        rgb *= spot_factor(-towards, light.axis, light.half_angle);
     else if (light.kind == SLIDE)
         rgb *= slide_factor(-towards);
     else if (light.kind == IES)

@@ -1,4 +1,6 @@
-// The triangle of lights around a direction. Twin: src/relight/light/triangles.c.
+// The triangle of lights around a direction. A page looks through all triangles of its few lights:
+// it has them from its core without neighbours. Twin: src/relight/light/triangles.c.
+#include "shared/triangles.glsl"
 uniform sampler2D triangles;  // rows of nodes, then inverse and neighbour of each corner; then
                               // starts, 16 a row
 uniform int triangle_count;   // 0: none
@@ -27,10 +29,5 @@ void triangles_find(out ivec3 node, out vec3 share, vec3 d)
             break;
         t = int(share.x == least ? inverse[0].w : share.y == least ? inverse[1].w : inverse[2].w);
     }
-    vec3 corner = texelFetch(triangles, ivec2(0, t), 0).xyz;
-    vec3 says = vec3(greaterThanEqual(corner, vec3(0.0)));
-    share = max(share, 0.0) * says;
-    float sum = share.x + share.y + share.z;
-    share = sum > 0.0 ? share / sum : says / (says.x + says.y + says.z);
-    node = ivec3(max(corner, 0.0));
+    triangle_shares(node, share, texelFetch(triangles, ivec2(0, t), 0).xyz);
 }

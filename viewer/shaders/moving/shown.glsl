@@ -1,6 +1,7 @@
 // What is shown of one light: its relit picture and what the model adds, black where it would be
 // less.
 #include "transfer.glsl"
+#include "shared/luminance.glsl"
 #include "above_zero.glsl"
 
 uniform sampler2D coded;   // the relit picture ...
@@ -10,24 +11,12 @@ uniform Transfer display;  // what the codes are interpolated in
 uniform vec3 rgb;          // the light, linear
 uniform ivec2 origin;      // of the picture in the view
 uniform bool exchanges;    // the light is a bright source of an environment ...
-uniform sampler2D whole;   // ... whose picture this is; twin: exchange_bright_source of src/relight/frame/relighter.c
+uniform sampler2D whole;   // ... whose picture this is (Twin: exchange_bright_source)
 out vec4 color;
-
-vec3 encoded(vec3 v)
-{
-    return vec3(transfer_encode(display, v.r), transfer_encode(display, v.g),
-                transfer_encode(display, v.b));
-}
-
-vec3 decoded(Transfer curve, vec3 v)
-{
-    return vec3(transfer_decode(curve, v.r), transfer_decode(curve, v.g),
-                transfer_decode(curve, v.b));
-}
 
 vec3 relit_here()
 {
-    vec3 relit = times * decoded(coding, texelFetch(coded, ivec2(gl_FragCoord.xy), 0).rgb);
+    vec3 relit = times * transfer_decode(coding, texelFetch(coded, ivec2(gl_FragCoord.xy), 0).rgb);
     return exchanges ? above_zero(relit) : relit;
 }
 

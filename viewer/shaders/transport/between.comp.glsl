@@ -1,6 +1,7 @@
 #version 430
-// Pixels between those that have gathered light take it from these, where they show one surface and are
-// alike; others are listed. Twins: between.c of transport, exchange_fill_scene, exchange_fill_objects.
+// Pixels between those that have gathered light take it from these, where they show one surface and
+// are alike; others are listed. Twins: world/transport/between.c, exchange_fill_scene,
+// exchange_fill_objects.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = 3) buffer List { uvec4 listed; uint at[]; };
 layout(rgba32f, binding = 0) uniform image2D without;

@@ -1,6 +1,7 @@
 #version 430
-// What leaves send under a light: of the scene what its pixels show, and the part of it that objects leave;
-// of objects what lamps bring and what they have gathered. Twins: light_leaves, light_point.
+// What leaves send under a light: of the scene what its pixels show, and the part of it that
+// objects leave; of objects what lamps bring and what they have gathered. Twins: light_point,
+// light_leaves of world/transport/micro.c.
 layout(local_size_x = 64) in;
 #include "transport/tree.glsl"
 struct Leaf {

@@ -1,6 +1,6 @@
 #version 430
-// Imperfect shadow maps (Ritschel et al. 2008): a work group draws one from a run of spots and fills its
-// holes. Twin: maps.c. With SIZE, its texels along a side.
+// Imperfect shadow maps (Ritschel et al. 2008): a work group draws one from a run of spots and
+// fills its holes. Twin: world/transport/maps.c. With SIZE, its texels along a side.
 layout(local_size_x = 128) in;
 #include "transport/virtual.glsl"
 #include "transport/virtual_fetch.glsl"
@@ -33,7 +33,7 @@ float depth_of(uint bits)
     return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
 }
 
-// Twin: find_texels.
+// Twin: find_texels of world/transport/maps.c.
 ivec2 texels_of(float middle, float side)
 {
     float part = 0.5 * min(side, float(SIZE) / 4.0);
@@ -61,8 +61,8 @@ void splat(int number, Look l, float chance)
             atomicMin(texel[j * SIZE + i], ordered(at.z));
 }
 
-// The nearest of four that belong together: their mean; their range, below 0 where there are only two.
-// Twin: together.
+// The nearest of four that belong together: their mean; their range, below 0 where there are only
+// two. Twin: together.
 vec2 together(vec4 depth, float apart)
 {
     vec2 best = vec2(NEVER, -1.0);

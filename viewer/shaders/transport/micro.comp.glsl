@@ -1,10 +1,10 @@
 #version 430
-// A small picture of what surrounds each place, drawn from trees of points (Ritschel et al. 2009). Twins:
-// cut.c, micro.c. A work group is a place, an invocation one pixel of its picture, which goes down to the
-// nodes that may touch it, in the order of the library: so there are no lists that could be too short, and
-// a picture is the same each time. What is too near to be drawn is met as discs by the pixel's ray, as the
-// paper has it; what points cover by less than half shows what they do cover. With SIDE, and PIXELS, its
-// square.
+// A small picture of what surrounds each place, drawn from trees of points (Ritschel et al. 2009).
+// Twins: world/transport/cut.c, world/transport/micro.c. A work group is a place, an invocation one
+// pixel of its picture, which goes down to the nodes that may touch it, in the order of the
+// library: so there are no lists that could be too short, and a picture is the same each time. What
+// is too near to be drawn is met as discs by the pixel's ray, as the paper has it; what points
+// cover by less than half shows what they do cover. With SIDE, and PIXELS, its square.
 layout(local_size_x = PIXELS) in;
 // Directions in the frame of a place, and the part of each pixel within the disc.
 layout(std430, binding = 2) readonly buffer Picture { vec4 pixel[]; };
@@ -63,7 +63,7 @@ float part_along(float x, int i)
     return max(1.0 - abs(away), 0.0);
 }
 
-// Twins: disc_of, is_low, is_met, but that the nearest disc is taken.
+// The nearest disc is taken. Twins: is_low, is_met, disc_of of world/transport/cut.c.
 void meet(inout Disc best, int number, vec3 middle, float radius, vec3 normal, Site site, vec3 direction,
           bool fronts)
 {
@@ -109,7 +109,7 @@ void put_object(inout Cell cell, Light light, float depth, float weight)
     add(cell.object, light, weight);
 }
 
-// Twin: cut. `part` of a pixel is what nodes may be as large as.
+// Twin: cut of world/transport/cut.c. `part` of a pixel is what nodes may be as large as.
 void cut(inout Cell cell, Site site, vec3 direction, ivec2 own, int top, float part, bool objects)
 {
     const float TOO_WIDE = 2.0, ACROSS = 4.0 / float(PIXELS), HALF = 0.5 * float(SIDE);
@@ -191,7 +191,7 @@ void show_scene(out Light shown, out float depth, out float hides, out float dee
     }
 }
 
-// Twin: part_of.
+// Twin: part_of of world/transport/micro.c.
 float part_of(Cell cell, float depth, float hides, float deepest, float inside)
 {
     const float BEHIND = 1.05;
@@ -201,7 +201,7 @@ float part_of(Cell cell, float depth, float hides, float deepest, float inside)
     return cell.object_depth > BEHIND * depth ? part * (1.0 - hides) : part;
 }
 
-// Twin: resolve.
+// Twin: resolve of world/transport/micro.c.
 Light resolve(Cell cell, float inside)
 {
     Light shown;

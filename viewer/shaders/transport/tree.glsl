@@ -1,4 +1,4 @@
-// Trees of points, and what they send. Twins: relume_points_node, hierarchy.h.
+// Trees of points, and what they send. Twin: world/transport/hierarchy.h.
 struct Node {
     vec4 ball;    // middle, radius; below 0: there is none
     vec4 facing;  // sum of areas times normals; half of what cancels in it

@@ -1,4 +1,5 @@
-// Virtual lights and how their shadow maps look at the world. Twins: virtual.h, maps.c, instant.c.
+// Virtual lights and how their shadow maps look at the world. Twins: world/transport/virtual.h,
+// world/transport/maps.c, world/transport/instant.c.
 struct Virtual {
     vec3 place;   // just off its surface; of one that is far away nothing
     float size;   // an area, or a solid angle; 0: it is dark
@@ -37,8 +38,8 @@ Look look_of(Virtual v, bool at_objects)
     return look_along(CONE, v.place, to / away, radius / sqrt(away * away - radius * radius));
 }
 
-// Where a place lies in a map: -1 to 1 along both sides; its depth, and how much of a side one unit of
-// length takes up there. Twin: find.
+// Where a place lies in a map: -1 to 1 along both sides; its depth, and how much of a side one unit
+// of length takes up there. Twin: find of world/transport/maps.c.
 bool find(out vec4 at, Look l, vec3 place)
 {
     const float LOWEST = 0.02;

@@ -1,4 +1,5 @@
-// Linear light to linear light in [0, 1]; twins of the operators in src/relight/eye/tone.c.
+// Linear light to linear light in [0, 1]. After luminance and transfer. Twin:
+// src/relight/eye/tone.c.
 const int TONE_REINHARD = 1;  // places in relume_tones
 const int TONE_FILMIC = 2;
 const int TONE_GAMMA = 3;
@@ -10,7 +11,7 @@ vec3 tone_linear(vec3 rgb, float white)
 
 vec3 tone_reinhard(vec3 rgb, float white)
 {
-    float l = max(dot(rgb, vec3(0.2126, 0.7152, 0.0722)), 0.0);
+    float l = max(luminance(rgb), 0.0);
     return clamp(rgb * ((1.0 + l / (white * white)) / (1.0 + l)), 0.0, 1.0);
 }
 
@@ -22,9 +23,7 @@ vec3 tone_filmic(vec3 rgb, float white)
 
 vec3 tone_gamma(vec3 rgb, float white)
 {
-    vec3 coded = pow(clamp(rgb, 0.0, 1.0), vec3(1.0 / 2.2));
-    return mix(pow((coded + 0.055) / 1.055, vec3(2.4)), coded / 12.92,
-               lessThanEqual(coded, vec3(0.04045)));
+    return srgb_decode(pow(clamp(rgb, 0.0, 1.0), vec3(1.0 / 2.2)));
 }
 
 vec3 tone_apply(int tone, vec3 rgb, float white)

@@ -15,3 +15,9 @@ int cube_face_of(vec3 d)
         return d.y >= 0.0 ? 2 : 3;
     return d.z >= 0.0 ? 4 : 5;
 }
+
+// The ray through a position in the square of a face, -1 to 1 to the right and up.
+vec3 cube_face_ray(int face, vec2 ab)
+{
+    return face_ahead[face] + ab.x * face_right[face] + ab.y * face_up[face];
+}

@@ -1,4 +1,4 @@
-// Samples of what a pixel covers; twin of src/image/image/footprint.h.
+// Samples of what a pixel covers. Twin: src/image/image/footprint.h.
 const int FOOTPRINT_MOST = 16;  // a side
 const float FOOTPRINT_SLACK = 1e-4;
 const float FOOTPRINT_ONE = 1.25;

@@ -1,6 +1,5 @@
-// The mean of what a pixel of the frame covers, `texels` along each side of it: of value_at, which
-// the shader defines, at places of the frame counted from the pixel's middle.
-#include "footprint.glsl"
+// The mean of value_at, which the shader defines, over what a pixel of the frame covers: `texels`
+// along each side. Positions count from the pixel's middle. After footprint.
 vec4 value_at(vec2 within);
 
 vec4 footprint_mean(vec2 texels)

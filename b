@@ -3,7 +3,7 @@
   src/encode/encode/coded.c: 1:  what the next camera of a slab sees by so many pixels; without one it is this part of 
   src/encode/encode/decide.c: 1: cibel of lights left out then counts as so many of the captured ones, unless one of the
   src/encode/encode/look.c: 2:  by which foretelling is judged: one of so many.
-  src/encode/encode/pyramid.c: 1: A view of up to so many pixels is read and relit in half a seco
+  src/encode/levels/pyramid.c: 1: A view of up to so many pixels is read and relit in half a seco
   src/encode/encode/rate.c: 2: der too where all of them are more than so many times that.
   src/encode/encode/rate.h: 1: How good planes of that PSNR and so many bytes are about, to compare them with o
   src/encode/learn/learn.c: 1: in Lambert: as in so many lights

@@ -3,7 +3,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "encode/encode/reduction.h"
+#include "encode/levels/reduction.h"
 #include "image/image/image.h"
 
 static char folder[64], path[96];

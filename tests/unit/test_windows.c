@@ -42,7 +42,7 @@ static void compare(double left_out[2], double clearly)
     how.coefficients = 0;
     CHECK_OK(relume_coder_learn(&coder[1], &relume_basis_table, capture, &how, &encode));
     CHECK_OK(windows_compare(merit, left_out, (const relume_coder *const *)coder, capture, &target,
-                          header, clearly, &encode));
+                             header, clearly, &encode));
     assert_true(isfinite(merit[0]) && isfinite(merit[1]));
     relume_coder_destroy(&coder[0]);
     relume_coder_destroy(&coder[1]);

@@ -74,7 +74,8 @@ struct relume_points {
     double area;  // that each of them stands for
 };
 
-// Parameters of relume_points_of_scene and relume_points_of_objects; 0 is the default of each field.
+// Parameters of relume_points_of_scene and relume_points_of_objects; 0 is the default of each
+// field.
 struct relume_points_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;

@@ -11,7 +11,7 @@
 
 #include "core/base/memory.h"
 #include "encode/encode/coding.h"
-#include "encode/encode/pyramid.h"
+#include "encode/levels/pyramid.h"
 #include "encode/encode/rate.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "core/base/params.h"
 #include "encode/encode/coded.h"
 #include "encode/encode/material.h"
-#include "encode/encode/pyramid.h"
+#include "encode/levels/pyramid.h"
 #include "format/codebook/drawing.h"
 #include "format/team/array.h"
 

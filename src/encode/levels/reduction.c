@@ -4,7 +4,7 @@
 // domain it has not, since means are of light: there the pixels are decoded under every captured
 // light and made linear, and what their mean light, coded again, has beyond the mean of their codes
 // joins the mean of their coefficients by least squares over the lights.
-#include "encode/encode/reduction.h"
+#include "encode/levels/reduction.h"
 
 #include "core/base/log.h"
 #include "core/base/memory.h"

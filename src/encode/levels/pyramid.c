@@ -1,9 +1,9 @@
 // pyramid.c - the reduced levels of a large view
-#include "encode/encode/pyramid.h"
+#include "encode/levels/pyramid.h"
 
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "encode/encode/reduction.h"
+#include "encode/levels/reduction.h"
 
 #include <string.h>
 
